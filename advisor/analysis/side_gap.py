@@ -12,13 +12,13 @@ from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.oem.estimate import NoEstimate
+from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.lateral_estimator import estimate_lateral
 from advisor.side_gap.comparison import SideGap, compare_side
 from advisor.simulators.flying import Progress
 from advisor.simulators.side import side_without_difference
 from advisor.simulators.specification import simulator_of
-from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
+from advisor.words.problems import ConfigurationError, UnusableInputError
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def compare_side_logs(
         finally:
             simulator.close()
     progress("comparing", 1.0)
-    gap = _answered(compare_side(accepted, aircraft, prior))
+    gap = answered(compare_side(accepted, aircraft, prior))
     return SideCompared(gap, state, given, accepted, aircraft)
 
 
@@ -77,14 +77,10 @@ def accepted_of(state: CampaignState) -> list[Maneuver]:
     assert lateral is not None
     accepted = [one.maneuver for one in lateral.maneuvers if one.verdict.accepted]
     if not accepted:
-        raise UnusableInputError.of(
-            [
-                Problem(
-                    "no_accepted",
-                    "No manoeuvre of the aileron or the rudder is accepted.",
-                    "advisor analyze --axis lateral gives the reason for each of them.",
-                )
-            ]
+        raise UnusableInputError(
+            "no_accepted",
+            "No manoeuvre of the aileron or the rudder is accepted.",
+            "advisor analyze --axis lateral gives the reason for each of them.",
         )
     return accepted
 
@@ -94,19 +90,24 @@ def _identified(log: Path, aircraft: Aircraft) -> Aircraft:
     if not log.is_file():
         raise ConfigurationError(f"--simulator log:{log}: there is no such file; name the simulator's log.")
     flown = accepted_of(read_whole([log], aircraft, no_marks=True, axis="lateral").state)
-    found = _answered(estimate_lateral(flown, aircraft)).estimate
-    told = zip(SIDE_PARAMETERS, map(float, found.theta), strict=True)
+    found = answered(estimate_lateral(flown, aircraft)).estimate
+    return with_derivatives(aircraft, found, found.airspeed_m_s)
+
+
+def with_derivatives(aircraft: Aircraft, found: Estimate, airspeed_m_s: float | None) -> Aircraft:
+    """Return the aircraft file with the identifiable derivatives of an estimate, at this air speed."""
+    told = zip(SIDE_PARAMETERS, found.theta.tolist(), strict=True)
     model = {name: value for name, value in told if name not in found.not_identifiable}
-    return replace(aircraft, model=model, reference_airspeed_m_s=found.airspeed_m_s)
+    return replace(aircraft, model=model, reference_airspeed_m_s=airspeed_m_s)
 
 
 _Found = TypeVar("_Found")
 
 
-def _answered(found: _Found | NoEstimate) -> _Found:
-    """Return an answer, or refuse manoeuvres that gave none."""
+def answered(
+    found: _Found | NoEstimate, fix: str = "Fly an aileron doublet and a rudder doublet.", option: str = ""
+) -> _Found:
+    """Return an answer, or refuse manoeuvres that gave none; ``option`` begins the message."""
     if isinstance(found, NoEstimate):
-        raise UnusableInputError.of(
-            [Problem(found.code, found.text, "Fly an aileron doublet and a rudder doublet.")]
-        )
+        raise UnusableInputError(found.code, f"{option}{found.text}", fix)
     return found

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from advisor.campaign.hand_decisions import NOTHING
+from advisor.cli.doctor import examine_log
 from advisor.cli.improvement_export import export_option, orders_of, write_exports
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import UNUSABLE, USAGE, json_option
 from advisor.cli.stages import Stages
-from advisor.cli.untested import print_untested
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
 
@@ -147,3 +147,31 @@ def _analyze(
     campaign.finish()
     state = campaign.state
     return state, left_out_of(axis, state) | unreadable
+
+
+_COLUMNS = 80
+"""Width of the drawing, which a narrow terminal still holds."""
+
+
+def print_untested(
+    state: "CampaignState",
+    series: "LogSeries",
+    aircraft: "Aircraft",
+    target_system: int | None,
+    axis: "Axis",
+) -> None:
+    """Print the next input of each axis with its drawing, then the examination of each log."""
+    from advisor.doctor.text import ExaminationText
+    from advisor.report.console import PlainConsole
+    from advisor.tui.stick_drawing import drawn
+
+    tests = [state.flight_test] if axis != "lateral" else []
+    tests += [state.lateral.flight_test] if state.lateral is not None else []
+    for test in tests:
+        click.echo(test.sentence)
+        if test.next is not None:
+            click.echo(drawn(test.next, _COLUMNS, large=True))
+        click.echo()
+    for name, log in zip(series.names, series.logs, strict=True):
+        click.echo(f"Without a test input, {printable(name)} tells:")
+        PlainConsole(soft_wrap=True).print(ExaminationText(examine_log(log, aircraft, target_system)))

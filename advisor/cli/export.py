@@ -67,7 +67,7 @@ def command(
     aircraft = asked.read_aircraft()
     models = tuple(name for name in chosen if name in NAMES)
     if models:
-        from advisor.exports.models.in_folder import refuse_models
+        from advisor.exports.models.write import refuse_models
 
         refuse_models(models, out, aircraft)
     from advisor.analysis.whole_flights import read_whole
@@ -93,7 +93,7 @@ def command(
         tables = tuple(name for name in chosen if name not in models)
         said = [part.told for part in (write_formats(dataset(flights), stage, tables) if tables else ())]
         if models:
-            from advisor.exports.models.in_folder import write_models
+            from advisor.exports.models.write import write_models
 
             said += write_models(models, stage, flights.state, aircraft)
     for sentence in said:

@@ -244,7 +244,7 @@ def _write_improved(
 
 def _side_of(asked: LogsAsked, aircraft: "Aircraft") -> "SideModel | None":
     """Return roll and yaw as the logs tell them; None where they tell none."""
-    from advisor.exports.models.from_logs import side_of_logs
+    from advisor.exports.models.roll_and_yaw import side_of_logs
 
     with Stages() as tell:
         tell("reading roll and yaw for the files", 0.0)

@@ -80,7 +80,7 @@ def side_proof_of(
         return None
     from advisor.analysis.side_gap import accepted_of
     from advisor.analysis.whole_flights import read_whole
-    from advisor.exports.models.side_proof import prove_side
+    from advisor.exports.models.roll_and_yaw import prove_side
 
     named = [Path(log) for log in proving if log]
     try:

@@ -98,7 +98,7 @@ def compare_lateral(
 
 
 def _improved(compared: SideCompared) -> "FlownModel":
-    from advisor.exports.models.from_logs import improved_side
+    from advisor.exports.models.roll_and_yaw import improved_side
 
     return improved_side(compared)
 

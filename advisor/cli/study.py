@@ -14,7 +14,7 @@ from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
     from advisor.bundled.study.flying import NoiseReading
-    from advisor.bundled.study.plan import Study, StudyReport
+    from advisor.bundled.study.run import Study, StudyReport
     from advisor.process.tasks.runner import Runner
 
 

@@ -1,4 +1,4 @@
-"""The paper's rules: manoeuvre validation by Eqs. (10) and (11), flight-test validation by Eqs. (12) and (13).
+"""The paper's rules: manoeuvre validation, Eqs. (10) and (11), flight-test validation, Eqs. (12) and (13).
 
 The costs are those of usable manoeuvres. A quiet or spoilt record was refused earlier for its own reasons,
 and has None in place of a cost. Such a record neither passes a rule nor sets the limit for the next one. The

@@ -1,6 +1,6 @@
 """Causes of the gap: ranking with sizes, confusions, effects that the flight cannot show, and reasons."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from rich import box
 from rich.console import Group, RenderableType
@@ -9,9 +9,11 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
+from advisor.gap.alternative import Alternative, Kind
+from advisor.gap.decision import Decision
 from advisor.gap.result import Cause, Diagnosis, Unseen, spelled
-from advisor.gap.verdict.text import in_words
-from advisor.report.gap_reasons import decision_in_words, heading, in_percent, weighed
+from advisor.gap.verdict.text import BLOCKS, in_words
+from advisor.report.gap_reasons import heading, in_percent, weighed
 from advisor.report.gap_sizes import marked, sizes_of
 
 _LIKELY = 0.01
@@ -100,3 +102,25 @@ def why_of(d: Diagnosis) -> Iterator[RenderableType]:
     if d.decisions:
         decided = [Text(decision_in_words(decision)) for decision in d.decisions]
         yield Panel(Group(*decided), title="every decision on the way", title_align="left")
+
+
+_SAID: Mapping[str, str] = {
+    "against its rival": "its log odds against the next answer are {value} nats (at least {limit})",
+    "decided": "its probability is {value} (at least {limit})",
+    "likelihood": "it raises the log likelihood of the flight by {value} nats (at least {limit})",
+}
+"""Name of a decision to its sentence."""
+
+
+def decision_in_words(decision: Decision) -> str:
+    """Return one decision as a line: ``transport delay: passed, its probability is 0.97 (at least 0.6)``."""
+    verdict = "passed" if decision.holds else "rejected"
+    said = _SAID[decision.name].format(value=f"{decision.statistic:.3g}", limit=f"{decision.limit:.3g}")
+    return f"{_about(decision.about)}: {verdict}, {said}"
+
+
+def _about(name: str) -> str:
+    if name in BLOCKS:
+        return in_words(Alternative("unknown", "unknown", name))
+    kinds: dict[str, Kind] = {"none": "none", "parameters": "parameters"}
+    return in_words(Alternative(kinds.get(name, "effect"), name))

@@ -4,10 +4,6 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from advisor.gap.alternative import Alternative, Kind
-from advisor.gap.decision import Decision
-from advisor.gap.verdict.text import BLOCKS, in_words
-
 _SAYABLE_NATS = 12.0
 """Log odds, nats, above which odds are no longer written as a number: 160,000 to 1."""
 _NOTHING = 0.005
@@ -79,25 +75,3 @@ def _odds(nats: float) -> str:
         return "as good as certain" if nats > 0.0 else "as good as excluded"
     odds = math.exp(abs(nats))
     return f"{odds:.1f} to 1 for the answer" if nats >= 0.0 else f"{odds:.1f} to 1 against the answer"
-
-
-_SAID: Mapping[str, str] = {
-    "against its rival": "its log odds against the next answer are {value} nats (at least {limit})",
-    "decided": "its probability is {value} (at least {limit})",
-    "likelihood": "it raises the log likelihood of the flight by {value} nats (at least {limit})",
-}
-"""Name of a decision to its sentence."""
-
-
-def decision_in_words(decision: Decision) -> str:
-    """Return one decision as a line: ``transport delay: passed, its probability is 0.97 (at least 0.6)``."""
-    verdict = "passed" if decision.holds else "rejected"
-    said = _SAID[decision.name].format(value=f"{decision.statistic:.3g}", limit=f"{decision.limit:.3g}")
-    return f"{_about(decision.about)}: {verdict}, {said}"
-
-
-def _about(name: str) -> str:
-    if name in BLOCKS:
-        return in_words(Alternative("unknown", "unknown", name))
-    kinds: dict[str, Kind] = {"none": "none", "parameters": "parameters"}
-    return in_words(Alternative(kinds.get(name, "effect"), name))

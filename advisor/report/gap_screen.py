@@ -11,13 +11,12 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
-from advisor.gap.verdict.limits import limits_of
 from advisor.gap.verdict.text import place
-from advisor.gap.verdict.titles import answers_of, title_of
+from advisor.gap.verdict.titles import answers_of, limits_of, title_of
 from advisor.process.installed import SIMULATOR
-from advisor.report.gap_causes import PRESENT, ranking, unseen
+from advisor.report.gap_causes import PRESENT, ranking, unseen, why_of
 from advisor.report.gap_fidelity import errors, peaks, worst_maneuver, yardsticks
-from advisor.report.gap_reasons import how_sure, why_of
+from advisor.report.gap_reasons import how_sure
 from advisor.report.gap_simulator import simulated
 from advisor.report.gap_sizes import WORSE, before_after, changes, has_grown, short
 from advisor.report.gap_steps import GapStep

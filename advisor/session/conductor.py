@@ -11,11 +11,10 @@ from threading import Event
 from time import monotonic
 
 from advisor.campaign.hand_decisions import NOTHING, ByHand
-from advisor.session.campaign_like import CampaignLike
 from advisor.session.conducting import SessionReport, Tell
-from advisor.session.goal import DataBegin, Goal, Position
-from advisor.session.hand import HandDecision
+from advisor.session.hand import CampaignLike, HandDecision
 from advisor.session.source import LinkRequest, Playable, Source, Tempo
+from advisor.session.timeline import DataBegin, Goal, Position
 
 REPORT_EVERY_S = 0.1
 _READ_TIMEOUT_S = 0.05

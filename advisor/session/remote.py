@@ -15,11 +15,9 @@ from advisor.mavlink.link.keeping import Door
 from advisor.mavlink.link.observer import LinkObserver
 from advisor.process.liveness import Watch
 from advisor.session.behind import BehindTeller
-from advisor.session.campaign_like import CampaignLike
-from advisor.session.changes import Changes
 from advisor.session.child_process import pause_s, said_of, start_child
-from advisor.session.conducting import SessionReport, Tell
-from advisor.session.hand import HandDecision
+from advisor.session.conducting import Changes, SessionReport, Tell
+from advisor.session.hand import CampaignLike, HandDecision
 from advisor.session.live import renewed
 from advisor.session.source import LinkHealth, LinkRequest, Source, Tempo
 

@@ -1,9 +1,11 @@
-"""The messages of a log on the time scale of its replay."""
+"""The messages of a log on the time scale of its replay, and the goals to which a replay hurries."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.campaign.state import CampaignState
 from advisor.flight.signals.messages import Columns, IntArray, cut
 
 LONGEST_SILENCE_S = 2.0
@@ -67,3 +69,45 @@ def _through(pieces: Sequence[Columns]) -> list[IntArray]:
         first[flight] = behind - min(int(order[0]) for order in orders)
         behind = first[flight] + max(int(order[-1]) for order in orders) + 1
     return [piece.order + first[piece.flight] for piece in pieces]
+
+
+LEAD_S = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """The moment just before manoeuvre ``number`` is flown."""
+
+    number: int
+    start: tuple[int, int, float] | None
+    """Flight, power-on and vehicle time of the first step, where the manoeuvre was judged before. None: it
+    lies ahead."""
+
+    def reached(self, state: CampaignState, position_s: float = 0.0) -> bool:
+        """Return whether the replay has reached the goal, or passed it."""
+        done = len(state.maneuvers)
+        if done >= self.number:
+            return True
+        if self.start is not None:
+            return done == self.number - 1 and (state.flight, state.boot, state.now_s + LEAD_S) >= self.start
+        return state.flying is not None and state.flying.number >= self.number
+
+
+@dataclass(frozen=True, slots=True)
+class DataBegin:
+    """The moment at which the data of a log can serve. Many logs begin with slow streams or parameters."""
+
+    def reached(self, state: CampaignState, position_s: float = 0.0) -> bool:
+        """Return whether the present data can serve."""
+        return state.serves
+
+
+@dataclass(frozen=True, slots=True)
+class Position:
+    """A position of the replay, s since the first record with silences shortened."""
+
+    position_s: float
+
+    def reached(self, state: CampaignState, position_s: float) -> bool:
+        """Return whether the replay has reached the position, or passed it."""
+        return position_s >= self.position_s

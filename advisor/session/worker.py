@@ -12,8 +12,7 @@ from threading import Thread
 from typing import IO
 
 from advisor.process import interrupt
-from advisor.session.changes import changes
-from advisor.session.conducting import SessionReport
+from advisor.session.conducting import SessionReport, changes
 from advisor.session.conductor import Conductor
 
 

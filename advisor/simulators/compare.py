@@ -26,7 +26,6 @@ from advisor.gap.simulator.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS
 from advisor.simulators.air import refuse_unknown_air, standard_heights, still_air_said, winds
 from advisor.simulators.around import COMMAND
 from advisor.simulators.by_log import IdentifiedSimulator
-from advisor.simulators.controls import other_controls
 from advisor.simulators.flying import (
     AsGiven,
     Flying,
@@ -38,6 +37,7 @@ from advisor.simulators.flying import (
     without_difference,
 )
 from advisor.simulators.improved import EQUATIONS, Flown, in_simulator
+from advisor.simulators.inputs import other_controls
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.mirror import mirrored
 from advisor.simulators.protocol import Condition, Inputs, Replay, Simulator

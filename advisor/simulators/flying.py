@@ -37,7 +37,7 @@ class Flying:
     heights_m: Mapping[int, float]
     """Manoeuvre number to the height in the standard atmosphere with the density of the air, m."""
     controls: Mapping[int, Mapping[str, FloatArray]]
-    """Manoeuvre number to the logged controls (``advisor.simulators.controls.other_controls``)."""
+    """Manoeuvre number to the logged controls (``advisor.simulators.inputs.other_controls``)."""
     mass_kg: float | None
     progress: Progress
     winds: Mapping[int, tuple[float, float]] = field(default_factory=dict)

@@ -1,11 +1,12 @@
 """Inputs of a simulator from a flown manoeuvre, and the replay as a manoeuvre on the gap's own grid."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import (
@@ -22,7 +23,7 @@ from advisor.gap.simulator.layout import (
 )  # fmt: skip
 from advisor.gap.simulator.surface import surface
 from advisor.oem.rows import Signal
-from advisor.simulators.protocol import Condition, Inputs, Replay
+from advisor.simulators.protocol import CONTROLS, Condition, Inputs, Replay
 
 _RATE_S = 0.02
 """Interval of the stamps at which a replay is read where nothing was measured."""
@@ -114,3 +115,26 @@ def _pull_along(replay: Replay) -> FloatArray:
     path = replay.theta - replay.alpha
     along = np.gradient(replay.airspeed_m_s, replay.t) + GRAVITY_M_S2 * np.sin(path)
     return np.asarray((along - replay.a_z * np.sin(replay.alpha)) / np.cos(replay.alpha))
+
+
+def other_controls(
+    flights: Sequence[PreparedManeuver], maneuvers: Sequence[Maneuver]
+) -> Mapping[int, Mapping[str, FloatArray]]:
+    """Return the logged controls of ``CONTROLS`` by manoeuvre number, each of shape (n,) on its grid.
+
+    Values are departures from the mean before the first step of the elevator.
+    """
+    by_number = {m.number: m for m in maneuvers}
+    return {flight.number: _departures(flight, by_number[flight.number]) for flight in flights}
+
+
+def _departures(flight: PreparedManeuver, maneuver: Maneuver) -> Mapping[str, FloatArray]:
+    middles = (np.arange(flight.n) + 0.5) * flight.h
+    before = middles < max(flight.first_step_s, flight.h)
+    found = {}
+    for name in CONTROLS:
+        channel = maneuver.channels.get(name)
+        if channel is not None and len(channel) > 1:
+            y = np.interp(middles, channel.t - flight.started_s, channel.y)
+            found[name] = y - float(np.mean(y[before]))
+    return found

@@ -3,20 +3,74 @@
 The copy lies in a temporary folder; nothing is written next to the model. The copy has external forces and an
 external moment for increments, and a point mass for the flown mass. A last channel of its flight control can
 write the elevator. The copy has no <output> and no <input>: the model opens neither files nor sockets.
+
+A property that only another program writes, such as FlightGear, gets the value 0. JSBSim ends on a property
+that does not exist.
 """
 
 import importlib.util
 import os
+import re
 import tempfile
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from advisor.simulators.jsbsim_properties import foreign_properties
 from advisor.words.problems import ConfigurationError, UnusableInputError
+
+_OWN = (
+    "accelerations", "aero", "ap-internal", "atmosphere", "attitude", "buoyant_forces", "contact",
+    "external_reactions", "fcs", "flight-path", "forces", "gear", "ground", "hydro", "ic", "inertia",
+    "inertial", "metrics", "moments", "orbital", "position", "propulsion", "simulation", "tank", "velocities",
+)  # fmt: skip
+"""First parts of the names of JSBSim's own properties."""
+_SECTIONS = frozenset({"system", "autopilot", "flight_control", "aerodynamics", "channel", "metrics"})
+"""Elements whose own ``property`` is a declaration."""
+_PROSE = frozenset({"description", "documentation", "note", "reference", "fileheader", "tableData"})
+"""Elements whose text is no property."""
+_NAME = re.compile(r"(?<![\w/.-])-?(/?[A-Za-z_][\w.\[\]-]*(?:/[A-Za-z_][\w.\[\]-]*)+)")
+
+
+def foreign_properties(roots: Iterable[ET.Element]) -> tuple[str, ...]:
+    """Return the names of properties that a model reads, that it writes nowhere, and that JSBSim has not.
+
+    Parameters
+    ----------
+    roots
+        Outermost elements of the model's files.
+    """
+    read: dict[str, None] = {}
+    written: set[str] = set()
+    for root in roots:
+        for parent, element in _without_prose(root, root):
+            text = element.text or ""
+            named = element.get("name", "")
+            if named:
+                written.update((named, f"fcs/{_dashed(named)}"))
+            if element.tag == "output" or (element.tag == "property" and parent.tag in _SECTIONS):
+                written.add(text.strip())
+                continue
+            values = [text, *(v for k, v in element.attrib.items() if k == "value")]
+            read.update((name, None) for value in values for name in _NAME.findall(value))
+    return tuple(name for name in read if name not in written and name.lstrip("/").split("/")[0] not in _OWN)
+
+
+def _without_prose(parent: ET.Element, element: ET.Element) -> Iterator[tuple[ET.Element, ET.Element]]:
+    """Yield every element that holds no prose, after its parent."""
+    if element.tag in _PROSE:
+        return
+    yield parent, element
+    for child in element:
+        yield from _without_prose(element, child)
+
+
+def _dashed(name: str) -> str:
+    """Return the name of a component as JSBSim spells its property."""
+    return name.strip().lower().replace(" ", "-")
+
 
 FORCE = "external_reactions/advisor-force"
 AXIAL = "external_reactions/advisor-axial"

@@ -11,7 +11,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.result import Qualification
-from advisor.gap.verdict.yardsticks import BAND, yardsticks
+from advisor.gap.verdict.numbers import BAND, yardsticks
 
 _WINDOW_S = 0.1
 """Length in s of the average over an error. A shorter error is instrument noise."""

@@ -17,9 +17,8 @@ from textual.worker import Worker, WorkerState
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.session.conducting import Conducting, SessionReport
-from advisor.session.side_view import SideView
 from advisor.session.source import Tempo
-from advisor.session.view import View, view_before_first
+from advisor.session.view import SideView, View, view_before_first
 from advisor.tui import keys, link_actions, replay_actions
 from advisor.tui.explaining import commands, explanation
 from advisor.tui.garbage_collection import Garbage

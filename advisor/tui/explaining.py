@@ -1,16 +1,17 @@
 """Keys that work now, and the help for the focused pane."""
 
+import re
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from rich.style import Style
 from rich.text import Text
 from textual.app import App, SystemCommand
 from textual.binding import Binding
 from textual.screen import Screen
 
-from advisor.tui.help_page import help_page
 from advisor.tui.keys import ACTIONS, ENGINEER
 
 
@@ -78,3 +79,38 @@ def explanation(app: App[None]) -> Text:
             "".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() + "\n"
         )
     return page
+
+
+_BLOCKS = re.compile(r"\n\s*\n|\n(?=- )")
+_MARKED = re.compile(r"\*\*(?P<bold>.+?)\*\*|\*(?P<italic>.+?)\*|`(?P<code>.+?)`")
+_STYLES = {"bold": Style(bold=True), "italic": Style(italic=True), "code": Style(bold=True)}
+_HEADING = Style(bold=True, underline=True)
+
+
+def help_page(text: str) -> Text:
+    """Return a help text, in a small part of Markdown, as one text that wraps to any width.
+
+    Textual's own Markdown mounts a widget for every paragraph and cell, which takes a third of a second for a
+    page.
+    """
+    page = Text()
+    for block in _BLOCKS.split(text.strip()):
+        line = " ".join(block.split())
+        if line.startswith("# "):
+            page.append(f"{line[2:]}\n\n", _HEADING)
+        elif line.startswith("- "):
+            page.append("• ")
+            _append_marked(page, f"{line[2:]}\n")
+        else:
+            _append_marked(page, f"{line}\n\n")
+    return page
+
+
+def _append_marked(page: Text, line: str) -> None:
+    end = 0
+    for mark in _MARKED.finditer(line):
+        page.append(line[end : mark.start()])
+        kind = str(mark.lastgroup)
+        page.append(mark[kind], _STYLES[kind])
+        end = mark.end()
+    page.append(line[end:])

@@ -4,8 +4,7 @@ from multiprocessing.connection import Connection
 from threading import Event
 
 from advisor.process.liveness import OLD_AFTER_S
-from advisor.session.changes import Changes
-from advisor.session.conducting import SessionReport, Tell
+from advisor.session.conducting import Changes, SessionReport, Tell
 from advisor.session.hand import HandDecision
 from advisor.session.source import LinkRequest, Tempo
 

@@ -1,12 +1,14 @@
-"""The page that asks for the password, and the cookie of a browser."""
+"""The page that asks for the password, the cookie of a browser, and templates filled with escaped text."""
 
 import asyncio
 from collections import defaultdict
+from functools import cache
+from pathlib import Path
 
+import jinja2
 from aiohttp import web
 
 from advisor.web.access import Access
-from advisor.web.rendering import page
 
 AFTER_WRONG_S = 1.0
 """Pause after a wrong password, s. The wrong guesses from one address wait one after another."""
@@ -73,3 +75,30 @@ class Login:
             secure=request.secure or (self._access.origin or "").startswith("https:"),
         )
         return response
+
+
+STATIC = Path(__file__).parent / "static"
+_TEMPLATES = Path(__file__).parent / "templates"
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    return jinja2.Environment(
+        loader=jinja2.FileSystemLoader(_TEMPLATES), autoescape=True, undefined=jinja2.StrictUndefined
+    )
+
+
+def page(name: str, status: int = 200, **values: object) -> web.Response:
+    """Fill a template.
+
+    Parameters
+    ----------
+    name
+        ``screens``, ``login`` or ``message``.
+    status
+        HTTP status.
+    **values
+        Values for the template.
+    """
+    text = _environment().get_template(f"{name}.html.j2").render(**values)
+    return web.Response(text=text, content_type="text/html", status=status)

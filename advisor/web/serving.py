@@ -96,9 +96,8 @@ def serve(
         The link can never serve.
     """
     from advisor.tui.settings import load_settings
-    from advisor.web.audience import Audience
     from advisor.web.server import WebServer
-    from advisor.web.showing import Showing
+    from advisor.web.showing import Audience, Showing
     from advisor.web.site import Site
     from advisor.web.viewing import Viewing
 

@@ -1,10 +1,16 @@
-"""A running campaign and its newest report, for any number of pages."""
+"""A running campaign and its newest report, for any number of pages, and the entrance of their processes."""
 
-from threading import Condition, Thread
+import time
+from collections.abc import Callable
+from contextlib import nullcontext, suppress
+from multiprocessing.connection import Connection, Listener
+from threading import Condition, Event, Thread
 from types import TracebackType
 from typing import Self
 
-from advisor.session.conducting import Conducting, SessionReport
+from advisor.mavlink.link.keeping import new_door
+from advisor.session.conducting import Conducting, SessionReport, changes
+from advisor.web.viewing import Viewing
 
 PATIENCE_S = 2.0
 """Longest time for the end of the estimating process, s. The process also ends when the server has gone."""
@@ -76,3 +82,98 @@ class Showing:
         with self._changed:
             self._report, self._number = report, self._number + 1
             self._changed.notify_all()
+
+
+LOOK_EVERY_S = 0.2
+"""Time after which a page without news is tested for its end, s."""
+_OWN_REPLAY = frozenset({"jump", "play", "step"})
+_BY_HAND = frozenset({"decide", "order"})
+
+
+class Audience:
+    """Lets pages in, sends each its reports, and passes on the requests of each.
+
+    Parameters
+    ----------
+    viewing
+        First message to each page.
+    shared
+        Campaign that all pages show. None: each page has a campaign of its own.
+    make_conductor
+        Makes the conductor of a page's own campaign.
+    """
+
+    def __init__(
+        self, viewing: Viewing, shared: Showing | None, make_conductor: Callable[[], Conducting]
+    ) -> None:
+        self.door = new_door()
+        self._viewing, self._shared, self._make_conductor = viewing, shared, make_conductor
+        self._heeded = _OWN_REPLAY if viewing.watch_only else _OWN_REPLAY | _BY_HAND
+        self._listener = Listener(self.door.address, authkey=self.door.key)
+        self._closing = Event()
+        self._pages: list[Thread] = []
+
+    def __enter__(self) -> Self:
+        Thread(target=self._accept, name="door", daemon=True).start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._closing.set()
+        self._listener.close()
+        self.door.clear()
+        give_up_s = time.monotonic() + PATIENCE_S
+        for page in self._pages:
+            page.join(max(0.0, give_up_s - time.monotonic()))
+
+    def _accept(self) -> None:
+        while not self._closing.is_set():
+            try:
+                connection = self._listener.accept()
+            except Exception:  # a caller without the key, or one that hung up
+                time.sleep(0.01)
+                continue
+            self._pages = [page for page in self._pages if page.is_alive()]
+            self._pages.append(Thread(target=self._serve, args=(connection,), name="page", daemon=True))
+            self._pages[-1].start()
+
+    def _serve(self, connection: Connection) -> None:
+        """Serve one page from its arrival to its end."""
+        gone = Event()
+        own = None if self._shared is not None else Showing(self._make_conductor())
+        with suppress(OSError), connection, own or nullcontext():
+            showing = own or self._shared
+            assert showing is not None
+            connection.send(self._viewing)
+            asking = Thread(target=self._obey, args=(connection, showing.conductor, gone), daemon=True)
+            asking.start()
+            try:
+                self._report(connection, showing, gone)
+            finally:
+                gone.set()
+                asking.join()  # a connection that a thread still reads would stay open
+
+    def _report(self, connection: Connection, showing: Showing, gone: Event) -> None:
+        """Send the first report as a whole, then the changes since the last report."""
+        number, last = 0, None
+        while not gone.is_set() and not self._closing.is_set():
+            newer = showing.newer(number, LOOK_EVERY_S)
+            if newer is not None:
+                number, report = newer
+                connection.send(report if last is None else changes(last, report))
+                last = report
+            elif showing.failure is not None:
+                connection.send(showing.failure)
+                return
+
+    def _obey(self, connection: Connection, conductor: Conducting, gone: Event) -> None:
+        """Pass on the page's requests, until the page is gone."""
+        with suppress(EOFError, OSError):
+            while not gone.is_set():
+                if not connection.poll(LOOK_EVERY_S):
+                    continue
+                name, arguments = connection.recv()
+                if name in self._heeded:
+                    getattr(conductor, name)(*arguments)
+        gone.set()

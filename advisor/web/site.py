@@ -12,9 +12,8 @@ from textual_serve.server import Server
 
 from advisor.mavlink.link.keeping import Door
 from advisor.web.access import Access
-from advisor.web.login import Login
+from advisor.web.login import STATIC, Login, page
 from advisor.web.page_process import PageProcess
-from advisor.web.rendering import STATIC, page
 
 _Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 

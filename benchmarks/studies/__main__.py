@@ -14,7 +14,7 @@ from typing import Any
 
 import click
 
-from advisor.bundled.study.plan import Study
+from advisor.bundled.study.run import Study
 from advisor.cli.options import json_option
 from advisor.cli.running import runner_of, running_options
 from advisor.cli.study import campaign_options, fly, tell

@@ -8,9 +8,18 @@ from functools import cache
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Limits
-from advisor.bundled.study.estimating import estimate_copies
-from advisor.bundled.study.flying import NoiselessManeuver, Scene, as_maneuver, fly_named, follow, noise_scale
-from advisor.bundled.study.simulator import AIRFRAMES, UAV, NonlinearAircraft
+from advisor.bundled.study.campaigns import estimate_copies
+from advisor.bundled.study.flying import (
+    AIRFRAMES,
+    UAV,
+    NoiselessManeuver,
+    NonlinearAircraft,
+    Scene,
+    as_maneuver,
+    fly_named,
+    follow,
+    noise_scale,
+)
 from advisor.decision.advice import recommended
 from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.decision.information import knowledge

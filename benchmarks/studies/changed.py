@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.bundled.study.blocks import blocks
-from advisor.bundled.study.estimating import estimate_copies
+from advisor.bundled.study.campaigns import blocks, estimate_copies
 from advisor.bundled.study.flying import Scene, fly_named, noise_scale
 from advisor.bundled.study.paper import NOISE_PERCENT, ORDER
 from advisor.decision.change import find_change

@@ -7,7 +7,7 @@ from dataclasses import asdict
 import numpy as np
 
 from advisor.bundled.study.campaigns import RULES
-from advisor.bundled.study.plan import Study, StudyReport
+from advisor.bundled.study.run import Study, StudyReport
 from advisor.bundled.study.text import count, wrapped
 from benchmarks.studies import advised, changed, covered, stops
 from benchmarks.studies.forecast import Score, score

@@ -11,9 +11,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Rule
 from advisor.aircraft.controls import Elevator
-from advisor.bundled.study.blocks import blocks
-from advisor.bundled.study.campaigns import RULES
-from advisor.bundled.study.estimating import estimate_copies
+from advisor.bundled.study.campaigns import RULES, blocks, estimate_copies
 from advisor.bundled.study.flying import (
     NoiselessManeuver,
     Scene,

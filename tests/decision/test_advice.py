@@ -8,7 +8,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Limits
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
-from advisor.bundled.study.estimating import estimate_copies
+from advisor.bundled.study.campaigns import estimate_copies
 from advisor.bundled.study.flying import Scene, follow
 from advisor.decision.advice import next_input
 from advisor.decision.foresight import Instruments, expect

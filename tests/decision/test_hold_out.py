@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.bundled.study.estimating import estimate_copies
+from advisor.bundled.study.campaigns import estimate_copies
 from advisor.bundled.study.flying import Scene, as_maneuver, fly_named, noise_scale
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.hold_out import predict_last

@@ -10,7 +10,7 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.effects import EFFECTS
 from advisor.gap.records.floor import prefiltered
 from advisor.gap.records.prepare import prepare
-from advisor.gap.records.provenance import is_estimate
+from advisor.gap.records.unmeasured_alpha import is_estimate
 from tests.gap.generator import Setup, fly
 
 # One diagnosis serves two tests.

@@ -7,7 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import aircraft_schema, parse_aircraft
-from advisor.exports.models.servo import ExportedServo
+from advisor.exports.models.improvement import ExportedServo
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
 from advisor.gap.effects import EFFECTS

@@ -16,7 +16,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Cause, Value
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import ENTRIES, INDEX, OUTPUTS
-from advisor.gap.verdict.sizes import with_model_errors
+from advisor.gap.verdict.causes import with_model_errors
 from tests.gap.generator import Setup, fly
 
 

@@ -20,7 +20,7 @@ from advisor.gap.inference.residual import Residual
 from advisor.gap.inference.sizes import natural_share, with_sizes
 from advisor.gap.records.prepare import prepare
 from advisor.gap.verdict.reasons import decisions_of, none_means_no_gap, rival_of, why_of
-from advisor.report.gap_reasons import decision_in_words
+from advisor.report.gap_causes import decision_in_words
 from tests.gap.generator import Setup, fly
 
 MOMENT = Alternative("unknown", "unknown", "moment_equation")

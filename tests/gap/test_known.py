@@ -17,7 +17,7 @@ from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_unfiltered, of_this_flight
 from advisor.gap.simulator.layout import ENTRIES, INDEX
-from advisor.gap.verdict.sizes import parameters_of
+from advisor.gap.verdict.causes import parameters_of
 from advisor.report.improved import improved_file
 from sim.effects.terms import problems_with
 from tests.gap.generator import Setup, fly

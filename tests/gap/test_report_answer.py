@@ -9,7 +9,7 @@ from advisor.gap.alternative import Contribution
 from advisor.gap.decision import Decision
 from advisor.gap.document import gap_document
 from advisor.gap.result import ComparedDerivative, Shrink, Value
-from advisor.gap.verdict.limits import limits_of
+from advisor.gap.verdict.titles import limits_of
 from advisor.report.gap_fidelity import peaks
 from advisor.report.gap_reasons import (
     alternatives_of,

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.session.goal import DataBegin, Goal, Position
+from advisor.session.timeline import DataBegin, Goal, Position
 from advisor.session.view import view_before_first
 
 STATE = view_before_first(Aircraft(), "x", None).state

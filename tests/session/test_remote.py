@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from advisor.oem.estimate import Estimate
-from advisor.session.changes import changes
-from advisor.session.conducting import Conducting, SessionReport
+from advisor.session.conducting import Conducting, SessionReport, changes
 from advisor.session.conductor import Conductor
 from advisor.session.hand import HandDecision
 from advisor.session.remote import ConductorTask, RemoteConductor

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from advisor.tui.plot.axis import Axis, exact_axis, log_axis, round_axis
-from advisor.tui.plot.labels import along_the_foot, down_the_side, whole
+from advisor.tui.plot.painting import along_the_foot, down_the_side, whole
 
 values = st.lists(st.floats(-1e9, 1e9), min_size=1, max_size=8)
 

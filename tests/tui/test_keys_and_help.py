@@ -11,8 +11,8 @@ from advisor.session.source import LinkHealth
 from advisor.tui import keys
 from advisor.tui.explaining import keys_at_hand
 from advisor.tui.panes.ask import Ask
-from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.status_line import KeysLine
 from advisor.tui.screens.engineer import PANES, EngineerScreen
 from advisor.tui.screens.explain import Explain
 from advisor.tui.screens.pilot import PilotScreen

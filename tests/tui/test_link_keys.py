@@ -8,7 +8,7 @@ from advisor.session.replay import LogPlayer
 from advisor.session.source import LinkHealth, LinkRequest
 from advisor.tui.explaining import keys_at_hand
 from advisor.tui.panes.big_word import BigWord
-from advisor.tui.panes.keys_line import KeysLine
+from advisor.tui.panes.status_line import KeysLine
 from advisor.tui.settings import Settings
 from advisor.words.problems import Problem
 from tests.tui import flights

@@ -18,7 +18,7 @@ from advisor.session.live import LinkSource
 from advisor.session.replay import LogPlayer
 from advisor.session.source import Tempo
 from advisor.tui.app import AdvisorApp
-from advisor.tui.panes.keys_line import KeysLine
+from advisor.tui.panes.status_line import KeysLine
 from advisor.tui.settings import Settings
 from tests.flights import TWO, recorded
 from tests.tui import flights

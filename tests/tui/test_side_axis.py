@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import NextInput
-from advisor.session.side_view import SideView
+from advisor.session.view import SideView
 from advisor.tui.settings import Settings
 from advisor.tui.stick_drawing import drawn
 from tests.campaign.side_builders import judged, state

@@ -16,8 +16,7 @@ from advisor.tui.explaining import keys_at_hand
 from advisor.tui.settings import Settings
 from advisor.web import attached
 from advisor.web.attached import AttachedConductor, ServerGoneError
-from advisor.web.audience import Audience
-from advisor.web.showing import Showing
+from advisor.web.showing import Audience, Showing
 from advisor.web.viewer import ViewerApp, WatchingApp
 from advisor.web.viewing import Viewing
 from tests.mavlink.link.builders import wait_until

@@ -2,15 +2,31 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from scipy.linalg import expm
 
-from advisor.bundled.study.simulator import RESEARCH_JET, STEPS, ShortPeriod
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
+from advisor.process.installed import SIMULATOR
+
+if TYPE_CHECKING or SIMULATOR == "sim":
+    from sim.airframe import UAV
+    from sim.hangar import AIRFRAMES
+    from sim.linear import RESEARCH_JET, ShortPeriod
+    from sim.maneuvers import STEPS
+    from sim.nonlinear_aircraft import NonlinearAircraft
+else:
+    from inflight_sim.airframe import UAV
+    from inflight_sim.hangar import AIRFRAMES
+    from inflight_sim.linear import RESEARCH_JET, ShortPeriod
+    from inflight_sim.maneuvers import STEPS
+    from inflight_sim.nonlinear_aircraft import NonlinearAircraft
+
+__all__ = ["AIRFRAMES", "RESEARCH_JET", "STEPS", "UAV", "NonlinearAircraft", "ShortPeriod"]
+
 
 Steps = tuple[tuple[float, float], ...]
 NoiseReading = Literal["std", "peak", "rms", "sample"]

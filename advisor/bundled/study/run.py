@@ -1,15 +1,50 @@
-"""The study of Table 1 and Figure 5: its tasks, and the report that their results make."""
+"""The study of Table 1 and Figure 5: independent tasks, and the report that their results make together."""
 
-from collections.abc import Sequence
-from dataclasses import asdict
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Generic, Protocol, TypeVar
 
 from advisor.bundled.study import flaws, readings, text
 from advisor.bundled.study.campaigns import RULES, CampaignBlock, CampaignResults, joined, judge, table_blocks
-from advisor.bundled.study.figure import curve, in_terminal
+from advisor.bundled.study.figure import Curve, curve, in_terminal
 from advisor.bundled.study.flying import NoiseReading, Scene
 from advisor.bundled.study.paper import NOISE_PERCENT
-from advisor.bundled.study.plan import Study, StudyReport
 from advisor.bundled.study.table import as_document, row
+
+
+class StudyTask(Protocol):
+    """Some campaigns of a study, with everything that decides their result, including the seed."""
+
+    @property
+    def campaigns(self) -> int:
+        """Number of campaigns in the task."""
+
+
+T = TypeVar("T", bound=StudyTask)
+R = TypeVar("R")
+
+
+@dataclass(frozen=True, slots=True)
+class StudyReport:
+    """Result of a study."""
+
+    lines: list[str]
+    """Lines of text for people."""
+    document: dict[str, object]
+    """Numbers for programs."""
+    curves: tuple[Curve, ...] = ()
+    """Figure 5, where the study has one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Study(Generic[T, R]):
+    """Tasks, the work on one of them, and the report of all."""
+
+    tasks: Sequence[T]
+    work: Callable[[T], R]
+    """Function of a module, so that other processes know it."""
+    report: Callable[[Sequence[R]], StudyReport]
+    """Function that is called with the results in the order of the tasks."""
 
 
 def table_1(

@@ -10,12 +10,13 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.campaign.state import CampaignState, LateralState
 from advisor.exports.models.improvement import (
     STILL_AIR,
+    ExportedServo,
     Improvement,
     improvement_of,
     is_told,
+    servo_of,
     zero_said,
 )
-from advisor.exports.models.servo import ExportedServo, servo_of
 from advisor.flight.instruments.atmosphere import AirData, air_flown
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Diagnosis, Value

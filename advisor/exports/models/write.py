@@ -1,12 +1,13 @@
 """From an order for a file to the file: its format, its needs, and the one place that writes."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.exports.models.flown import FlownModel
+from advisor.campaign.state import CampaignState
+from advisor.exports.models.flown import FlownModel, flown_model
 from advisor.exports.models.formats import AxisAsked, format_named
 from advisor.exports.models.names import NAMES
 from advisor.process.atomic_file import write_atomically
@@ -91,3 +92,34 @@ def _carried_out(order: ExportOrder, model: FlownModel) -> ExportOutcome:
     for file, text in zip(order.files, (made.text, *made.beside), strict=True):
         write_atomically(file, text)
     return ExportOutcome(order, made.left_out)
+
+
+def refuse_models(names: Sequence[str], folder: Path, aircraft: Aircraft) -> None:
+    """Refuse, before the analysis, formats that could not be written after it.
+
+    Raises
+    ------
+    ConfigurationError
+        The aircraft file lacks what a format needs.
+    """
+    for order in _orders(names, folder):
+        refuse(order, aircraft, "both")
+
+
+def write_models(
+    names: Sequence[str], folder: Path, state: CampaignState, aircraft: Aircraft
+) -> Iterator[str]:
+    """Write the model of a flight; yield what a format does not carry, or why there is no file."""
+    try:
+        outcomes = carry_out(list(_orders(names, folder)), flown_model(state, aircraft))
+    except ConfigurationError as error:
+        yield str(error)
+        return
+    for one in outcomes:
+        if one.problem or one.left_out:
+            yield one.problem or f"{one.order.file.name} does not carry: {', '.join(one.left_out)}."
+
+
+def _orders(names: Sequence[str], folder: Path) -> Iterator[ExportOrder]:
+    for name in names:
+        yield ExportOrder(name, folder / f"{name}{format_named(name).suffix}")

@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
-from advisor.flight.maneuvers.movement import Movement
-from advisor.flight.maneuvers.rest import is_still
+from advisor.flight.maneuvers.movement import Movement, is_still
 from advisor.flight.signals.samples import Samples
 
 FREE_S = (3.0, 8.0)

@@ -2,8 +2,14 @@
 
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.marks import Mark
-from advisor.flight.maneuvers.movement import Movement, describe
-from advisor.flight.maneuvers.rest import SMALLEST_RAD, is_still, median, without_spikes
+from advisor.flight.maneuvers.movement import (
+    SMALLEST_RAD,
+    Movement,
+    describe,
+    is_still,
+    median,
+    without_spikes,
+)
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 from advisor.flight.signals.record import Channel
 

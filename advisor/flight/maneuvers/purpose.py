@@ -18,7 +18,7 @@ from advisor.flight.maneuvers.hand_flying import EDGE_S, flown_elsewhere, motion
 from advisor.flight.maneuvers.loop import PITCH, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marked_input import SWEPT
-from advisor.flight.maneuvers.rest import SMALLEST_RAD
+from advisor.flight.maneuvers.movement import SMALLEST_RAD
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.record import Channel
 from advisor.flight.vehicle.modes import closes_pitch_loop, has_an_errand, hovers, is_manual

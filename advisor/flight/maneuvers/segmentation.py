@@ -14,8 +14,14 @@ import numpy as np
 
 from advisor.flight.maneuvers.free_response import FreeResponse
 from advisor.flight.maneuvers.maneuver import Span
-from advisor.flight.maneuvers.movement import Movement, describe
-from advisor.flight.maneuvers.rest import SMALLEST_RAD, is_still, median, without_spikes
+from advisor.flight.maneuvers.movement import (
+    SMALLEST_RAD,
+    Movement,
+    describe,
+    is_still,
+    median,
+    without_spikes,
+)
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.samples import Samples
 

@@ -19,8 +19,8 @@ from advisor.gap.records.airspeed import (
 from advisor.gap.records.edges import edges_of, held_from
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.grid import STEP_S, smooth
-from advisor.gap.records.provenance import is_estimate
 from advisor.gap.records.smoothness import is_filtered, is_smoothed, white_part
+from advisor.gap.records.unmeasured_alpha import is_estimate
 from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_about
 from advisor.gap.records.usable import outputs_of, recorded, usable_of
 from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUST

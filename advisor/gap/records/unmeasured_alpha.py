@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.renewal import renewed
 from advisor.gap.simulator.layout import OUTPUTS
 from advisor.oem.alpha_use import can_do_without, infer, why_not_measured
 
@@ -45,3 +46,22 @@ def alpha_by_motion(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> list[M
     if not replaceable or not why_not_measured(maneuvers, aircraft):
         return list(maneuvers)
     return [replace(m, channels={**m.channels, "alpha": infer(m, aircraft)}) for m in replaceable]
+
+
+_ESTIMATED_HZ = 22.0
+"""Prior: rate in Hz below which α may be ArduPilot's estimate, which is renewed at most 20 times per
+second."""
+
+
+def is_estimate(m: Maneuver, smoothed: bool) -> bool:
+    """Return whether α is an estimate from inertial sensors.
+
+    ArduPilot marks every α as derived, and the bundled aircraft marks its own as simulated. An α that is
+    renewed faster than its estimator is a vane's. A smooth record is an estimate all the same.
+    """
+    alpha = m.channels.get("alpha")
+    if alpha is None or alpha.provenance not in ("derived", "simulated"):
+        return False
+    t, _ = renewed(alpha.t, alpha.y)
+    hz = len(t) / (alpha.t[-1] - alpha.t[0])
+    return hz < _ESTIMATED_HZ or smoothed or not alpha.source.startswith("AOA_SSA")

@@ -7,6 +7,9 @@ channels may be late, but not filtered. Its lift may be nonlinear and delayed, b
 reduces lift and elevator power, but no effect reduces elevator power alone.
 """
 
+from collections.abc import Sequence
+from functools import partial
+
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
@@ -14,8 +17,92 @@ from advisor.gap.kit.between import steps_in
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import FILTER, INDEX, OUTPUTS
-from advisor.gap.uncatalogued.lift_hysteresis import FLOW_LETS_GO, LIFT_MEMORY, flow_lets_go, lift_memory
-from advisor.gap.uncatalogued.mechanical_stops import SURFACE_STOP, VANE_STOP, surface_stops, vane_stops
+
+LIFT_MEMORY, FLOW_LETS_GO = "lift_memory", "flow_lets_go"
+_FORCE = "force_equation"
+
+
+def lift_memory(flights: PreparedManeuvers) -> Variant:
+    """Return lift with the hysteresis of a play, the elementary one of a gradual stall."""
+    swing = float(np.median([np.ptp(f.outputs["alpha"].y) for f in flights.flights]))
+    return Variant(
+        LIFT_MEMORY, _FORCE, ("Z_memory", "half_width_rad"),
+        tuple((0.0, share * swing) for share in (0.1, 0.3)), (0.05, 0.01 * swing),
+        ((-20.0, 0.0), (0.01 * swing, 0.6 * swing)), 0.0,
+        entries=("Z_memory", "memory_rad"), places=("half_width_rad",),
+    )  # fmt: skip
+
+
+def flow_lets_go(flights: PreparedManeuvers) -> Variant:
+    """Return lift that is lost at one angle of attack and returns at a lower one, like a relay."""
+    trims = np.array([flight.alpha_trim for flight in flights.flights])
+    above = [float(np.max(f.outputs["alpha"].y)) - f.alpha_trim for f in flights.flights]
+    most, middle = float(np.median(above)), float(np.median(trims))
+
+    def let_go(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
+        lost, at, band = values
+        p[:, INDEX["Z_separated"]] = lost
+        p[:, INDEX["separation_rad"]] = at + middle - trims
+        p[:, INDEX["attachment_rad"]] = at - band + middle - trims
+
+    starts = tuple((0.0, at * most, band * most) for at in (0.4, 0.6, 0.8) for band in (0.2, 0.4, 0.7))
+    return Variant(
+        FLOW_LETS_GO, _FORCE, ("Z_separated", "at_rad", "band_rad"), starts,
+        (0.005, 0.05 * most, 0.05 * most), ((-1.0, 1.0), (0.0, 1.2 * most), (0.01, 1.5 * most)), 0.0,
+        apply_with=let_go, places=("at_rad", "band_rad"),
+    )  # fmt: skip
+
+
+SURFACE_STOP, VANE_STOP = "surface_stop", "vane_stop"
+_TRIMMED_RAD = 0.002
+"""Numerical: least distance of a stop from trim, rad."""
+
+
+def surface_stops(flights: PreparedManeuvers) -> list[Variant]:
+    """Return an elevator with a stop up, down or both."""
+    trims = np.array([flight.u_trim for flight in flights.flights])
+    flown = np.concatenate([flight.u for flight in flights.flights])
+    return _stops(SURFACE_STOP, "input", ("stop_up_rad", "stop_down_rad"), trims, flown)
+
+
+def vane_stops(flights: PreparedManeuvers) -> list[Variant]:
+    """Return a vane with a stop up, down or both."""
+    trims = np.array([flight.alpha_trim for flight in flights.flights])
+    flown = np.concatenate([flight.outputs["alpha"].y for flight in flights.flights])
+    return _stops(VANE_STOP, "alpha_sensor", ("vane_stop_up_rad", "vane_stop_down_rad"), trims, flown)
+
+
+def _stops(
+    effect: str, block: str, entries: tuple[str, str], trims: FloatArray, flown: FloatArray
+) -> list[Variant]:
+    """Return stops at the same angles in all manoeuvres, given relative to the median trim.
+
+    ``trims`` has shape (manoeuvres,); ``flown`` has all commands or readings, rad.
+    """
+    middle = float(np.median(trims))
+    furthest = float(np.max(flown)) - middle, middle - float(np.min(flown))
+    up, down = zip(entries, (1.0, -1.0), furthest, strict=True)
+
+    def stopped(
+        ways: Sequence[tuple[str, float, float]], p: FloatArray, values: Values, _: PreparedManeuvers
+    ) -> None:
+        for (entry, sign, _furthest), value in zip(ways, values, strict=True):
+            p[:, INDEX[entry]] = np.maximum(value + sign * (middle - trims), _TRIMMED_RAD)
+
+    variants = []
+    for ways in ((up, down), (up,), (down,)):
+        most = [way[2] for way in ways]
+        if min(most) <= _TRIMMED_RAD:
+            continue
+        variants.append(
+            Variant(
+                effect, block, tuple(way[0] for way in ways),
+                tuple(tuple(x * m for m in most) for x in (0.5, 0.8)),
+                (1e-3,) * len(ways), tuple((_TRIMMED_RAD, 1.5 * m) for m in most), 0.0,
+                apply_with=partial(stopped, ways),
+            )
+        )  # fmt: skip
+    return variants
 
 
 def _scale(name: str, block: str, channel: str) -> Variant:

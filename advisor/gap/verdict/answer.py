@@ -26,13 +26,13 @@ from advisor.gap.inference.laws import sentence_of_law
 from advisor.gap.inference.posterior import NONE, PARAMETERS, Posterior, stated_as
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Where
-from advisor.gap.search.speed import at_constant_speed
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_excess, airspeed_scale_of
 from advisor.gap.verdict.causes import causes_of
 from advisor.gap.verdict.holdout_numbers import (
     as_measured,
     as_read,
+    at_constant_speed,
     on_holdout,
     over_maneuvers,
     with_offset,

@@ -1,4 +1,4 @@
-"""The causes of an answer, with the sizes of the answer's own model."""
+"""The causes of an answer, moving air among them, with the sizes of the answer's own model."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -6,17 +6,19 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.instruments.kinematics import KinematicCheck
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.distinguish import imitations, way_to_distinguish
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.measure import whole_gap
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.diagnose import Inference
 from advisor.gap.inference.evidence import covariance_of
 from advisor.gap.inference.explanation import Explanation
 from advisor.gap.inference.findings import Findings
 from advisor.gap.inference.posterior import Posterior, stated_as
+from advisor.gap.kit.variant import Variant
 from advisor.gap.result import Cause, Gap, Value
-from advisor.gap.verdict.air_cause import moving_air_of
-from advisor.gap.verdict.sizes import parameters_of, with_model_errors
+from advisor.gap.verdict.holdout_numbers import without_air
 
 MOST_CAUSES = 5
 """Words: most causes that are stated."""
@@ -105,3 +107,87 @@ def _not_told_from(name: str, posterior: Posterior, channels: Sequence[str]) -> 
     if names and not ways:
         ways.append("fly more manoeuvres, with another time unit and another amplitude")
     return tuple(names), "; ".join(dict.fromkeys(ways))
+
+
+_GUST_ERROR = 0.25
+"""Prior: relative error of a gust's strength, whose course is a low-order estimate."""
+_TURBULENCE_ERROR = 0.5
+"""Prior: relative error of the strength of turbulence. Waves longer than a record pass for its trim. Where
+Dryden's scale length takes at least three seconds to fly through, 0.5 to 0.7 of the strength is found. Where
+it takes one second, 1.2 is found."""
+_GUST_TIME_ERROR_S = 0.1
+"""Prior: error of a gust's time, s: the distance between two knots of its course."""
+
+
+def moving_air_of(e: Findings) -> Cause | None:
+    """Return turbulence or a gust with the strength of its course; None where the air is not the answer."""
+    if e.air is None:
+        return None
+    reference = e.problem.flights.reference_m_s
+    gust, stays = e.air.gust, without_air(e.last.held_out, e.air).mean_square
+    gap_after = whole_gap(stays, np.minimum(e.floor, np.sqrt(e.air.mean_square_beyond_air)))
+    peak, spread = e.air.gust_angle * reference, e.air.angle_std * reference
+    parameters = {"sigma_w_m_s": Value(spread, _TURBULENCE_ERROR * spread)}
+    if gust:
+        parameters = {
+            "amplitude_m_s": Value(peak, _GUST_ERROR * abs(peak)),
+            "at_s": Value(e.air.gust_at_s, _GUST_TIME_ERROR_S),
+        }
+    name, other = ("gust", "turbulence") if gust else ("turbulence", "gust")
+    return Cause(
+        name, "air", 0.0, parameters, (other,), way_to_distinguish(name, other), gap_after, True,
+    )  # fmt: skip
+
+
+_TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
+"""Parameters that are times."""
+_TIME_ERROR_S = 0.0006
+"""Prior: error of a delay, lag or skew in s, for the simulation's grid and the resolution of the stamps."""
+_SHAPE_ERROR = 0.03
+"""Prior: relative error of a size for the low-order description of its effect."""
+
+
+def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, Value]:
+    """Return the parameters and their errors as the aircraft file spells them; both arrays have shape
+    (names,)."""
+    found = {n: Value(float(x), float(s)) for n, x, s in zip(v.names, values, std, strict=True)}
+    if v.inverted:
+        x = max(float(values[0]), 1e-9)
+        found[v.names[0]] = Value(1.0 / x, float(std[0]) / x**2)
+    if v.in_file:
+        found = {
+            key: Value(found[name].value * (1.0 / factor), found[name].std * (1.0 / factor))
+            for key, (name, factor) in v.in_file.items()
+        }
+    for name, value in v.fixed.items():
+        found[name] = Value(value, 0.0)
+    return found
+
+
+def with_model_errors(cause: Cause, problem: EffectProblem) -> Cause:
+    """Return the cause with errors that no fit shows: of the low-order description and of the time grid."""
+    widened = {
+        name: Value(v.value, float(np.hypot(v.std, _model_error(name, v.value))))
+        for name, v in cause.parameters.items()
+        if v.std > 0.0
+    }
+    return _with_edge_error(replace(cause, parameters={**cause.parameters, **widened}), problem)
+
+
+def _model_error(name: str, value: float) -> float:
+    """Return the standard deviation of a size for model errors: a share of it, and for times part of a
+    step."""
+    return float(np.hypot(_SHAPE_ERROR * value, _TIME_ERROR_S if name in _TIMES else 0.0))
+
+
+def _with_edge_error(cause: Cause, problem: EffectProblem) -> Cause:
+    """Return a delay or lag with the error of steps that may lie anywhere between two stamps of the
+    command."""
+    intervals = [flight.edges[:, 2] for flight in problem.flights.flights if len(flight.edges)]
+    section, name = EFFECTS[cause.effect].stated or ("", "")
+    if problem.held or not intervals or section != "elevator":
+        return cause
+    edge_std = float(np.median(np.concatenate(intervals))) / np.sqrt(12.0)
+    value = cause.parameters[name]
+    parameters = {**cause.parameters, name: Value(value.value, float(np.hypot(value.std, edge_std)))}
+    return replace(cause, parameters=parameters)

@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut, folds_for, held_out, hold_out, mean_squares, measured_in
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.findings import Findings, Model
+from advisor.gap.records.flights import SPEED_CHANGE
 from advisor.gap.search.air import MovingAir
-from advisor.gap.search.speed import at_constant_speed
 from advisor.oem.rows import Signal
 
 
@@ -101,3 +102,18 @@ def without_air(held: HeldOut, air: MovingAir) -> HeldOut:
     share = np.minimum(air.mean_square_beyond_air / held.mean_square, 1.0)
     powers = held.by_maneuver * share
     return replace(held, residuals=air.residuals, mean_square=held.mean_square * share, by_maneuver=powers)
+
+
+def at_constant_speed(
+    problem: EffectProblem, fitted: EffectFit, folds: Sequence[Sequence[int]] | None = None
+) -> HeldOut | None:
+    """Return the hold-out of the model with derivatives that do not scale with the air speed, refitted.
+
+    None where the speed hardly varies, or was not measured. ``folds`` are those of ``hold_out``.
+    """
+    flights = problem.flights
+    if flights.speed_moves < SPEED_CHANGE:
+        return None
+    constant = tuple(f.at_constant_speed() for f in flights.flights)
+    frozen = replace(problem, flights=replace(flights, flights=constant))
+    return hold_out(frozen, fit(frozen, fitted.point, fitted.noise, iterations=4), folds)

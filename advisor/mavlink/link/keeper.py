@@ -19,7 +19,7 @@ from queue import Empty, SimpleQueue
 from threading import Thread
 
 from advisor.mavlink.link import running_links
-from advisor.mavlink.link.announce import Announcer
+from advisor.mavlink.link.announce import Announcer, SeparateConnection
 from advisor.mavlink.link.health import LinkNotice
 from advisor.mavlink.link.inquiry import Inquiry
 from advisor.mavlink.link.keeping import (
@@ -39,7 +39,6 @@ from advisor.mavlink.link.keeping import (
 from advisor.mavlink.link.link import Link
 from advisor.mavlink.link.outgoing import Talker
 from advisor.mavlink.link.rates import STREAMS, RateRequest
-from advisor.mavlink.link.separate_connection import SeparateConnection
 from advisor.process import interrupt
 from advisor.words.problems import UnusableInputError
 

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Self
 
 from advisor.aircraft.controls import Elevator
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.link.health import LinkNotice, LinkStatistics
+from advisor.mavlink.link.health import LinkNotice, LinkStatistics, ReportedHealth
 from advisor.mavlink.link.keeping import AnnounceVerdict, CallOrder, Door, Heard, Hello, Listen, Told
-from advisor.mavlink.link.reported_health import ReportedHealth
 from advisor.process.liveness import OLD_AFTER_S
 
 if TYPE_CHECKING:

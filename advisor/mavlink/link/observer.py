@@ -7,9 +7,8 @@ from threading import Event, Thread
 from types import TracebackType
 from typing import Self
 
-from advisor.mavlink.link.health import LinkStatistics
+from advisor.mavlink.link.health import LinkStatistics, ReportedHealth
 from advisor.mavlink.link.keeping import Announce, Door, Observe, Told
-from advisor.mavlink.link.reported_health import ReportedHealth
 
 LOOK_EVERY_S = 0.25
 """Longest wait for a report, and time between two attempts to connect, s. Reports come every 0.2 s."""

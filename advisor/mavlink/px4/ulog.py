@@ -11,8 +11,11 @@ from typing import Any
 import numpy as np
 
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.px4.px4_log import translate
-from advisor.mavlink.px4.px4_topics import TOPICS, topics_of
+from advisor.mavlink.px4 import px4_vehicle
+from advisor.mavlink.px4.px4_air import air
+from advisor.mavlink.px4.px4_motion import motion
+from advisor.mavlink.px4.px4_outputs import outputs
+from advisor.mavlink.px4.px4_topics import TOPICS, TimedMessages, Topics, topics_of
 from advisor.mavlink.px4.px4_vehicle import unix_time_base_s
 from advisor.mavlink.records.equivalent import message, system_id
 from advisor.words.mends import mends_of, sentence
@@ -92,4 +95,28 @@ def _columns(log: Any) -> list[Columns]:
         message(m.name, system, numbers, base_s + m.time_us.astype(np.float64) * 1e-6, m.fields, "ulog")
         for m, numbers in zip(messages, orders, strict=True)
         if len(numbers)
+    ]
+
+
+def translate(log: Any, topics: Topics) -> list[TimedMessages]:
+    """Return every message from a `pyulog.ULog` and its topics."""
+    parameters = px4_vehicle.parameters_of(log)
+    breathed, said = air(topics)
+    moved = outputs(topics, parameters)
+    messages = [
+        *motion(topics, bool(parameters.get("SENS_BOARD_ROT"))),
+        *breathed,
+        *px4_vehicle.named_values(topics),
+        *px4_vehicle.receiver(topics),
+        *moved.messages,
+        *px4_vehicle.texts(log),
+    ]
+    start_us = min((int(np.min(m.time_us)) for m in messages), default=0)
+    return [
+        px4_vehicle.heartbeat(topics, parameters, start_us),
+        *px4_vehicle.vtol_states(topics),
+        *px4_vehicle.version(log, start_us),
+        *px4_vehicle.stated(log, moved.found, start_us),
+        *px4_vehicle.remarks([*said, *moved.said, *px4_vehicle.dropouts(log)], start_us),
+        *messages,
     ]

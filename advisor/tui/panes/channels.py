@@ -4,8 +4,7 @@ from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
 from advisor.session.view import View
-from advisor.tui.panes.hanging import HangingLines, Labelled
-from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.lines import HangingLines, Labelled, Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.status_line import CONDITIONS
 from advisor.words.vehicle_time import clock

@@ -5,7 +5,7 @@ from textual.app import ComposeResult
 
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.session.view import View
-from advisor.tui.panes.hanging import Labelled
+from advisor.tui.panes.lines import Labelled
 from advisor.tui.panes.pane import TextPane
 from advisor.tui.plot.chart import Chart, Ink, Level, Series
 from advisor.tui.plot.widget import Plot

@@ -22,9 +22,8 @@ from advisor.tui.panes.fit_charts import (
     rows_of_fit,
 )
 from advisor.tui.panes.pane import Pane
-from advisor.tui.plot.sight import Sight
 from advisor.tui.plot.widget import Plot
-from advisor.tui.plot.window import Window
+from advisor.tui.plot.window import Sight, Window
 from advisor.tui.rows import TableRows
 from advisor.words.digits import signed
 

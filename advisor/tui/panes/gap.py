@@ -14,7 +14,7 @@ from advisor.report.gap_reasons import alternatives_of, heading_of, how_sure, we
 from advisor.report.gap_sizes import WORSE, has_grown
 from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
 from advisor.session.view import View
-from advisor.tui.panes.hanging import HangingLines, Labelled
+from advisor.tui.panes.lines import HangingLines, Labelled
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Series
 from advisor.tui.plot.widget import Plot

@@ -1,8 +1,8 @@
 """How far the flight test is: manoeuvres flown, of those that are expected in all."""
 
 from advisor.session.view import View
-from advisor.tui.panes.hanging import HangingLines
 from advisor.tui.panes.last_verdict import symbol_and_word
+from advisor.tui.panes.lines import HangingLines
 from advisor.tui.panes.part import Part
 
 _LAST_SHOWN = 16

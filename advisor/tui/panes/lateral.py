@@ -2,7 +2,7 @@
 
 from advisor.report.lateral import lateral_results
 from advisor.session.view import View
-from advisor.tui.panes.hanging import Labelled
+from advisor.tui.panes.lines import Labelled
 from advisor.tui.panes.pane import TextPane
 
 _NONE_YET = "No manoeuvre of aileron or rudder is accepted yet."

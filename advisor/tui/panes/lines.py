@@ -1,7 +1,11 @@
 """Lines of plain text that are repainted only when they change."""
 
+from collections.abc import Iterable
+from functools import lru_cache
 from math import nan
+from textwrap import wrap
 
+from textual.events import Resize
 from textual.widgets import Static
 
 
@@ -27,3 +31,40 @@ class Lines(Static):
             return height.value
         lines = text.split("\n")
         return len(lines) if max(map(len, lines)) <= self.size.width else nan
+
+
+Labelled = tuple[str, str]
+"""A label, which stands once, and the text after it."""
+
+_LEAST = 20
+"""Fewest columns of text after a label. With fewer, the text continues at the left edge."""
+
+
+class HangingLines(Lines):
+    """Rows of label and text, wrapped at the width of the widget."""
+
+    def __init__(self, text: str = "", *, id: str | None = None) -> None:
+        super().__init__(text, id=id)
+        self._labelled: tuple[Labelled, ...] = ()
+
+    def write_rows(self, rows: Iterable[Labelled]) -> None:
+        """Show other rows. Equal rows cost nothing."""
+        self._labelled = tuple(rows)
+        self._wrap()
+
+    def on_resize(self, event: Resize) -> None:
+        """Wrap anew at another width."""
+        self._wrap()
+
+    def _wrap(self) -> None:
+        width = self.size.width
+        if width and self._labelled:
+            self.write("\n".join(_wrapped(label, text, width) for label, text in self._labelled))
+
+
+@lru_cache(maxsize=2000)
+def _wrapped(label: str, text: str, width: int) -> str:
+    """Wrap one row at a width, into as many lines as it takes."""
+    indent = " " * len(label) if width - len(label) >= _LEAST else ""
+    lines = wrap(label + text, width, subsequent_indent=indent, drop_whitespace=True, break_on_hyphens=False)
+    return "\n".join(lines)

@@ -11,7 +11,7 @@ from textual.widgets import DataTable
 from advisor.aircraft.reference import PARAMETERS as NAMES
 from advisor.report.result_rows import parameter_row
 from advisor.session.view import View
-from advisor.tui.panes.history import history_chart
+from advisor.tui.panes.courses import history_chart
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.widget import Plot
 

@@ -2,7 +2,7 @@
 
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
 from advisor.session.view import View
-from advisor.tui.panes.hanging import Labelled
+from advisor.tui.panes.lines import Labelled
 from advisor.tui.panes.pane import TextPane
 
 _NONE_YET = "No manoeuvre is accepted yet; flying qualities come from the joint estimate."

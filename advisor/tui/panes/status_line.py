@@ -1,4 +1,11 @@
-"""The first line of every screen: aircraft, mode, and condition of the link."""
+"""The first and the last line of every screen: condition of the link, and the keys that work now."""
+
+from rich.style import Style
+from rich.text import Text
+from textual.binding import Binding
+from textual.screen import Screen
+from textual.timer import Timer
+from textual.widgets import Static
 
 from advisor.session.behind import spoken
 from advisor.session.view import View
@@ -38,3 +45,65 @@ class StatusLine(Part, Lines):
         for condition in CONDITIONS:
             self.set_class(condition == view.health.condition, f"-{condition}")
         self.set_class(bool(view.health.behind), "-behind")
+
+
+_MARGINS = 2
+"""Cells next to a message."""
+
+
+class KeysLine(Static):
+    """Keys and their actions, in the order of importance. A click on an action presses its key.
+
+    This is one line of text, where Textual's footer mounts a widget for every key anew whenever the focus
+    moves. A message uses this line and needs no new layout. Textual's toasts would come up a repaint later.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._keys: list[tuple[str, str, str]] = []
+        self._said = ""
+        self._until: Timer | None = None
+
+    def on_mount(self) -> None:
+        """Follow the focus."""
+        self.screen.bindings_updated_signal.subscribe(self, self._follow)
+
+    def on_resize(self) -> None:
+        """Show as many keys as have room."""
+        self._write()
+
+    def has_room_for(self, text: str) -> bool:
+        """Return whether a text fits on the line without being cut."""
+        return len(text) + _MARGINS <= self.size.width
+
+    def say(self, text: str, seconds: float) -> None:
+        """Show a message in place of the keys. A message still shown is replaced."""
+        if self._until is not None:
+            self._until.stop()
+        self._until = self.set_timer(seconds, self._said_enough)
+        self._said = text
+        self._write()
+
+    def _said_enough(self) -> None:
+        self._said = ""
+        self._write()
+
+    def _follow(self, screen: Screen[object]) -> None:
+        first: dict[str, Binding] = {}
+        for active in screen.active_bindings.values():
+            if active.binding.show and active.enabled:
+                first.setdefault(active.binding.action, active.binding)
+        keys = [(b.key, self.app.get_key_display(b), b.description) for b in first.values()]
+        if keys != self._keys:
+            self._keys = keys
+            self._write()
+
+    def _write(self) -> None:
+        line = Text(f" {self._said} " if self._said else "", Style(reverse=True), no_wrap=True)
+        for key, display, does in self._keys if not self._said else ():
+            if line.cell_len + len(display) + len(does) + 2 > self.size.width:
+                break
+            press = {"@click": f"app.simulate_key('{key}')"}
+            line.append(f" {display}", Style(bold=True, meta=press))
+            line.append(f" {does}", Style(meta=press))
+        self.update(line, layout=False)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import ceil, floor
 from textwrap import wrap
 
 import numpy as np
@@ -14,8 +15,6 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.tui.plot.axis import Axis, LogAxis, exact_axis, log_axis, round_axis
 from advisor.tui.plot.canvas import Canvas
 from advisor.tui.plot.chart import INKS, Chart, Series
-from advisor.tui.plot.labels import along_the_foot, down_the_side, whole
-from advisor.tui.plot.legend import legend
 from advisor.tui.plot.reading import readings
 
 _ROWS_PER_TICK, _ROWS_PER_LOG_TICK = 3, 2
@@ -158,3 +157,72 @@ def _runs(text: str, ink: NDArray[np.int8], inks: list[Style], base: Style) -> l
 
 def _sentence(text: str, width: int, style: Style) -> list[Strip]:
     return [Strip([Segment(line.ljust(width), style)], width) for line in wrap(text, max(width, 1))]
+
+
+def whole(axis: Axis) -> Axis:
+    """Return the axis with ticks at whole numbers only."""
+    return Axis(floor(axis.low), ceil(axis.high), max(1.0, round(axis.step)))
+
+
+def down_the_side(axis: Axis | LogAxis, rows: int, gutter: int) -> list[str]:
+    """Return the labels of the y axis, one string of ``gutter`` characters for each row, highest value
+    first."""
+    column = [" " * gutter] * rows
+    for tick, label in zip(axis.ticks, axis.labels, strict=True):
+        row = round((axis.high - tick) / (axis.high - axis.low) * (rows - 1))
+        column[row] = label.rjust(gutter - 1) + " "
+    return column
+
+
+def along_the_foot(axis: Axis, name: str, gutter: int, width: int) -> str:
+    """Return the labels of the x axis on one line with the axis's name at its end. Crowded labels are left
+    out."""
+    line = [" "] * width
+    columns = width - gutter
+    room_until = width - len(name) - 1
+    free_from = gutter
+    for tick, label in zip(axis.ticks, axis.labels, strict=True):
+        centre = gutter + round((tick - axis.low) / (axis.high - axis.low) * (columns - 1))
+        at = max(centre - len(label) // 2, gutter)
+        if at >= free_from and at + len(label) <= room_until:
+            line[at : at + len(label)] = label
+            free_from = at + len(label) + 1
+    line[room_until + 1 :] = name
+    return "".join(line)[:width]
+
+
+_SAMPLE = {"line": "──", "joined": "──", "points": "∙∙", "stems": "││", "intervals": "├┤"}
+
+
+def legend(chart: Chart, read: list[str], width: int, style: Style, inks: list[Style]) -> Strip:
+    """Compose the line, from left to right as far as there is room.
+
+    Parameters
+    ----------
+    chart
+        Chart with the names.
+    read
+        One text for each series: its value at the cursor, empty without one.
+    width
+        Cells of the line.
+    style, inks
+        Style of words, and of each ink.
+    """
+    curves = [
+        (f"  {_SAMPLE[s.mark]} {s.name} {value}".rstrip(), s.ink)
+        for s, value in zip(chart.series, read, strict=True)
+        if s.name
+    ]
+    levels = [
+        (f"  {'╌╌' if level.dashed else '──'} {level.name}", level.ink)
+        for level in chart.levels
+        if level.name
+    ]
+    parts = [(chart.y_label, style), *((text, inks[INKS.index(ink)]) for text, ink in (*curves, *levels))]
+    segments, used = [], 0
+    for text, ink in parts:
+        if used + len(text) > width:
+            break
+        segments.append(Segment(text, ink))
+        used += len(text)
+    return Strip([*segments, Segment(" " * (width - used), style)], width)

@@ -19,7 +19,7 @@ from advisor.tui.panes.event_log import EventLogPane
 from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.flight import WholeFlightPane
 from advisor.tui.panes.gap import GapPane
-from advisor.tui.panes.keys_line import KeysLine
+from advisor.tui.panes.last_verdict import VerdictPane
 from advisor.tui.panes.lateral import LateralPane
 from advisor.tui.panes.live import Live
 from advisor.tui.panes.maneuvers import Maneuvers
@@ -29,8 +29,7 @@ from advisor.tui.panes.parameters import ParametersPane
 from advisor.tui.panes.qualities import Qualities
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.residuals import Residuals
-from advisor.tui.panes.status_line import StatusLine
-from advisor.tui.panes.verdict import VerdictPane
+from advisor.tui.panes.status_line import KeysLine, StatusLine
 from advisor.tui.screens.face import Face
 from advisor.tui.screens.pane_actions import PaneActions
 

@@ -13,8 +13,8 @@ from advisor.process.parts import Parts
 from advisor.session.hand import HandDecision
 from advisor.session.view import View
 from advisor.tui.panes.ask import Ask
-from advisor.tui.panes.keys_line import KeysLine
 from advisor.tui.panes.part import Part
+from advisor.tui.panes.status_line import KeysLine
 
 
 class Face(Screen[None]):

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
-from advisor.bundled.study.plan import Study
+from advisor.bundled.study.run import Study
 from benchmarks.studies import advised, reports
 from benchmarks.studies.__main__ import main
 

@@ -9,8 +9,15 @@ import pytest
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
 from advisor.bundled.study import flaws, readings, run
-from advisor.bundled.study.campaigns import RULES, CampaignBlock, fly_campaigns, judge, outcome, table_blocks
-from advisor.bundled.study.estimating import estimate_copies
+from advisor.bundled.study.campaigns import (
+    RULES,
+    CampaignBlock,
+    estimate_copies,
+    fly_campaigns,
+    judge,
+    outcome,
+    table_blocks,
+)
 from advisor.bundled.study.figure import curve, in_terminal
 from advisor.bundled.study.flying import Scene, fly_named, noise_scale
 from advisor.bundled.study.paper import ORDER

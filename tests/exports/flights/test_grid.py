@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.exports.flights.grid import grid_times, on_grid, on_one_grid
+from advisor.exports.flights.reading import grid_times, on_grid, on_one_grid
 from advisor.flight.signals.record import Channel
 
 

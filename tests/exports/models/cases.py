@@ -6,8 +6,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import Reference
 from advisor.exports.models.flown import FlownModel, SideModel
-from advisor.exports.models.improvement import STILL_AIR, Improvement
-from advisor.exports.models.servo import ExportedServo
+from advisor.exports.models.improvement import STILL_AIR, ExportedServo, Improvement
 from advisor.flight.instruments.atmosphere import AirData
 from advisor.flight.signals.standard_atmosphere import standard_density, standard_pressure
 from advisor.gap.result import Value

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.exports.models import from_logs
+from advisor.exports.models import roll_and_yaw
 
 BIN = Path(__file__).parents[2] / "cases" / "base.bin"
 
@@ -14,13 +14,13 @@ def test_a_flight_without_aileron_and_rudder_inputs_is_read_once_and_judged_neve
     def judged(*_, **__):
         raise AssertionError
 
-    monkeypatch.setattr(from_logs, "read_whole", judged)
-    assert from_logs.side_of_logs([BIN], Aircraft()) is None
+    monkeypatch.setattr(roll_and_yaw, "read_whole", judged)
+    assert roll_and_yaw.side_of_logs([BIN], Aircraft()) is None
 
 
 def test_a_log_that_cannot_be_read_tells_nothing_of_roll_and_yaw(tmp_path):
     (tmp_path / "x.tlog").write_bytes(b"")
-    assert from_logs.side_of_logs([tmp_path / "x.tlog"], Aircraft()) is None
+    assert roll_and_yaw.side_of_logs([tmp_path / "x.tlog"], Aircraft()) is None
 
 
 @pytest.mark.parametrize("flies", [True, False])
@@ -31,10 +31,10 @@ def test_the_campaign_is_judged_where_a_control_of_roll_and_yaw_was_flown(monkey
     def judged(*_, **__):
         raise JudgedError
 
-    monkeypatch.setattr(from_logs, "_flies_roll_or_yaw", lambda *_: flies)
-    monkeypatch.setattr(from_logs, "read_whole", judged)
+    monkeypatch.setattr(roll_and_yaw, "_flies_roll_or_yaw", lambda *_: flies)
+    monkeypatch.setattr(roll_and_yaw, "read_whole", judged)
     if flies:
         with pytest.raises(JudgedError):
-            from_logs.side_of_logs([BIN], Aircraft())
+            roll_and_yaw.side_of_logs([BIN], Aircraft())
     else:
-        assert from_logs.side_of_logs([BIN], Aircraft()) is None
+        assert roll_and_yaw.side_of_logs([BIN], Aircraft()) is None

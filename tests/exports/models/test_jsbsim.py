@@ -7,11 +7,10 @@ import jsbsim
 import numpy as np
 import pytest
 
-from advisor.exports.models.improvement import SLOPES
+from advisor.exports.models.improvement import SLOPES, ExportedServo
 from advisor.exports.models.jsbsim.aircraft import aircraft_text
 from advisor.exports.models.jsbsim.run import model_of
 from advisor.exports.models.jsbsim.source import parse, surface_of, terms_of
-from advisor.exports.models.servo import ExportedServo
 from advisor.gap.result import Value
 from advisor.words.problems import ConfigurationError
 from tests.exports.models.cases import air_at, improvement

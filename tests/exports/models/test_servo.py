@@ -3,7 +3,7 @@
 import pytest
 
 from advisor.aircraft.controls import Elevator
-from advisor.exports.models.servo import ExportedServo, servo_of
+from advisor.exports.models.improvement import ExportedServo, servo_of
 
 FOUND = {"transport_delay": {"delay_s": 0.03}, "actuator_lag": {"lag_s": 0.08}}
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from advisor.analysis.side_gap import SideCompared
-from advisor.exports.models.side_proof import prove_side
+from advisor.exports.models.roll_and_yaw import prove_side
 from tests.oem.lateral_builders import JET
 from tests.side_gap.test_comparison import AIRCRAFT, TRUE, maneuvers
 

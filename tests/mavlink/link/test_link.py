@@ -14,7 +14,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.link import Link
-from advisor.mavlink.link.ratewatch import RateWatch
+from advisor.mavlink.link.link_watch import RateWatch
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.mavlink.wire.framing import Frame
 from advisor.words.problems import UnusableInputError

@@ -16,11 +16,10 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
-from advisor.mavlink.link.announce import Announcer
+from advisor.mavlink.link.announce import Announcer, SeparateConnection
 from advisor.mavlink.link.inquiry import Inquiry
 from advisor.mavlink.link.link import Link
 from advisor.mavlink.link.rates import RateRequest
-from advisor.mavlink.link.separate_connection import SeparateConnection
 from advisor.mavlink.logs.logs import open_log
 from tests.mavlink.link.builders import free_port, wait_until
 

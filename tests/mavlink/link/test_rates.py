@@ -7,8 +7,8 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.link.link import Link
+from advisor.mavlink.link.link_watch import RateWatch
 from advisor.mavlink.link.rates import RateRequest
-from advisor.mavlink.link.ratewatch import RateWatch
 from advisor.mavlink.wire.framing import FrameCutter
 from tests.mavlink.link.builders import (
     Sender,

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS, Reference
-from advisor.exports.models.ardupilot.travel import calibrated, travel_of
+from advisor.exports.models.ardupilot.servos import calibrated, travel_of
 from advisor.exports.models.exported import Exported, commented, effects_beside
 from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.improvement import (

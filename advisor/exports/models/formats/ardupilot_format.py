@@ -4,8 +4,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.exports.models.ardupilot.parameters import parameters_text
 from advisor.exports.models.ardupilot.plane import FRAME_WORDS, lacking, plane_text
+from advisor.exports.models.ardupilot.servos import parameters_text
 from advisor.exports.models.exported import Exported
 from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.formats import AxisAsked, ModelFormat, refuse_lacking

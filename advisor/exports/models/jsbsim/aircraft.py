@@ -4,6 +4,10 @@ A derivative is corrected where its 95 % interval excludes the prior value. The 
 ``model``, else the JSBSim aircraft itself. The aircraft's own terms are multiplied by a factor. A function is
 added where there is no term or where the terms do not reach the value. A function also replaces a factor that
 would turn the sign.
+
+The curves of effects are those of the aircraft file. Squares and cubes are of α or of the elevator; a
+moment is by the rate of α. They count from ``about_rad`` or else from the trim. All are proportional to the
+dynamic pressure.
 """
 
 import math
@@ -11,13 +15,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from advisor.exports.models.exported import Exported, effects_beside
-from advisor.exports.models.improvement import SLOPES, Improvement
-from advisor.exports.models.jsbsim.effects import functions_of
+from advisor.exports.models.improvement import SLOPES, ExportedServo, Improvement
 from advisor.exports.models.jsbsim.knobs import Knob, knob_for, missed, settled
 from advisor.exports.models.jsbsim.run import Model, measure
 from advisor.exports.models.jsbsim.slopes import Request, Slopes
-from advisor.exports.models.jsbsim.source import SURFACES, corrected, parse, surface_of, terms_of
-from advisor.exports.models.servo import ExportedServo
+from advisor.exports.models.jsbsim.source import (
+    AXES,
+    PLAIN,
+    SURFACES,
+    AddedFunction,
+    corrected,
+    parse,
+    surface_of,
+    terms_of,
+)
+from advisor.gap.effects import EFFECTS
 from advisor.words.problems import ConfigurationError
 
 
@@ -109,3 +121,50 @@ def _note(improvement: Improvement, first: Slopes, targets: Mapping[str, float])
         f"Corrected by advisor gap for {improvement.name} at {improvement.true_airspeed_m_s:.4g} m/s. "
         f"Derivatives (SI): {', '.join(changed) or 'as they were'}. Servo: {', '.join(servo)}."
     )
+
+
+def functions_of(
+    effects: Mapping[str, Mapping[str, float]], slopes: Slopes, surface: str
+) -> tuple[list[AddedFunction], list[str]]:
+    """Return the functions, and the names of the effects that the functions carry completely.
+
+    Parameters
+    ----------
+    effects
+        Effects of the aircraft file.
+    slopes
+        Slopes of the aircraft that receives the functions.
+    surface
+        Property of the elevator's position.
+    """
+    functions: list[AddedFunction] = []
+    carried = []
+    for effect, values in effects.items():
+        curve = EFFECTS[effect].curve
+        if curve is None or not values.keys() <= {*curve.powers, "about_rad"}:
+            # A separated flow has further parameters, which no square and no cube expresses.
+            continue
+        variable, powers = curve.variable, curve.powers
+        unit = SURFACES.get(surface) if variable == "delta_e" else 1.0
+        if variable == "alpha_dot":
+            strength = values["M_alpha_dot"] * slopes.inertia / slopes.pressure_psf / slopes.chord_time_s
+            functions.append(
+                AddedFunction(effect, "PITCH", strength, "aero/alphadot-rad_sec", further="aero/ci2vel")
+            )
+            carried.append(effect)
+        elif unit is not None:
+            about = unit * values["about_rad"] if "about_rad" in values else slopes.trim[variable]
+            functions += [
+                AddedFunction(
+                    name,
+                    AXES[name[0]],
+                    values[name] / unit**power / (slopes.per_force(name[0]) * slopes.pressure_psf),
+                    surface if variable == "delta_e" else PLAIN[variable],
+                    about,
+                    power,
+                )
+                for name, power in powers.items()
+                if values.get(name)
+            ]
+            carried.append(effect)
+    return functions, carried

@@ -14,8 +14,7 @@ from advisor.exports.models.jsbsim.side_slopes import SideRequest, SideSlopes
 from advisor.exports.models.jsbsim.slopes import Request, Slopes
 from advisor.exports.models.jsbsim.source import parse
 from advisor.process.children import python_module
-from advisor.simulators.jsbsim_model import find_model
-from advisor.simulators.jsbsim_properties import foreign_properties
+from advisor.simulators.jsbsim_model import find_model, foreign_properties
 from advisor.words.problems import ConfigurationError
 
 TIME_LIMIT_S = 60.0

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from advisor.exports.models.exported import xml_comment
-from advisor.exports.models.servo import ExportedServo
+from advisor.exports.models.improvement import ExportedServo
 from advisor.words.problems import ConfigurationError
 
 VARIABLES = {

@@ -1,25 +1,37 @@
-"""Roll and yaw for other programs, from logs and from a diagnosis of them."""
+"""Roll and yaw for other programs, from logs and from a diagnosis of them, and their proof."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.side_gap import SideCompared, accepted_of
+from advisor.aircraft.reference import SIDE_PARAMETERS
+from advisor.analysis.side_gap import SideCompared, accepted_of, answered, with_derivatives
 from advisor.analysis.whole_flights import read_whole
 from advisor.exports.models.flown import FlownModel, SideModel, flown_model, side_flown, side_of
-from advisor.exports.models.servo import ExportedServo, servo_of
+from advisor.exports.models.improvement import ExportedServo, servo_of
+from advisor.exports.models.proof import Proof, parted, refuse_unimproved
+from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.events import SideManeuverFlown
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
+from advisor.flight.signals.messages import FloatArray
 from advisor.flight.stream.stream import FlightStream
 from advisor.gap.effects import EFFECTS
+from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.mavlink.logs.whole import read_whole_log
 from advisor.model.lateral import LATERAL
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_estimator import estimate_lateral
+from advisor.side_gap.comparison import compare_side, gap_on
 from advisor.side_gap.diagnosis import SideDiagnosis
 from advisor.words.problems import UnusableInputError
+
+_Found = TypeVar("_Found")
 
 
 def side_of_logs(
@@ -90,3 +102,59 @@ def _servos_found(diagnosis: SideDiagnosis | None, aircraft: Aircraft) -> Mappin
             sizes = {name: value.value for name, value in one.cause.parameters.items()}
             effects.setdefault(one.of, {})[one.cause.effect] = sizes
     return {name: servo_of(getattr(aircraft, name), by_effect) for name, by_effect in effects.items()}
+
+
+def prove_side(
+    compared: SideCompared, fresh: Sequence[Maneuver] | None = None, prior: FieldPrior = FIELD
+) -> Proof:
+    """Improve roll and yaw by some manoeuvres, and fly others.
+
+    Parameters
+    ----------
+    compared
+        The comparison of the whole flight.
+    fresh
+        Manoeuvres of other logs; None keeps the last third apart.
+
+    Raises
+    ------
+    UnusableInputError
+        There are too few manoeuvres, nothing was improved, or the fit does not fly every control.
+    """
+    aircraft = compared.against
+    fitted, kept = (compared.maneuvers, fresh) if fresh is not None else parted(compared.maneuvers)
+    first = _flown(compare_side(fitted, aircraft, prior))
+    refuse_unimproved(first.verdict, first.sentence, len(fitted))
+    behind = behind_found(first.diagnosis, aircraft)
+    plain, found = (_flown(estimate_lateral(fitted, one)) for one in (aircraft, behind))
+    given = np.array(
+        [aircraft.model.get(n, x) for n, x in zip(SIDE_PARAMETERS, plain.estimate.theta, strict=True)]
+    )
+    by_maneuver = tuple(
+        (m.number, _gap(m, plain, aircraft, given), _gap(m, found, behind, found.estimate.theta))
+        for m in kept
+    )
+    speed = found.estimate.airspeed_m_s
+    read = None if speed is None else air_flown(fitted).read_speed(speed)
+    second = _flown(compare_side(kept, with_derivatives(behind, found.estimate, read), prior))
+    present = [one.name for one in (first.diagnosis.causes if first.diagnosis else ()) if one.cause.present]
+    return Proof(
+        maneuvers=tuple(m.number for m in kept),
+        before=float(np.mean([before for _, before, _ in by_maneuver])),
+        after=float(np.mean([after for _, _, after in by_maneuver])),
+        floor={name: fit.noise for name, fit in found.estimate.fits[0].items()},
+        by_maneuver=by_maneuver,
+        first=" + ".join(present) or str(first.verdict),
+        second=second.verdict,
+        sentence=second.sentence,
+    )
+
+
+def _gap(maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: FloatArray) -> float:
+    by_output = gap_on([maneuver], model, aircraft, theta)
+    return float(np.mean(list(by_output.values()))) if by_output else 0.0
+
+
+def _flown(found: _Found | NoEstimate) -> _Found:
+    """Return an answer, or refuse manoeuvres that gave none."""
+    return answered(found, "Fly aileron and rudder in both parts of the flight.", "--prove: ")
