@@ -11,7 +11,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import compare_logs, named_simulator
 from advisor.exports.models.flown import improved_model
-from advisor.exports.models.matlab import script_text
+from advisor.exports.models.formats.matlab_format import script_text
 from advisor.exports.models.write import carry_out, order_of
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.simulators.linear import LinearSimulator

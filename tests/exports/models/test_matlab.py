@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from advisor.exports.models.formats.matlab_format import UNITS, script_text
 from advisor.exports.models.improvement import ExportedServo
-from advisor.exports.models.matlab import UNITS, script_text
 from tests.exports.models.cases import MODEL, improvement
 
 OCTAVE = shutil.which("octave-cli")

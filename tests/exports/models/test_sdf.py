@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from advisor.exports.models.sdf import block_text
+from advisor.exports.models.formats.sdf_format import block_text
 from advisor.gap.result import Value
 from advisor.words.problems import ConfigurationError
 from tests.exports.models.cases import MODEL, REFERENCE, improvement

@@ -9,8 +9,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS, Reference
 from advisor.exports.models.flown import FlownModel, side_of
+from advisor.exports.models.formats.sdf_format import plugins_text
 from advisor.exports.models.improvement import STILL_AIR
-from advisor.exports.models.sdf import plugins_text
 from advisor.model.lateral import Trim
 from tests.campaign.side_builders import estimate
 
