@@ -1,11 +1,11 @@
 """``advisor gap``: why the real aircraft does not fly like the simulator."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import click
 from click.core import ParameterSource
@@ -30,8 +30,13 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 
 if TYPE_CHECKING:
     from advisor.aircraft.aircraft import Aircraft
+    from advisor.campaign.hand_decisions import ByHand
     from advisor.exports.models.flown import FlownModel, SideModel
+    from advisor.exports.models.proof import Proof
+    from advisor.gap.inference.prior import FieldPrior
     from advisor.gap.result import Diagnosis
+
+Found = TypeVar("Found")
 
 IMPROVABLE = ("effect", "parameters")
 """Verdicts after which there is something to improve."""
@@ -173,73 +178,105 @@ def command(
     refuse_figure(figure, [*asked.inputs, out])
     orders = orders_of(exports, aircraft, [*asked.inputs, out], "pitch")
     from advisor.analysis.gap import compare_logs, named_simulator
+    from advisor.exports.models.flown import FlownModel
     from advisor.gap.document import gap_document
     from advisor.gap.inference.prior import FIELD, field_prior
     from advisor.report.gap_steps import next_steps
+    from advisor.simulators.compare import Compared
     from advisor.words.plain import plain
 
-    simulator = None
     shares = FIELD if prior is None else field_prior(prior)
-    try:
-        with Stages() as progress:
-            simulator = named_simulator(aircraft, asked.target_system)
-            compared = attempt(
-                "pitch, diagnosis",
-                lambda: compare_logs(
-                    asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand, shares
-                ),
+
+    def compare() -> Compared:
+        simulator = named_simulator(aircraft, asked.target_system)
+        try:
+            return compare_logs(
+                asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand, shares
             )
-    except UnusableInputError as error:
-        if as_json:
-            click.echo(json.dumps(gap_document(None, error.problems), indent=1))
-        click.echo(str(error), err=True)
-        return UNUSABLE
-    finally:
-        if simulator is not None:
-            simulator.close()
-    if isinstance(compared, FailedPart):
-        return _say_without(compared, as_json)
+        finally:
+            if simulator is not None:
+                simulator.close()
+
+    with Stages() as progress:
+        compared = compared_or_code("pitch, diagnosis", compare, as_json)
+    if isinstance(compared, int):
+        return compared
     found = compared.diagnosis
-    improvable = found.verdict in IMPROVABLE
     side = cache(partial(_side_of, asked, aircraft))
-    if out is not None:
-        _write_improved(out, found, compared.aircraft, side)
+    improved = write_improved(out, found.verdict, lambda: FlownModel(compared.aircraft, None, side(), found))
     # The simulator's own servo is no part of the improvement.
     as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
     outcomes = write_exports(orders, partial(_improved, found, as_given, side))
     write_figure(figure, found)
-    proof = proof_of(proving, asked, by_hand, aircraft, shares)
+    proof = proof_of(proving, partial(_prove, asked, by_hand, aircraft, shares))
     steps = next_steps(
         found, list(map(str, asked.logs)), asked.aircraft_text, aircraft.simulator, asked.reading
     )
     if as_json:
-        document = gap_document(found, (), str(out) if out and improvable else None)
+        document = gap_document(found, (), str(out) if improved else None)
         more = {"exports": listed(outcomes), "next": plain(steps), **proof_document(proof)}
         click.echo(json.dumps(document | more, allow_nan=False, indent=1))
     else:
         from advisor.report.console import PlainConsole
         from advisor.report.gap_screen import GapScreen
 
-        written = printable(str(out)) if out and improvable else None
+        written = printable(str(out)) if improved else None
         PlainConsole().print(GapScreen(found, written, why, steps, everything))
         print_proof(proof)
     return USAGE if any(one.problem for one in outcomes) else 0
 
 
-def _write_improved(
-    out: Path, found: "Diagnosis", aircraft: "Aircraft", side: "Callable[[], SideModel | None]"
-) -> None:
-    """Write the improved aircraft file, or say why not."""
-    if found.verdict not in IMPROVABLE:
+def compared_or_code(part: str, compare: "Callable[[], Found]", as_json: bool) -> "Found | int":
+    """Return a comparison. Without one, print the answer that remains and return its exit code."""
+    from advisor.gap.document import gap_document
+
+    try:
+        found = attempt(part, compare)
+    except UnusableInputError as error:
+        told, document, code = str(error), gap_document(None, error.problems), UNUSABLE
+    else:
+        if not isinstance(found, FailedPart):
+            return found
+        told, document, code = found.told, gap_document(None, failed=(found,)), 0
+    if as_json:
+        click.echo(json.dumps(document, indent=1))
+    click.echo(told, err=True)
+    return code
+
+
+def write_improved(out: Path | None, verdict: str | None, make: "Callable[[], FlownModel]") -> bool:
+    """Write the improved aircraft file that was asked for, or say why not; return whether it is there."""
+    if out is None:
+        return False
+    if verdict not in IMPROVABLE:
         click.echo(
             f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True
         )
-        return
+        return False
     from advisor.exports.models.file_text import write_file
-    from advisor.exports.models.flown import FlownModel
 
     with writing("--out", out):
-        write_file(FlownModel(aircraft, None, side(), found), out)
+        write_file(make(), out)
+    return True
+
+
+def _prove(
+    asked: LogsAsked,
+    by_hand: "Sequence[ByHand]",
+    aircraft: "Aircraft",
+    prior: "FieldPrior",
+    named: Sequence[Path],
+    tell: Callable[[str, float], None],
+) -> "Proof":
+    """Fly the improved simulator on the manoeuvres of logs; without any, on the last third."""
+    from advisor.analysis.gap import maneuvers_of
+    from advisor.exports.models.proof import prove
+
+    tell("reading for the proof", 0.0)
+    flown = maneuvers_of(asked.logs, aircraft, asked.target_system, by_hand)
+    decided = [decided_on(log, asked.no_marks) for log in named]
+    fresh = maneuvers_of(named, aircraft, asked.target_system, decided) if named else None
+    return prove(flown, fresh, aircraft, asked.target_system, tell, prior)
 
 
 def _side_of(asked: LogsAsked, aircraft: "Aircraft") -> "SideModel | None":
@@ -264,16 +301,6 @@ def _refuse_out(out: Path, aircraft_file: Path | None) -> None:
     refuse_unwritable("--out", out)
     if aircraft_file is not None and out.resolve() == aircraft_file.resolve():
         raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
-
-
-def _say_without(failed: FailedPart, as_json: bool) -> int:
-    """Print the answer of which a fault ended the diagnosis; return the exit code of the answer."""
-    if as_json:
-        from advisor.gap.document import gap_document
-
-        click.echo(json.dumps(gap_document(None, failed=(failed,)), indent=1))
-    click.echo(failed.told, err=True)
-    return 0
 
 
 def _refuse_foreign(foreign: Mapping[str, str], where: str) -> None:

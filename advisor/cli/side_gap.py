@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -12,19 +12,20 @@ import click
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.side_gap import SideCompared, compare_side_logs
+from advisor.analysis.side_gap import SideCompared, accepted_of, compare_side_logs
+from advisor.analysis.whole_flights import read_whole
+from advisor.cli.gap import compared_or_code, write_improved
 from advisor.cli.improvement_export import listed, write_exports
 from advisor.cli.log_options import LogsAsked
-from advisor.cli.options import UNUSABLE, USAGE, writing
+from advisor.cli.options import USAGE
 from advisor.cli.proving import document as proof_document
-from advisor.cli.proving import print_proof, side_proof_of
+from advisor.cli.proving import print_proof, proof_of
 from advisor.cli.stages import Stages
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.document import changed_document, gap_document
-from advisor.gap.inference.prior import FIELD, field_prior
+from advisor.gap.inference.prior import FIELD, FieldPrior, field_prior
 from advisor.gap.result import Value
 from advisor.gap.verdict.titles import title_of_verdict
-from advisor.process.parts import FailedPart, attempt
 from advisor.report.gap_reasons import how_sure, in_percent
 from advisor.report.gap_sizes import sizes_of
 from advisor.report.gap_steps import GapStep, to_decide
@@ -35,12 +36,12 @@ from advisor.words.certainty import is_decided
 from advisor.words.digits import with_half
 from advisor.words.plain import picked, plain
 from advisor.words.printable import printable
-from advisor.words.problems import UnusableInputError
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 
 if TYPE_CHECKING:
     from advisor.exports.models.flown import FlownModel
+    from advisor.exports.models.proof import Proof
     from advisor.exports.models.write import ExportOrder
 
 
@@ -55,35 +56,27 @@ def compare_lateral(
 ) -> int:
     """Compare roll and yaw of the aircraft file with the flight, print the result and write the files."""
     shares = FIELD if prior is None else field_prior(prior)
-    try:
-        with Stages() as tell:
-            tell("reading", 0.0)
-            compared = attempt(
-                "lateral, diagnosis",
-                lambda: compare_side_logs(
-                    asked.logs,
-                    aircraft,
-                    asked.target_system,
-                    asked.marks,
-                    no_marks=asked.no_marks,
-                    prior=shares,
-                    progress=tell,
-                ),
-            )
-    except UnusableInputError as error:
-        if as_json:
-            click.echo(json.dumps(gap_document(None, error.problems), indent=1))
-        click.echo(str(error), err=True)
-        return UNUSABLE
-    if isinstance(compared, FailedPart):
-        if as_json:
-            click.echo(json.dumps(gap_document(None, failed=(compared,)), indent=1))
-        click.echo(compared.told, err=True)
-        return 0
+    with Stages() as tell:
+        tell("reading", 0.0)
+        compared = compared_or_code(
+            "lateral, diagnosis",
+            lambda: compare_side_logs(
+                asked.logs,
+                aircraft,
+                asked.target_system,
+                asked.marks,
+                no_marks=asked.no_marks,
+                prior=shares,
+                progress=tell,
+            ),
+            as_json,
+        )
+    if isinstance(compared, int):
+        return compared
     found = compared.gap
-    written = out is not None and _write_improved(compared, out)
+    written = write_improved(out, found.verdict, lambda: replace(_improved(compared), pitch=None))
     outcomes = write_exports(orders, partial(_improved, compared))
-    proof = side_proof_of(proving, asked, compared, shares)
+    proof = proof_of(proving, partial(_prove, asked, compared, shares))
     if as_json:
         lateral = side_gap_document(found) | {"improved_model": str(out) if written else None}
         lateral |= proof_document(proof)
@@ -103,18 +96,24 @@ def _improved(compared: SideCompared) -> "FlownModel":
     return improved_side(compared)
 
 
-def _write_improved(compared: SideCompared, out: Path) -> bool:
-    """Write the improved aircraft file; return whether there was anything to improve."""
-    from advisor.exports.models.file_text import write_file
+def _prove(
+    asked: LogsAsked,
+    compared: SideCompared,
+    prior: FieldPrior,
+    named: Sequence[Path],
+    tell: Callable[[str, float], None],
+) -> "Proof":
+    """Fly the improved roll and yaw on the manoeuvres of logs; without any, on the last third."""
+    from advisor.exports.models.roll_and_yaw import prove_side
 
-    if compared.gap.verdict not in ("effect", "parameters"):
-        click.echo(
-            f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True
+    tell("flying for the proof", 0.0)
+    fresh = None
+    if named:
+        read = read_whole(
+            named, compared.aircraft, asked.target_system, no_marks=asked.no_marks, axis="lateral"
         )
-        return False
-    with writing("--out", out):
-        write_file(replace(_improved(compared), pitch=None), out)
-    return True
+        fresh = accepted_of(read.state)
+    return prove_side(compared, fresh, prior)
 
 
 def side_gap_lines(found: SideGap) -> Iterator[str]:
