@@ -1,7 +1,8 @@
-"""A simulator checked before its physics: it trims, holds still, answers the elevator, and means SI units."""
+"""A simulator checked before its physics: it trims, rests, answers every control, and means SI units."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from math import nan
 
 import numpy as np
@@ -12,17 +13,23 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, natural_frequency
-from advisor.simulators.check_side import check_side
 from advisor.simulators.flying import Flying
-from advisor.simulators.interface import InterfaceFault, control_fault, interface_fault
+from advisor.simulators.interface import InterfaceFault, control_fault, interface_fault, side_fault
 from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Inputs, Replay, Simulator
+from advisor.simulators.side import TURNS
 from advisor.simulators.surrogate import surrogate_of
 from advisor.words.problems import UnusableInputError
 
-_STEP_S, _LEAD_S, _UNIT_S, _LASTS_S = 0.005, 1.0, 0.4, 9.0
-"""Step, time before the input, unit of the 3-2-1-1, and length of the record, s."""
+_STEP_S, _LEAD_S = 0.005, 1.0
+"""Step of the record, and time before the input, s."""
+_UNIT_S, _LASTS_S = 0.4, 9.0
+"""Unit of the 3-2-1-1, and length of its record, s."""
+_SIDE_UNIT_S, _SIDE_LASTS_S = 0.5, 5.0
+"""Unit of the doublet of aileron and rudder, and length of its record, s."""
 _SIZE_RAD = float(np.radians(1.0))
-"""Elevator step, rad: small enough for a linear answer, far above rounding."""
+"""Step of a control, rad: small enough for a linear answer, far above rounding."""
+_MOTION = ("beta", "p", "r")
+_NEEDED = ("p", "r", "bank", "beta")
 _REST_S = 5.0
 """Length of the flight with resting controls, s."""
 _MOVES_RAD_S = 1e-6
@@ -70,7 +77,7 @@ def check(simulator: Simulator, condition: Condition) -> CheckedSimulator:
     UnusableInputError
         The simulator does not trim, does not fly, or does not answer the elevator.
     """
-    t: FloatArray = _STEP_S * (np.arange(round(_LASTS_S / _STEP_S), dtype=np.float64) + 0.5)
+    t = _stamps(_LASTS_S)
     rest = t[t < _REST_S]
     still = simulator.replay(condition, Inputs(rest, np.zeros(rest.size)))
     flown = simulator.replay(condition, Inputs(t, _three_two_one_one(t)))
@@ -89,8 +96,50 @@ def check(simulator: Simulator, condition: Condition) -> CheckedSimulator:
     fault = control_fault("elevator", found.derivatives["M_delta_e"], _answer(flown))
     if fault is not None:
         return replace(found, fault=fault)
-    side = check_side(simulator, condition)
-    return replace(found, side=side.derivatives, fault=side.fault, notes=(*found.notes, *side.notes))
+    return _check_side(found, simulator, condition)
+
+
+def _stamps(lasts_s: float) -> FloatArray:
+    """Return the middles of the steps of a record, s."""
+    return _STEP_S * (np.arange(round(lasts_s / _STEP_S), dtype=np.float64) + 0.5)
+
+
+def _check_side(found: CheckedSimulator, simulator: Simulator, condition: Condition) -> CheckedSimulator:
+    """Fly a doublet of each control of roll and yaw that the simulator takes, and test the answer.
+
+    The kinematics of the replay give signs and units, and a regression of the angular accelerations gives the
+    derivatives of the control.
+    """
+    side: dict[str, float] = {}
+    notes = [*found.notes]
+    for control in (name for name in TURNS if name in simulator.takes):
+        t = _stamps(_SIDE_LASTS_S)
+        moved = _steps(t, _SIDE_UNIT_S, (1.0, 1.0))
+        replay = simulator.replay(condition, Inputs(t, np.zeros(t.size), {control: moved}))
+        missing = [name for name in _NEEDED if getattr(replay, name) is None]
+        if missing:
+            notes.append(f"It returns no {', '.join(missing)}: the {control} is not checked.")
+            continue
+        own, answer = _side_derivatives(replay, np.interp(replay.t, t, moved), control)
+        fault = side_fault(replay) or control_fault(control, own[TURNS[control][0]], answer)
+        if fault is not None:
+            return replace(found, side=side, fault=fault, notes=tuple(notes))
+        side |= own
+    return replace(found, side=side, notes=tuple(notes))
+
+
+def _side_derivatives(replay: Replay, moved: FloatArray, control: str) -> tuple[dict[str, float], float]:
+    """Return L and N by the motion and the control, and the size of the answer (``control_fault``)."""
+    motion = [np.asarray(getattr(replay, name)) for name in _MOTION]
+    columns = np.column_stack([*motion, moved, np.ones(len(moved))])
+    turns, against = TURNS[control]
+    found: dict[str, float] = {}
+    for letter, rate in (("L", motion[1]), ("N", motion[2])):
+        slopes = np.linalg.lstsq(columns, np.gradient(rate, replay.t))[0]
+        found |= {
+            f"{letter}_{name}": float(x) for name, x in zip((*_MOTION, turns[2:]), slopes, strict=False)
+        }
+    return found, abs(found[turns] / found[against]) if found[against] else np.inf
 
 
 def _refuse_unmoved(flown: Replay, said: str) -> None:
@@ -137,10 +186,15 @@ def _identified(
 
 def _three_two_one_one(t: FloatArray) -> FloatArray:
     """Return a 3-2-1-1 of the elevator, rad, shape (n,)."""
-    onsets = _LEAD_S + _UNIT_S * np.array([0.0, 3.0, 5.0, 6.0, 7.0])
+    return _steps(t, _UNIT_S, (3.0, 2.0, 1.0, 1.0))
+
+
+def _steps(t: FloatArray, unit_s: float, units: Sequence[float]) -> FloatArray:
+    """Return steps to both sides in turn, each as long as its number of units, rad, shape (n,)."""
+    onsets = _LEAD_S + unit_s * np.concatenate([[0.0], np.cumsum(units)])
     out = np.zeros(t.size)
-    for begin, end, sign in zip(onsets[:-1], onsets[1:], (1.0, -1.0, 1.0, -1.0), strict=True):
-        out[(t >= begin) & (t < end)] = sign * _SIZE_RAD
+    for k, (begin, end) in enumerate(pairwise(onsets)):
+        out[(t >= begin) & (t < end)] = _SIZE_RAD if k % 2 == 0 else -_SIZE_RAD
     return out
 
 

@@ -20,13 +20,12 @@ from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.flight import WholeFlightPane
 from advisor.tui.panes.gap import GapPane
 from advisor.tui.panes.last_verdict import VerdictPane
-from advisor.tui.panes.lateral import LateralPane
 from advisor.tui.panes.live import Live
 from advisor.tui.panes.maneuvers import Maneuvers
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.pane_tabs import PaneTabs
 from advisor.tui.panes.parameters import ParametersPane
-from advisor.tui.panes.qualities import Qualities
+from advisor.tui.panes.qualities import LateralPane, Qualities
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.residuals import Residuals
 from advisor.tui.panes.status_line import KeysLine, StatusLine
