@@ -1,13 +1,10 @@
 """The linkage between servo and surface has play."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from advisor.gap.kit.effect import Effect
+from advisor.gap.kit.effect import Effect, always
 from advisor.gap.kit.least import SMALL_ANGLE_RAD
 from advisor.gap.kit.variant import Variant
-from advisor.gap.records.flights import PreparedManeuvers
 
 BACKLASH = Variant(
     "actuator_backlash", "input", ("half_width_rad",), ((0.003,), (0.008,), (0.02,)), (2e-4,),
@@ -15,16 +12,11 @@ BACKLASH = Variant(
     sides=("play_side", tuple(np.linspace(-1.0, 1.0, 8))),
 )  # fmt: skip
 
-
-def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
-    return (BACKLASH,)
-
-
 EFFECT = Effect(
     name="actuator_backlash",
     block="input",
     keys={"half_width_rad": 0.0},
-    variants=_variants,
+    variants=always(BACKLASH),
     said=(
         "The real elevator has play of {half_width_rad_deg:.2f} deg to either side",
         "The simulator's elevator has {half_width_rad_deg:.2f} deg too much play to either side",

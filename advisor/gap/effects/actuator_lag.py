@@ -1,10 +1,9 @@
 """The servo lags behind its command, to first or to second order."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.kit.effect import Effect
+from advisor.gap.kit.effect import Effect, always
 from advisor.gap.kit.least import LEAST_S
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
@@ -25,18 +24,16 @@ def _second_order(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
     p[:, INDEX["lag_damping"]] = _DAMPING
 
 
-def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
-    second = replace(
-        LAG, starts=((0.03,), (0.1,)), entries=(), apply_with=_second_order, fixed={"damping": _DAMPING}
-    )
-    return LAG, second
+_SECOND = replace(
+    LAG, starts=((0.03,), (0.1,)), entries=(), apply_with=_second_order, fixed={"damping": _DAMPING}
+)
 
 
 EFFECT = Effect(
     name="actuator_lag",
     block="input",
     keys={"lag_s": 0.0, "damping": 0.0},
-    variants=_variants,
+    variants=always(LAG, _SECOND),
     said=(
         "The simulator's elevator is too quick: the real servo lags by {lag_s_ms:.0f} ms",
         "The simulator's elevator is too slow: its servo lags by {lag_s_ms:.0f} ms too much",

@@ -1,10 +1,7 @@
 """The servo moves no faster than a limit."""
 
-from collections.abc import Sequence
-
-from advisor.gap.kit.effect import Effect
+from advisor.gap.kit.effect import Effect, always
 from advisor.gap.kit.variant import Variant
-from advisor.gap.records.flights import PreparedManeuvers
 
 # The search uses the slowness 1/ρ: zero means no limit, and the cost is smooth there.
 RATE_LIMIT = Variant(
@@ -12,16 +9,11 @@ RATE_LIMIT = Variant(
     entries=("slowness_s_rad",), inverted=True,
 )  # fmt: skip
 
-
-def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
-    return (RATE_LIMIT,)
-
-
 EFFECT = Effect(
     name="actuator_rate_limit",
     block="input",
     keys={"rate_rad_s": 0.0},
-    variants=_variants,
+    variants=always(RATE_LIMIT),
     said=(
         "The real elevator moves no faster than {rate_rad_s_deg:.0f} deg/s",
         "The simulator's elevator moves no faster than {rate_rad_s_deg:.0f} deg/s, and the real one does",

@@ -7,9 +7,8 @@ import numpy as np
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.curve import Curve
-from advisor.gap.kit.effect import ANY, Effect, Need
+from advisor.gap.kit.effect import ANY, Effect, Need, always
 from advisor.gap.kit.variant import Variant
-from advisor.gap.records.flights import PreparedManeuvers
 
 
 def _without_rate_of_alpha(
@@ -33,16 +32,11 @@ _RATE = Variant(
     entries=("M_alpha_dot",), twin=_without_rate_of_alpha,
 )  # fmt: skip
 
-
-def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
-    return (_RATE,)
-
-
 EFFECT = Effect(
     name="alpha_dot",
     block="moment_equation",
     keys={"M_alpha_dot": ANY},
-    variants=_variants,
+    variants=always(_RATE),
     of_the_stick=False,
     said="The rate of the angle of attack makes a pitching moment that the simulator lacks",
     need=Need("M_alpha_dot", "the derivatives mimic it", "pulses of a flap, which move α and not q"),

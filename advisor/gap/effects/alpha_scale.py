@@ -1,26 +1,18 @@
 """The angle of attack reads too much or too little."""
 
-from collections.abc import Sequence
-
-from advisor.gap.kit.effect import ANY, Effect, Need
+from advisor.gap.kit.effect import ANY, Effect, Need, always
 from advisor.gap.kit.variant import Variant
-from advisor.gap.records.flights import PreparedManeuvers
 
 _SCALE = Variant(
     "alpha_scale", "alpha_sensor", ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.01,
     entries=("alpha_scale",),
 )  # fmt: skip
 
-
-def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
-    return (_SCALE,)
-
-
 EFFECT = Effect(
     name="alpha_scale",
     block="alpha_sensor",
     keys={"scale": ANY},
-    variants=_variants,
+    variants=always(_SCALE),
     channel="alpha",
     said=(
         "The angle of attack channel reads {scale_percent:.0f} % too much",

@@ -1,22 +1,13 @@
 """The angle of attack is stamped later or earlier than the other channels."""
 
-from collections.abc import Sequence
-
 from advisor.gap.kit.effect import ANY, Effect, Need
-from advisor.gap.kit.skew import skew_of
-from advisor.gap.kit.variant import Variant
-from advisor.gap.records.flights import PreparedManeuvers
-
-
-def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
-    return (skew_of("alpha_skew", "alpha", flights),)
-
+from advisor.gap.kit.skew import skewed
 
 EFFECT = Effect(
     name="alpha_skew",
     block="timing",
     keys={"skew_s": ANY},
-    variants=_variants,
+    variants=skewed("alpha_skew", "alpha"),
     channel="alpha",
     of_one_imu=True,
     said=(

@@ -1,11 +1,8 @@
 """The elevator's moment bends with its deflection."""
 
-from collections.abc import Sequence
-
-from advisor.gap.kit.curve import Curve, bent
+from advisor.gap.kit.curve import Curve, bending
 from advisor.gap.kit.effect import ANY, Effect
 from advisor.gap.kit.variant import Variant
-from advisor.gap.records.flights import PreparedManeuvers
 
 _CURVE = Curve("delta_e", {"M_delta2": 2, "M_delta3": 3})
 _CURVED = Variant(
@@ -13,16 +10,11 @@ _CURVED = Variant(
     ((-2e4, 2e4), (-2e6, 2e6)), 0.0, entries=("M_delta2", "M_delta3"),
 )  # fmt: skip
 
-
-def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
-    return (bent(_CURVED, _CURVE, flights),)
-
-
 EFFECT = Effect(
     name="elevator_nonlinearity",
     block="moment_equation",
     keys={"M_delta2": ANY, "M_delta3": ANY, "about_rad": ANY},
-    variants=_variants,
+    variants=bending(_CURVED, _CURVE),
     said="The real elevator's moment is not proportional to its deflection",
     said_beyond="The real elevator's moment bends with its deflection otherwise than the simulator's",
     distinguished_by={"nonlinear_pitching_moment": "fly slow and fast steps of equal size"},

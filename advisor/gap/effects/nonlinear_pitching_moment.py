@@ -1,11 +1,8 @@
 """The pitching moment bends with the angle of attack."""
 
-from collections.abc import Sequence
-
-from advisor.gap.kit.curve import Curve, bent
+from advisor.gap.kit.curve import Curve, bending
 from advisor.gap.kit.effect import ANY, Effect
 from advisor.gap.kit.variant import Variant
-from advisor.gap.records.flights import PreparedManeuvers
 
 _CURVE = Curve("alpha", {"M_alpha2": 2, "M_alpha3": 3})
 _CURVED = Variant(
@@ -13,16 +10,11 @@ _CURVED = Variant(
     ((-5e3, 5e3), (-1e5, 1e5)), 0.0, entries=("M_alpha2", "M_alpha3"),
 )  # fmt: skip
 
-
-def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
-    return (bent(_CURVED, _CURVE, flights),)
-
-
 EFFECT = Effect(
     name="nonlinear_pitching_moment",
     block="moment_equation",
     keys={"M_alpha2": ANY, "M_alpha3": ANY, "about_rad": ANY},
-    variants=_variants,
+    variants=bending(_CURVED, _CURVE),
     said="The real pitching moment is not linear in the angle of attack",
     said_beyond="The real pitching moment bends with the angle of attack otherwise than the simulator's",
     curve=_CURVE,

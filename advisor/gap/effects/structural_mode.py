@@ -1,12 +1,11 @@
 """The structure bends and swings, and the gyro turns with it."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.kit.effect import ANY, Effect
+from advisor.gap.kit.effect import ANY, Effect, always
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
@@ -34,17 +33,12 @@ def _with_attitude(p: FloatArray, values: Values, flights: PreparedManeuvers) ->
 
 _MODE_OF_ALL = replace(_MODE, apply_with=_with_attitude, fixed={"with_attitude": 1.0})
 
-
-def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
-    return (replace(_MODE, likewise=(_MODE_OF_ALL,)),)
-
-
 EFFECT = Effect(
     name="structural_mode",
     block="pitch_rate_sensor",
     keys={
         "frequency_hz": 0.0, "damping": 0.0, "gain": ANY, "displacement_gain": ANY, "with_attitude": 0.0,
     },
-    variants=_variants,
+    variants=always(replace(_MODE, likewise=(_MODE_OF_ALL,))),
     said="The structure swings at {frequency_hz:.1f} Hz in the pitch rate",
 )  # fmt: skip

@@ -1,9 +1,7 @@
 """The surface answers its command after a delay."""
 
-from collections.abc import Sequence
-
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.kit.effect import Effect
+from advisor.gap.kit.effect import Effect, always
 from advisor.gap.kit.least import LEAST_S
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
@@ -23,16 +21,11 @@ DELAY = Variant(
 """The whole delay of the command. The model without it has the delay of telemetry (``latency``), so that only
 a longer one changes anything."""
 
-
-def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
-    return (DELAY,)
-
-
 EFFECT = Effect(
     name="transport_delay",
     block="input",
     keys={"delay_s": 0.0},
-    variants=_variants,
+    variants=always(DELAY),
     said=(
         "The simulator responds {delay_s_ms:.0f} ms too early: a delay between command and surface",
         "The simulator responds {delay_s_ms:.0f} ms too late: its delay is too long",

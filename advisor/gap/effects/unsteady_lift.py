@@ -1,10 +1,9 @@
 """The lift builds up with a lag, alone or with the pitching moment."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.kit.effect import ANY, Effect
+from advisor.gap.kit.effect import ANY, Effect, always
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
@@ -24,15 +23,10 @@ def _with_moment(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
 
 _UNSTEADY_WITH_MOMENT = replace(_UNSTEADY, apply_with=_with_moment, fixed={"with_moment": 1.0})
 
-
-def _variants(_: PreparedManeuvers) -> Sequence[Variant]:
-    return (replace(_UNSTEADY, likewise=(_UNSTEADY_WITH_MOMENT,)),)
-
-
 EFFECT = Effect(
     name="unsteady_lift",
     block="force_equation",
     keys={"share": ANY, "lag_s": 0.0, "with_moment": 0.0},
-    variants=_variants,
+    variants=always(replace(_UNSTEADY, likewise=(_UNSTEADY_WITH_MOMENT,))),
     said="The real lift builds up with a lag of {lag_s_ms:.0f} ms",
 )

@@ -4,8 +4,9 @@ A linear model knows deviations from trim only, a wing or an elevator its angle.
 differ too, and each manoeuvre is flown on another part of the same curve.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -32,6 +33,15 @@ class Curve:
     def slope(self) -> str:
         """Derivative of the linear term in the variable."""
         return f"{next(iter(self.powers))[0]}_{self.variable}"
+
+
+def bending(variant: Variant, curve: Curve) -> Callable[[PreparedManeuvers], Sequence[Variant]]:
+    """Return a function that describes a curve as the only form of an effect."""
+    return partial(_only_bent, variant, curve)
+
+
+def _only_bent(variant: Variant, curve: Curve, flights: PreparedManeuvers) -> Sequence[Variant]:
+    return (bent(variant, curve, flights),)
 
 
 def bent(variant: Variant, curve: Curve, flights: PreparedManeuvers) -> Variant:

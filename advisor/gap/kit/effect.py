@@ -7,6 +7,7 @@ the pages, the user's simulator and the exports read what they need from it.
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 from advisor.gap.kit.curve import Curve
 from advisor.gap.kit.variant import Variant
@@ -92,6 +93,15 @@ def without_sizes(said: Said, size: str) -> tuple[str, ...]:
     """Return the sentences with ``size`` in place of every number."""
     both = (said,) if isinstance(said, str) else said
     return tuple(re.sub(r"\{\w+:[^}]*\}", size, text) for text in both)
+
+
+def always(*variants: Variant) -> Callable[[PreparedManeuvers], Sequence[Variant]]:
+    """Return a function that returns these descriptions for any flights."""
+    return partial(_given, variants)
+
+
+def _given(variants: Sequence[Variant], _: PreparedManeuvers) -> Sequence[Variant]:
+    return variants
 
 
 def not_fitted(_: PreparedManeuvers) -> Sequence[Variant]:

@@ -1,5 +1,6 @@
 """The stamps of one channel, earlier or later than those of the others."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -14,6 +15,15 @@ UNFILTERED = (
     "log the channel as its sensor reads it, before any filter",
 )
 """Cause that looks like a late channel, and what distinguishes the two."""
+
+
+def skewed(effect: str, channel: str) -> Callable[[PreparedManeuvers], Sequence[Variant]]:
+    """Return a function that describes the skew of one channel as the only form of an effect."""
+    return partial(_only_skew, effect, channel)
+
+
+def _only_skew(effect: str, channel: str, flights: PreparedManeuvers) -> Sequence[Variant]:
+    return (skew_of(effect, channel, flights),)
 
 
 def skew_of(effect: str, channel: str, flights: PreparedManeuvers) -> Variant:
