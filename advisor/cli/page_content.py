@@ -14,19 +14,15 @@ from pathlib import Path
 from advisor import __version__
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.axes import holds_no_test
-from advisor.analysis.gap import compare_logs, named_simulator
 from advisor.analysis.log_series import SINCE_1970_S, began_s
 from advisor.analysis.whole_flights import WholeFlights, read_whole
 from advisor.cli.doctor import examine_log
 from advisor.cli.log_options import LogsAsked
 from advisor.doctor.document import doctor_document
-from advisor.gap.document import gap_document
 from advisor.gap.inference.diagnose import Progress
-from advisor.process.parts import FailedPart, attempt
 from advisor.report.document import analysis_document
-from advisor.report.gap_steps import next_steps
 from advisor.report.page.content import Content, Document, Origin
-from advisor.words.plain import plain
+from advisor.session.diagnosis import diagnosed
 from advisor.words.printable import printable
 from advisor.words.problems import UnusableInputError
 
@@ -94,28 +90,10 @@ def _examined(log: Path, aircraft: Aircraft, target_system: int | None) -> Docum
 
 
 def _gap(flights: WholeFlights, aircraft: Aircraft, asked: LogsAsked, tell: Progress) -> Document:
-    target_system = asked.target_system
     usable = [flight for flight in range(len(flights.logs)) if flight not in flights.left_out]
     logs = [flights.logs[flight] for flight in usable]
     decided = [flights.by_hand.on_flight(flight) for flight in usable]
-    simulator = None
-    try:
-        simulator = named_simulator(aircraft, target_system)
-        compared = attempt(
-            "pitch, diagnosis",
-            lambda: compare_logs(logs, aircraft, simulator, None, target_system, tell, decided),
-        )
-    except UnusableInputError as error:
-        return gap_document(None, error.problems)
-    finally:
-        if simulator is not None:
-            simulator.close()
-    if isinstance(compared, FailedPart):
-        return gap_document(None, failed=(compared,))
-    steps = next_steps(
-        compared.diagnosis, list(map(str, logs)), asked.aircraft_text, aircraft.simulator, asked.reading
-    )
-    return {**gap_document(compared.diagnosis), "next": plain(steps)}
+    return diagnosed(logs, aircraft, decided, asked.aircraft_file, asked.reading, asked.target_system, tell)
 
 
 def _date(log: Path) -> str:

@@ -8,15 +8,18 @@ The process reads a pickled `GapTask` and writes the pickled document of the dia
 import os
 import pickle
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.process import interrupt
 from advisor.session.child_process import start_child
 from advisor.words.problems import Problem
+
+if TYPE_CHECKING:
+    from advisor.campaign.hand_decisions import ByHand
 
 _GIVES_WAY = 10
 """Niceness of the process. A diagnosis may wait for the estimates of a manoeuvre in the air."""
@@ -35,33 +38,54 @@ class GapTask:
 
     def done(self) -> Document:
         """Diagnose here, and return ``advisor.gap/1`` with the next steps."""
-        from advisor.analysis.gap import compare_logs, named_simulator
         from advisor.analysis.marks_file import read_by_hand
-        from advisor.gap.document import gap_document
-        from advisor.process.parts import FailedPart, attempt
-        from advisor.report.gap_steps import next_steps
-        from advisor.words.plain import plain
-        from advisor.words.problems import UnusableInputError
 
-        simulator = None
-        try:
-            simulator = named_simulator(self.aircraft)
-            by_hand = [read_by_hand(log) for log in self.logs]
-            compared = attempt(
-                "pitch, diagnosis",
-                lambda: compare_logs(self.logs, self.aircraft, simulator, by_hand=by_hand),
-            )
-        except UnusableInputError as error:
-            return gap_document(None, error.problems)
-        finally:
-            if simulator is not None:
-                simulator.close()
-        if isinstance(compared, FailedPart):
-            return gap_document(None, failed=(compared,))
-        found = compared.diagnosis
-        file = str(self.aircraft_file) if self.aircraft_file else None
-        steps = next_steps(found, list(map(str, self.logs)), file, self.aircraft.simulator)
-        return {**gap_document(found), "next": plain(steps)}
+        by_hand = [read_by_hand(log) for log in self.logs]
+        return diagnosed(self.logs, self.aircraft, by_hand, self.aircraft_file)
+
+
+def diagnosed(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    by_hand: "Sequence[ByHand]",
+    aircraft_file: Path | None = None,
+    reading: Sequence[str] = (),
+    target_system: int | None = None,
+    tell: Callable[[str, float], None] = lambda *_: None,
+) -> Document:
+    """Diagnose logs against the aircraft file's simulator; return ``advisor.gap/1`` with the next steps.
+
+    Parameters
+    ----------
+    by_hand
+        Decisions by hand on each log.
+    reading
+        Options of the command line by which the logs are read.
+    """
+    from advisor.analysis.gap import compare_logs, named_simulator
+    from advisor.gap.document import gap_document
+    from advisor.process.parts import FailedPart, attempt
+    from advisor.report.gap_steps import next_steps
+    from advisor.words.plain import plain
+    from advisor.words.problems import UnusableInputError
+
+    simulator = None
+    try:
+        simulator = named_simulator(aircraft, target_system)
+        compared = attempt(
+            "pitch, diagnosis",
+            lambda: compare_logs(logs, aircraft, simulator, None, target_system, tell, by_hand),
+        )
+    except UnusableInputError as error:
+        return gap_document(None, error.problems)
+    finally:
+        if simulator is not None:
+            simulator.close()
+    if isinstance(compared, FailedPart):
+        return gap_document(None, failed=(compared,))
+    file = str(aircraft_file) if aircraft_file else None
+    steps = next_steps(compared.diagnosis, list(map(str, logs)), file, aircraft.simulator, reading)
+    return {**gap_document(compared.diagnosis), "next": plain(steps)}
 
 
 def diagnose_elsewhere(task: GapTask) -> Document:

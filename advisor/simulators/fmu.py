@@ -15,7 +15,8 @@ from advisor.aircraft.reference import FmuVariables
 from advisor.flight.signals.messages import FloatArray
 from advisor.simulators.fmu_instance import Fmu, Use
 from advisor.simulators.isolated import Isolated
-from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Increments, Inputs, Replay, State
+from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Increments, Inputs, Replay
+from advisor.simulators.steady import midway, steady
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _STEP_S = 0.01
@@ -28,11 +29,6 @@ _SIDE = ("bank", "r", "p", "a_y", "beta")
 _OUTPUTS = (*_MOTION, *_SIDE)
 _INPUTS = ("elevator", "aileron", "rudder", "throttle", "force_increment", "moment_increment")
 _TRIM = ("airspeed", "height", "flight_path", "mass", "wind_along", "wind_right", "alpha", "theta")
-_DIFFERENCE_RAD = 1e-3
-_NEWTON_STEPS = 30
-_STEADY = 1e-4
-"""Rate of α (rad/s) and of q (rad/s²) below which flight is steady: a solver may leave as much."""
-_LONGEST_NEWTON_STEP_RAD = 0.1
 
 
 def make_fmu(file: str, aircraft: Aircraft) -> Isolated:
@@ -120,7 +116,7 @@ class FmuSimulator:
         for k, now in enumerate(middles):
             commands = {name: rest[name] + values[k] for name, values in held.items()}
             if increments is not None and self.takes_increments:
-                state = self._state(rows, now, held["elevator"][k], held.get("throttle", still)[k])
+                state = midway(rows, now, step, held["elevator"][k], held.get("throttle", still)[k])
                 commands["force_increment"], commands["moment_increment"] = increments(state)
             self._command(commands)
             self._fmu.step(float(t[k]), step)
@@ -198,21 +194,9 @@ class FmuSimulator:
             after = self._motion(condition)
             return np.array([after[0] - before[0], after[1] - before[1]]) / self._step_s
 
-        at = np.zeros(2)
-        for _ in range(_NEWTON_STEPS):
-            now = change(at)
-            if np.max(np.abs(now)) < _STEADY:
-                return float(at[0]), float(at[1])
-            slopes = np.column_stack(
-                [
-                    (change(at + h) - change(at - h)) / (2.0 * _DIFFERENCE_RAD)
-                    for h in _DIFFERENCE_RAD * np.eye(2)
-                ]
-            )
-            if not np.all(np.isfinite(slopes)) or np.linalg.matrix_rank(slopes) < 2:
-                break
-            move = np.linalg.solve(slopes, -now)
-            at = at + move * min(1.0, _LONGEST_NEWTON_STEP_RAD / np.max(np.abs(move)))
+        found = steady(change, np.zeros(2))
+        if found is not None:
+            return float(found[0]), float(found[1])
         raise UnusableInputError(
             "simulator_trim",
             f"{self.description} finds no steady flight at {condition.airspeed_m_s:.4g} m/s"
@@ -229,22 +213,6 @@ class FmuSimulator:
         kept = {"airspeed": condition.airspeed_m_s, "height": condition.height_m}
         told = {name: self._factor[name] * value for name, value in values.items()}
         return [told.get(name, kept.get(name, np.nan)) for name in _OUTPUTS if name in {*_MOTION, *told}]
-
-    def _state(self, rows: list[list[float]], t: float, elevator: float, throttle: float) -> State:
-        alpha, q, _, _, airspeed, height = rows[-1][: len(_MOTION)]
-        before = rows[-2] if len(rows) > 1 else rows[-1]
-        alpha_dot, q_dot = ((rows[-1][i] - before[i]) / self._step_s for i in (0, 1))
-        half = 0.5 * self._step_s
-        return State(
-            float(t),
-            alpha + half * alpha_dot,
-            alpha_dot,
-            q + half * q_dot,
-            float(elevator),
-            airspeed,
-            height,
-            float(throttle),
-        )
 
     def _check_speed(self, condition: Condition, row: list[float]) -> None:
         began = row[_OUTPUTS.index("airspeed")]

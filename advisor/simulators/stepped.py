@@ -22,7 +22,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Increments, Inputs, Replay, State
+from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Increments, Inputs, Replay
+from advisor.simulators.steady import midway, steady
 from advisor.words.problems import UnusableInputError
 
 _NEEDED = ("alpha", "q", "theta", "a_z")
@@ -30,13 +31,6 @@ _KEPT = ("airspeed", "height")
 """Quantities that stay at the flight condition where the environment does not observe them."""
 _SIDE = ("bank", "r", "p", "a_y", "beta")
 """Quantities of roll and yaw, which an environment may observe."""
-_DIFFERENCE = 1e-3
-"""Departure of an unknown of the trim for a finite difference, rad or share of the throttle."""
-_ROUNDS = 40
-_STEADY = 1e-4
-"""Rate of α (rad/s), of q (rad/s²) and relative rate of the speed (1/s) below which flight is steady."""
-_LONGEST_MOVE = 0.1
-"""Longest Newton step of an angle, rad, or of the throttle."""
 
 
 class Environment(Protocol):
@@ -112,7 +106,7 @@ class Stepped:
         for k, now in enumerate(middles):
             controls = {name: trim.get(name, 0.0) + float(y[k]) for name, y in moved.items()}
             if increments is not None and self.takes_increments:
-                state = _state(rows, now, dt, moved["elevator"][k], moved.get("throttle", still)[k])
+                state = midway(rows, now, dt, moved["elevator"][k], moved.get("throttle", still)[k])
                 controls["force"], controls["moment"] = increments(state)
             self._environment.step(dt, **self._with_trim(trim, controls))
             rows.append(self._seen(condition))
@@ -200,34 +194,17 @@ class Stepped:
             after = self._seen(condition)
             change = (np.array(after) - np.array(before)) / self._dt
             along = change[4] / condition.airspeed_m_s
+            self._flew = True
             return np.array([change[0], change[1], along])[: len(self._unknowns)]
 
         at = np.zeros(len(self._unknowns))
         at[2:] = 0.5
-        for _ in range(_ROUNDS):
-            now = rates(at)
-            self._flew = True
-            if np.max(np.abs(now)) < _STEADY:
-                return dict(zip(self._unknowns, at.tolist(), strict=True))
-            steps = _DIFFERENCE * np.eye(len(at))
-            slopes = np.column_stack([(rates(at + h) - rates(at - h)) / (2.0 * _DIFFERENCE) for h in steps])
-            if not np.all(np.isfinite(slopes)) or np.linalg.matrix_rank(slopes) < len(at):
-                break
-            move = np.linalg.solve(slopes, -now)
-            at = at + move * min(1.0, _LONGEST_MOVE / float(np.max(np.abs(move))))
+        found = steady(rates, at)
+        if found is not None:
+            return dict(zip(self._unknowns, found.tolist(), strict=True))
         raise UnusableInputError(
             "simulator_trim",
             f"{self.description} finds no steady flight at {condition.airspeed_m_s:.4g} m/s and "
             f"{condition.height_m:.4g} m.",
             "Check that reset() takes the angle of attack, and that step() moves the elevator in rad.",
         )
-
-
-def _state(rows: list[list[float]], t: float, dt: float, elevator: float, throttle: float) -> State:
-    """Return the state in the middle of the next step, extrapolated by the last step's rates."""
-    before, now = rows[-2] if len(rows) > 1 else rows[-1], rows[-1]
-    alpha_dot, q_dot = ((now[i] - before[i]) / dt for i in (0, 1))
-    return State(
-        float(t), now[0] + 0.5 * dt * alpha_dot, alpha_dot, now[1] + 0.5 * dt * q_dot, float(elevator),
-        now[4], now[5], float(throttle),
-    )  # fmt: skip

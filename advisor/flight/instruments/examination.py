@@ -39,8 +39,8 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 
 _GYRO_WIDTH = 0.05
-"""Standard deviation of the ratio of pitch angle and integrated pitch rate, as a share. The manoeuvres on
-record have 0.92 to 1.05."""
+"""Standard deviation of the ratio of an angle and its integrated rate, as a share. The manoeuvres on record
+have 0.92 to 1.05 in pitch."""
 _FORCE_WIDTH = 0.05
 """Standard deviation of an accelerometer's scale, as a share: calibration of 2 to 3 %, and its mounting."""
 _AIRSPEED_WIDTH, _AIRSPEED_MEAN = 0.12, 0.95
@@ -79,34 +79,48 @@ def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) ->
 def _attitude_and_rate(work: Work) -> bool:
     """Hold the pitch rate against the attitude; return whether sense and unit agree."""
     known = work.learn(rate_against_attitude(work.channels)).get("theta_scale")
-    if known is None or not work.has("q", "theta"):
-        return True
-    weighed = weigh(
-        known, {REVERSED: -1.0, "q in deg/s": pi / 180.0, "theta in deg": 180.0 / pi}, _GYRO_WIDTH
-    )
-    if not weighed.contradicts:
-        return True
-    told = f"the pitch angle moves {with_error(known)} times as far as the pitch rate says"
-    if weighed.best == REVERSED:
+    told = hold_rate(work, known, "q", "theta")
+    if told and known is not None:
         channel = "theta" if rate_moves_alpha(work.channels) else "q"
         name = PLAIN[channel]
         work.contradict(
             channel, "sign", "nose up", "nose down", known, f"{name} has the wrong sign: {told}",
             f"check the sign of {name}, positive nose up",
         )  # fmt: skip
-    elif weighed.best == ANY:
+    return told is None
+
+
+def hold_rate(work: Work, known: Measured | None, rate: str, angle: str) -> str | None:
+    """Hold a rate against its angle by the ratio of their movements, and name a wrong unit or scale.
+
+    Returns
+    -------
+    str or None
+        None where sense and unit agree; the ratio in words where the sense is reversed, which the caller
+        names; else empty.
+    """
+    if known is None or not work.has(rate, angle):
+        return None
+    units = {f"{rate} in deg/s": pi / 180.0, f"{angle} in deg": 180.0 / pi}
+    weighed = weigh(known, {REVERSED: -1.0, **units}, _GYRO_WIDTH)
+    if not weighed.contradicts:
+        return None
+    told = f"{PLAIN[angle]} moves {with_error(known)} times as far as {PLAIN[rate]} says"
+    if weighed.best == REVERSED:
+        return told
+    if weighed.best == ANY:
         work.contradict(
-            "q", "scale", 1.0, 1.0 / known.value if known.value else 0.0, known, told,
-            "check scale and unit of the pitch rate",
+            rate, "scale", 1.0, 1.0 / known.value if known.value else 0.0, known, told,
+            f"check scale and unit of {PLAIN[rate]}",
         )  # fmt: skip
     else:
         channel, _, unit = weighed.best.partition(" in ")
-        stated = {"q": "rad/s", "theta": "rad"}[channel]
+        stated = "rad/s" if channel == rate else "rad"
         work.contradict(
             channel, "unit", stated, unit, known, f"{PLAIN[channel]} is in {unit}: {told}",
             f"send {PLAIN[channel]} in {stated}",
         )  # fmt: skip
-    return False
+    return ""
 
 
 def stated_force_unit(source: str) -> str:

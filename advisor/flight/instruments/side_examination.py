@@ -9,16 +9,21 @@ part in a measured sideslip, and in a side force, is known without any aerodynam
 """
 
 from collections.abc import Mapping
-from math import exp, log, pi
+from math import exp, log
 
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.delayed_fit import DelayedFit, Summand, fit_delays
 from advisor.flight.instruments.evidence import MOVED_RAD, Channels, channel_at, usable
-from advisor.flight.instruments.examination import FORCE_UNITS_M_S2, hold_force_unit, stated_force_unit
+from advisor.flight.instruments.examination import (
+    FORCE_UNITS_M_S2,
+    hold_force_unit,
+    hold_rate,
+    stated_force_unit,
+)
 from advisor.flight.instruments.measured import ANY, AS_STATED, EXCLUDED, Evidence, Measured, weigh
-from advisor.flight.instruments.work import PLAIN, REVERSED, SIGMAS, Examined, Work, hold_clocks, with_error
+from advisor.flight.instruments.work import PLAIN, SIGMAS, Examined, Work, hold_clocks, with_error
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
@@ -117,8 +122,6 @@ def _parts(channels: Channels, name: str) -> tuple[FloatArray, FloatArray, Float
     return t, weight, turn
 
 
-_GYRO_WIDTH = 0.05
-"""Standard deviation of the ratio of bank and integrated roll rate, as a share: as for pitch."""
 _FORCE_WIDTH = 0.3
 """Standard deviation of the side force's scale by a measured sideslip, as a share. The side force is a small
 part of the sideslip's rate, so that a vane's own scale counts several times."""
@@ -156,27 +159,10 @@ def examine_side(channels: Mapping[str, Channel], earlier: Evidence | None = Non
 def _bank_and_rate(work: Work) -> bool:
     """Hold the roll rate against the bank; return whether sense and unit agree."""
     known = work.learn(rate_against_bank(work.channels)).get("bank_scale")
-    if known is None or not work.has("p", "bank"):
-        return True
-    weighed = weigh(known, {REVERSED: -1.0, "p in deg/s": pi / 180.0, "bank in deg": 180.0 / pi}, _GYRO_WIDTH)
-    if not weighed.contradicts:
-        return True
-    told = f"the bank moves {with_error(known)} times as far as the roll rate says"
-    if weighed.best == REVERSED:
+    told = hold_rate(work, known, "p", "bank")
+    if told and known is not None:
         _turned(work, "p", known, told)
-    elif weighed.best == ANY:
-        work.contradict(
-            "p", "scale", 1.0, 1.0 / known.value if known.value else 0.0, known, told,
-            "check scale and unit of the roll rate",
-        )  # fmt: skip
-    else:
-        channel, _, unit = weighed.best.partition(" in ")
-        stated = {"p": "rad/s", "bank": "rad"}[channel]
-        work.contradict(
-            channel, "unit", stated, unit, known, f"{PLAIN[channel]} is in {unit}: {told}",
-            f"send {PLAIN[channel]} in {stated}",
-        )  # fmt: skip
-    return False
+    return told is None
 
 
 def _signs(work: Work, name: str, told: Evidence, sense: float) -> bool:

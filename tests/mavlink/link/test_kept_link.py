@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.mavlink.link import kept_link, link_process, reported_health
+from advisor.mavlink.link import health, kept_link, link_process
 from advisor.mavlink.link.keeping import Keeping, new_door
 from advisor.mavlink.link.kept_link import KeptLink
 from advisor.mavlink.link.link_process import LinkProcess
@@ -105,7 +105,7 @@ def test_a_process_that_hangs_is_told_of_and_replaced(
     process: LinkProcess, vehicle: UdpVehicle, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(link_process, "HUNG_AFTER_S", 1.5)
-    for module in (kept_link, reported_health):
+    for module in (kept_link, health):
         monkeypatch.setattr(module, "OLD_AFTER_S", 0.5)
     with process.link() as link:
         vehicle.send(*(attitude(i) for i in range(100)))
