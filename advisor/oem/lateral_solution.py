@@ -161,7 +161,8 @@ def lateral_not_identifiable(solution: LateralSolution) -> dict[str, str]:
     reasons |= {
         name: f"{unresolved}; fly {advice}" for name in solution.influence.unresolved if name not in reasons
     }
-    std = np.sqrt(np.diag(solution.widened))
+    # Another manoeuvre does not help against dynamics that the model lacks: they are no want of excitation.
+    std = np.sqrt(np.diag(solution.scattered))
     for name, size in natural_size(solution.theta).items():
         error = float(std[LATERAL.names.reported.index(name)])
         if name not in reasons and not error <= _largest_error(name) * size:

@@ -22,8 +22,9 @@ from advisor.oem.whitening import Whitening
 WIDTH_S, WEIGHTS = 0.2, 8
 """Numerical: distance between the filter's weights, s, and their number. It is linear between them and holds
 what a rigid aircraft follows, up to 2.5 Hz. Faster errors are those of stamps and edges."""
-_WITNESSES = 2
-"""Numerical: least number of manoeuvres that can show an error in common."""
+_WITNESSES = 3
+"""Numerical: least number of manoeuvres that can show an error in common: of three, on an axis with two
+controls, at least two move the same one."""
 _SIZES = np.concatenate([[0.0], np.geomspace(1e-5, 1.0, 51)])
 """Numerical: standard deviations of the weights that are tried."""
 

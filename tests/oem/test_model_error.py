@@ -71,5 +71,7 @@ def test_more_manoeuvres_do_not_average_a_common_error_out(echoed):
     assert np.all(ratio > 0.9), ratio
 
 
-def test_one_manoeuvre_is_no_witness_of_a_common_error():
-    assert not np.any(fitted([with_an_echo(alike(1)[0])]).systematic)
+@pytest.mark.parametrize(("count", "told"), [(1, False), (2, False), (3, True)])
+def test_three_manoeuvres_are_witnesses_of_a_common_error(count, told):
+    """Two may move two controls, and then have no response in common."""
+    assert np.any(fitted([with_an_echo(maneuver) for maneuver in alike(count)]).systematic) == told
