@@ -141,9 +141,10 @@ def _clear_ones(
             for x in opens
         ]
         # What the model lacks on the way to an instrument says nothing against the instrument.
-        std = dict(zip((x.name for x in names), np.sqrt(np.diag(solution.scattered)[N:]), strict=False))
+        errors = np.sqrt(np.diag(solution.scattered)[N : N + len(names)]).tolist()
+        std = dict(zip((x.name for x in names), errors, strict=True))
         gains = [
-            0.0 if x.at_end(best.problem, float(std[x.name])) else _gain(weighing, x, best, rival, names)
+            0.0 if x.at_end(best.problem, std[x.name]) else _gain(weighing, x, best, rival, names)
             for x, rival in rivals
         ]
         if not gains or min(gains) >= CLEARLY:

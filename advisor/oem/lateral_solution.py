@@ -12,7 +12,6 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import CONTROLS, LATERAL, natural_size
-from advisor.oem.between import widened_by_scatter
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import Evaluated, errors_of
 from advisor.oem.extra import Extra
@@ -122,17 +121,18 @@ def _evaluated(fit: LateralFit, prior: Priors, nuisances: Sequence[Nuisance]) ->
     if errors is None:
         return NoEstimate("singular", NOTHING_TO_TELL)
     errors["covariance"] = _at_least(errors["covariance_cr"], errors["covariance"])
-    scattered = widened_by_scatter(errors["covariance"], errors["contributions"])
-    std = np.sqrt(np.diag(scattered + errors["systematic"]))[N:]
-    return LateralSolution(
+    solution = LateralSolution(
         problem=problem,
         assembly=assembly,
         optimum=optimum,
         theta=optimum.shared,
         extra=extra,
-        nuisances={x.name: (x.read(problem), float(s)) for x, s in zip(nuisances, std, strict=True)},
+        nuisances={},
         **errors,
     )
+    std = np.sqrt(np.diag(solution.widened))[N:]
+    told = {x.name: (x.read(problem), float(s)) for x, s in zip(nuisances, std, strict=True)}
+    return replace(solution, nuisances=told)
 
 
 def _at_least(bound: FloatArray, covariance: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
+from advisor.oem import evaluation
 from advisor.oem.estimator import estimate, estimate_jointly, lag_is_unknown
 from advisor.oem.found import FoundInstruments, found_of, with_found
 from tests.oem.test_instruments import SPEED, equipped
@@ -22,6 +23,11 @@ def flights():
 @pytest.fixture(scope="module")
 def joint(flights):
     return estimate_jointly(flights, OPEN)
+
+
+def test_what_the_model_lacks_on_the_way_to_a_lag_takes_no_lag_away(flights, monkeypatch):
+    monkeypatch.setattr(evaluation, "model_error", lambda *given: np.eye(given[-1].shape[1]))
+    assert "servo_lag_s" in estimate_jointly(flights, OPEN).found.names
 
 
 def test_a_joint_estimate_tells_all_its_instruments_and_the_errors_that_they_cause(joint):

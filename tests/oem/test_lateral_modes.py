@@ -37,6 +37,20 @@ def test_the_error_of_a_mode_is_the_slope_times_the_error_of_a_derivative(mode):
         assert stated == pytest.approx(0.1 * abs(slope), rel=1e-4, abs=1e-8)
 
 
+def test_an_error_that_all_manoeuvres_have_in_common_adds_to_that_of_the_noise():
+    covariance = np.diag(np.full(N, 0.01))
+    by_noise, common, both = (
+        lateral_modes(vector(JET), one, TRIM).roll_time_constant.std
+        for one in (
+            Errors(covariance, ALONE),
+            Errors(np.zeros((N, N)), ALONE, covariance),
+            Errors(covariance, ALONE, covariance),
+        )
+    )
+    assert common == pytest.approx(by_noise)
+    assert both == pytest.approx(2.0**0.5 * by_noise)
+
+
 def test_roll_and_spiral_that_oscillate_together_are_told_as_such():
     coupled = vector(JET | {"L_p": -0.3, "L_beta": -10.0, "L_r": 0.3, "N_p": 0.2})
     found = lateral_modes(coupled, EXACT, TRIM)

@@ -47,6 +47,8 @@ def test_two_doublets_tell_every_derivative_with_a_true_error(measured):
 def test_everything_is_identifiable_from_aileron_and_rudder():
     solution = solved(both_inputs(JET, np.random.default_rng(1)))
     assert lateral_not_identifiable(solution) == {}
+    unsure = replace(solution, systematic=1e4 * np.eye(len(solution.covariance)))
+    assert lateral_not_identifiable(unsure) == {}, "no further input helps against a model's own error"
 
 
 def test_the_aileron_alone_leaves_the_rudder_unknown_and_says_what_to_fly():

@@ -1,6 +1,7 @@
 """A relative error of the response that all manoeuvres have in common is part of an estimate's covariance."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,8 +10,10 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimator import fit_jointly
+from advisor.oem.model_error import _filtered
 from advisor.oem.solution import Solution
 from tests.oem.builders import UAV, flown
+from tests.oem.test_efficient import flight
 
 KNOWN = Aircraft(elevator=Elevator(lag_s=0.0))
 SHARE = 0.1
@@ -75,3 +78,21 @@ def test_more_manoeuvres_do_not_average_a_common_error_out(echoed):
 def test_three_manoeuvres_are_witnesses_of_a_common_error(count, told):
     """Two may move two controls, and then have no response in common."""
     assert np.any(fitted([with_an_echo(maneuver) for maneuver in alike(count)]).systematic) == told
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.95])
+def test_noise_of_no_memory_and_of_a_long_one_shows_no_error_in_common(memory):
+    shown = []
+    for seed in range(4):
+        maneuvers = [flight(10 * seed + k, memory=memory, number=k) for k in range(3)]
+        shown.append(np.any(fitted(maneuvers).systematic))
+    assert not any(shown)
+
+
+def test_each_weight_is_one_width_of_two_tenths_of_a_second_later_than_the_one_before():
+    """The mean of a ramp over a triangle is the ramp at the triangle's middle."""
+    t = np.arange(0.0, 4.0, 0.01)
+    ramp = SimpleNamespace(rows=({"q": slice(0, len(t))},), t=t)
+    filtered = _filtered(ramp, 5.0 + t)
+    late = 0.2 * np.arange(1, 9)
+    np.testing.assert_allclose(filtered[-1], t[-1] - late, atol=1e-9)

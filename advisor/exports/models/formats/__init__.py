@@ -1,5 +1,6 @@
 """Formats of a model, one object a file, each imported only on use."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
@@ -14,7 +15,7 @@ AxisAsked = Literal["pitch", "lateral", "both"]
 """Axis that a command answers for: a diagnosis of one, or the analysis of both."""
 
 
-class ModelFormat:
+class ModelFormat(ABC):
     """A format of another program. A new one is a subclass in a file of its own."""
 
     suffix: str
@@ -26,7 +27,7 @@ class ModelFormat:
         """Return the ordered file, and those that are written next to it."""
         return (file,)
 
-    def refuse(self, file: Path, aircraft: Aircraft, axis: AxisAsked) -> None:
+    def refuse(self, file: Path, aircraft: Aircraft, axis: AxisAsked) -> None:  # noqa: B027 - may be empty
         """Refuse, before the analysis, an order that could not be carried out after it.
 
         Raises
@@ -35,6 +36,7 @@ class ModelFormat:
             The aircraft file lacks what the format needs, or the file's ending fits no content.
         """
 
+    @abstractmethod
     def made(self, model: FlownModel, file: Path) -> Exported:
         """Return the content of a file.
 
@@ -43,7 +45,6 @@ class ModelFormat:
         ConfigurationError
             The model cannot be written in this format.
         """
-        raise NotImplementedError
 
 
 def format_named(name: str) -> ModelFormat:
