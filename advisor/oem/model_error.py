@@ -1,6 +1,6 @@
 """Errors by dynamics that the model lacks, alike in all manoeuvres.
 
-A true response differs from the model's by a relative error that is the same in each manoeuvre, so that more
+A true response differs from the model's by a relative error. It is the same in each manoeuvre, so more
 manoeuvres do not average it out. The error is a short filter behind the model's own outputs, with Gaussian
 weights about zero. Their variance is the likeliest one for the residual. What such a filter moves of the
 parameters is a part of their covariance. The source is Goodwin, Gevers & Ninness, *IEEE Transactions on
@@ -25,8 +25,8 @@ what a rigid aircraft follows, up to 2.5 Hz. Faster errors are those of stamps a
 autopilot set the distance among 0.1, 0.2, 0.3 and 0.4. Of 26 intervals on four other flights 22 hold, 18
 without such errors."""
 _WITNESSES = 3
-"""Numerical: least number of manoeuvres that can show an error in common: of three, on an axis with two
-controls, at least two move the same one."""
+"""Numerical: least number of manoeuvres that can show an error in common. On an axis with two controls, two
+of three move the same one."""
 _SIZES = np.concatenate([[0.0], np.geomspace(1e-5, 1.0, 51)])
 """Numerical: standard deviations of the weights that are tried."""
 
