@@ -27,7 +27,8 @@ from advisor.simulators.protocol import Simulator
 from advisor.simulators.specification import simulator_of
 from advisor.simulators.speed_kind import by_the_motion
 from advisor.simulators.static_errors import with_static_errors
-from advisor.simulators.unseen import changes_something, other_finding, unseen_of, with_unseen_shrink
+from advisor.simulators.taken_back import with_unseen_shrink
+from advisor.simulators.unseen import changes_something, other_finding, unseen_of
 from advisor.words.printable import printable
 from advisor.words.problems import Problem, UnusableInputError
 

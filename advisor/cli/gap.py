@@ -38,8 +38,6 @@ if TYPE_CHECKING:
 
 Found = TypeVar("Found")
 
-IMPROVABLE = ("effect", "parameters")
-"""Verdicts after which there is something to improve."""
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
     "no_marks": "--no-marks", "why": "--why", "everything": "--all", "prior": "--prior",
@@ -202,13 +200,15 @@ def command(
     if isinstance(compared, int):
         return compared
     found = compared.diagnosis
+    proof = proof_of(proving, partial(_prove, asked, by_hand, aircraft, shares))
+    if proof is not None:
+        found = proof.stays_of(found, compared.aircraft.model)
     side = cache(partial(_side_of, asked, aircraft))
-    improved = write_improved(out, found.verdict, lambda: FlownModel(compared.aircraft, None, side(), found))
+    improved = write_improved(out, found.improves, lambda: FlownModel(compared.aircraft, None, side(), found))
     # The simulator's own servo is no part of the improvement.
     as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
     outcomes = write_exports(orders, partial(_improved, found, as_given, side))
     write_figure(figure, found)
-    proof = proof_of(proving, partial(_prove, asked, by_hand, aircraft, shares))
     steps = next_steps(
         found, list(map(str, asked.logs)), asked.aircraft_text, aircraft.simulator, asked.reading
     )
@@ -244,14 +244,12 @@ def compared_or_code(part: str, compare: "Callable[[], Found]", as_json: bool) -
     return code
 
 
-def write_improved(out: Path | None, verdict: str | None, make: "Callable[[], FlownModel]") -> bool:
+def write_improved(out: Path | None, improves: bool, make: "Callable[[], FlownModel]") -> bool:
     """Write the improved aircraft file that was asked for, or say why not; return whether it is there."""
     if out is None:
         return False
-    if verdict not in IMPROVABLE:
-        click.echo(
-            f"{printable(str(out))} was not written: no cause was named and no number found wrong.", err=True
-        )
+    if not improves:
+        click.echo(f"{printable(str(out))} was not written: there is nothing to improve.", err=True)
         return False
     from advisor.exports.models.file_text import write_file
 

@@ -24,7 +24,7 @@ from advisor.cli.stages import Stages
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.document import changed_document, gap_document
 from advisor.gap.inference.prior import FIELD, FieldPrior, field_prior
-from advisor.gap.result import Value
+from advisor.gap.result import IMPROVING, Value
 from advisor.gap.verdict.titles import title_of_verdict
 from advisor.report.gap_reasons import how_sure, in_percent
 from advisor.report.gap_sizes import sizes_of
@@ -74,7 +74,8 @@ def compare_lateral(
     if isinstance(compared, int):
         return compared
     found = compared.gap
-    written = write_improved(out, found.verdict, lambda: replace(_improved(compared), pitch=None))
+    improves = found.verdict in IMPROVING
+    written = write_improved(out, improves, lambda: replace(_improved(compared), pitch=None))
     outcomes = write_exports(orders, partial(_improved, compared))
     proof = proof_of(proving, partial(_prove, asked, compared, shares))
     if as_json:

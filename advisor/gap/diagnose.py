@@ -1,7 +1,8 @@
 """The diagnosis: where the gap lies, which effect causes it, and how far it shrinks with that effect."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.kinematics import check_alpha, combine
@@ -36,6 +37,18 @@ class Examined:
 
     diagnosis: Diagnosis
     findings: Findings
+    fewer: "Callable[[int], Examined] | None" = None
+    """Function that returns the diagnosis with the first effects of its answer, so many; None where the
+    answer names none."""
+
+    def with_most(self, effects: int) -> "Examined":
+        """Return the diagnosis with the first effects of its answer alone, at most so many."""
+        return self if self.fewer is None else self.fewer(effects)
+
+    @property
+    def named(self) -> tuple[str, ...]:
+        """Effects of the answer, in the order of their addition."""
+        return tuple(added.effect for added in self.findings.added)
 
 
 def diagnose(
@@ -90,10 +103,18 @@ def examine(
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
     maneuvers = alpha_by_motion([_without_offset(m, offset) for m in maneuvers], aircraft)
     found = _explained(maneuvers, aircraft, holdout, prior, progress)
-    diagnosis, findings = found.diagnosis, found.findings
-    used = {flight.number for flight in findings.problem.flights.flights}
-    missing = left_out([m for m in maneuvers if m.number not in used])
-    return Examined(replace(diagnosis, notes=(*diagnosis.notes, *missing)), findings)
+    used = {flight.number for flight in found.findings.problem.flights.flights}
+    return _noted(found, left_out([m for m in maneuvers if m.number not in used]))
+
+
+def _noted(found: Examined, notes: Sequence[str]) -> Examined:
+    """Return a diagnosis with further notes, with all effects and with fewer."""
+    fewer = found.fewer
+    return replace(
+        found,
+        diagnosis=replace(found.diagnosis, notes=(*found.diagnosis.notes, *notes)),
+        fewer=None if fewer is None else lambda most: _noted(fewer(most), notes),
+    )
 
 
 def _explained(
@@ -137,7 +158,8 @@ def _explained(
     progress("measuring the gap", 0.9)
     aside = left_aside(given, aircraft.effects, () if found.sought_air.found is None else AIR)
     circumstances = Circumstances(shear, weight, given, aside)
-    return Examined(*answer_of(found, aircraft, kinematics, holdout, circumstances))
+    answer = partial(answer_of, found, aircraft, kinematics, holdout, circumstances)
+    return Examined(*answer(), lambda most: Examined(*answer(most)))
 
 
 def _refuse(flights: PreparedManeuvers, maneuvers: Sequence[Maneuver]) -> None:

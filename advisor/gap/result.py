@@ -13,6 +13,8 @@ from advisor.words.quantiles import NORMAL_95
 
 GapVerdict = Literal["none", "parameters", "effect", "unknown", "untested"]
 """Verdict of a diagnosis. ``untested``: no simulator was given and no effect was found; JSON writes null."""
+IMPROVING: frozenset[str | None] = frozenset(("effect", "parameters"))
+"""Verdicts after which there is something to improve."""
 VISIBLE = 0.05
 """Least gap that is called visible: mean square error over the floor's square, minus 1."""
 
@@ -262,6 +264,11 @@ class Diagnosis:
     static: tuple[str, ...] = ()
     """Sentences on errors that no motion shows, which the sentence tells first: trim, air speed, numbers that
     differ together."""
+    taken_back: tuple[str, ...] = ()
+    """Sentences on corrections that raise the gap of manoeuvres kept apart, and that the improved simulator
+    therefore lacks. The sentence ends with them."""
+    is_left_as_given: bool = False
+    """Whether no correction lowers that gap, so that there is no improved simulator."""
     trims: tuple[TrimDifference, ...] = ()
     """Trimmed flight of the user's own simulator and of the aircraft."""
     in_simulator: InSimulator | None = None
@@ -282,6 +289,11 @@ class Diagnosis:
     """Label of that rival; empty without ``why``."""
     although_refused: tuple[int, ...] = ()
     """Numbers of the manoeuvres in use that ``advisor analyze`` refuses by their data alone."""
+
+    @property
+    def improves(self) -> bool:
+        """Whether there is an improved simulator: by an effect, or by other numbers."""
+        return self.verdict in IMPROVING and not self.is_left_as_given
 
     @property
     def probabilities(self) -> Probabilities | None:

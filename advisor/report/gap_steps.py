@@ -113,13 +113,11 @@ def _way_of(d: Diagnosis) -> str:
 
 def _to_put(d: Diagnosis) -> str:
     """Return the effects and derivatives that the improved simulator has; empty where nothing is to put."""
-    if d.verdict == "parameters":
-        return ", ".join(changed(one) for one in d.derivatives if one.differs) or "the fitted derivatives"
-    if d.verdict != "effect":
+    if not d.improves:
         return ""
-    return ", ".join(
-        f"{spelled(c.effect)} {', '.join(sizes_of(c.parameters))}" for c in d.causes if c.present
-    )
+    effects = [f"{spelled(c.effect)} {', '.join(sizes_of(c.parameters))}" for c in d.causes if c.present]
+    numbers = [changed(one) for one in d.derivatives if one.differs]
+    return ", ".join(effects if d.verdict == "effect" and effects else numbers) or "the fitted derivatives"
 
 
 def _against_the_rival(d: Diagnosis) -> str:

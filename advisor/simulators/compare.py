@@ -6,6 +6,7 @@ difference between S and L belongs to the simulator, and is not called missing.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -43,6 +44,7 @@ from advisor.simulators.mirror import mirrored
 from advisor.simulators.protocol import Condition, Inputs, Replay, Simulator
 from advisor.simulators.static_errors import with_static_errors
 from advisor.simulators.surrogate import Surrogate, surrogate_of
+from advisor.simulators.taken_back import with_unseen_shrink, without_worse
 from advisor.simulators.trims import trim_differences
 from advisor.simulators.unseen import (
     UnseenManeuvers,
@@ -51,7 +53,6 @@ from advisor.simulators.unseen import (
     resaid,
     shrink_on,
     unseen_of,
-    with_unseen_shrink,
 )
 
 _FLIES, _DIAGNOSED, _FOUND = 0.2, 0.6, 0.9
@@ -135,8 +136,9 @@ def compare(
     progress("searching again without the manoeuvres kept apart", _DIAGNOSED)
     changes = changes_something(examined.diagnosis)
     unseen = unseen_of(examined, beside, as_file, holdout, prior) if changes else None
-    flown = in_simulator(examined, unseen, again, surrogate, as_flown)
-    found = _measured(examined, unseen, as_file, flown, as_flown)
+    fly = partial(in_simulator, examined, flying=again, surrogate=surrogate, as_flown=as_flown)
+    stays, flown = (examined, fly(None)) if unseen is None else without_worse(examined, unseen, fly)
+    found = _measured(stays, unseen, as_file, flown, as_flown)
     if replays:
         progress("looking for what only the simulator has", _FOUND)
         mirror = mirrored(examined, maneuvers, flying, replays, aircraft)

@@ -52,6 +52,13 @@ class Flown:
     before: HeldOut
     after: HeldOut | None
     """Residuals with the effects in the simulator; None where nothing was added, or where it did not fly."""
+    gap_after: float
+    """Gap with what the simulator takes of the correction."""
+
+    @property
+    def gap_before(self) -> float:
+        """Gap of the simulator as given."""
+        return self.gap.before
 
 
 def in_simulator(
@@ -88,24 +95,26 @@ def in_simulator(
         flying.simulator.description, tuple(flights[i].number for i in kept), was, was, 0.0, (),
         qualified(original, before, None, kept),
     )  # fmt: skip
+    as_it_was = Flown(unchanged, before, None, was)
     if unseen is None or not changes_something(unseen.found.diagnosis):
-        return Flown(unchanged, before, None)
+        return as_it_was
     part = _carried(as_changed(unseen, whole), problem, surrogate, flying)
     unchanged = replace(unchanged, on_paper=part.on_paper)
+    as_it_was = replace(as_it_was, gap=unchanged)
     if not part.point.effects and np.array_equal(part.point.derivatives, derivatives):
-        return Flown(unchanged, before, None)
+        return as_it_was
     try:
         now = _flown_with(part, problem, kept, flying, as_flown, surrogate)
     except UnusableInputError as error:
         # The diagnosis stands, even if the simulator does not fly with the effects.
         refused = replace(unchanged, after=None, percent=None, refused=str(error.problem))
-        return Flown(refused, before, None)
+        return replace(as_it_was, gap=refused)
     offset = unknown_offset(whole.diagnosis, unseen.found.diagnosis)
     after = predicted(now, part.point, floor, kept, offset)
     here = whole_gap(after.mean_square, floor)
     if here > was:
-        # Nothing is added that raises the gap, as the rest does without the part on paper.
-        return Flown(unchanged, before, None)
+        # Nothing is added that raises the gap, as the rest may without the part on paper.
+        return replace(as_it_was, gap_after=was if part.on_paper else here)
     found = replace(
         unchanged,
         after=here,
@@ -113,7 +122,7 @@ def in_simulator(
         after_air_and_instruments=_without_air(whole, now, with_nuisances(part.point, unseen), kept, offset),
         qualification=qualified(original, before, after, kept),
     )
-    return Flown(found, before, after)
+    return Flown(found, before, after, here)
 
 
 def _flown_with(

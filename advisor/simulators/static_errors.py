@@ -38,7 +38,7 @@ _MOMENTS, _FORCES = ("M_alpha", "M_q", "M_delta_e"), ("Z_alpha",)
 def with_static_errors(
     diagnosis: Diagnosis, examined: Examined, trims: Sequence[TrimDifference] = ()
 ) -> Diagnosis:
-    """Return the diagnosis with its static errors told first.
+    """Return the diagnosis with its static errors told first, and with what was taken back told last.
 
     Parameters
     ----------
@@ -48,7 +48,8 @@ def with_static_errors(
         Trims of the simulator and of the aircraft; empty without a simulator that trims.
     """
     told = (*_of_the_trims(trims), *_of_the_speed(examined), *_of_numbers_together(diagnosis, examined))
-    return replace(diagnosis, trims=tuple(trims), static=told, sentence=" ".join([*told, diagnosis.sentence]))
+    sentence = " ".join([*told, diagnosis.sentence, *diagnosis.taken_back])
+    return replace(diagnosis, trims=tuple(trims), static=told, sentence=sentence)
 
 
 def is_off(trim: TrimDifference) -> bool:

@@ -19,6 +19,7 @@ from advisor.gap.fitting.measure import shrink_interval, whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.refit import own_refitted
 from advisor.gap.inference.prior import FIELD, FieldPrior
+from advisor.gap.kit.variant import Variant
 from advisor.gap.result import Diagnosis, Shrink, spelled
 from advisor.gap.verdict.holdout_numbers import over_maneuvers, with_offset
 from advisor.gap.verdict.statements import in_simulator
@@ -100,7 +101,32 @@ def as_changed(unseen: UnseenManeuvers, whole: Examined) -> SearchPoint:
         for k, effect in enumerate(point.effects)
         if (with_propeller if effect == PROPELLER else not effect.is_nuisance and effect.effect in written)
     ]
-    return replace(point.keeping(kept), own=everything.own, sides=everything.sides, edges=None)
+    point = replace(point.keeping(kept), own=everything.own, sides=everything.sides, edges=None)
+    effects = [
+        _since(effect, values, unseen.kept, whole)
+        for effect, values in zip(point.effects, point.values, strict=True)
+    ]
+    return replace(point, effects=tuple(effects))
+
+
+def _since(effect: Variant, values: FloatArray, kept: Sequence[int], whole: Examined) -> Variant:
+    """Return a change in flight with its time by the whole diagnosis, if the other manoeuvres do not
+    contradict that time.
+
+    The others cannot tell on which side of the change a manoeuvre between them lies.
+    """
+    if not effect.comes_at_any_time:
+        return effect
+    problem, point = whole.findings.problem, whole.findings.last.fitted.point
+    others = [i for i in range(len(problem.flights)) if i not in kept]
+
+    def driven(one: Variant) -> FloatArray:
+        p = problem.driving(point.keeping([]))
+        one.apply(p, values, problem.flights)
+        return p[others]
+
+    alike = (one for one in point.effects if one.effect == effect.effect and one.names == effect.names)
+    return next((one for one in alike if np.array_equal(driven(one), driven(effect))), effect)
 
 
 def with_nuisances(point: SearchPoint, unseen: UnseenManeuvers) -> SearchPoint:
@@ -155,20 +181,27 @@ def unknown_offset(whole: Diagnosis, model: Diagnosis | None) -> float:
     return removed - known
 
 
-def with_unseen_shrink(whole: Examined, unseen: UnseenManeuvers, aircraft: Aircraft) -> Diagnosis:
-    """Return the diagnosis against an aircraft file's model, with the shrink on the manoeuvres kept apart."""
-    diagnosis, problem = whole.diagnosis, whole.findings.problem
-    if problem.prior_derivatives is None:
-        return diagnosis
-    last = whole.findings.last.fitted.point
-    floor = floor_of(whole)
-    given = as_given(problem.prior_derivatives, last)
-    before = predicted(problem, given, floor, unseen.kept, unknown_offset(diagnosis, None))
-    after = before
+@dataclass(frozen=True)
+class ByTheFile:
+    """Residuals of an aircraft file's model in the manoeuvres kept apart."""
+
+    before: HeldOut
+    after: HeldOut
+    """Residuals with the corrections of the other manoeuvres."""
+    gap_before: float
+    gap_after: float
+
+
+def by_the_file(whole: Examined, unseen: UnseenManeuvers) -> ByTheFile:
+    """Return the residuals of the aircraft file's model before and after what the other manoeuvres found."""
+    diagnosis, problem, floor = whole.diagnosis, whole.findings.problem, floor_of(whole)
+    assert problem.prior_derivatives is not None
+    given = as_given(problem.prior_derivatives, whole.findings.last.fitted.point)
+    before = after = predicted(problem, given, floor, unseen.kept, unknown_offset(diagnosis, None))
     if changes_something(unseen.found.diagnosis):
         offset = unknown_offset(diagnosis, unseen.found.diagnosis)
         after = predicted(problem, as_changed(unseen, whole), floor, unseen.kept, offset)
-    return resaid(diagnosis, shrink_on(whole, unseen, before, after), aircraft)
+    return ByTheFile(before, after, *(whole_gap(held.mean_square, floor) for held in (before, after)))
 
 
 def shrink_on(whole: Examined, unseen: UnseenManeuvers, before: HeldOut, after: HeldOut) -> Shrink | None:

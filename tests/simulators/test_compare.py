@@ -11,7 +11,8 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.diagnose import diagnose, examine
 from advisor.simulators.compare import Compared, compare
 from advisor.simulators.linear import LinearSimulator
-from advisor.simulators.unseen import unseen_of, with_unseen_shrink
+from advisor.simulators.taken_back import with_unseen_shrink
+from advisor.simulators.unseen import unseen_of
 from advisor.words.problems import UnusableInputError
 from tests.simulators.nonlinear import TRIM_RAD, Nonlinear, flown
 

@@ -119,9 +119,9 @@ def improved_model(diagnosis: Diagnosis, aircraft: Aircraft, side: SideModel | N
     ConfigurationError
         The diagnosis has no air speed.
     """
-    unchanged = diagnosis.verdict not in ("effect", "parameters")
     pitch = improvement_of(diagnosis, aircraft)
-    return _in_one_air(FlownModel(aircraft, pitch, side or _side_of_file(pitch), diagnosis, unchanged))
+    side = side or _side_of_file(pitch)
+    return _in_one_air(FlownModel(aircraft, pitch, side, diagnosis, unchanged=not diagnosis.improves))
 
 
 def _in_one_air(model: FlownModel) -> FlownModel:

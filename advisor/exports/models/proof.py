@@ -11,6 +11,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.analysis.gap import GapFlights, compare_flown, named_simulator
@@ -18,19 +20,23 @@ from advisor.exports.models.file_text import file_of
 from advisor.exports.models.flown import FlownModel, improved_model
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.candidates.known import less_of_the_servo, together
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import changes_in, lasting, less_of_the_servo, together
 from advisor.gap.inference.prior import FIELD, FieldPrior
+from advisor.gap.records.as_stamped import as_stamped
+from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Diagnosis, spelled
+from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.simulators.compare import Compared
 from advisor.simulators.linear import LinearSimulator
+from advisor.simulators.taken_back import taken_back_said
 from advisor.words.problems import UnusableInputError
 
 Progress = Callable[[str, float], None]
 LEAST_KEPT, LEAST_FITTED = 2, 3
 """Least number of manoeuvres that are kept apart, and that the improvement is fitted to: one names no
 effect, and a search holds one out."""
-IMPROVED = ("effect", "parameters")
-"""Verdicts after which there is an improvement."""
+_NUMBERS = "the fitted numbers"
 
 
 @dataclass(frozen=True)
@@ -54,11 +60,31 @@ class Proof:
     """Sentence of that verdict."""
     not_carried: tuple[str, ...] = ()
     """Parts of the improvement that the simulator cannot take."""
+    taken_back: tuple[str, ...] = ()
+    """Parts of the improvement with which the gap does not fall: effects, or the fitted numbers."""
+    gap_with_them: float | None = None
+    """Gap with these parts; None where nothing was taken back."""
 
     @property
     def is_closed(self) -> bool:
         """Whether the second answer leaves nothing to add but numbers."""
         return self.second in ("none", "parameters")
+
+    def stays_of(self, found: Diagnosis, given: Mapping[str, float]) -> Diagnosis:
+        """Return a diagnosis without the parts that were taken back, which its sentence names.
+
+        Parameters
+        ----------
+        given
+            Derivatives of the simulator as given.
+        """
+        if not self.taken_back or self.gap_with_them is None:
+            return found
+        words = [one if one == _NUMBERS else spelled(one) for one in self.taken_back]
+        said = taken_back_said(words, self.maneuvers, self.gap_with_them, self.after)
+        for part in self.taken_back:
+            found = without(found, part, given)
+        return replace(found, taken_back=(*found.taken_back, said), sentence=f"{found.sentence} {said}")
 
 
 def prove(
@@ -88,22 +114,68 @@ def prove(
         some, last = parted(flown.maneuvers)
         fitted, kept = replace(flown, maneuvers=list(some)), replace(flown, maneuvers=list(last))
     first = _compared(fitted, aircraft, target_system, progress, prior)
-    refuse_unimproved(first.diagnosis.verdict, first.diagnosis.sentence, len(fitted.maneuvers))
-    with tempfile.TemporaryDirectory() as folder:
-        better, left = _improved(first, aircraft, Path(folder))
-        before, after = (_compared(kept, one, target_system, progress, prior) for one in (aircraft, better))
-    was = {number: gap for number, gap, _ in before.diagnosis.gap.by_maneuver}
-    now = {number: gap for number, gap, _ in after.diagnosis.gap.by_maneuver}
+    found = first.diagnosis
+    refuse_unimproved(found.improves, found.sentence, len(fitted.maneuvers))
+    if fresh is None:
+        found = as_it_ended(found, fitted.maneuvers, first.aircraft)
+
+    def asked_again(improved: Diagnosis) -> tuple[Diagnosis, tuple[str, ...]]:
+        with tempfile.TemporaryDirectory() as folder:
+            better, left = _improved(replace(first, diagnosis=improved), aircraft, Path(folder))
+            return _compared(kept, better, target_system, progress, prior).diagnosis, left
+
+    before = _compared(kept, aircraft, target_system, progress, prior).diagnosis
+    after, left = every, _ = asked_again(found)
+    taken: tuple[str, ...] = ()
+    if every.gap.before >= before.gap.before:
+        parts = [*found.effects, _NUMBERS]
+        tried = [(*asked_again(without(found, part, first.aircraft.model)), (part,)) for part in parts]
+        nothing = (before, (), tuple(parts))
+        after, left, taken = min((*tried, nothing), key=lambda one: one[0].gap.before)
+    was = {number: gap for number, gap, _ in before.gap.by_maneuver}
+    now = {number: gap for number, gap, _ in after.gap.by_maneuver}
     return Proof(
         maneuvers=tuple(m.number for m in kept.maneuvers),
-        before=before.diagnosis.gap.before,
-        after=after.diagnosis.gap.before,
-        floor=after.diagnosis.gap.floor,
+        before=before.gap.before,
+        after=after.gap.before,
+        floor=after.gap.floor,
         by_maneuver=tuple((n, was[n], now[n]) for n in now if n in was),
         first=" + ".join(named(first.diagnosis)) or str(first.diagnosis.verdict),
-        second=after.diagnosis.verdict,
-        sentence=after.diagnosis.sentence,
+        second=after.verdict,
+        sentence=after.sentence,
         not_carried=left,
+        taken_back=taken,
+        gap_with_them=every.gap.before if taken else None,
+    )
+
+
+def as_it_ended(found: Diagnosis, maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Diagnosis:
+    """Return a finding with its changes in flight as other numbers: those of the last manoeuvre of its fit.
+
+    Later manoeuvres of the flight begin with the changed aircraft.
+    """
+    if lasting(found.effects) == found.effects:
+        return found
+    flights = prepare([as_stamped(m) for m in maneuvers if m.number in found.maneuvers], aircraft)
+    p = np.zeros((len(flights), len(ENTRIES)))
+    p[:, : len(DERIVATIVES)] = [found.model[name].value for name in DERIVATIVES]
+    effects = dict(found.effects)
+    for change, values in changes_in(effects, variants_for(flights)):
+        change.apply(p, values, flights)
+        del effects[change.effect]
+    ended = {name: replace(found.model[name], value=float(p[-1, INDEX[name]])) for name in DERIVATIVES}
+    return replace(found, model={**found.model, **ended}, effects=effects)
+
+
+def without(found: Diagnosis, part: str, given: Mapping[str, float]) -> Diagnosis:
+    """Return a finding without one of its effects, or with the numbers of the simulator as given."""
+    if part == _NUMBERS:
+        own = {name: replace(one, value=given.get(name, one.value)) for name, one in found.model.items()}
+        return replace(found, model=own, derivatives=(), is_left_as_given=not found.effects)
+    return replace(
+        found,
+        effects={effect: sizes for effect, sizes in found.effects.items() if effect != part},
+        causes=tuple(replace(c, present=c.present and c.effect != part) for c in found.causes),
     )
 
 
@@ -138,15 +210,15 @@ def parted(maneuvers: Sequence[Maneuver]) -> tuple[Sequence[Maneuver], Sequence[
     return maneuvers[:-kept], maneuvers[-kept:]
 
 
-def refuse_unimproved(verdict: str | None, sentence: str, count: int) -> None:
+def refuse_unimproved(improves: bool, sentence: str, count: int) -> None:
     """Refuse to prove what improves nothing.
 
     Raises
     ------
     UnusableInputError
-        The verdict of the fit names no cause and no wrong number.
+        The fit names no cause and no wrong number.
     """
-    if verdict not in IMPROVED:
+    if not improves:
         raise UnusableInputError(
             "nothing_to_prove",
             f"--prove has no improved simulator to fly. The {count} manoeuvres of its fit say: {sentence}",

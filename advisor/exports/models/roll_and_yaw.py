@@ -22,6 +22,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.stream.stream import FlightStream
 from advisor.gap.effects import EFFECTS
 from advisor.gap.inference.prior import FIELD, FieldPrior
+from advisor.gap.result import IMPROVING
 from advisor.mavlink.logs.whole import read_whole_log
 from advisor.model.lateral import LATERAL
 from advisor.oem.estimate import NoEstimate
@@ -69,7 +70,7 @@ def improved_side(compared: SideCompared) -> FlownModel:
     """
     aircraft, state = compared.aircraft, compared.state
     model = flown_model(state, aircraft)
-    unchanged = compared.gap.verdict not in ("effect", "parameters")
+    unchanged = compared.gap.verdict not in IMPROVING
     found = _servos_found(compared.gap.diagnosis, aircraft)
     if model.side is None or not found:
         return replace(model, unchanged=unchanged)
@@ -124,7 +125,7 @@ def prove_side(
     aircraft = compared.against
     fitted, kept = (compared.maneuvers, fresh) if fresh is not None else parted(compared.maneuvers)
     first = _flown(compare_side(fitted, aircraft, prior))
-    refuse_unimproved(first.verdict, first.sentence, len(fitted))
+    refuse_unimproved(first.verdict in IMPROVING, first.sentence, len(fitted))
     behind = behind_found(first.diagnosis, aircraft)
     plain, found = (_flown(estimate_lateral(fitted, one)) for one in (aircraft, behind))
     given = np.array(

@@ -14,7 +14,7 @@ from advisor.process.atomic_file import write_atomically
 from advisor.process.parts import FailedPart, attempt
 from advisor.words.problems import ConfigurationError
 
-NOTHING = "no cause was named and no number found wrong"
+NOTHING = "there is nothing to improve"
 
 
 @dataclass(frozen=True)

@@ -68,14 +68,18 @@ def answer_of(
     kinematics: KinematicCheck,
     holdout: int | None,
     circumstances: Circumstances,
+    most: int | None = None,
 ) -> tuple[Diagnosis, Findings]:
-    """Return the diagnosis that follows from the posterior, and the findings that it is made from."""
+    """Return the diagnosis that follows from the posterior, and the findings that it is made from.
+
+    The improved simulator gets the first ``most`` effects of the answer; None: all of them.
+    """
     problem, floor = found.problem, found.floor
     plain = found.chosen[0]
     file_model = file_model_of(problem, plain.fitted)
     posterior = none_means_no_gap(found.posteriors[0], file_model, floor, plain.held_out)
     answer = posterior.answer
-    named = _named(found, answer)
+    named = _named(found, answer)[:most]
     law = posterior.explanation_of(answer) if answer.kind == "unknown" else None
     last = named[-1].fitted if named else plain.fitted
     e = Findings(

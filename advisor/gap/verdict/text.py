@@ -105,7 +105,7 @@ def _of_unknown(where: Where, causes: Sequence[Cause], present: Sequence[Cause])
 
 
 def _of_effects(causes: Sequence[Cause], shrink: Shrink | None, in_simulator: frozenset[str]) -> str:
-    present = [c for c in causes if c.present]
+    present = [c for c in causes if c.present] or causes[:1]
     named = f"{what(present[0], in_simulator)}{or_else(present[0], causes)}"
     beyond_air = None if shrink is None else shrink.beyond_air_percent
     if present[0].block == "air" and len(present) == 1:

@@ -151,7 +151,7 @@ def test_where_nothing_was_found_the_model_can_still_be_exported(tmp_path):
     orders = [ExportOrder("matlab", tmp_path / "x.m"), ExportOrder("aircraft", tmp_path / "x.yaml")]
     script, aircraft = carry_out(orders, improved_model(plain, AIRCRAFT, None))
     assert script.problem == ""
-    assert "no cause was named and no number found wrong" in aircraft.problem
+    assert "there is nothing to improve" in aircraft.problem
 
 
 def test_without_an_air_speed_no_derivative_is_given_to_another_program(tmp_path):

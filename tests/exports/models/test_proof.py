@@ -8,9 +8,14 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import GapFlights
 from advisor.exports.models import proof
+from advisor.gap.kit.between import breaks
+from advisor.gap.records.prepare import prepare
+from advisor.gap.result import Value
+from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.simulators.compare import Compared
 from advisor.words.problems import UnusableInputError
 from tests.exports.models.test_orders import found
+from tests.simulators.nonlinear import flown
 
 FILE = Aircraft(name="glider", model={"M_alpha": -40.0})
 
@@ -74,3 +79,57 @@ def test_people_read_the_gap_before_and_after_and_the_second_answer(asked):
     lines = list(proof.lines_of(proof.prove(flights(1, 2, 3, 4, 5, 6), None, FILE)))
     assert lines[0] == "Proof on manoeuvres 5, 6, which no fit has used: gap 6.00 → 0.10"
     assert lines[-1] == "  asked again, the improved simulator lacks: nothing above the noise"
+
+
+def test_a_change_in_flight_has_come_before_the_last_manoeuvres():
+    maneuvers = flown(maneuvers=4)
+    numbers = dict.fromkeys(DERIVATIVES, Value(-1.0, 0.1))
+    ended = proof.as_it_ended(
+        found(
+            maneuvers=tuple(m.number for m in maneuvers),
+            model=numbers | {"Z_0": Value(0.0, 0.1)},
+            effects={"mass_change": {"step": -0.2, "at_s": breaks(prepare(maneuvers, FILE))[1]}},
+        ),
+        maneuvers,
+        FILE,
+    )
+    assert not ended.effects
+    assert ended.model["M_alpha"].value == pytest.approx(-1.0 / 0.8)
+    assert ended.model["Z_0"].value == 0.0
+
+
+@pytest.fixture
+def worse(monkeypatch):
+    """A late command closes the gap; the fitted numbers open it again."""
+
+    def compared(flown, aircraft, simulator, holdout, progress, prior):
+        numbers = tuple(m.number for m in flown.maneuvers)
+        given = aircraft.model["M_alpha"] == FILE.model["M_alpha"]
+        gap = 2.0 if not aircraft.effects else 0.5 if given else 2.6
+        return Compared(answer(gap, "effect", numbers), aircraft)
+
+    monkeypatch.setattr(proof, "compare_flown", compared)
+
+
+def test_a_part_with_which_the_gap_grows_is_taken_back_and_named(worse):
+    made = proof.prove(flights(1, 2, 3, 4, 5, 6), None, FILE)
+    assert (made.before, made.after, made.gap_with_them) == (2.0, 0.5, 2.6)
+    assert made.taken_back == ("the fitted numbers",)
+    stays = made.stays_of(answer(2.0, "effect", (1, 2)), FILE.model)
+    assert stays.model["M_alpha"].value == FILE.model["M_alpha"]
+    assert stays.effects
+    assert stays.sentence.endswith(
+        "Taken back: the fitted numbers, with which the gap is 2.6 instead of 0.5 on manoeuvres 5, 6, which "
+        "no fit has used."
+    )
+
+
+def test_nothing_stays_where_each_part_makes_the_gap_worse(monkeypatch):
+    def compared(flown, aircraft, simulator, holdout, progress, prior):
+        gap = 2.0 if aircraft == FILE else 3.0
+        return Compared(answer(gap, "effect", tuple(m.number for m in flown.maneuvers)), aircraft)
+
+    monkeypatch.setattr(proof, "compare_flown", compared)
+    made = proof.prove(flights(1, 2, 3, 4, 5, 6), None, FILE)
+    assert (made.before, made.after, made.gap_with_them) == (2.0, 2.0, 3.0)
+    assert not made.stays_of(answer(2.0, "effect", (1, 2)), FILE.model).improves

@@ -1,0 +1,91 @@
+"""A correction that raises the gap of manoeuvres kept apart leaves the answer and its simulator."""
+
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.diagnose import Examined
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.inference.findings import Added
+from advisor.gap.records.prepare import prepare
+from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, NUISANCES
+from advisor.simulators.taken_back import without_worse
+from advisor.simulators.unseen import UnseenManeuvers, as_changed
+from tests.exports.models.test_orders import found as improvable
+from tests.simulators.nonlinear import flown
+
+NUMBERED = SimpleNamespace(flights=SimpleNamespace(flights=[SimpleNamespace(number=n) for n in (1, 2, 3)]))
+
+
+@dataclass(frozen=True)
+class Measured:
+    gap_before: float
+    gap_after: float
+
+
+def answer(*named: str) -> Examined:
+    """Return a diagnosis with these effects, which can also be told with fewer of them."""
+    findings = SimpleNamespace(added=[Added(effect) for effect in named], problem=NUMBERED)
+    return Examined(improvable(), findings, lambda most: answer(*named[:most]))
+
+
+def taken(gaps: dict[int, float], *named: str, given: float = 659.0):
+    """Return the diagnosis without what is worse, where each number of effects has a gap."""
+    unseen = UnseenManeuvers((1,), answer(*named))
+    return without_worse(answer(*named), unseen, lambda u: Measured(given, gaps[len(u.found.named)]))
+
+
+def test_effects_after_the_set_with_the_least_gap_leave_the_answer_and_are_named():
+    """JSBSim's c172 as given has a gap of 659; each further effect raises that of its servo's lag."""
+    stays, measured = taken({0: 400.0, 1: 0.272, 2: 7.53, 3: 6.86}, "actuator_lag", "mass_change", "icing")
+    assert stays.named == ("actuator_lag",)
+    assert measured.gap_after == 0.272
+    assert stays.diagnosis.taken_back == (
+        "Taken back: mass change and icing, with which the gap is 6.86 instead of 0.272 on manoeuvre 2, "
+        "which no fit has used.",
+    )
+    assert stays.diagnosis.improves
+
+
+def test_an_answer_that_lowers_the_gap_stays_whole():
+    stays, measured = taken({0: 40.0, 1: 0.2, 2: 0.19}, "actuator_lag", "mass_change")
+    assert stays.named == ("actuator_lag", "mass_change")
+    assert measured.gap_after == 0.19
+    assert stays.diagnosis.taken_back == ()
+
+
+def test_a_difference_that_nobody_sees_takes_nothing_back():
+    stays, _ = taken({0: 40.0, 1: 0.2, 2: 0.24}, "actuator_lag", "mass_change")
+    assert stays.named == ("actuator_lag", "mass_change")
+
+
+def test_a_simulator_that_every_correction_makes_worse_stays_as_it_is():
+    stays, _ = taken({0: 3.0, 1: 2.5}, "actuator_lag", given=2.0)
+    assert not stays.diagnosis.improves
+    assert not stays.diagnosis.effects
+    assert stays.diagnosis.taken_back[0].startswith("Taken back: every correction, with which the gap")
+
+
+@pytest.mark.parametrize(("told_by_others", "since_whole"), [(True, False), (False, True)])
+def test_a_step_between_two_manoeuvres_comes_when_all_manoeuvres_say(told_by_others, since_whole):
+    """The search without manoeuvre 3 puts the step behind it; manoeuvre 3 alone tells that it came before."""
+    flights = prepare(flown(maneuvers=4), Aircraft())
+    steps = [v for v in variants_for(flights) if v.effect == "mass_change" and "at_s" in v.fixed]
+    own = np.zeros((len(flights), len(NUISANCES)))
+    problem = EffectProblem(flights, np.zeros(len(ENTRIES)))
+    plain = SearchPoint(np.full(len(DERIVATIVES), -1.0), own)
+
+    def with_step(which: int):
+        point = plain.with_effect(steps[which], [-0.2])
+        last = SimpleNamespace(fitted=SimpleNamespace(point=point))
+        findings = SimpleNamespace(problem=problem, last=last)
+        changes = replace(improvable(), effects={"mass_change": {"step": -0.2}})
+        return SimpleNamespace(findings=findings, diagnosis=changes)
+
+    kept = (0,) if told_by_others else (2,)
+    changed = as_changed(UnseenManeuvers(kept, with_step(2)), with_step(1))
+    assert (changed.effects[0] is steps[1]) == since_whole
