@@ -22,7 +22,7 @@ from advisor.analysis.gap import maneuvers_of
 from advisor.analysis.refused import without_refused
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.standard_atmosphere import standard_density, standard_pressure
+from advisor.flight.signals.true_airspeed import standard_density, standard_pressure
 from advisor.oem.lag import lagged
 from advisor.simulators.compare import Compared, compare
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, Simulator, State

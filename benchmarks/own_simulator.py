@@ -21,7 +21,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import compare_logs, named_simulator
-from advisor.flight.signals.standard_atmosphere import (
+from advisor.flight.signals.true_airspeed import (
     SEA_LEVEL_DENSITY_KG_M3,
     standard_density,
     standard_pressure,

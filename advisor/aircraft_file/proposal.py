@@ -6,7 +6,7 @@ from statistics import median
 from advisor.aircraft_file.log_facts import LogFacts
 from advisor.aircraft_file.text import Draft
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
-from advisor.flight.signals.standard_atmosphere import standard_density
+from advisor.flight.signals.true_airspeed import standard_density
 from advisor.flight.vehicle.surfaces import Scale, Surface, joined_numbers
 from advisor.words.problems import Problem
 

@@ -251,7 +251,7 @@ def write_improved(out: Path | None, improves: bool, make: "Callable[[], FlownMo
     if not improves:
         click.echo(f"{printable(str(out))} was not written: there is nothing to improve.", err=True)
         return False
-    from advisor.exports.models.file_text import write_file
+    from advisor.exports.models.flown import write_file
 
     with writing("--out", out):
         write_file(make(), out)

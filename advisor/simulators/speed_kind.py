@@ -13,7 +13,7 @@ from math import log, sqrt
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.standard_atmosphere import SEA_LEVEL_DENSITY_KG_M3
+from advisor.flight.signals.true_airspeed import SEA_LEVEL_DENSITY_KG_M3
 from advisor.gap.candidates.nuisances import TRUE_AIR_SPEED
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.prepare import prepare

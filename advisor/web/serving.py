@@ -14,8 +14,7 @@ import click
 from advisor.aircraft.aircraft import Aircraft
 from advisor.session.remote import ConductorTask, RemoteConductor
 from advisor.session.source import Tempo
-from advisor.web.access import Access, checked_origin, on_this_computer
-from advisor.web.password import read_password
+from advisor.web.access import Access, checked_origin, on_this_computer, read_password
 from advisor.words.problems import ConfigurationError
 
 LOOK_EVERY_S = 0.2

@@ -11,7 +11,7 @@ from advisor.aircraft.reference import Reference
 from advisor.analysis import gap as gap_of_logs
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
-from advisor.flight.signals.standard_atmosphere import standard_pressure
+from advisor.flight.signals.true_airspeed import standard_pressure
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import HEIGHT
 from advisor.simulators.air import standard_heights

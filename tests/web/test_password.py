@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.web.password import VARIABLE, read_password
+from advisor.web.access import VARIABLE, read_password
 
 
 @pytest.fixture

@@ -14,8 +14,7 @@ from advisor.bundled.study.flying import (
     fly_named,
     noise_scale,
 )
-from advisor.bundled.study.paper import ORDER
-from advisor.bundled.study.readings import needed_by_reading
+from advisor.bundled.study.readings import ORDER, needed_by_reading
 from advisor.decision.foresight import Instruments, expect
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import knowledge

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.bundled.study.campaigns import CampaignBlock, CampaignResults, joined, table_blocks
 from advisor.bundled.study.flying import Scene
-from advisor.bundled.study.paper import ORDER
+from advisor.bundled.study.readings import ORDER
 
 MOST_CAMPAIGNS = 100
 """Number of campaigns, enough for a share of practically one."""

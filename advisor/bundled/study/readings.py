@@ -1,4 +1,4 @@
-"""Other readings of the paper's rules, compared by their reproduction of its Table 1.
+"""Figures that the paper prints, and other readings of its rules, compared by their reproduction of Table 1.
 
 The first reading of each list is the advisor's. The others exist only here.
 """
@@ -10,7 +10,7 @@ from statistics import median
 import numpy as np
 
 from advisor.aircraft.aircraft import Rule
-from advisor.bundled.study.paper import TABLE_1
+from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.paper_rules import (
     ALLOWED_INCREASE,
     Costs,
@@ -21,6 +21,35 @@ from advisor.decision.paper_rules import (
 from advisor.decision.verdict import RuleResult
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
+
+NOISE_PERCENT = (1.0, 2.5, 5.0)
+ORDER = ("3211", "rev", "rev", "3211", "rev", "3211", "rev")
+"""The seven manoeuvres of the campaign."""
+
+
+@dataclass(frozen=True, slots=True)
+class PaperRow:
+    """One row of Table 1."""
+
+    needed: int | None
+    """Manoeuvres until the stop. None: never."""
+    error_percent: Mapping[str, float]
+    """Nominal error of each parameter."""
+
+
+def _row(needed: int | None, *errors: float) -> PaperRow:
+    return PaperRow(needed, dict(zip(PARAMETERS, errors, strict=True)))
+
+
+TABLE_1: Mapping[tuple[Rule, float], PaperRow] = {
+    ("continuous", 1.0): _row(3, 0.12, 0.28, 0.54, 0.44, 0.32, 0.15, 0.56, 0.07),
+    ("continuous", 2.5): _row(7, 0.87, 0.74, 6.38, 3.35, 0.73, 0.10, 1.69, 1.21),
+    ("continuous", 5.0): _row(None, 0.07, 5.50, 16.37, 0.89, 2.18, 2.35, 1.28, 0.70),
+    ("separate", 1.0): _row(3, 0.12, 0.28, 0.54, 0.44, 0.32, 0.14, 0.56, 0.07),
+    ("separate", 2.5): _row(4, 0.29, 2.79, 3.59, 0.70, 1.19, 0.60, 1.82, 0.88),
+    ("separate", 5.0): _row(4, 5.43, 4.86, 30.85, 9.41, 1.26, 0.56, 3.46, 1.20),
+}
+
 
 Accepting = Callable[[Sequence[float]], list[bool]]
 

@@ -8,7 +8,7 @@ from advisor.bundled.study import flaws, readings, text
 from advisor.bundled.study.campaigns import RULES, CampaignBlock, CampaignResults, joined, judge, table_blocks
 from advisor.bundled.study.figure import Curve, curve, in_terminal
 from advisor.bundled.study.flying import NoiseReading, Scene
-from advisor.bundled.study.paper import NOISE_PERCENT
+from advisor.bundled.study.readings import NOISE_PERCENT
 from advisor.bundled.study.table import as_document, row
 
 

@@ -8,7 +8,7 @@ from advisor.aircraft.controls import Elevator, SideControl
 from advisor.aircraft.reference import Reference
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.atmosphere import AirData
-from advisor.flight.signals.standard_atmosphere import SEA_LEVEL_DENSITY_KG_M3
+from advisor.flight.signals.true_airspeed import SEA_LEVEL_DENSITY_KG_M3
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Diagnosis, Value

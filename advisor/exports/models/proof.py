@@ -16,8 +16,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.analysis.gap import GapFlights, compare_flown, named_simulator
-from advisor.exports.models.file_text import file_of
-from advisor.exports.models.flown import FlownModel, improved_model
+from advisor.exports.models.flown import FlownModel, file_of, improved_model
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import variants_for

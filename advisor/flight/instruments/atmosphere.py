@@ -15,19 +15,17 @@ import numpy as np
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.channels import GIVEN_AIRSPEED, TRUE_AIRSPEED
 from advisor.flight.signals.record import Channel
-from advisor.flight.signals.standard_atmosphere import (
-    PLAUSIBLE,
-    SEA_LEVEL_DENSITY_KG_M3,
-    density,
-    standard_height,
-    standard_pressure,
-)
 from advisor.flight.signals.true_airspeed import (
     AS_GROUND_SPEED,
     AS_REPORTED,
     BY_HEIGHT,
     BY_PRESSURE,
+    PLAUSIBLE,
+    SEA_LEVEL_DENSITY_KG_M3,
+    density,
     is_true,
+    standard_height,
+    standard_pressure,
     true_over_read,
 )
 

@@ -4,6 +4,8 @@ The equations of motion hold with the true air speed V. An autopilot's pressure 
 its pressure would have at sea level: V·√(ρ/ρ_0) with ρ_0 = 1.225 kg/m³. The density ρ comes from the static
 pressure, else from the height above mean sea level. A barometer's temperature is not used, because the board
 warms the sensor. One simulated autopilot reports 30 °C, by which V would be 3.5 % too large.
+
+The standard atmosphere holds below 11 km (ISO 2533).
 """
 
 from collections.abc import Iterable, Mapping
@@ -14,12 +16,46 @@ import numpy as np
 from advisor.flight.signals.channels import GIVEN_AIRSPEED, TRUE_AIRSPEED
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
-from advisor.flight.signals.standard_atmosphere import (
-    PLAUSIBLE,
-    SEA_LEVEL_DENSITY_KG_M3,
-    density,
-    standard_pressure,
-)
+
+SEA_LEVEL_DENSITY_KG_M3 = 1.225
+"""Air density at sea level, kg/m³."""
+_SEA_LEVEL_K = 288.15
+_SEA_LEVEL_PA = 101_325.0
+_CELSIUS_K = 273.15
+_LAPSE_K_M = 0.0065
+_EXPONENT = 4.255876
+"""Exponent g/(R·lapse) - 1 of the standard atmosphere below 11 km."""
+_GAS_CONSTANT = 287.05287
+"""Gas constant of dry air, J/(kg·K)."""
+PLAUSIBLE = {"static_pressure": (2.2e4, 1.1e5), "altitude": (-500.0, 11_000.0)}
+"""Plausible range of a channel below the tropopause, Pa or m. Zero stands for a missing sensor."""
+
+
+def standard_pressure(height_m: float | FloatArray) -> FloatArray:
+    """Return the pressure in Pa at heights above mean sea level, below 11 km."""
+    return np.asarray(_SEA_LEVEL_PA * (1.0 - _LAPSE_K_M * height_m / _SEA_LEVEL_K) ** (_EXPONENT + 1.0))
+
+
+def standard_density(pressure_pa: float | FloatArray) -> FloatArray:
+    """Return the density in kg/m³ at pressures in Pa, below 11 km."""
+    return np.asarray(
+        SEA_LEVEL_DENSITY_KG_M3 * (pressure_pa / _SEA_LEVEL_PA) ** (_EXPONENT / (_EXPONENT + 1.0))
+    )
+
+
+def standard_height(density_kg_m3: float | FloatArray) -> FloatArray:
+    """Return the height in m, below 11 km, at which the standard atmosphere has a density in kg/m³."""
+    ratio = np.asarray(density_kg_m3) / SEA_LEVEL_DENSITY_KG_M3
+    return np.asarray(_SEA_LEVEL_K / _LAPSE_K_M * (1.0 - ratio ** (1.0 / _EXPONENT)))
+
+
+def density(pressure_pa: float | FloatArray, temperature_c: float | None) -> FloatArray:
+    """Return the density in kg/m³ of dry air; at the standard atmosphere's temperature where none is
+    known."""
+    if temperature_c is None:
+        return standard_density(pressure_pa)
+    return np.asarray(pressure_pa / (_GAS_CONSTANT * (temperature_c + _CELSIUS_K)))
+
 
 BY_PRESSURE = ", true by the static pressure"
 """End of the source of an air speed that the static pressure has made true."""

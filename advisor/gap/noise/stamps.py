@@ -11,7 +11,7 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem, counts
-from advisor.gap.records.grid import STEP_S
+from advisor.gap.records.airspeed import STEP_S
 from advisor.gap.simulator.layout import ENTRIES
 
 _LEAST = {"q": 0.3, "a_z": 0.45}

@@ -12,8 +12,19 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated, speed_rate_at
-from advisor.gap.records.grid import smooth
 from advisor.oem.airspeed import LARGEST_DISAGREEMENT
+
+STEP_S = 0.005
+"""Numerical: step of the grid in s: a hundredth of the fastest short period, and as fine as stamps are
+known."""
+
+
+def smooth(y: FloatArray, seconds: float) -> FloatArray:
+    """Return the centred moving average over ``seconds`` of a series on the grid, shape (n,)."""
+    width = max(1, round(seconds / STEP_S)) | 1
+    padded = np.pad(y, width // 2, mode="edge")
+    return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
+
 
 _LEAST_SAMPLES = 6
 """Record: least number of air speed samples in a manoeuvre for the fit of a parabola. With fewer samples the

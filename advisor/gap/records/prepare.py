@@ -11,14 +11,15 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.airspeed import (
+    STEP_S,
     airspeed_on,
     along_the_path,
     measures_speed,
+    smooth,
     speed_error_factors,
 )
 from advisor.gap.records.edges import edges_of, held_from
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
-from advisor.gap.records.grid import STEP_S, smooth
 from advisor.gap.records.smoothness import is_filtered, is_smoothed, white_part
 from advisor.gap.records.unmeasured_alpha import is_estimate
 from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_about

@@ -13,8 +13,7 @@ from advisor.mavlink.ardupilot.ardupilot_messages import Known, Translation
 from advisor.mavlink.ardupilot.ardupilot_vehicle import VEHICLE_RECORDS
 from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS
 from advisor.mavlink.ardupilot.former_records import RENAMED, SENSORS_APART, Clocked, in_todays_names
-from advisor.mavlink.ardupilot.log_health import HEALTH_RECORDS
-from advisor.mavlink.ardupilot.system_identification import SYSTEM_ID_RECORDS
+from advisor.mavlink.ardupilot.log_health import HEALTH_RECORDS, SYSTEM_ID_RECORDS
 from advisor.mavlink.px4.sdlog2 import SDLOG2_RECORDS, Sdlog2Messages, is_sdlog2
 from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.stretches import Stretch, read_stretches

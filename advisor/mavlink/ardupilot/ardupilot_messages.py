@@ -19,9 +19,8 @@ from advisor.mavlink.ardupilot.ardupilot_vehicle import (
 )
 from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.ardupilot.former_records import Clocked
-from advisor.mavlink.ardupilot.log_health import health
+from advisor.mavlink.ardupilot.log_health import health, lost_texts, sweeps
 from advisor.mavlink.ardupilot.sensors import Said, Silence, flown, said, silences_in, stated_health
-from advisor.mavlink.ardupilot.system_identification import lost_texts, sweeps
 from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, seconds
 from advisor.mavlink.records.equivalent import air_data, message, nearest, side_by_side
 

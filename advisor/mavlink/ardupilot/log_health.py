@@ -1,9 +1,14 @@
-"""Faults of an ArduPilot log itself: records that were dropped, and a clock that GPS time contradicts."""
+"""What an ArduPilot log says of itself: dropped records, a wrong clock, and its SystemID sweeps.
+
+SIDS holds the settings of a sweep when the sweep begins. SIDD holds one sample of the sweep at a time. The
+vehicle also sends a text at the begin and at the end (``AP_SystemID`` of ArduPlane), which MSG may have lost.
+"""
 
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from advisor.flight.maneuvers.markers import SYSTEM_ID_BEGINS, SYSTEM_ID_ENDS
 from advisor.mavlink.ardupilot.sensors import Said
 from advisor.mavlink.records.dataflash import RecordTable
 
@@ -57,3 +62,55 @@ def _clock_error(gps: RecordTable) -> float | None:
     std = float(np.sqrt(np.mean((boot_s - speed * true_s) ** 2) / power))
     error = speed - 1.0
     return error if abs(error) > max(WRONG_CLOCK, _SURELY * std) and abs(error) < 1.0 else None
+
+
+SYSTEM_ID_RECORDS: dict[str, set[str]] = {"SIDS": {"Ax", "Mag", "FSt", "FSp", "TR"}, "SIDD": {"Targ"}}
+"""Records of SystemID, with their necessary fields (ArduPilot log messages SIDS and SIDD)."""
+_AXES = {20: "the roll angle", 21: "the pitch angle", 22: "the ailerons", 23: "the elevator"}
+"""Value of SID_AXIS to what moves in fixed-wing flight. Values 1 to 13 are those of hovering flight."""
+
+
+def sweeps(tables: Mapping[str, RecordTable]) -> Iterator[Said]:
+    """Yield a sentence on the settings of each sweep."""
+    if "SIDS" not in tables:
+        return
+    sids = tables["SIDS"]
+    columns = (sids.order, sids.time_us, *(sids.fields[name] for name in ("Ax", "FSt", "FSp", "TR", "Mag")))
+    for order, time_us, axis, lowest_hz, highest_hz, length_s, size in zip(*columns, strict=True):
+        yield Said(
+            int(order),
+            int(time_us),
+            f"SystemID sweeps {_AXES.get(int(axis), 'a control in hover')} (SID_AXIS {int(axis)}) "
+            f"from {lowest_hz:.2g} to {highest_hz:.2g} Hz in {length_s:.0f} s, magnitude {size:.2g}",
+        )
+
+
+def lost_texts(tables: Mapping[str, RecordTable]) -> Iterator[tuple[int, int, bytes]]:
+    """Yield the texts at the begin and the end of each sweep, where MSG holds fewer than SIDS has sweeps.
+
+    Yields
+    ------
+    tuple of int, int and bytes
+        Position of the record in the file, microseconds since boot, and the text. A sweep without a sample
+        in SIDD has no known end, and yields nothing.
+    """
+    if not {"SIDS", "SIDD"} <= tables.keys() or _told(tables) >= len(tables["SIDS"]):
+        return
+    sids, sidd = tables["SIDS"], tables["SIDD"]
+    after = [*sids.order[1:], np.inf]
+    for order, time_us, axis, next_order in zip(
+        sids.order, sids.time_us, sids.fields["Ax"], after, strict=True
+    ):
+        rows = np.flatnonzero((sidd.order > order) & (sidd.order < next_order))
+        if len(rows):
+            yield int(order), int(time_us), SYSTEM_ID_BEGINS + f": axis={int(axis)}".encode()
+            yield int(sidd.order[rows[-1]]), int(sidd.time_us[rows[-1]]), SYSTEM_ID_ENDS
+
+
+def _told(tables: Mapping[str, RecordTable]) -> int:
+    """Return the number of sweeps whose begin and end MSG holds."""
+    if "MSG" not in tables:
+        return 0
+    texts = tables["MSG"].fields["Message"].tolist()
+    edges = (SYSTEM_ID_BEGINS, SYSTEM_ID_ENDS)
+    return min(len([text for text in texts if text.startswith(edge)]) for edge in edges)

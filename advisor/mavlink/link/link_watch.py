@@ -1,11 +1,14 @@
 """Sentences for the crew about its link: silence, cuts, recovery, a second vehicle, a slower stream."""
 
+import struct
 from collections.abc import Collection
 
+import numpy as np
+
+from advisor.flight.signals.clocks import BootClock
 from advisor.mavlink.link.delivery import Delivery
 from advisor.mavlink.link.ground_stations import who_sets_rates
 from advisor.mavlink.link.intake import Intake
-from advisor.mavlink.link.reboot import RebootWatch
 from advisor.mavlink.wire.definitions import DEFINITIONS
 from advisor.mavlink.wire.framing import Frame
 
@@ -150,3 +153,22 @@ class RateWatch:
                 self._cut.remove(message)
                 back.append(f"{name} is back at {rate_hz:.0f} Hz")
         return [f"{', '.join(fell)}: {who_sets_rates(stations)}", *back] if fell else back
+
+
+_ATTITUDE = DEFINITIONS["ATTITUDE"].id
+
+
+class RebootWatch:
+    """Follows the clock of ATTITUDE by the rules of the flight's own stream."""
+
+    def __init__(self) -> None:
+        self._clock = BootClock()
+
+    def hear(self, frame: Frame) -> bool:
+        """Take a frame of the vehicle; return True when it confirms a reboot."""
+        if frame.message_id != _ATTITUDE:
+            return False
+        boot = self._clock.boot
+        (stamp,) = struct.unpack_from("<I", frame.payload.ljust(4, b"\0"))
+        self._clock.advance(np.array([stamp], dtype=np.int64))
+        return self._clock.boot != boot

@@ -1,8 +1,7 @@
 """Warning across the whole screen of a loss at this moment."""
 
 from advisor.session.view import View
-from advisor.tui.panes.lines import Lines
-from advisor.tui.panes.part import Part
+from advisor.tui.panes.lines import Lines, Part
 
 
 class Alarm(Part, Lines):

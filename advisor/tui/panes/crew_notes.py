@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 
 from advisor.session.view import View
-from advisor.tui.panes.lines import HangingLines, Labelled
-from advisor.tui.panes.part import Part
+from advisor.tui.panes.lines import HangingLines, Labelled, Part
 
 
 def flying_in_words(view: View) -> str:

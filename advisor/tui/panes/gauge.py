@@ -2,8 +2,7 @@
 
 from advisor.session.view import View
 from advisor.tui.panes.last_verdict import symbol_and_word
-from advisor.tui.panes.lines import HangingLines
-from advisor.tui.panes.part import Part
+from advisor.tui.panes.lines import HangingLines, Part
 
 _LAST_SHOWN = 16
 _BAR = 20

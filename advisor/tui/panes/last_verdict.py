@@ -8,9 +8,8 @@ from advisor.decision.verdict import ManeuverVerdict
 from advisor.oem.estimate import Estimate
 from advisor.session.view import View
 from advisor.tui.block_letters import HEIGHT, block_letters
-from advisor.tui.panes.lines import Labelled, Lines
+from advisor.tui.panes.lines import Labelled, Lines, Part
 from advisor.tui.panes.pane import TextPane
-from advisor.tui.panes.part import Part
 from advisor.tui.words import without_word
 from advisor.words.digits import distinct_texts, signed
 from advisor.words.quantities import channel

@@ -3,8 +3,7 @@
 from math import degrees, isfinite
 
 from advisor.session.view import View
-from advisor.tui.panes.lines import Lines
-from advisor.tui.panes.part import Part
+from advisor.tui.panes.lines import Lines, Part
 
 _APART = "    "
 

@@ -1,12 +1,32 @@
-"""Lines of plain text that are repainted only when they change."""
+"""Parts of a screen, and lines of plain text that are repainted only when they change."""
 
+from abc import abstractmethod
 from collections.abc import Iterable
 from functools import lru_cache
 from math import nan
 from textwrap import wrap
+from typing import ClassVar
 
 from textual.events import Resize
 from textual.widgets import Static
+
+from advisor.session.view import View
+
+
+class Part:
+    """Any widget that is shown each new `View`."""
+
+    EITHER_AXIS: ClassVar[bool] = False
+    """Whether the part can show roll and yaw. Other parts always show the elevator's axis."""
+
+    @property
+    def wants_showing(self) -> bool:
+        """Whether the part is visible, so that painting is no waste of time."""
+        return True
+
+    @abstractmethod
+    def show(self, view: View) -> None:
+        """Update to a new moment. The update is cheap where nothing of the part's own changed."""
 
 
 class Lines(Static):

@@ -4,8 +4,7 @@ from textual.events import Resize
 
 from advisor.decision.verdict import NextInput as Advised
 from advisor.session.view import View
-from advisor.tui.panes.lines import Lines
-from advisor.tui.panes.part import Part
+from advisor.tui.panes.lines import Lines, Part
 from advisor.tui.stick_drawing import drawn
 
 

@@ -7,8 +7,7 @@ from textual.app import ComposeResult
 from textual.containers import Vertical, VerticalScroll
 from textual.widgets import DataTable
 
-from advisor.tui.panes.lines import HangingLines, Labelled, Lines
-from advisor.tui.panes.part import Part
+from advisor.tui.panes.lines import HangingLines, Labelled, Lines, Part
 from advisor.tui.plot.widget import Plot
 from advisor.tui.rows import TableRows, rows_of_charts
 

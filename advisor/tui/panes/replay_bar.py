@@ -7,8 +7,7 @@ from textual.message import Message
 
 from advisor.session.source import Playback
 from advisor.session.view import View
-from advisor.tui.panes.lines import Lines
-from advisor.tui.panes.part import Part
+from advisor.tui.panes.lines import Lines, Part
 from advisor.words.vehicle_time import clock
 
 _WIDTH = 24

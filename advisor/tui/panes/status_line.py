@@ -9,8 +9,7 @@ from textual.widgets import Static
 
 from advisor.session.behind import spoken
 from advisor.session.view import View
-from advisor.tui.panes.lines import Lines
-from advisor.tui.panes.part import Part
+from advisor.tui.panes.lines import Lines, Part
 
 CONDITIONS = {
     "good": "✓ link good",

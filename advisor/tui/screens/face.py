@@ -13,7 +13,7 @@ from advisor.process.parts import Parts
 from advisor.session.hand import HandDecision
 from advisor.session.view import View
 from advisor.tui.panes.ask import Ask
-from advisor.tui.panes.part import Part
+from advisor.tui.panes.lines import Part
 from advisor.tui.panes.status_line import KeysLine
 
 

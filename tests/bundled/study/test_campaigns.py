@@ -20,7 +20,7 @@ from advisor.bundled.study.campaigns import (
 )
 from advisor.bundled.study.figure import curve, in_terminal
 from advisor.bundled.study.flying import Scene, fly_named, noise_scale
-from advisor.bundled.study.paper import ORDER
+from advisor.bundled.study.readings import ORDER
 from advisor.bundled.study.table import as_document, row
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import pool, posteriors_at_one_speed

@@ -7,7 +7,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice, VehicleSaid
 from advisor.flight.maneuvers.marked_input import SWEPT
 from advisor.flight.stream.stream import FlightStream
-from advisor.mavlink.ardupilot.system_identification import lost_texts, sweeps
+from advisor.mavlink.ardupilot.log_health import lost_texts, sweeps
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.records.dataflash import RecordTable
 from tests.mavlink.ardupilot.test_autopilot_logs import dataflash_flight

@@ -3,8 +3,7 @@
 from pathlib import Path
 
 from advisor.exports.models.exported import Exported
-from advisor.exports.models.file_text import file_text
-from advisor.exports.models.flown import FlownModel
+from advisor.exports.models.flown import FlownModel, file_text
 from advisor.exports.models.formats import ModelFormat
 
 
