@@ -5,10 +5,14 @@ from dataclasses import dataclass
 from operator import attrgetter
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft_file.keys import KEYS
+from advisor.aircraft.key import keys_of
 from advisor.aircraft_file.log_facts import LogFacts
 from advisor.flight.elevator.side_outputs import SIDES
 from advisor.flight.vehicle.surfaces import Surface
+
+KEYS = tuple(key for key in keys_of(Aircraft) if key.example)
+"""Keys that stand in a new file."""
+
 
 BEYOND_US = 20.0
 """Distance by which pulses may exceed a calibration's ends, us. A servo's trim and a transmitter's differ by

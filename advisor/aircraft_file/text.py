@@ -8,7 +8,7 @@ from typing import Any
 import yaml
 
 from advisor.aircraft.key import Key
-from advisor.aircraft_file.keys import KEYS
+from advisor.aircraft_file.lacks import KEYS
 
 _WIDTH = 100
 """Columns of a comment line."""

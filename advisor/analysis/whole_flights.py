@@ -1,20 +1,23 @@
-"""Logs heard by the campaign, which drops samples, and as whole power-ons, which keep every sample."""
+"""Logs heard by the campaign, which drops samples, and as whole power-ons; flights that do not count."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.axes import Axis, holds_no_test, left_out_of
 from advisor.analysis.log_series import LogSeries
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand
-from advisor.campaign.state import CampaignState
+from advisor.campaign.state import OF_ELEVATOR, CampaignState
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.power_on import PowerOn
+from advisor.flight.stream.flights import FlightHeard
 from advisor.flight.stream.stream import FlightStream
 from advisor.words.problems import Problem, UnusableInputError
+
+Axis = Literal["pitch", "lateral", "both"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,4 +127,46 @@ def read_whole(
         state=campaign.state,
         left_out=left_out,
         power_ons=tuple(p for p in power_ons if p[1].channels),
+    )
+
+
+def left_out_of(axis: Axis, state: CampaignState) -> dict[int, tuple[Problem, ...]]:
+    """Return the flights that do not count, each with its problems.
+
+    A flight with an accepted lateral manoeuvre needs none of the elevator's.
+    """
+    left_out = {one.flight: one.problems for one in state.flights if one.problems}
+    if state.lateral is None:
+        return left_out
+    told = {
+        one.maneuver.flight for one in state.lateral.maneuvers if axis == "lateral" or one.verdict.accepted
+    }
+    elsewhere = {
+        flight: problems
+        for flight, problems in left_out.items()
+        if not all(p.code in OF_ELEVATOR for p in problems)
+    }
+    if axis == "lateral":
+        silent = [one for one in state.flights if one.flight not in told and one.flight not in elsewhere]
+        return elsewhere | {one.flight: (no_lateral(one),) for one in silent}
+    return {flight: problems for flight, problems in left_out.items() if flight not in told} | elsewhere
+
+
+def holds_no_test(left_out: Mapping[int, Sequence[Problem]]) -> bool:
+    """Return whether the absence of test inputs is all that keeps these flights from counting."""
+    return bool(left_out) and all(p.code in _UNTESTED for several in left_out.values() for p in several)
+
+
+_UNTESTED = frozenset({"no_maneuver", "no_aileron"})
+"""Codes of problems of a flight whose telemetry can serve, and which holds no test input."""
+
+
+def no_lateral(flight: FlightHeard) -> Problem:
+    """Return why a flight has no lateral manoeuvre."""
+    if flight.sides_unknown is not None:
+        return flight.sides_unknown
+    return Problem(
+        "no_maneuver",
+        "No test manoeuvre of the aileron or the rudder was found.",
+        "Fly an aileron doublet and a rudder doublet in MANUAL, hands and feet still before and after.",
     )

@@ -116,8 +116,8 @@ _KEPT = ("theta", "covariance_cr", "covariance")
 
 def analyze(task: BatchTask) -> Analyzed:
     """Analyze a log like ``advisor analyze``. An unusable log has a result as well."""
-    from advisor.analysis.axes import left_out_of
     from advisor.analysis.log_series import LogSeries
+    from advisor.analysis.whole_flights import left_out_of
     from advisor.campaign.campaign import Campaign
 
     series = LogSeries([task.log])

@@ -8,7 +8,7 @@ from advisor.decision.quality import judge_quality
 from advisor.decision.verdict import Reason
 from advisor.flight.instruments.kinematics import check_alpha
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.maneuvers.marked_input import MARKED
+from advisor.flight.maneuvers.markers import MARKED
 from advisor.flight.vehicle.modes import closes_pitch_loop
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate

@@ -9,8 +9,8 @@ from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.flight.signals.power_on import Course
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.stream.flights import FlightHeard
 from advisor.flight.vehicle.vehicle import Vehicle

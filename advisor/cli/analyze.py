@@ -18,8 +18,8 @@ from advisor.words.problems import Problem
 
 if TYPE_CHECKING:
     from advisor.aircraft.aircraft import Aircraft
-    from advisor.analysis.axes import Axis
     from advisor.analysis.log_series import LogSeries
+    from advisor.analysis.whole_flights import Axis
     from advisor.campaign.campaign import Campaign
     from advisor.campaign.state import CampaignState
     from advisor.exports.models.flown import FlownModel
@@ -71,8 +71,8 @@ def command(
     """
     aircraft = asked.read_aircraft()
     orders = orders_of(exports, aircraft, asked.inputs, "both")
-    from advisor.analysis.axes import holds_no_test
     from advisor.analysis.log_series import LogSeries
+    from advisor.analysis.whole_flights import holds_no_test
 
     series = LogSeries(asked.logs)
     by_hand = NOTHING if asked.no_marks else series.read_by_hand()
@@ -136,7 +136,7 @@ def _analyze(
 ) -> "tuple[CampaignState | None, dict[int, tuple[Problem, ...]]]":
     """Return the campaign at the end of its logs and, by flight, the reasons for which logs do not count. The
     campaign is None without a readable log."""
-    from advisor.analysis.axes import left_out_of
+    from advisor.analysis.whole_flights import left_out_of
 
     campaign = series.fed_to(make_campaign, lambda campaign, columns: campaign.feed(columns))
     unreadable: dict[int, tuple[Problem, ...]] = {

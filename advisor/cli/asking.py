@@ -5,7 +5,7 @@ from typing import Any
 import click
 
 from advisor.aircraft.key import Key
-from advisor.aircraft_file.keys import KEYS
+from advisor.aircraft_file.lacks import KEYS
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.words.problems import ConfigurationError
 

@@ -13,9 +13,8 @@ from pathlib import Path
 
 from advisor import __version__
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.axes import holds_no_test
 from advisor.analysis.log_series import SINCE_1970_S, began_s
-from advisor.analysis.whole_flights import WholeFlights, read_whole
+from advisor.analysis.whole_flights import WholeFlights, holds_no_test, read_whole
 from advisor.cli.doctor import examine_log
 from advisor.cli.log_options import LogsAsked
 from advisor.doctor.document import doctor_document

@@ -25,7 +25,7 @@ from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.document import changed_document, gap_document
 from advisor.gap.inference.prior import FIELD, FieldPrior, field_prior
 from advisor.gap.result import IMPROVING, Value
-from advisor.gap.verdict.titles import title_of_verdict
+from advisor.gap.verdict.text import title_of_verdict
 from advisor.report.gap_reasons import how_sure, in_percent
 from advisor.report.gap_sizes import sizes_of
 from advisor.report.gap_steps import GapStep, to_decide

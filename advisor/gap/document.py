@@ -8,8 +8,7 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import AlternativeEvidence
 from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification
-from advisor.gap.verdict.text import in_words
-from advisor.gap.verdict.titles import answers_of, limits_of, title_of
+from advisor.gap.verdict.text import answers_of, in_words, limits_of, title_of
 from advisor.process.parts import FailedPart
 from advisor.words.certainty import is_decided
 from advisor.words.plain import picked, plain

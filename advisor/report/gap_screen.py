@@ -11,8 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
-from advisor.gap.verdict.text import place
-from advisor.gap.verdict.titles import answers_of, limits_of, title_of
+from advisor.gap.verdict.text import answers_of, limits_of, place, title_of
 from advisor.process.installed import SIMULATOR
 from advisor.report.gap_causes import PRESENT, ranking, unseen, why_of
 from advisor.report.gap_fidelity import errors, peaks, worst_maneuver, yardsticks

@@ -10,7 +10,7 @@ from scipy.special import expit
 from advisor.gap.alternative import Contribution, together
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.result import Cause, Diagnosis, spelled
-from advisor.gap.verdict.titles import answers_of
+from advisor.gap.verdict.text import answers_of
 from advisor.report.gap_reasons import in_percent
 from advisor.report.gap_sizes import changed, sizes_of
 from advisor.report.improved import improved_name

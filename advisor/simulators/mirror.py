@@ -22,7 +22,7 @@ from advisor.gap.result import VISIBLE, Cause, Diagnosis, Value
 from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES
 from advisor.gap.verdict.statements import what
-from advisor.gap.verdict.titles import answers_of
+from advisor.gap.verdict.text import answers_of
 from advisor.simulators.around import skewed
 from advisor.simulators.flying import AsGiven, Flying, without_difference
 from advisor.simulators.inputs import on_grid

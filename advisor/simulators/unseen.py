@@ -23,8 +23,7 @@ from advisor.gap.kit.variant import Variant
 from advisor.gap.result import Diagnosis, Shrink, spelled
 from advisor.gap.verdict.holdout_numbers import over_maneuvers, with_offset
 from advisor.gap.verdict.statements import in_simulator
-from advisor.gap.verdict.text import sentence_of
-from advisor.gap.verdict.titles import answers_of
+from advisor.gap.verdict.text import answers_of, sentence_of
 from advisor.words.certainty import as_sure
 
 LEAST_TRAINED = 2

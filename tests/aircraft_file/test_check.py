@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft_file.keys import KEYS
+from advisor.aircraft_file.lacks import KEYS
 from advisor.aircraft_file.read import parse_aircraft
 from tests.conftest import Advisor
 from tests.schemas import breaches

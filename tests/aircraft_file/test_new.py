@@ -9,7 +9,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.aircraft_file.keys import KEYS
+from advisor.aircraft_file.lacks import KEYS
 from advisor.aircraft_file.log_facts import LogFacts
 from advisor.aircraft_file.proposal import proposed
 from advisor.aircraft_file.read import load_aircraft

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from advisor.analysis.axes import holds_no_test, left_out_of
+from advisor.analysis.whole_flights import holds_no_test, left_out_of
 from advisor.campaign.state import CampaignState
 from advisor.flight.stream.flights import FlightHeard
 from advisor.words.problems import Problem

@@ -8,10 +8,10 @@ from advisor.aircraft.controls import SideControl
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.campaign.campaign import Campaign
 from advisor.flight.maneuvers.events import SideManeuverFlown
-from advisor.flight.maneuvers.marked_input import SWEPT
+from advisor.flight.maneuvers.markers import SWEPT
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.stream.stream import FlightStream
-from advisor.flight.vehicle.imu_filters import filter_delay_s
+from advisor.flight.vehicle.parameters import filter_delay_s
 from advisor.report.lateral import lateral_decision, lateral_document, lateral_lines
 from tests.flight.columns import Wire, heartbeat, plane_parameters
 from tests.oem.lateral_builders import JET, flown, steps

@@ -20,7 +20,7 @@ from advisor.decision.verdict import (
     RuleResult,
 )
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.signals.extremes import Course
+from advisor.flight.signals.power_on import Course
 from advisor.flight.signals.record import Channel
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate

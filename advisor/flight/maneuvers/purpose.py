@@ -17,7 +17,7 @@ from advisor.flight.maneuvers.feedback import explained_by_feedback
 from advisor.flight.maneuvers.hand_flying import EDGE_S, flown_elsewhere, motion_of
 from advisor.flight.maneuvers.loop import PITCH, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.maneuvers.marked_input import SWEPT
+from advisor.flight.maneuvers.markers import SWEPT
 from advisor.flight.maneuvers.movement import SMALLEST_RAD
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.record import Channel

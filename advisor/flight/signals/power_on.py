@@ -1,4 +1,4 @@
-"""A power-on of the vehicle as a whole: every channel from its first stamp to its last."""
+"""A power-on of the vehicle as a whole: every channel from its first stamp to its last, in bounded memory."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,6 +7,63 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.flight.signals.record import Channel
+
+MOST = 600
+"""Most stretches, about as many as a terminal has dots across. With more, two neighbours become one."""
+_FIRST_S = 0.25
+"""Length of a stretch at the begin, s: half a step of the quickest input that a crew flies."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Course:
+    """A channel over time, as its extremes in stretches of equal length."""
+
+    t: FloatArray
+    """Shape (n,), middle of each stretch with samples, s since boot."""
+    low: FloatArray
+    """Shape (n,), SI."""
+    high: FloatArray
+    """Shape (n,), SI."""
+
+
+class Extremes:
+    """Collects the samples of one channel, in any batches."""
+
+    def __init__(self) -> None:
+        self._begin_s = np.nan
+        self._length_s = _FIRST_S
+        self._low = np.full(MOST, np.inf)
+        self._high = np.full(MOST, -np.inf)
+
+    def add(self, t: FloatArray, y: FloatArray) -> None:
+        """Take samples: stamps and values, shape (n,) each. A sample before the first one is dropped."""
+        if np.isnan(self._begin_s):
+            self._begin_s = float(t[0])
+        late = t >= self._begin_s
+        t, y = t[late], y[late]
+        if len(t) == 0:
+            return
+        since_s = t - self._begin_s
+        while float(np.max(since_s)) / self._length_s >= MOST:
+            self._halve()
+        places = (since_s / self._length_s).astype(np.intp)
+        np.minimum.at(self._low, places, y)
+        np.maximum.at(self._high, places, y)
+
+    @property
+    def course(self) -> Course:
+        """The channel so far."""
+        known = np.flatnonzero(self._high >= self._low)
+        t = np.asarray(self._begin_s + (known + 0.5) * self._length_s, dtype=np.float64)
+        return Course(t, self._low[known], self._high[known])
+
+    def _halve(self) -> None:
+        """Join neighbours, so that the stretches reach twice as far."""
+        half = MOST // 2
+        low, high = self._low.reshape(half, 2).min(axis=1), self._high.reshape(half, 2).max(axis=1)
+        self._low, self._high = np.full(MOST, np.inf), np.full(MOST, -np.inf)
+        self._low[:half], self._high[:half] = low, high
+        self._length_s *= 2.0
 
 
 @dataclass(frozen=True, slots=True)

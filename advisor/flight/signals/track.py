@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.extremes import Extremes
 from advisor.flight.signals.messages import FloatArray, IntArray
+from advisor.flight.signals.power_on import Extremes
 from advisor.flight.signals.record import Channel
 
 _WINDOW_S = 10.0

@@ -14,7 +14,7 @@ from advisor.flight.signals.channels import (
     Decoded,
 )
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, DerivedAlpha
-from advisor.flight.signals.extremes import Course
+from advisor.flight.signals.power_on import Course
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.track import SHOWN_WHOLE, ChannelStatus, Track
 from advisor.flight.signals.true_airspeed import AS_GROUND_SPEED, AS_REPORTED, true_airspeed

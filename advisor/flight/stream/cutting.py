@@ -17,7 +17,7 @@ from advisor.flight.maneuvers.feedback import HISTORY_S
 from advisor.flight.maneuvers.ground import why_on_ground
 from advisor.flight.maneuvers.loop import PITCH, ROLL, YAW
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.maneuvers.marked_input import marked_span
+from advisor.flight.maneuvers.markers import marked_span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.purpose import Because, not_an_input
 from advisor.flight.maneuvers.side_input import SideInput, SideMovement, named, part_of_input

@@ -12,9 +12,8 @@ from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
 from advisor.flight.stream.surfaces_heard import SurfacesHeard, speakers
 from advisor.flight.vehicle.following import FOLLOW, TAKE, Following, chosen
-from advisor.flight.vehicle.imu_filters import filter_delay_s
 from advisor.flight.vehicle.modes import in_hover, mode_name
-from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, LOG_PROFILE, Parameters
+from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, LOG_PROFILE, Parameters, filter_delay_s
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
 from advisor.words.printable import printable

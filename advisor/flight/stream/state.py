@@ -15,9 +15,8 @@ from advisor.flight.maneuvers.marks import Mark, Marks
 from advisor.flight.signals.attitude import Attitudes
 from advisor.flight.signals.banks import Banks
 from advisor.flight.signals.clocks import BootClock
-from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.instrument_finding import InstrumentFinding
-from advisor.flight.signals.power_on import PowerOn
+from advisor.flight.signals.power_on import Course, PowerOn
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.signals.tracks import Tracks
@@ -32,8 +31,8 @@ from advisor.flight.stream.side_path import LOOPS, SidePath
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
 from advisor.flight.vehicle.breaks import Breaks
+from advisor.flight.vehicle.following import SenderWatch
 from advisor.flight.vehicle.pieces import Master
-from advisor.flight.vehicle.senders import SenderWatch
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.problems import Problem

@@ -7,10 +7,9 @@ the function of a control, the output that passes its stick through is this cont
 
 from collections.abc import Mapping
 
-from advisor.flight.vehicle.limits import limits
 from advisor.flight.vehicle.mixers import AILERON, ELEVATOR, RUDDER, Control, Role, arduplane_roles
 from advisor.flight.vehicle.surfaces import Scale, listed
-from advisor.flight.vehicle.wiring import Parameters, Wiring, Words
+from advisor.flight.vehicle.wiring import Parameters, Wiring, Words, limits
 
 _CHANNELS = range(1, 17)
 PREFIXES = ("SERVO", "RCMAP_", "DSPOILER_OPTS", *(f"RC{k}_REVERSED" for k in _CHANNELS))

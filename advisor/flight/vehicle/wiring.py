@@ -1,12 +1,94 @@
-"""Roles, travels and directions of servo outputs, from an autopilot's parameters."""
+"""Roles, travels, limits and directions of servo outputs, from an autopilot's parameters."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
-from advisor.flight.vehicle.limits import assumed_limits
 from advisor.flight.vehicle.mixers import Role
-from advisor.flight.vehicle.surfaces import Scale
+from advisor.flight.vehicle.surfaces import Scale, listed
 from advisor.words.problems import Problem
+
+Names = tuple[str, str, str]
+"""Parameters of the pulses at one full stroke, at zero deflection and at the other full stroke."""
+
+
+_RECORD = "Record the vehicle's parameters, or give elevator.calibration."
+
+
+def limits(names: Names, stated: Mapping[str, float], usual: Scale) -> tuple[Scale, Problem | None]:
+    """Return the scale of an output, and the problem of limits that are assumed; None where all are stated.
+
+    Parameters
+    ----------
+    names
+        Names of the limits' parameters.
+    stated
+        Values of the vehicle's parameters.
+    usual
+        Limits that are assumed where the parameters state none, and the direction of the output.
+    """
+    known = [stated.get(name) for name in names]
+    wrong = _contradiction(names, known)
+    if wrong:
+        assumed = f"{usual.low_us:g}, {usual.trim_us:g} and {usual.high_us:g} us"
+        return usual, Problem(
+            "servo_limits",
+            f"{wrong}; {assumed} are assumed.",
+            f"Set {names[0]}, {names[1]} and {names[2]} to rising pulses, or give elevator.calibration.",
+        )
+    scale = _completed(known, usual)
+    absent = [
+        f"{name} {value:g}"
+        for name, given, value in zip(names, known, (scale.low_us, scale.trim_us, scale.high_us), strict=True)
+        if given is None
+    ]
+    if not absent:
+        return scale, None
+    are = "are" if len(absent) > 1 else "is"
+    return scale, Problem(
+        "servo_limits",
+        f"{listed(absent)} {are} assumed, because no parameter states {'them' if len(absent) > 1 else 'it'}.",
+        _RECORD,
+    )
+
+
+def assumed_limits(output: int, scale: Scale) -> Problem:
+    """Return the problem of an output whose scale is assumed."""
+    return Problem(
+        "servo_limits",
+        f"Pulses of {scale.low_us:g}, {scale.trim_us:g} and {scale.high_us:g} us are assumed for output "
+        f"{output}, because no parameter states its limits.",
+        _RECORD,
+    )
+
+
+def _contradiction(names: Names, known: list[float | None]) -> str:
+    """Return in words why no linkage can have the stated limits; empty where one can."""
+    given = [(name, value) for name, value in zip(names, known, strict=True) if value is not None]
+    for name, value in given:
+        if value <= 0.0:
+            return f"{name} is {value:g}, which is no pulse"
+    # The outermost pair comes first: it names limits that are swapped.
+    for (lower, low), (upper, high) in [*zip(given[:1], given[-1:], strict=True), *pairwise(given)]:
+        if low > high:
+            return f"{lower} {low:g} is above {upper} {high:g}"
+    if len(given) > 1 and given[0][1] == given[-1][1]:
+        return (
+            f"{given[0][0]} and {given[-1][0]} are both {given[0][1]:g}, which leaves the surface no travel"
+        )
+    return ""
+
+
+def _completed(known: list[float | None], usual: Scale) -> Scale:
+    """Return stated limits, completed by the usual ones as far as these lie on the right side."""
+    given = [value for value in known if value is not None]
+    low, trim, high = known
+    low = min([usual.low_us, *given]) if low is None else low
+    high = max([usual.high_us, *given]) if high is None else high
+    if trim is None:
+        trim = usual.trim_us if low < usual.trim_us < high else 0.5 * (low + high)
+    return Scale(low, trim, high, usual.reversed)
+
 
 Parameters = Mapping[str, float]
 """Name to the value of each of the vehicle's parameters."""

@@ -18,12 +18,11 @@ from advisor.gap.records.airspeed import (
     smooth,
     speed_error_factors,
 )
-from advisor.gap.records.edges import edges_of, held_from
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.smoothness import is_filtered, is_smoothed, white_part
 from advisor.gap.records.unmeasured_alpha import is_estimate
 from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_about
-from advisor.gap.records.usable import outputs_of, recorded, usable_of
+from advisor.gap.records.usable import edges_of, held_from, outputs_of, recorded, usable_of
 from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUST
 from advisor.oem.rows import Signal
 from advisor.oem.whitened import ASSUMED_M_S

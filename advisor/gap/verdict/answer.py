@@ -57,8 +57,7 @@ from advisor.gap.verdict.reasons import (
     why_of,
 )
 from advisor.gap.verdict.statements import in_simulator
-from advisor.gap.verdict.text import sentence_of
-from advisor.gap.verdict.titles import answers_of
+from advisor.gap.verdict.text import answers_of, sentence_of
 from advisor.words.certainty import as_sure
 
 

@@ -1,4 +1,4 @@
-"""What an ArduPilot log says of itself: dropped records, a wrong clock, and its SystemID sweeps.
+"""Faults of an ArduPilot log, dropped records and a wrong clock, and its SystemID sweeps.
 
 SIDS holds the settings of a sweep when the sweep begins. SIDD holds one sample of the sweep at a time. The
 vehicle also sends a text at the begin and at the end (``AP_SystemID`` of ArduPlane), which MSG may have lost.

@@ -5,8 +5,8 @@ from textual.app import ComposeResult
 from textual.events import Resize
 from textual.message import Message
 
-from advisor.flight.signals.extremes import Course
 from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.power_on import Course
 from advisor.flight.signals.track import SHOWN_WHOLE
 from advisor.session.view import View
 from advisor.tui.panes.last_verdict import symbol_and_word

@@ -7,7 +7,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.quality import judge_quality
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.maneuvers.marked_input import SWEPT
+from advisor.flight.maneuvers.markers import SWEPT
 from advisor.flight.maneuvers.purpose import not_an_input
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimator import estimate

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.flight.signals.extremes import Extremes
+from advisor.flight.signals.power_on import Extremes
 
 
 @pytest.mark.parametrize("seconds", [30.0, 4000.0])

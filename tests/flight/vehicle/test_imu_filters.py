@@ -2,7 +2,7 @@
 
 import pytest
 
-from advisor.flight.vehicle.imu_filters import filter_delay_s
+from advisor.flight.vehicle.parameters import filter_delay_s
 
 TWENTY_HZ_S = 0.011254
 AT_20_HZ = {"INS_GYRO_FILTER": 20.0, "INS_ACCEL_FILTER": 20.0}

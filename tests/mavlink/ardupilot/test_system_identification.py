@@ -5,7 +5,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice, VehicleSaid
-from advisor.flight.maneuvers.marked_input import SWEPT
+from advisor.flight.maneuvers.markers import SWEPT
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.ardupilot.log_health import lost_texts, sweeps
 from advisor.mavlink.logs.logs import open_log
