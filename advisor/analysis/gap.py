@@ -143,12 +143,10 @@ def diagnose_logs(
     logs: Sequence[Path],
     aircraft: Aircraft,
     holdout: int | None = None,
-    target_system: int | None = None,
-    progress: Callable[[str, float], None] = lambda *_: None,
     by_hand: Sequence[ByHand] = (),
 ) -> Diagnosis:
     """Read logs and diagnose their gap to the aircraft file's model."""
-    return compare_logs(logs, aircraft, None, holdout, target_system, progress, by_hand).diagnosis
+    return compare_logs(logs, aircraft, None, holdout, by_hand=by_hand).diagnosis
 
 
 def compare_logs(

@@ -17,7 +17,6 @@ from queue import Empty, Full, Queue
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
-from advisor.aircraft.controls import Elevator
 from advisor.flight.signals.messages import Columns
 from advisor.flight.vehicle.breaks import DOWN
 from advisor.flight.vehicle.following import FOLLOW, TAKE
@@ -62,8 +61,8 @@ class Link:
     ----------
     connection
         Connection string, see ``parse_connection``.
-    source_system, source_component
-        Ids of the advisor, for all messages sent.
+    source_system
+        System id of the advisor, for all messages sent.
     target_system
         System id of the vehicle; None: the first autopilot heard.
     record_to
@@ -77,8 +76,6 @@ class Link:
         heartbeat once a second.
     inherited
         File descriptor of another process's UDP socket for the connection. None: open one.
-    elevator
-        Elevator of the aircraft file, which shows which of several vehicles has one. None: by parameters.
     patience_s
         Time for attempts at the first connection, s. A lost connection is tried for ever.
 
@@ -93,24 +90,22 @@ class Link:
         connection: str,
         *,
         source_system: int = OWN_SYSTEM,
-        source_component: int = OWN_COMPONENT,
         target_system: int | None = None,
         record_to: Path | None = None,
         goes_on: bool = False,
         key: bytes | None = None,
         talkers: Iterable[Talker] = (),
         inherited: int | None = None,
-        elevator: Elevator | None = None,
         patience_s: float = 5.0,
     ) -> None:
         self.address = parse_connection(connection)
         self._record_to, self._goes_on = record_to, goes_on
         self._patience_s = patience_s
         greeting = [Heartbeat()] if self.address.speaks_first else []
-        self._conversation = Conversation([*talkers, *greeting], (source_system, source_component), key)
+        self._conversation = Conversation([*talkers, *greeting], (source_system, OWN_COMPONENT), key)
         signatures = SignatureCheck(key) if key is not None else None
         self._intake = Intake(CRC_EXTRA, target_system, signatures)
-        self._elevator, self._target_system = elevator, target_system
+        self._target_system = target_system
         self._decoding: Decoding | None = None
         self._orders: deque[bytes | Talker | Ids] = deque()
         self._watch = LinkWatch(connection)
@@ -191,7 +186,7 @@ class Link:
             # A process that only records needs no decoder, whose kernels take long to load.
             from advisor.mavlink.link.decoding import Decoding
 
-            self._decoding = Decoding(self._elevator, self._target_system)
+            self._decoding = Decoding(None, self._target_system)
         columns = self._decoding.feed(records)
         if (vehicle := self._decoding.newly_followed()) is not None:
             self.listen_to(vehicle)

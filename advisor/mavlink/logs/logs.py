@@ -17,7 +17,6 @@ from advisor.words.problems import UnusableInputError
 def open_log(
     path: Path,
     wanted: Iterable[str] | None = None,
-    key: bytes | None = None,
     scanner: FrameScanner | None = None,
 ) -> Iterator[list[Columns]]:
     """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not.
@@ -30,17 +29,15 @@ def open_log(
     path : Path
     wanted : iterable of str, optional
         Names of the messages to return. Default: all defined messages.
-    key : bytes, optional
-        Signing key of a tlog.
     scanner : FrameScanner, optional
-        Scanner for a tlog, in place of one made with ``wanted`` and ``key``, for the sake of its statistics.
+        Scanner for a tlog, in place of one made with ``wanted``, for the sake of its statistics.
 
     Raises
     ------
     UnusableInputError
         The file is missing or no regular file. While reading: the file holds no messages.
     """
-    return _read(path, beginning_of(path), wanted, scanner or FrameScanner(wanted, key))
+    return _read(path, beginning_of(path), wanted, scanner or FrameScanner(wanted))
 
 
 def _read(

@@ -15,7 +15,6 @@ _HARDLY_ANY = 0.01
 def read_tlog(
     path: Path,
     wanted: Iterable[str] | None = None,
-    key: bytes | None = None,
     chunk_bytes: int = CHUNK_BYTES,
 ) -> Iterator[list[Columns]]:
     """Stream a log of any size: columns chunk by chunk.
@@ -25,8 +24,6 @@ def read_tlog(
     path : Path
     wanted : iterable of str, optional
         Names of the messages to decode. Default: all defined messages.
-    key : bytes, optional
-        Signing key: frames not signed with it are refused.
     chunk_bytes : int
         Bytes read at a time, without influence on the messages.
 
@@ -35,7 +32,7 @@ def read_tlog(
     UnusableInputError
         The file holds no MAVLink, which is known at its end.
     """
-    return scan_tlog(path, FrameScanner(wanted, key), chunk_bytes)
+    return scan_tlog(path, FrameScanner(wanted), chunk_bytes)
 
 
 def scan_tlog(path: Path, scanner: FrameScanner, chunk_bytes: int = CHUNK_BYTES) -> Iterator[list[Columns]]:

@@ -5,7 +5,7 @@ therefore per 500 us, with the sign of the calibration.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from advisor.aircraft.aircraft import Aircraft
@@ -67,9 +67,9 @@ def travel_of(aircraft: Aircraft, control: str) -> Travel:
     return Travel(math.radians(neutral), math.radians(travel), min(ends)[0], max(ends)[0])
 
 
-def calibrated(aircraft: Aircraft, controls: Sequence[str] = ("elevator", *LATERAL.inputs)) -> list[str]:
+def calibrated(aircraft: Aircraft) -> list[str]:
     """Return the controls that have a calibration."""
-    return [name for name in controls if _calibrations(aircraft, name)]
+    return [name for name in ("elevator", *LATERAL.inputs) if _calibrations(aircraft, name)]
 
 
 def _calibrations(aircraft: Aircraft, control: str) -> list[tuple[float, Pairs]]:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from advisor.mavlink.logs.trim import trim
 from advisor.mavlink.wire.frames import FrameScanner
+from benchmarks.trim import trim
 from tests.mavlink.builders import one_by_one
 from tests.mavlink.wire.test_frames import mixed_stream
 

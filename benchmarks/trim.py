@@ -1,6 +1,6 @@
 """Reduction of a log to the messages that the advisor reads.
 
-``python -m advisor.mavlink.logs.trim IN OUT [--drop NAME,NAME]`` copies whole records, byte for byte and in
+``python -m benchmarks.trim IN OUT [--drop NAME,NAME]`` copies whole records, byte for byte and in
 their order. Only the messages left out are missing (and their sequence numbers).
 """
 
@@ -34,7 +34,7 @@ def _frame_length(log: bytes, start: int) -> int:
 
 def main() -> None:
     """Run the command."""
-    parser = argparse.ArgumentParser(prog="python -m advisor.mavlink.logs.trim", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.trim", description=__doc__)
     parser.add_argument("source", type=Path, metavar="IN")
     parser.add_argument("target", type=Path, metavar="OUT")
     parser.add_argument("--drop", default="", metavar="NAME,NAME", help="messages to leave out as well")
