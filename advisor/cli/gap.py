@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from advisor.campaign.hand_decisions import ByHand
     from advisor.exports.models.flown import FlownModel, SideModel
     from advisor.exports.models.proof import Proof
+    from advisor.exports.models.write import ExportOutcome
     from advisor.gap.inference.prior import FieldPrior
     from advisor.gap.result import Diagnosis
 
@@ -210,8 +211,9 @@ def command(
     outcomes = write_exports(orders, partial(_improved, found, as_given, side))
     write_figure(figure, found)
     steps = next_steps(
-        found, list(map(str, asked.logs)), asked.aircraft_text, aircraft.simulator, asked.reading
-    )
+        found, list(map(str, asked.logs)), asked.aircraft_text, aircraft.simulator, asked.reading,
+        _flown_next(aircraft.simulator, out if improved else None, outcomes),
+    )  # fmt: skip
     if as_json:
         document = gap_document(found, (), str(out) if improved else None)
         more = {"exports": listed(outcomes), "next": plain(steps), **proof_document(proof)}
@@ -284,6 +286,16 @@ def _side_of(asked: LogsAsked, aircraft: "Aircraft") -> "SideModel | None":
     with Stages() as tell:
         tell("reading roll and yaw for the files", 0.0)
         return side_of_logs(asked.logs, aircraft, asked.target_system, asked.marks, no_marks=asked.no_marks)
+
+
+def _flown_next(
+    simulator: str | None, improved: Path | None, outcomes: "Sequence[ExportOutcome]"
+) -> str | None:
+    """Return the written file of the improved simulator that the simulator of the diagnosis can fly."""
+    kind, _, _ = (simulator or "linear").partition(":")
+    files = [one.order.file for one in outcomes if one.order.format == kind and not one.problem]
+    file = next(iter(files), None) if kind != "linear" else improved
+    return None if file is None else str(file)
 
 
 def _improved(

@@ -36,6 +36,7 @@ def next_steps(
     aircraft_file: str | None,
     simulator: str | None = None,
     options: Sequence[str] = (),
+    written: str | None = None,
 ) -> list[GapStep]:
     """Return what to put into the simulator, how to prove the change, and what excludes the rival.
 
@@ -49,6 +50,8 @@ def next_steps(
         Specification of the simulator; None where the aircraft file's model is the simulator.
     options
         Options that say how the logs were read, as given.
+    written
+        File of the improved simulator that is there already: no step writes it again.
     """
     found = []
     answers = answers_of(d.evidence)
@@ -56,9 +59,11 @@ def next_steps(
         return [to_decide(answers, _way_of(d), d.why)]
     if what := _to_put(d):
         read = ["advisor", "gap", *logs, *options]
-        write, proved, formats = _improvement(improved_name(d, aircraft_file), aircraft_file, simulator)
-        command = shlex.join([*read, *write]) if write else ""
-        found.append(GapStep(f"Put into the simulator: {what}.{formats}", command))
+        better = written or improved_name(d, aircraft_file)
+        write, proved, formats = _improvement(better, aircraft_file, simulator)
+        if written is None:
+            command = shlex.join([*read, *write]) if write else ""
+            found.append(GapStep(f"Put into the simulator: {what}.{formats}", command))
         prove = shlex.join([*read, *proved])
         found.append(GapStep("Prove the change: the gap must fall to what is printed above.", prove))
     if rival := _against_the_rival(d):
@@ -82,7 +87,7 @@ def _improvement(
     own = [*aircraft, "--simulator", str(simulator)]
     if kind != "jsbsim":
         return [], own, ""
-    model = f"{Path(better).stem}.xml"
+    model = str(Path(better).with_suffix(".xml"))
     return [*own, "--export", f"jsbsim:{model}"], [*aircraft, "--simulator", f"jsbsim:{model}"], ""
 
 

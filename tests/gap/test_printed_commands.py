@@ -57,6 +57,20 @@ def test_the_aircraft_file_that_is_written_is_the_one_that_is_flown():
     assert put["out"] == prove["aircraft_file"] == Path("mine-with-transport-delay.yaml")
 
 
+@pytest.mark.parametrize(
+    ("simulator", "written", "flies"),
+    [
+        (None, "out/better.yaml", "--aircraft out/better.yaml"),
+        ("jsbsim:c172p", "out/better.xml", "--aircraft mine.yaml --simulator jsbsim:out/better.xml"),
+    ],
+)
+def test_after_the_file_is_written_the_next_step_flies_it(simulator, written, flies):
+    first, *_ = next_steps(FOUND, LOGS, "mine.yaml", simulator, (), written)
+    assert first.text.startswith("Prove the change")
+    assert first.command == f"advisor gap 'my flight.tlog' second.bin {flies}"
+    assert taken(first.command)
+
+
 def test_a_log_is_read_as_it_was_read_for_the_answer():
     marks = (Mark(12.0, 24.5, from_log_start=True), Mark(100.25, 110.0))
     asked = LogsAsked((Path("a.tlog"),), target_system=7, marks=marks, no_marks=True)
