@@ -196,7 +196,7 @@ def compare_flown(
         as_true = _simulator_at_true_speed(simulator, air.true_over_read)
         compared = compare(chosen.maneuvers, as_true, at_true_speed, holdout, progress, prior)
     else:
-        whole = examine(chosen.maneuvers, at_true_speed, holdout, progress, prior)
+        whole = stays = examine(chosen.maneuvers, at_true_speed, holdout, progress, prior)
         told = whole.diagnosis
         if prior_derivatives(aircraft) is None:
             told = without_simulator(told)
@@ -204,10 +204,11 @@ def compare_flown(
             progress("searching again without the manoeuvres kept apart", 0.9)
             unseen = unseen_of(whole, chosen.maneuvers, at_true_speed, holdout, prior)
             if unseen is not None:
-                told = with_unseen_shrink(whole, unseen, at_true_speed)
-                told = replace(told, notes=(*other_finding(whole.diagnosis, unseen), *told.notes))
+                stays = with_unseen_shrink(whole, unseen, at_true_speed)
+                notes_first = (*other_finding(whole.diagnosis, unseen), *stays.diagnosis.notes)
+                told = replace(stays.diagnosis, notes=notes_first)
         told = with_static_errors(told, whole)
-        compared = Compared(told, aircraft)
+        compared = Compared(told, aircraft, stays.findings)
     notes = [*chosen.notes, *flown.notes]
     if flown.again:
         every = len(flown.maneuvers) + flown.again

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from advisor.exports.models.write import ExportOutcome
     from advisor.gap.inference.prior import FieldPrior
     from advisor.gap.result import Diagnosis
+    from advisor.simulators.compare import Compared
 
 Found = TypeVar("Found")
 
@@ -201,7 +202,7 @@ def command(
     if isinstance(compared, int):
         return compared
     found = compared.diagnosis
-    proof = proof_of(proving, partial(_prove, asked, by_hand, aircraft, shares))
+    proof = proof_of(proving, partial(_prove, asked, by_hand, aircraft, shares, compared))
     if proof is not None:
         found = proof.stays_of(found, compared.aircraft.model)
     side = cache(partial(_side_of, asked, aircraft))
@@ -265,6 +266,7 @@ def _prove(
     by_hand: "Sequence[ByHand]",
     aircraft: "Aircraft",
     prior: "FieldPrior",
+    whole: "Compared",
     named: Sequence[Path],
     tell: Callable[[str, float], None],
 ) -> "Proof":
@@ -276,7 +278,7 @@ def _prove(
     flown = maneuvers_of(asked.logs, aircraft, asked.target_system, by_hand)
     decided = [decided_on(log, asked.no_marks) for log in named]
     fresh = maneuvers_of(named, aircraft, asked.target_system, decided) if named else None
-    return prove(flown, fresh, aircraft, asked.target_system, tell, prior)
+    return prove(flown, fresh, aircraft, asked.target_system, tell, prior, whole)
 
 
 def _side_of(asked: LogsAsked, aircraft: "Aircraft") -> "SideModel | None":

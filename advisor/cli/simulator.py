@@ -69,7 +69,7 @@ def check(
     try:
         simulator = named_simulator(aircraft)
         assert simulator is not None
-        found = checked(simulator, Condition(speed, high, 0.0, aircraft.reference.mass_kg))
+        found = checked(simulator, Condition(speed, high, 0.0, aircraft.reference.mass_kg), aircraft)
     except UnusableInputError as error:
         click.echo(str(error), err=True)
         return UNUSABLE

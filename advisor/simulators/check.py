@@ -1,6 +1,6 @@
 """A simulator checked before its physics: it trims, rests, answers every control, and means SI units."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import nan
@@ -12,6 +12,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.gap.records.prepare import prepare
+from advisor.gap.result import spelled
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, natural_frequency
 from advisor.simulators.flying import Flying
 from advisor.simulators.interface import InterfaceFault, control_fault, interface_fault, side_fault
@@ -69,8 +70,10 @@ class CheckedSimulator:
     notes: tuple[str, ...] = ()
 
 
-def check(simulator: Simulator, condition: Condition) -> CheckedSimulator:
+def check(simulator: Simulator, condition: Condition, aircraft: Aircraft) -> CheckedSimulator:
     """Fly a simulator at rest and through a 3-2-1-1, and identify its short period.
+
+    The simulator flies alone; a note names the effects of the aircraft file that are left out.
 
     Raises
     ------
@@ -86,7 +89,8 @@ def check(simulator: Simulator, condition: Condition) -> CheckedSimulator:
     found = CheckedSimulator(
         simulator.description, condition.airspeed_m_s, condition.height_m, float(still.alpha[0]), still.trim,
         float(still.a_z[0]), float(np.max(np.abs(still.q))), tuple(sorted(takes)),
-        tuple(sorted({*offered, "increments"} - takes)), notes=tuple(getattr(simulator, "notes", ())),
+        tuple(sorted({*offered, "increments"} - takes)),
+        notes=(*getattr(simulator, "notes", ()), *_not_flown(aircraft)),
     )  # fmt: skip
     _refuse_unmoved(flown, simulator.description)
     fault = interface_fault(flown) or control_fault("elevator", -1.0, _answer(flown))
@@ -97,6 +101,17 @@ def check(simulator: Simulator, condition: Condition) -> CheckedSimulator:
     if fault is not None:
         return replace(found, fault=fault)
     return _check_side(found, simulator, condition)
+
+
+def _not_flown(aircraft: Aircraft) -> Iterator[str]:
+    """Yield a sentence on what the aircraft file adds to its simulator in ``advisor gap`` alone."""
+    servo = aircraft.elevator
+    added = [f"servo {name}" for name, size in (("lag", servo.lag_s), ("delay", servo.delay_s)) if size]
+    if added := [*added, *map(spelled, aircraft.effects)]:
+        yield (
+            "The check flies the simulator alone. It leaves out what advisor gap adds from the aircraft "
+            f"file: {', '.join(added)}."
+        )
 
 
 def _stamps(lasts_s: float) -> FloatArray:

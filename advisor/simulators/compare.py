@@ -17,6 +17,7 @@ from advisor.gap.candidates.known import with_known
 from advisor.gap.diagnose import Examined, examine
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.inference.findings import Findings
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.prepare import prepare
@@ -67,6 +68,8 @@ class Compared:
     diagnosis: Diagnosis
     aircraft: Aircraft
     """The aircraft file with the simulator's surrogate as its model."""
+    findings: Findings | None = None
+    """Findings behind the diagnosis."""
 
 
 def compare(
@@ -149,7 +152,7 @@ def compare(
         *still_air_said(simulator, blown),
         *other_finding(examined.diagnosis, unseen),
     )
-    return Compared(replace(found, notes=(*notes, *found.notes)), as_file)
+    return Compared(replace(found, notes=(*notes, *found.notes)), as_file, stays.findings)
 
 
 def _measured(
@@ -164,7 +167,7 @@ def _measured(
     if unseen is not None and flown.after is not None and not gap.on_paper:
         diagnosis = resaid(diagnosis, shrink_on(examined, unseen, flown.before, flown.after), as_file)
     elif unseen is not None:
-        diagnosis = with_unseen_shrink(examined, unseen, as_file)
+        diagnosis = with_unseen_shrink(examined, unseen, as_file).diagnosis
     elif changes_something(diagnosis):
         gap = replace(gap, after=None, percent=None)
     notes = diagnosis.notes

@@ -7,7 +7,7 @@ from typing import Protocol, TypeVar
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import Examined
-from advisor.gap.result import VISIBLE, Diagnosis, spelled
+from advisor.gap.result import VISIBLE, spelled
 from advisor.simulators.unseen import UnseenManeuvers, by_the_file, resaid, shrink_on
 
 
@@ -65,12 +65,13 @@ def without_worse(
     return replace(stays, diagnosis=replace(stays.diagnosis, taken_back=(said,))), best
 
 
-def with_unseen_shrink(whole: Examined, unseen: UnseenManeuvers, aircraft: Aircraft) -> Diagnosis:
+def with_unseen_shrink(whole: Examined, unseen: UnseenManeuvers, aircraft: Aircraft) -> Examined:
     """Return the diagnosis against an aircraft file's model, with the shrink on the manoeuvres kept apart."""
     if whole.findings.problem.prior_derivatives is None:
-        return whole.diagnosis
-    whole, flown = without_worse(whole, unseen, partial(by_the_file, whole))
-    return resaid(whole.diagnosis, shrink_on(whole, unseen, flown.before, flown.after), aircraft)
+        return whole
+    stays, flown = without_worse(whole, unseen, partial(by_the_file, whole))
+    shrink = shrink_on(stays, unseen, flown.before, flown.after)
+    return replace(stays, diagnosis=resaid(stays.diagnosis, shrink, aircraft))
 
 
 def taken_back_said(parts: Sequence[str], maneuvers: Sequence[int], worse: float, better: float) -> str:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.cli import group as cli
 from advisor.simulators.check import check
 from advisor.simulators.linear import LinearSimulator
@@ -32,7 +33,7 @@ def make_turned() -> Turned:
 
 
 def test_dead_time_lag_and_short_period_are_those_of_the_simulator():
-    found = check(Nonlinear(delay_s=0.04, lag_s=0.08), LEVEL)
+    found = check(Nonlinear(delay_s=0.04, lag_s=0.08), LEVEL, Aircraft())
     # A lag and a dead time share the delay between them, and the simulator's own step of 10 ms adds half of
     # itself.
     assert found.dead_time_s + found.lag_s == pytest.approx(0.125, abs=0.012)
@@ -43,7 +44,7 @@ def test_dead_time_lag_and_short_period_are_those_of_the_simulator():
 
 
 def test_a_linear_simulator_shows_its_own_numbers():
-    found = check(LinearSimulator(MODEL), LEVEL)
+    found = check(LinearSimulator(MODEL), LEVEL, Aircraft())
     for name, value in MODEL.items():
         assert found.derivatives[name] == pytest.approx(value, rel=0.02, abs=0.02)
     assert found.damping == pytest.approx((2.7 + 3.4) / (2.0 * found.omega_rad_s), rel=0.02)
@@ -51,21 +52,21 @@ def test_a_linear_simulator_shows_its_own_numbers():
 
 
 def test_an_elevator_that_pitches_up_trailing_edge_down_is_a_fault():
-    found = check(LinearSimulator(MODEL | {"M_delta_e": 29.0, "Z_delta_e": 0.15}), LEVEL)
+    found = check(LinearSimulator(MODEL | {"M_delta_e": 29.0, "Z_delta_e": 0.15}), LEVEL, Aircraft())
     assert found.fault is not None
     assert "the wrong direction: it pitches up" in found.fault.found
 
 
 def test_an_elevator_in_degrees_is_a_fault():
     weak = {name: value / np.degrees(1.0) for name, value in MODEL.items() if name.endswith("delta_e")}
-    found = check(LinearSimulator(MODEL | weak), LEVEL)
+    found = check(LinearSimulator(MODEL | weak), LEVEL, Aircraft())
     assert found.fault is not None
     assert "It takes degrees" in found.fault.fix
 
 
 def test_a_simulator_that_stands_still_is_refused():
     with pytest.raises(UnusableInputError, match="does not move: through a 3-2-1-1"):
-        check(Level(), LEVEL)
+        check(Level(), LEVEL, Aircraft())
 
 
 @dataclass(frozen=True)
@@ -87,13 +88,13 @@ class Rolls(Nonlinear):
 
 
 def test_the_aileron_is_flown_and_its_roll_is_known():
-    found = check(Rolls(), LEVEL)
+    found = check(Rolls(), LEVEL, Aircraft())
     assert found.fault is None
     assert found.side["L_delta_a"] == pytest.approx(-20.0, rel=0.05)
 
 
 def test_an_aileron_that_rolls_to_the_other_side_is_a_fault():
-    found = check(Rolls(sense=-1.0), LEVEL)
+    found = check(Rolls(sense=-1.0), LEVEL, Aircraft())
     assert found.fault is not None
     assert "it rolls to the other side" in found.fault.found
 
@@ -112,6 +113,16 @@ def test_the_command_prints_what_answers_and_what_is_not_taken(capsys, monkeypat
     assert "at rest     a_z -9.79 m/s²" in out
     assert "dead time" in out
     assert "does not take mass: it flies at its own mass" in out
+
+
+def test_the_check_says_which_effects_of_the_file_it_leaves_out(capsys, monkeypatch, tmp_path):
+    """Advisor gap flies the simulator with the file's servo and effects, so that its motion is later."""
+    file = tmp_path / "mine.yaml"
+    file.write_text("airspeed_m_s: 25\nelevator: {lag_s: 0.1}\neffects: {transport_delay: {delay_s: 0.06}}\n")
+    arguments = ("python:tests.simulators.nonlinear:make", "--aircraft", file)
+    code, out, _ = said(capsys, monkeypatch, *arguments)
+    assert code == 0
+    assert "It leaves out what advisor gap adds from the aircraft file: servo lag, transport delay." in out
 
 
 def test_a_wrong_unit_is_exit_code_3_and_one_sentence(capsys, monkeypatch):

@@ -108,7 +108,7 @@ def test_the_linear_simulator_gives_the_diagnosis_that_the_aircraft_file_gives()
     maneuvers = flown(replace(PLAIN, lag_s=0.08))
     file = Aircraft(model=model)
     whole, beside = examine(maneuvers, file), compare(maneuvers, LinearSimulator(model), file).diagnosis
-    plain = with_unseen_shrink(whole, unseen_of(whole, maneuvers, file, None), file)
+    plain = with_unseen_shrink(whole, unseen_of(whole, maneuvers, file, None), file).diagnosis
     assert beside.causes == plain.causes
     assert beside.gap == plain.gap
     assert beside.shrink.holdout == plain.shrink.holdout

@@ -11,21 +11,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.analysis.gap import GapFlights, compare_flown, named_simulator
 from advisor.exports.models.flown import FlownModel, file_of, improved_model
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
+from advisor.exports.models.proved_finding import NUMBERS, as_it_ended, sized_without, without
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import changes_in, lasting, less_of_the_servo, together
+from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.records.as_stamped import as_stamped
-from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Diagnosis, spelled
-from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.simulators.compare import Compared
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.taken_back import taken_back_said
@@ -35,7 +30,6 @@ Progress = Callable[[str, float], None]
 LEAST_KEPT, LEAST_FITTED = 2, 3
 """Least number of manoeuvres that are kept apart, and that the improvement is fitted to: one names no
 effect, and a search holds one out."""
-_NUMBERS = "the fitted numbers"
 
 
 @dataclass(frozen=True)
@@ -63,6 +57,9 @@ class Proof:
     """Parts of the improvement with which the gap does not fall: effects, or the fitted numbers."""
     gap_with_them: float | None = None
     """Gap with these parts; None where nothing was taken back."""
+    alone: str = ""
+    """Sentence of the fitted manoeuvres alone, where they name no correction: that of all manoeuvres was
+    flown. Empty otherwise."""
 
     @property
     def is_closed(self) -> bool:
@@ -79,7 +76,7 @@ class Proof:
         """
         if not self.taken_back or self.gap_with_them is None:
             return found
-        words = [one if one == _NUMBERS else spelled(one) for one in self.taken_back]
+        words = [one if one == NUMBERS else spelled(one) for one in self.taken_back]
         said = taken_back_said(words, self.maneuvers, self.gap_with_them, self.after)
         for part in self.taken_back:
             found = without(found, part, given)
@@ -93,8 +90,12 @@ def prove(
     target_system: int | None = None,
     progress: Progress = lambda *_: None,
     prior: FieldPrior = FIELD,
+    whole: Compared | None = None,
 ) -> Proof:
     """Improve the simulator by some manoeuvres, and fly others.
+
+    Where these manoeuvres alone name no correction, that of the whole flight is flown, with sizes fitted to
+    these manoeuvres alone.
 
     Parameters
     ----------
@@ -102,6 +103,8 @@ def prove(
         Manoeuvres of the diagnosis.
     fresh
         Manoeuvres of other logs; None keeps the last third of ``flown`` apart.
+    whole
+        Comparison of ``flown``.
 
     Raises
     ------
@@ -113,8 +116,11 @@ def prove(
         some, last = parted(flown.maneuvers)
         fitted, kept = replace(flown, maneuvers=list(some)), replace(flown, maneuvers=list(last))
     first = _compared(fitted, aircraft, target_system, progress, prior)
-    found = first.diagnosis
-    refuse_unimproved(found.improves, found.sentence, len(fitted.maneuvers))
+    found, alone = first.diagnosis, ""
+    if fresh is None and not found.improves and whole is not None and whole.findings is not None:
+        alone = found.sentence
+        found = sized_without(whole.diagnosis, whole.findings, [m.number for m in kept.maneuvers])
+    refuse_unimproved(found.improves, alone or found.sentence, len(fitted.maneuvers))
     if fresh is None:
         found = as_it_ended(found, fitted.maneuvers, first.aircraft)
 
@@ -127,7 +133,7 @@ def prove(
     after, left = every, _ = asked_again(found)
     taken: tuple[str, ...] = ()
     if every.gap.before >= before.gap.before:
-        parts = [*found.effects, _NUMBERS]
+        parts = [*found.effects, NUMBERS]
         tried = [(*asked_again(without(found, part, first.aircraft.model)), (part,)) for part in parts]
         nothing = (before, (), tuple(parts))
         after, left, taken = min((*tried, nothing), key=lambda one: one[0].gap.before)
@@ -139,42 +145,13 @@ def prove(
         after=after.gap.before,
         floor=after.gap.floor,
         by_maneuver=tuple((n, was[n], now[n]) for n in now if n in was),
-        first=" + ".join(named(first.diagnosis)) or str(first.diagnosis.verdict),
+        first=" + ".join(named(found)) or str(found.verdict),
         second=after.verdict,
         sentence=after.sentence,
         not_carried=left,
         taken_back=taken,
         gap_with_them=every.gap.before if taken else None,
-    )
-
-
-def as_it_ended(found: Diagnosis, maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Diagnosis:
-    """Return a finding with its changes in flight as other numbers: those of the last manoeuvre of its fit.
-
-    Later manoeuvres of the flight begin with the changed aircraft.
-    """
-    if lasting(found.effects) == found.effects:
-        return found
-    flights = prepare([as_stamped(m) for m in maneuvers if m.number in found.maneuvers], aircraft)
-    p = np.zeros((len(flights), len(ENTRIES)))
-    p[:, : len(DERIVATIVES)] = [found.model[name].value for name in DERIVATIVES]
-    effects = dict(found.effects)
-    for change, values in changes_in(effects, variants_for(flights)):
-        change.apply(p, values, flights)
-        del effects[change.effect]
-    ended = {name: replace(found.model[name], value=float(p[-1, INDEX[name]])) for name in DERIVATIVES}
-    return replace(found, model={**found.model, **ended}, effects=effects)
-
-
-def without(found: Diagnosis, part: str, given: Mapping[str, float]) -> Diagnosis:
-    """Return a finding without one of its effects, or with the numbers of the simulator as given."""
-    if part == _NUMBERS:
-        own = {name: replace(one, value=given.get(name, one.value)) for name, one in found.model.items()}
-        return replace(found, model=own, derivatives=(), is_left_as_given=not found.effects)
-    return replace(
-        found,
-        effects={effect: sizes for effect, sizes in found.effects.items() if effect != part},
-        causes=tuple(replace(c, present=c.present and c.effect != part) for c in found.causes),
+        alone=alone,
     )
 
 
@@ -184,6 +161,9 @@ def lines_of(proof: Proof) -> Iterator[str]:
     yield f"Proof on manoeuvres {flown}, which no fit has used: gap {proof.before:.2f} → {proof.after:.2f}"
     for number, before, after in proof.by_maneuver:
         yield f"  manoeuvre {number}: {before:.2f} → {after:.2f}"
+    if proof.alone:
+        yield "  The correction is that of all manoeuvres; its sizes are fitted without those of the proof."
+        yield f"  Without them the flight says: {proof.alone}"
     left = "nothing above the noise" if proof.second == "none" else proof.sentence
     yield f"  asked again, the improved simulator lacks: {left}"
     for one in proof.not_carried:
@@ -284,4 +264,6 @@ def document(proof: Proof) -> dict[str, object]:
         "second": {"verdict": proof.second, "sentence": proof.sentence},
         "closed": proof.is_closed,
         "not_carried": list(proof.not_carried),
+        "taken_back": list(proof.taken_back),
+        "fit_alone": proof.alone or None,
     }

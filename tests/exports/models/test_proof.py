@@ -3,15 +3,19 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import GapFlights
 from advisor.exports.models import proof
+from advisor.exports.models.proved_finding import as_it_ended, sized_without
+from advisor.gap.fitting.fit import fit
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.kit.between import breaks
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Value
-from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, NUISANCES
 from advisor.simulators.compare import Compared
 from advisor.words.problems import UnusableInputError
 from tests.exports.models.test_orders import found
@@ -84,7 +88,7 @@ def test_people_read_the_gap_before_and_after_and_the_second_answer(asked):
 def test_a_change_in_flight_has_come_before_the_last_manoeuvres():
     maneuvers = flown(maneuvers=4)
     numbers = dict.fromkeys(DERIVATIVES, Value(-1.0, 0.1))
-    ended = proof.as_it_ended(
+    ended = as_it_ended(
         found(
             maneuvers=tuple(m.number for m in maneuvers),
             model=numbers | {"Z_0": Value(0.0, 0.1)},
@@ -133,3 +137,50 @@ def test_nothing_stays_where_each_part_makes_the_gap_worse(monkeypatch):
     made = proof.prove(flights(1, 2, 3, 4, 5, 6), None, FILE)
     assert (made.before, made.after, made.gap_with_them) == (2.0, 2.0, 3.0)
     assert not made.stays_of(answer(2.0, "effect", (1, 2)), FILE.model).improves
+
+
+def test_few_manoeuvres_without_an_answer_fly_the_answer_of_all_with_their_own_sizes(monkeypatch):
+    sized = []
+
+    def compared(flown, aircraft, simulator, holdout, progress, prior):
+        numbers = tuple(m.number for m in flown.maneuvers)
+        late = "transport_delay" in aircraft.effects
+        verdict = "unknown" if len(numbers) == 4 else "none"
+        return Compared(answer(0.1 if late else 6.0, verdict, numbers), aircraft)
+
+    def sized_without(found, findings, kept):
+        sized.append((findings, kept))
+        return found
+
+    monkeypatch.setattr(proof, "compare_flown", compared)
+    monkeypatch.setattr(proof, "sized_without", sized_without)
+    whole = Compared(answer(6.0, "effect", (1, 2, 3, 4, 5, 6)), FILE, "findings of all")
+    made = proof.prove(flights(1, 2, 3, 4, 5, 6), None, FILE, whole=whole)
+    assert sized == [("findings of all", [5, 6])]
+    assert (made.before, made.after) == (6.0, 0.1)
+    assert "  The correction is that of all manoeuvres; its sizes are fitted without those of the proof." in (
+        proof.lines_of(made)
+    )
+
+
+@pytest.mark.parametrize("kept", [(), (3,)])
+def test_sizes_are_those_of_a_fit_that_has_not_seen_the_manoeuvres_kept_apart(kept):
+    """The third manoeuvre's elevator moved half as far as logged, which contradicts the other two."""
+    *others, third = flown(maneuvers=3)
+    logged = third.channels["elevator"]
+    strange = replace(third, channels={**third.channels, "elevator": replace(logged, y=2.0 * logged.y)})
+
+    def fitted(maneuvers):
+        flights = prepare(maneuvers, FILE)
+        own = np.zeros((len(flights), len(NUISANCES)))
+        start = SearchPoint(np.array([-2.7, 0.0, -0.15, -23.0, -3.4, -29.0]), own)
+        problem = EffectProblem(flights, np.zeros(len(ENTRIES)))
+        return problem, fit(problem, start)
+
+    problem, whole = fitted([*others, strange])
+    findings = SimpleNamespace(problem=problem, last=SimpleNamespace(fitted=whole))
+    model = dict.fromkeys(DERIVATIVES, Value(0.0, 0.1))
+    sized = sized_without(found(model=model, effects={}), findings, kept)
+    _, alone = fitted(others)
+    told = sized.model["M_delta_e"].value
+    assert (told == pytest.approx(alone.point.derivatives[5], rel=0.1)) == bool(kept)
