@@ -2,12 +2,15 @@
 
 from pathlib import Path
 
+import pytest
+
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.hand_decisions import NOTHING
 from advisor.cli.screen import _campaign
 from tests.conftest import Advisor
 from tests.flights import TWO, recorded
 
+pytestmark = pytest.mark.usefixtures("recorded_analyses")
 BIN = Path(__file__).parents[1] / "cases" / "base.bin"
 
 

@@ -15,6 +15,7 @@ from tests.cli.processes import finished, flight
 
 Said = Callable[..., tuple[int, str, str]]
 """Called with an encoding and the words of the command line: exit code, output, errors."""
+pytestmark = pytest.mark.usefixtures("recorded_analyses")
 COMMANDS: dict[str, list[str]] = {
     "analyze": ["analyze"],
     "doctor": ["doctor"],
@@ -41,7 +42,6 @@ def said(monkeypatch: pytest.MonkeyPatch) -> "Said":
     return call
 
 
-@pytest.mark.usefixtures("recorded_analyses")
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_command_prints_in_any_encoding(command: str, encoding: str, said: Said) -> None:

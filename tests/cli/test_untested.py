@@ -8,6 +8,8 @@ import pytest
 from tests.conftest import Advisor
 from tests.flights import recorded
 
+pytestmark = pytest.mark.usefixtures("recorded_analyses")
+
 
 @pytest.fixture(scope="module")
 def untested() -> Path:

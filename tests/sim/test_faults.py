@@ -32,12 +32,13 @@ def sound():
     return written()
 
 
-@pytest.fixture
-def shown(tmp_path):
-    """Messages by name as pymavlink decodes them from the log of a flight."""
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory):
+    """Messages by name as pymavlink decodes them from the log of a flight; one log is decoded once."""
+    path = tmp_path_factory.mktemp("shown") / "flight.tlog"
 
-    def read(data):
-        path = tmp_path / "flight.tlog"
+    @cache
+    def decoded(data):
         path.write_bytes(data)
         found = defaultdict(list)
         names = {kind.msgname for kind in mavlink.mavlink_map.values()}
@@ -45,7 +46,7 @@ def shown(tmp_path):
             found[message.get_type()].append((host_s, message))
         return found
 
-    return read
+    return lambda data: defaultdict(list, decoded(data))
 
 
 def column(log, name, field):

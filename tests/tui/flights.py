@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,7 @@ AIRCRAFT = Aircraft(
 VEHICLE = Vehicle(1, 1, "ardupilot", 1)
 
 
+@cache
 def response(
     direction: float, seconds: float = 8.0
 ) -> tuple[NDArray[np.float64], Mapping[str, NDArray[np.float64]]]:

@@ -77,7 +77,7 @@ async def test_a_mark_made_in_a_replay_is_judged_kept_and_there_again_in_the_nex
     log = Path(shutil.copy(recorded("linear", 1.0, maneuvers=TWO), tmp_path / "flight.tlog"))
     engineer = Settings(screen="engineer")
     app, player = opened(log, 8.0, engineer)
-    async with app.run_test(size=(160, 45)) as pilot:
+    async with app.run_test(size=(80, 24)) as pilot:
         here = Stage(app, pilot, None, player)
         await here.until(lambda: app.view.state.now_s > 26.0, patience_s=60.0)
         await here.press("b")
@@ -92,7 +92,7 @@ async def test_a_mark_made_in_a_replay_is_judged_kept_and_there_again_in_the_nex
         await here.until(lambda: "bumpy" in path_beside(log).read_text(encoding="utf-8"))
         await here.until(lambda: "decisions by hand are kept in" in "\n".join(app.view.log))
     app, player = opened(log, inf, engineer)
-    async with app.run_test(size=(160, 45)) as pilot:
+    async with app.run_test(size=(80, 24)) as pilot:
         here = Stage(app, pilot, None, player)
         await here.until(lambda: len(app.view.state.maneuvers) == 2, patience_s=60.0)
         again = app.view.state.maneuvers[0]

@@ -8,6 +8,7 @@ import pytest
 from advisor.flight.maneuvers.events import Activity
 from tests.flights import SHIPPED, TWO, recorded
 
+pytestmark = pytest.mark.usefixtures("recorded_analyses")
 CRUISE = Activity(
     10.0,
     12.0,

@@ -30,6 +30,17 @@ def flight() -> Path:
     return path
 
 
+@cache
+def as_telemetry() -> list[Maneuver]:
+    return flown(flight())
+
+
+@cache
+def own_log(fast: bool, tail: str) -> list[Maneuver]:
+    """The flight's manoeuvres in the log that the autopilot of an aircraft with such a tail keeps."""
+    return logged(dataflash_of(flight(), FAST if fast else DEFAULT, tail))
+
+
 def flown(path: Path) -> list[Maneuver]:
     stream = FlightStream(Aircraft())
     events = [event for batch in open_log(path) for event in stream.feed(batch)]
@@ -43,37 +54,37 @@ def model(maneuvers: list[Maneuver]) -> Estimate:
 
 
 @cache
-def as_telemetry() -> Estimate:
-    return model(flown(flight()))
+def model_of_telemetry() -> Estimate:
+    return model(as_telemetry())
 
 
 def apart(ours: Estimate) -> np.ndarray:
     """Differences of the derivatives, in shares of their joint 95 % interval."""
-    theirs = as_telemetry()
+    theirs = model_of_telemetry()
     return (np.abs(ours.theta - theirs.theta) / (1.96 * np.hypot(ours.std, theirs.std)))[DERIVATIVES]
 
 
-def logged(tmp_path: Path, content: bytes) -> list[Maneuver]:
-    path = tmp_path / "flight.bin"
+def logged(content: bytes) -> list[Maneuver]:
+    path = FOLDER / "own-log.bin"
     path.write_bytes(content)
     return flown(path)
 
 
-@pytest.mark.parametrize("rates", [DEFAULT, FAST], ids=["default", "fast"])
-def test_the_autopilots_own_log_tells_of_the_same_aircraft(tmp_path: Path, rates: dict[str, float]) -> None:
-    maneuvers = logged(tmp_path, dataflash_of(flight(), rates, "elevon"))
-    assert [m.span.kind for m in maneuvers] == [m.span.kind for m in flown(flight())]
+@pytest.mark.parametrize("fast", [False, True], ids=["default", "fast"])
+def test_the_autopilots_own_log_tells_of_the_same_aircraft(fast: bool) -> None:
+    maneuvers = own_log(fast, "elevon")
+    assert [m.span.kind for m in maneuvers] == [m.span.kind for m in as_telemetry()]
     assert np.all(apart(model(maneuvers)) < 1.0)
 
 
 @pytest.mark.parametrize("tail", ["elevon", "V-tail"])
-def test_a_mixed_tail_is_read_as_the_elevator_that_it_makes(tmp_path: Path, tail: str) -> None:
-    plain, mixed = (logged(tmp_path, dataflash_of(flight(), DEFAULT, made)) for made in ("elevator", tail))
+def test_a_mixed_tail_is_read_as_the_elevator_that_it_makes(tail: str) -> None:
+    plain, mixed = own_log(False, "elevator"), own_log(False, tail)
     assert [m.span.kind for m in mixed] == [m.span.kind for m in plain]
     for ours, theirs in zip(mixed, plain, strict=True):
         np.testing.assert_allclose(ours.channels["elevator"].y, theirs.channels["elevator"].y, atol=1e-9)
 
 
-def test_without_imu_the_angles_tell_of_the_same_aircraft(tmp_path: Path) -> None:
+def test_without_imu_the_angles_tell_of_the_same_aircraft() -> None:
     content = dataflash_of(flight(), DEFAULT, "elevator").replace(b"IMU\0Q", b"XXX\0Q")
-    assert np.all(apart(model(logged(tmp_path, content))) < 1.0)
+    assert np.all(apart(model(logged(content))) < 1.0)
