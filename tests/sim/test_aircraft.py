@@ -1,9 +1,11 @@
 """The bundled aircraft's flight dynamics against analytic answers."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 from sim.airframe import GRAVITY_M_S2, LIGHT_AIRCRAFT, UAV, as_record
 from sim.linear import RESEARCH_JET
@@ -12,6 +14,7 @@ from sim.motion import Controls
 from sim.nonlinear_aircraft import NonlinearAircraft
 from sim.trim import TrimError, trim_level
 
+EXAMPLE = Path(__file__).parents[2] / "docs" / "data" / "examples" / "uav.yaml"
 AIRCRAFT = [(UAV, 25.0), (LIGHT_AIRCRAFT, 55.0)]
 
 
@@ -107,3 +110,14 @@ def test_the_light_aircraft_has_the_slower_short_period():
     uav = NonlinearAircraft(UAV, 25.0, 100.0).truth.frequency()
     light = NonlinearAircraft(LIGHT_AIRCRAFT, 55.0, 100.0).truth.frequency()
     assert light < 0.65 * uav
+
+
+def test_the_example_file_states_the_mass_and_the_wing_that_fly():
+    stated = yaml.safe_load(EXAMPLE.read_text(encoding="utf-8"))["reference"]
+    assert stated == {
+        "mass_kg": UAV.mass,
+        "wing_area_m2": UAV.wing_area,
+        "chord_m": UAV.chord,
+        "span_m": UAV.span,
+        "iyy_kg_m2": UAV.iyy,
+    }
