@@ -123,6 +123,14 @@ def test_thirty_manoeuvres_print_on_at_most_twelve_pages(reported: Reported, tmp
 
 
 @pytest.mark.skipif(BROWSER is None, reason="Debian's chromium is not installed")
+def test_the_end_of_the_page_prints_in_two_columns_on_one_page(reported: Reported, tmp_path: Path) -> None:
+    """Telemetry, assumptions and origin filled two pages, the right half of which was white."""
+    end = re.sub(r"<main>.*?(<section id=\"telemetry\")", r"<main>\1", reported.written, flags=re.S)
+    assert end.count("<section") == 3
+    assert printed_pages(end, tmp_path) == 1
+
+
+@pytest.mark.skipif(BROWSER is None, reason="Debian's chromium is not installed")
 def test_the_verdict_and_the_picture_of_the_gap_print_on_one_page(reported: Reported, tmp_path: Path) -> None:
     first = re.sub(
         r"(<section id=\"verdict\".*?</section>).*</main>", r"\1</main>", reported.written, flags=re.S
