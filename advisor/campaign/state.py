@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from statistics import median
 
+from advisor.decision.crew_plan import CrewPlan, crew_plan
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.maneuvers.events import Activity
@@ -160,6 +161,14 @@ class CampaignState:
     """Movements of the elevator that were no test inputs, oldest first. Similar neighbours are one entry."""
     failed: tuple[FailedPart, ...] = ()
     """Parts that a fault of the advisor ended."""
+
+    @property
+    def plan(self) -> CrewPlan | None:
+        """Plan of both axes; None where only one of them has been flown."""
+        side = self.lateral
+        if side is None or not side.maneuvers or not self.maneuvers:
+            return None
+        return crew_plan(self.flight_test, side.flight_test)
 
     @property
     def progress(self) -> str:

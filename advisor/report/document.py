@@ -8,6 +8,7 @@ from typing import Any
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver
+from advisor.decision.crew_plan import CrewPlan
 from advisor.decision.verdict import FlightTestVerdict, Remaining
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.stream.flights import FlightHeard
@@ -69,7 +70,15 @@ def analysis_document(
         **_OF_NO_CAMPAIGN,
         **(_campaign(state, aircraft, of_log) if state else {}),
         **({"lateral": lateral_document(state.lateral, aircraft)} if state and state.lateral else {}),
+        "plan": _plan(state.plan if state else None),
     }
+
+
+def _plan(plan: CrewPlan | None) -> dict[str, Any] | None:
+    """Return the plan of both axes; None where only one of them has been flown."""
+    if plan is None:
+        return None
+    return {**picked(plan, "sentence"), "done": list(plan.done), "open": list(plan.open), "next": plan.advice}
 
 
 _OF_NO_CAMPAIGN: Mapping[str, Any] = {

@@ -176,14 +176,19 @@ class AnalysisText:
             yield from (Text(line, style="bold" if line[0] in "FC" else "") for line in lines)
 
     def _decisions(self) -> Iterator[Text]:
-        """Yield stop or continue of each axis, with the next input."""
+        """Yield stop or continue of each axis, with the next input: one input where both are tested."""
+        plan = self.state.plan if self.pitch else None
         if self.pitch:
             yield Text(stop_line(self.state.flight_test), style="bold")
-            yield Text(f"  {next_line(self.state.flight_test)}")
+            if plan is None:
+                yield Text(f"  {next_line(self.state.flight_test)}")
         if self.state.lateral is not None:
             lead, *advice = lateral_decision(self.state.lateral)
             yield Text(f"Roll and yaw: {lead}", style="bold")
-            yield from map(Text, advice)
+            yield from map(Text, advice if plan is None else ())
+        if plan is not None:
+            yield Text(f"Both axes: {plan.sentence}", style="bold")
+            yield Text(f"  {plan.advice}")
 
     def _rules(self) -> Iterator[Text]:
         """Yield the history of every rule, the information, and the warnings."""

@@ -7,6 +7,7 @@ from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.state import OF_ELEVATOR, CampaignState, JudgedLateral, JudgedManeuver, LateralState
+from advisor.decision.crew_plan import CrewPlan
 from advisor.decision.verdict import FlightTestVerdict, limit_percent
 from advisor.oem.estimate import NoEstimate
 from advisor.session.source import LinkHealth, Playback, Tempo
@@ -46,6 +47,11 @@ class View:
         found = self.problems if self.health.condition == "ended" else self.state.no_data
         wrong = (f.problem for f in self.state.instruments if f.refuses)
         return tuple({p.code: p for p in (*found, *wrong)}.values())
+
+    @property
+    def plan(self) -> CrewPlan | None:
+        """Plan of both axes, whichever axis is shown; None where only one of them has been flown."""
+        return (self.elevator or self).state.plan
 
     @property
     def judged(self) -> JudgedManeuver | None:

@@ -25,7 +25,7 @@ def advise(view: View) -> Advice:
     """Return the most important advice: a lost link, unusable data, the manoeuvre in the air, or the
     verdicts.
 
-    Once the flight test says stop, no further data are needed.
+    Once the flight test says stop on each axis that is tested, no further data are needed.
     """
     state, verdict = view.state, view.state.flight_test
     if view.health.condition == "stale":
@@ -34,17 +34,20 @@ def advise(view: View) -> Advice:
         return Advice("BEHIND", f"{view.health.behind.capitalize()}: {_OLD}", "bad")
     if view.health.condition == "lost":
         return Advice("NO LINK", f"{view.health.sentence}{_another(view)}", "bad")
-    if view.obstacles and verdict.decision != "stop":
+    plan = view.plan
+    complete = verdict.decision == "stop" if plan is None else plan.is_complete
+    if view.obstacles and not complete:
         return Advice("NO DATA", f"{view.obstacles[0]}{_another(view)}{_elevator(view)}", "bad")
     if state.enough:
         return Advice("RECOVER", state.enough, "good")
-    if verdict.decision == "stop":
+    if complete:
         return Advice("TEST COMPLETE", verdict.sentence, "good")
     if state.vehicle is None:
         return Advice("WAIT", view.health.sentence, "quiet")
+    sentence = plan.sentence if plan is not None and verdict.decision == "stop" else verdict.sentence
     if view.last and not view.last.verdict.accepted:
-        return Advice("REPEAT", verdict.sentence, "warn")
-    return Advice("CONTINUE", verdict.sentence, "quiet")
+        return Advice("REPEAT", sentence, "warn")
+    return Advice("CONTINUE", sentence, "quiet")
 
 
 def _another(view: View) -> str:

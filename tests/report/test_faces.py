@@ -3,6 +3,7 @@
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from io import StringIO
 from math import degrees
 
@@ -10,8 +11,10 @@ import pytest
 from rich.console import Console
 from textual.widgets import DataTable
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.gap.document import gap_document
+from advisor.report.document import analysis_document
 from advisor.report.gap_screen import GapScreen
 from advisor.report.page.blocks import Paragraph
 from advisor.report.page.gap import answer
@@ -20,8 +23,12 @@ from advisor.tui.panes.gap import answer_rows
 from advisor.tui.settings import Settings
 from advisor.words.digits import with_half
 from advisor.words.quantities import PARAMETERS as QUANTITIES
+from tests.campaign.side_builders import judged as side_judged
+from tests.campaign.side_builders import state as side_state
 from tests.gap.test_report_screen import EVIDENCE, diagnosis
 from tests.report.conftest import Reported
+from tests.schemas import breaches
+from tests.tui import flights
 from tests.tui.stage import stage
 
 HALF = 1.959963984540054
@@ -117,3 +124,19 @@ def test_the_answer_of_a_gap_has_one_title_one_sentence_and_one_probability_on_e
     assert lines[1] == document["sentence"]
     assert page[0] == pane[0] == f"{document['title']}: {document['sentence']}"
     assert lines[2] == page[1] == pane[1]
+
+
+def test_the_plan_of_both_axes_names_one_input_on_every_face() -> None:
+    state = replace(flights.state(7), lateral=side_state(side_judged(1, "aileron")))
+    plan = state.plan
+    assert plan is not None
+    assert state.flight_test.decision == "stop"
+    out = StringIO()
+    console = Console(file=out, width=200, color_system=None, highlight=False)
+    console.print(AnalysisText(state, ["flight.tlog"], Aircraft()), soft_wrap=True)
+    document = analysis_document(state, ["flight.tlog"], Aircraft())
+    assert document["plan"]["next"] == plan.advice
+    assert breaches("analyze", document) == []
+    said = [line.strip() for line in out.getvalue().splitlines()]
+    assert [line for line in said if line.startswith(("next:", "no further"))] == [plan.advice]
+    assert f"Both axes: {document['plan']['sentence']}" in said

@@ -7,6 +7,7 @@ import numpy as np
 from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import NextInput
 from advisor.session.view import SideView
+from advisor.tui.advice import advise
 from advisor.tui.settings import Settings
 from advisor.tui.stick_drawing import drawn
 from tests.campaign.side_builders import judged, state
@@ -24,12 +25,22 @@ async def test_the_key_shows_the_verdict_on_aileron_and_rudder_and_then_the_elev
     async with stage(flown, size=(100, 35)) as here:
         await here.until(lambda: "roll, yaw" in here.words("CrewNotes"))
         assert "CONTINUE: no accepted manoeuvre has moved the rudder" in here.words("CrewNotes")
+        assert "reverse 3-2-1-1" in here.words("NextInput")
         await here.press("r")
         assert "✗ REPEAT   manoeuvre 2: rudder doublet" in here.words()
         assert "key r shows the elevator's" in here.words("CrewNotes")
-        assert "rudder doublet" in here.words("NextInput")
+        assert "reverse 3-2-1-1" in here.words("NextInput")
         await here.press("r")
-        assert "rudder" not in here.words("NextInput")
+        assert "manoeuvre 2: rudder doublet" not in here.words()
+
+
+def test_the_test_is_complete_when_both_axes_are():
+    pitch_is_known = replace(flights.state(7), lateral=state(judged(1, "aileron")))
+    for shown in (view(pitch_is_known), SideView().of(view(pitch_is_known))):
+        assert advise(shown).word == "CONTINUE"
+        assert shown.plan is not None
+        assert "rudder" in shown.plan.advice
+    assert advise(view(pitch_is_known)).sentence == "Pitch is complete, roll and yaw are open."
 
 
 async def test_the_fit_has_the_control_that_moved_and_the_outputs_of_the_axis():

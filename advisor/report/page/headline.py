@@ -38,11 +38,15 @@ def _blocks(content: Content) -> Iterator[Block]:
             f"decides: {_criterion(verdict['criterion_percent'], verdict['limit_percent'])}."
         )
     following = verdict["next"]
-    if following is not None:
+    if following is not None and content.state.plan is None:
         yield Paragraph(f"Next: {following['advice'].removeprefix('next: ')}.".replace("..", "."))
     yield from listing([f"Warning: {warning}" for warning in verdict["warnings"]])
     if side is not None and (side.maneuvers or not maneuvers or side.flight_test.next is None):
         yield Paragraph(f"Roll and yaw: {side.flight_test.sentence}")
+    plan = content.state.plan
+    if plan is not None:
+        advice = plan.advice.removeprefix("next: ")
+        yield Paragraph(f"Both axes: {plan.sentence} Next: {advice}.")
     joint = joint_table(content)
     if joint is not None:
         yield joint

@@ -18,8 +18,8 @@ class NextInput(Part, Lines):
         self._advised: Advised | None = None
 
     def show(self, view: View) -> None:
-        """Draw the input that is advised now."""
-        self._advised = view.state.flight_test.next
+        """Draw the input that is advised now, of the axis that lacks most where both are tested."""
+        self._advised = view.plan.next if view.plan is not None else view.state.flight_test.next
         self._write()
 
     def on_resize(self, event: Resize) -> None:
