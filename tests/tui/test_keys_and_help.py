@@ -51,12 +51,6 @@ async def test_a_click_on_a_key_of_the_footer_presses_it():
         await here.until(lambda: isinstance(here.app.screen, EngineerScreen))
 
 
-async def test_a_live_link_has_no_keys_of_a_replay():
-    async with stage(settings=ENGINEER) as here:
-        names = {key.name for key in keys_at_hand(here.app)}
-        assert names.isdisjoint({"pause", "jump", "faster"})
-
-
 async def test_one_key_switches_between_the_two_screens():
     async with stage() as here:
         assert isinstance(here.app.screen, PilotScreen)
@@ -117,12 +111,6 @@ async def test_the_help_of_the_fit_lists_the_keys_that_read_values():
         text = str(here.app.screen.query_one(Static).render())
         for name in ("cursor_left", "zoom_in", "pan_right", "whole", "lay_over", "copy", "save"):
             assert re.search(rf" {name}\n", text), name
-
-
-async def test_the_palette_offers_every_action():
-    async with stage(settings=ENGINEER) as here:
-        offered = {command.title for command in here.app.get_system_commands(here.app.screen)}
-        assert {"Pilot", "Exclude", "Note", "Theme", "Mark"} <= offered
 
 
 async def test_the_palette_opened_from_the_pilots_screen_offers_the_engineers_actions_too():
@@ -210,6 +198,10 @@ async def test_jumping_asks_for_a_manoeuvre(monkeypatch: pytest.MonkeyPatch):
         assert asked == [7, 3, 2]
 
 
-async def test_the_manoeuvre_table_takes_the_arrow_keys_from_the_start():
+async def test_a_live_link_begins_with_the_arrow_keys_in_the_table_every_action_and_no_key_of_a_replay():
     async with stage(settings=ENGINEER) as here:
-        assert isinstance(here.app.focused, DataTable)
+        assert isinstance(here.app.focused, DataTable), "the manoeuvre table takes the arrow keys"
+        offered = {command.title for command in here.app.get_system_commands(here.app.screen)}
+        assert {"Pilot", "Exclude", "Note", "Theme", "Mark"} <= offered, "the palette offers every action"
+        names = {key.name for key in keys_at_hand(here.app)}
+        assert names.isdisjoint({"pause", "jump", "faster"}), "keys of a replay"

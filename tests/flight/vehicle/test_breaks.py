@@ -9,7 +9,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.quality import judge_quality
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice
-from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.breaks import DOWN
@@ -26,13 +26,24 @@ def flight() -> list[Record]:
     return records_of(recorded("linear", 1.0, maneuvers=TWO))
 
 
+@cache
+def first_span() -> Span:
+    """Where the first manoeuvre lies in the whole flight."""
+    return flown(flight())[0][0].span
+
+
 def flown(records: list[Record]) -> tuple[list[Maneuver], list[str]]:
     """The manoeuvres, and what is said of the advisor's own gaps."""
     stream = FlightStream(Aircraft())
-    events = [event for columns in batches(records, 50) for event in stream.feed(columns)]
+    events = [event for columns in batches(records, 200) for event in stream.feed(columns)]
     events += stream.finish()
     said = [event.text for event in events if isinstance(event, Notice) and event.code == "advisor_down"]
     return [event.maneuver for event in events if isinstance(event, ManeuverFlown)], said
+
+
+@cache
+def flown_with_a_gap(note: bytes, waited_s: float = 0.0) -> tuple[list[Maneuver], list[str]]:
+    return flown(with_a_gap(note, waited_s))
 
 
 def with_a_gap(note: bytes, waited_s: float = 0.0) -> list[Record]:
@@ -45,7 +56,7 @@ def with_a_gap(note: bytes, waited_s: float = 0.0) -> list[Record]:
     """
     (attitudes,) = (c for c in next(batches(flight(), 500)) if c.name == "ATTITUDE")
     ahead_s = float(attitudes.arrival_s[0]) - int(attitudes.fields["time_boot_ms"][0]) / 1000.0
-    first = flown(flight())[0][0].span
+    first = first_span()
     lost_us = (first.last_step_s + 0.4 + ahead_s) * 1e6
     again_us = lost_us + MISSING_S * 1e6
     before = [r for r in flight() if r.stamp_us < lost_us - waited_s * 1e6]
@@ -57,19 +68,19 @@ def with_a_gap(note: bytes, waited_s: float = 0.0) -> list[Record]:
 
 @pytest.mark.parametrize("waited_s", [0.0, 0.8])
 def test_a_manoeuvre_that_the_advisor_missed_a_part_of_knows_how_much(waited_s: float) -> None:
-    first, second = flown(with_a_gap(DOWN, waited_s))[0]
+    first, second = flown_with_a_gap(DOWN, waited_s)[0]
     assert first.missed_s == pytest.approx(MISSING_S, abs=0.1)
     assert second.missed_s == 0.0
 
 
 def test_the_crew_reads_when_and_how_long_the_advisor_was_down() -> None:
-    (said,) = flown(with_a_gap(DOWN))[1]
+    (said,) = flown_with_a_gap(DOWN, 0.0)[1]
     assert said.startswith("5.2 s are missing since 0:")
     assert said.endswith(": the advisor was down.")
 
 
 def test_a_gap_of_the_radio_is_not_laid_to_the_advisor() -> None:
-    maneuvers, said = flown(with_a_gap(b"a text of the vehicle"))
+    maneuvers, said = flown_with_a_gap(b"a text of the vehicle")
     assert [maneuver.missed_s for maneuver in maneuvers] == [0.0, 0.0]
     assert said == []
 
@@ -89,7 +100,7 @@ def set_forward(by_s: float, from_s: float) -> list[Columns]:
 
 
 def test_stamps_that_leap_by_hours_inside_a_manoeuvre_reject_both_parts() -> None:
-    first = flown(flight())[0][0].span
+    first = first_span()
     stream = FlightStream(Aircraft())
     events = [*stream.feed(set_forward(3.0 * 3600.0, first.last_step_s - 0.3)), *stream.finish()]
     found = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
