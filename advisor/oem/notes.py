@@ -82,7 +82,12 @@ def _instrument(identified: Identified) -> str:
     known = identified.instrument.prior is None and x.std < KNOWN_TO * abs(x.value)
     line = line_of(x.name, x.value) if known else ""
     advice = f" For the aircraft file: {line}" if line else ""
-    return f"{text[0].upper()}{text[1:]}; the estimate allows for that.{advice}"
+    used = (
+        ", by which the estimate lags the command"
+        if x.name == "servo_lag_s"
+        else "; the estimate allows for that"
+    )
+    return f"{text[0].upper()}{text[1:]}{used}.{advice}"
 
 
 def _servo(solution: Solution, lagged: FloatArray | None) -> str:
