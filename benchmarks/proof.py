@@ -11,7 +11,7 @@ from pathlib import Path
 
 import click
 
-from advisor.analysis.gap import maneuvers_of
+from advisor.analysis.gap import compare_flown, maneuvers_of, named_simulator
 from advisor.cli.options import decided_on, read_aircraft
 from advisor.exports.models.proof import Proof, prove
 from advisor.words.problems import UnusableInputError
@@ -25,12 +25,15 @@ def main(logs: Sequence[Path]) -> None:
     for log in logs:
         aircraft = read_aircraft(log.with_suffix(".yaml"))
         try:
-            found = prove(maneuvers_of([log], aircraft, None, [decided_on(log, False)]), None, aircraft)
+            flown = maneuvers_of([log], aircraft, None, [decided_on(log, False)])
+            whole = compare_flown(flown, aircraft, named_simulator(aircraft))
+            found = prove(flown, None, aircraft, whole=whole)
         except UnusableInputError as error:
             click.echo(f"{log.stem:28} {error.problem.code}")
             continue
         proofs.append(found)
-        answers = f"{found.first} -> {found.second}"
+        taken = f", taken back: {', '.join(found.taken_back)}" if found.taken_back else ""
+        answers = f"{found.first} -> {found.second}{taken}"
         click.echo(f"{log.stem:28} {found.before:10.2f} -> {found.after:8.2f}   {answers}")
     closed = sum(proof.is_closed for proof in proofs)
     less = sum(proof.after < proof.before for proof in proofs)
