@@ -96,8 +96,8 @@ def _alike(alive: NDArray[np.bool_], rows: IntArray) -> list[IntArray]:
     """
     if len(rows) == 0:
         return []
-    changes = np.any(np.diff(alive[rows], axis=0), axis=1)
-    return np.split(rows, np.flatnonzero(changes) + 1)
+    changes = np.flatnonzero(np.any(alive[rows[1:]] != alive[rows[:-1]], axis=1))
+    return np.split(rows, changes + 1) if len(changes) else [rows]
 
 
 def joined(pieces: Sequence[Commanded]) -> Commanded:

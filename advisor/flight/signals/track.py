@@ -31,8 +31,10 @@ class BestRate:
         """Take stamps in s since boot, shape (n,), in order of arrival."""
         newest = np.maximum.accumulate(np.concatenate(([self._last_s], t)))
         fresh = t[t > newest[:-1]]
-        windows, starts = np.unique(np.floor(fresh / _WINDOW_S), return_index=True)
-        for window, stamps in zip(windows.tolist(), np.split(fresh, starts[1:]), strict=False):
+        while len(fresh) > 0:
+            window = float(fresh[0] // _WINDOW_S)
+            end = int(np.searchsorted(fresh, (window + 1.0) * _WINDOW_S))
+            stamps, fresh = fresh[:end], fresh[end:]
             if window != self._window:
                 self._best_hz = self.rate_hz
                 self._window, self._count, self._first_s = window, 0, float(stamps[0])
