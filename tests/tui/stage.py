@@ -57,8 +57,8 @@ class Stage:
     async def still_page(self) -> str:
         """The page once nothing on it has moved for a while, even on a busy machine."""
         now, still = self.page(), 0
-        while still < 6:
-            await self.pilot.pause(0.25)
+        while still < 3:
+            await self.pilot.pause(0.5)
             before, now = now, self.page()
             still = still + 1 if now == before else 0
         return now

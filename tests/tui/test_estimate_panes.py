@@ -77,21 +77,19 @@ async def test_the_joint_correlation_stands_above_the_diagonal_and_the_manoeuvre
         assert lines[-1] == "joint: Z_α and M_q 0.950"
 
 
-@pytest.mark.parametrize("first", range(0, len(PANES), 3))
-async def test_a_pane_in_sight_takes_the_next_estimates(first: int):
-    panes = PANES[first : first + 3]
-    counts = (2, *(count for _ in panes for count in (2, 3)))
+async def test_a_pane_in_sight_takes_the_next_estimates():
+    counts = (2, *(count for _ in PANES for count in (2, 3)))
     states = [pickle.loads(pickle.dumps(flights.state(count))) for count in counts]  # new objects each
     source = HandFedSource()
     async with stage(*states, settings=ENGINEER, size=(80, 24), source=source) as here:
         for k, state in enumerate(states[1:]):
-            pane = panes[k // 2]
+            pane = PANES[k // 2]
             if k % 2 == 0:
                 await here.press(pane.TITLE[0])
             source.deliver()
             await here.until(lambda state=state: here.app.view.state.model is state.model)
-            assert here.app.is_running
-            assert here.app.screen.query_one(pane).display
+            assert here.app.is_running, pane
+            assert here.app.screen.query_one(pane).display, pane
 
 
 async def test_correlations_are_written_again_for_a_new_estimate_alone(monkeypatch: pytest.MonkeyPatch):

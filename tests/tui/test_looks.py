@@ -43,7 +43,7 @@ def inside(here: Stage, pane: Pane) -> bool:
 
 @pytest.mark.parametrize("size", SIZES, ids=str)
 @pytest.mark.parametrize("state", [NOTHING, flights.state(5, in_the_air=True)], ids=["nothing", "flown"])
-async def test_no_pane_is_blank_at_any_size(size: tuple[int, int], state):
+async def test_no_pane_is_blank_and_every_axis_carries_its_unit_at_any_size(size: tuple[int, int], state):
     async with stage(state, size=size, settings=Settings(screen="engineer")) as here:
         for key, _ in keys.PANES[1:]:
             await here.press(key)
@@ -56,6 +56,12 @@ async def test_no_pane_is_blank_at_any_size(size: tuple[int, int], state):
                 said += [str(matrix.render()) for matrix in pane.query("#matrix").results(Static)]
                 assert any(len(words.strip()) > 2 for words in said), pane
                 assert all(text(plot).strip() for plot in pane.query(Plot) if shown(plot)), pane
+            for plot in here.app.screen.query(Plot):
+                if shown(plot) and plot.chart.series and plot.size.height >= 4:
+                    lines = text(plot).split("\n")
+                    assert plot.chart.y_label in lines[0], plot
+                    assert not plot.chart.foot or lines[-1].rstrip().endswith(plot.chart.x_label), plot
+                    assert around(plot, Pane).region.contains_region(plot.region), plot
 
 
 @pytest.mark.parametrize(("size", "count"), [((80, 24), 2), ((120, 40), 4), ((200, 60), 8)])
@@ -92,19 +98,6 @@ async def test_the_pilot_reads_the_word_in_block_letters_at_any_size(size: tuple
         assert "█" in str(word.render())
         for part in here.app.screen.query(Lines):
             assert not shown(part) or here.app.screen.region.contains_region(part.region)
-
-
-@pytest.mark.parametrize("size", [(80, 24), (200, 60)], ids=str)
-async def test_every_axis_carries_its_unit(size: tuple[int, int]):
-    async with stage(flights.state(5), size=size, settings=Settings(screen="engineer")) as here:
-        for key, _ in keys.PANES[1:]:
-            await here.press(key)
-            for plot in here.app.screen.query(Plot):
-                if shown(plot) and plot.chart.series and plot.size.height >= 4:
-                    lines = text(plot).split("\n")
-                    assert plot.chart.y_label in lines[0]
-                    assert not plot.chart.foot or lines[-1].rstrip().endswith(plot.chart.x_label)
-                    assert around(plot, Pane).region.contains_region(plot.region), plot
 
 
 @pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)

@@ -104,7 +104,7 @@ async def test_a_mark_made_in_a_replay_is_judged_kept_and_there_again_in_the_nex
 
 
 async def test_a_mark_begun_and_ended_at_the_same_moment_is_refused_in_the_log(tmp_path: Path):
-    log = Path(shutil.copy(recorded("linear", 1.0, maneuvers=TWO), tmp_path / "flight.tlog"))
+    log = Path(shutil.copy(recorded("uav", 1.0, maneuvers=()), tmp_path / "flight.tlog"))
     app, player = opened(log, inf, Settings())
     async with app.run_test(size=(80, 24)) as pilot:
         here = Stage(app, pilot, None, player)

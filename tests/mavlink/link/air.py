@@ -58,7 +58,7 @@ def batches(records: list[Record], size: int, key: bytes | None = None) -> Itera
         yield scanner.feed(data)
 
 
-def flown(records: list[Record], batch: int = 50, key: bytes | None = None) -> list[tuple[float, ...]]:
+def flown(records: list[Record], batch: int = 500, key: bytes | None = None) -> list[tuple[float, ...]]:
     """Start and every sample of every channel of every manoeuvre."""
     stream = FlightStream(Aircraft())
     events = [event for columns in batches(records, batch, key) for event in stream.feed(columns)]
@@ -72,7 +72,7 @@ def flown(records: list[Record], batch: int = 50, key: bytes | None = None) -> l
     ]
 
 
-def judged(records: list[Record], batch: int = 50) -> list[ManeuverJudged]:
+def judged(records: list[Record], batch: int = 500) -> list[ManeuverJudged]:
     """Every verdict on these records."""
     campaign = Campaign(Aircraft())
     events = [event for columns in batches(records, batch) for event in campaign.feed(columns)]
