@@ -7,8 +7,9 @@ from typing import Protocol, TypeVar
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import Examined
+from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.result import VISIBLE, spelled
-from advisor.simulators.unseen import UnseenManeuvers, by_the_file, resaid, shrink_on
+from advisor.simulators.unseen import UnseenManeuvers, by_the_file, floor_of, resaid, shrink_on
 
 
 class _Gap(Protocol):
@@ -31,8 +32,9 @@ def without_worse(
 ) -> tuple[Examined, Measured]:
     """Return the diagnosis without effects that raise the gap visibly, and the measurement without them.
 
-    The sets are those of the search: its numbers, then one effect more at a time. The set with the least gap
-    on the manoeuvres kept apart stays, and the sentence names each effect that was taken back.
+    The sets are those of the search: its numbers, then one effect more at a time. First the set with the
+    least gap in manoeuvres that are held out in turn stays. Then that with the least gap on the manoeuvres
+    kept apart stays. A sentence names each effect that was taken back.
 
     Parameters
     ----------
@@ -43,6 +45,7 @@ def without_worse(
     measure
         Measures the gap of the manoeuvres kept apart with the answer of the others.
     """
+    whole = without_raised(whole)
     found = unseen.found
     every = best = measure(unseen)
     stay = len(found.named)
@@ -53,16 +56,33 @@ def without_worse(
     numbers = [flight.number for flight in whole.findings.problem.flights.flights]
     kept = [numbers[i] for i in unseen.kept]
     if best.gap_after > best.gap_before + VISIBLE:
-        said = taken_back_said(["every correction"], kept, every.gap_after, best.gap_before)
+        said = taken_back_said(["every correction"], unused(kept), every.gap_after, best.gap_before)
         told = replace(whole.diagnosis, effects={}, taken_back=(said,), is_left_as_given=True)
         return replace(whole, diagnosis=told), best
     taken = [k for k, name in enumerate(whole.named) if name in found.named[stay:]]
     if not taken:
         return whole, every
-    effects = [spelled(effect) for effect in whole.named[taken[0] :]]
-    said = taken_back_said(effects, kept, every.gap_after, best.gap_after)
-    stays = whole.with_most(taken[0])
-    return replace(stays, diagnosis=replace(stays.diagnosis, taken_back=(said,))), best
+    return _without(whole, taken[0], unused(kept), every.gap_after, best.gap_after), best
+
+
+def without_raised(whole: Examined) -> Examined:
+    """Return a diagnosis without the effects that raise the gap in manoeuvres that are held out in turn."""
+    gaps = [whole_gap(model.held_out.mean_square, floor_of(whole)) for model in whole.findings.models]
+    stay = len(whole.named)
+    for most in reversed(range(stay)):
+        if gaps[most] < gaps[stay] - VISIBLE:
+            stay = most
+    if stay == len(whole.named):
+        return whole
+    return _without(whole, stay, "manoeuvres held out in turn", gaps[-1], gaps[stay])
+
+
+def _without(whole: Examined, most: int, flown: str, worse: float, better: float) -> Examined:
+    """Return a diagnosis with the first effects, at most so many, which names the others and their gap."""
+    effects = [spelled(effect) for effect in whole.named[most:]]
+    said = (*whole.diagnosis.taken_back, taken_back_said(effects, flown, worse, better))
+    stays = whole.with_most(most)
+    return replace(stays, diagnosis=replace(stays.diagnosis, taken_back=said), fewer=whole.fewer)
 
 
 def with_unseen_shrink(whole: Examined, unseen: UnseenManeuvers, aircraft: Aircraft) -> Examined:
@@ -74,10 +94,13 @@ def with_unseen_shrink(whole: Examined, unseen: UnseenManeuvers, aircraft: Aircr
     return replace(stays, diagnosis=resaid(stays.diagnosis, shrink, aircraft))
 
 
-def taken_back_said(parts: Sequence[str], maneuvers: Sequence[int], worse: float, better: float) -> str:
-    """Return the sentence on corrections that raise the gap of manoeuvres kept apart."""
-    flown = f"manoeuvre{'s' if len(maneuvers) > 1 else ''} {', '.join(map(str, maneuvers))}"
-    return (
-        f"Taken back: {' and '.join(parts)}, with which the gap is {worse:.3g} instead of {better:.3g} on "
-        f"{flown}, which no fit has used."
-    )
+def unused(maneuvers: Sequence[int]) -> str:
+    """Return manoeuvres that no fit has used, in words."""
+    plural = "s" if len(maneuvers) > 1 else ""
+    return f"manoeuvre{plural} {', '.join(map(str, maneuvers))}, which no fit has used"
+
+
+def taken_back_said(parts: Sequence[str], flown: str, worse: float, better: float) -> str:
+    """Return the sentence on corrections that raise the gap of the manoeuvres ``flown``, in words."""
+    gap = f"the gap is {worse:.3g} instead of {better:.3g}"
+    return f"Taken back: {' and '.join(parts)}, with which {gap} on {flown}."

@@ -13,12 +13,14 @@ from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.inference.findings import Added
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, NUISANCES
-from advisor.simulators.taken_back import without_worse
+from advisor.simulators.taken_back import without_raised, without_worse
 from advisor.simulators.unseen import UnseenManeuvers, as_changed
 from tests.exports.models.test_orders import found as improvable
 from tests.simulators.nonlinear import flown
 
-NUMBERED = SimpleNamespace(flights=SimpleNamespace(flights=[SimpleNamespace(number=n) for n in (1, 2, 3)]))
+NUMBERED = SimpleNamespace(
+    flights=SimpleNamespace(flights=[SimpleNamespace(number=n) for n in (1, 2, 3)]), channels=("q",)
+)
 
 
 @dataclass(frozen=True)
@@ -27,10 +29,18 @@ class Measured:
     gap_after: float
 
 
-def answer(*named: str) -> Examined:
-    """Return a diagnosis with these effects, which can also be told with fewer of them."""
-    findings = SimpleNamespace(added=[Added(effect) for effect in named], problem=NUMBERED)
-    return Examined(improvable(), findings, lambda most: answer(*named[:most]))
+def answer(*named: str, in_turn: tuple[float, ...] = ()) -> Examined:
+    """Return a diagnosis with these effects, which can also be told with fewer of them.
+
+    ``in_turn`` has the gap of the manoeuvres held out in turn, with no effect, with one, and so on.
+    """
+    gaps = in_turn or (0.0,) * (len(named) + 1)
+    held_out = [SimpleNamespace(mean_square=np.array([gap + 1.0])) for gap in gaps]
+    models = [SimpleNamespace(held_out=one) for one in held_out[: len(named) + 1]]
+    findings = SimpleNamespace(added=[Added(effect) for effect in named], problem=NUMBERED, models=models)
+    found = improvable()
+    found = replace(found, gap=replace(found.gap, floor={"q": 1.0}))
+    return Examined(found, findings, lambda most: answer(*named[:most], in_turn=gaps))
 
 
 def taken(gaps: dict[int, float], *named: str, given: float = 659.0):
@@ -49,6 +59,18 @@ def test_effects_after_the_set_with_the_least_gap_leave_the_answer_and_are_named
         "which no fit has used.",
     )
     assert stays.diagnosis.improves
+
+
+def test_an_effect_that_raises_the_gap_held_out_in_turn_leaves_first():
+    """JSBSim's c172 by the wrong servo: a nonlinear moment raises the gap from .268 to .376."""
+    whole = answer("actuator_lag", "nonlinear_pitching_moment", in_turn=(3.0, 0.268, 0.376))
+    stays = without_raised(whole)
+    assert stays.named == ("actuator_lag",)
+    assert stays.diagnosis.taken_back == (
+        "Taken back: nonlinear pitching moment, with which the gap is 0.376 instead of 0.268 on manoeuvres "
+        "held out in turn.",
+    )
+    assert without_raised(answer("actuator_lag", in_turn=(0.2, 0.24))).named == ("actuator_lag",)
 
 
 def test_an_answer_that_lowers_the_gap_stays_whole():

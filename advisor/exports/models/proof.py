@@ -23,7 +23,7 @@ from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis, spelled
 from advisor.simulators.compare import Compared
 from advisor.simulators.linear import LinearSimulator
-from advisor.simulators.taken_back import taken_back_said
+from advisor.simulators.taken_back import taken_back_said, unused
 from advisor.words.problems import UnusableInputError
 
 Progress = Callable[[str, float], None]
@@ -77,7 +77,7 @@ class Proof:
         if not self.taken_back or self.gap_with_them is None:
             return found
         words = [one if one == NUMBERS else spelled(one) for one in self.taken_back]
-        said = taken_back_said(words, self.maneuvers, self.gap_with_them, self.after)
+        said = taken_back_said(words, unused(self.maneuvers), self.gap_with_them, self.after)
         for part in self.taken_back:
             found = without(found, part, given)
         return replace(found, taken_back=(*found.taken_back, said), sentence=f"{found.sentence} {said}")
