@@ -50,7 +50,7 @@ def without_worse(
     every = best = measure(unseen)
     stay = len(found.named)
     for most in reversed(range(stay)):
-        tried = measure(replace(unseen, found=found.with_most(most)))
+        tried = measure(replace(unseen, found=_shortened(found, most)))
         if tried.gap_after < best.gap_after - VISIBLE:
             best, stay = tried, most
     numbers = [flight.number for flight in whole.findings.problem.flights.flights]
@@ -63,6 +63,20 @@ def without_worse(
     if not taken:
         return whole, every
     return _without(whole, taken[0], unused(kept), every.gap_after, best.gap_after), best
+
+
+def _shortened(found: Examined, most: int) -> Examined:
+    """Return a diagnosis with the first effects, at most so many, whose model alone is measured."""
+    gone, models = found.named[most:], found.findings.models[: most + 1]
+    left = {effect: sizes for effect, sizes in found.diagnosis.effects.items() if effect not in gone}
+    causes = tuple(
+        replace(one, present=one.present and one.effect not in gone) for one in found.diagnosis.causes
+    )
+    return replace(
+        found,
+        diagnosis=replace(found.diagnosis, effects=left, causes=causes),
+        findings=replace(found.findings, models=(*models[:-1], replace(models[-1], added=None))),
+    )
 
 
 def without_raised(whole: Examined) -> Examined:

@@ -10,7 +10,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
-from advisor.gap.inference.findings import Added
+from advisor.gap.inference.findings import Added, Model
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, NUISANCES
 from advisor.simulators.taken_back import without_raised, without_worse
@@ -21,6 +21,18 @@ from tests.simulators.nonlinear import flown
 NUMBERED = SimpleNamespace(
     flights=SimpleNamespace(flights=[SimpleNamespace(number=n) for n in (1, 2, 3)]), channels=("q",)
 )
+
+
+@dataclass(frozen=True)
+class Found:
+    """Findings whose models count by their number."""
+
+    models: tuple[Model, ...]
+    problem: object
+
+    @property
+    def added(self) -> tuple[Added, ...]:
+        return tuple(model.added for model in self.models if model.added is not None)
 
 
 @dataclass(frozen=True)
@@ -35,10 +47,11 @@ def answer(*named: str, in_turn: tuple[float, ...] = ()) -> Examined:
     ``in_turn`` has the gap of the manoeuvres held out in turn, with no effect, with one, and so on.
     """
     gaps = in_turn or (0.0,) * (len(named) + 1)
-    held_out = [SimpleNamespace(mean_square=np.array([gap + 1.0])) for gap in gaps]
-    models = [SimpleNamespace(held_out=one) for one in held_out[: len(named) + 1]]
-    findings = SimpleNamespace(added=[Added(effect) for effect in named], problem=NUMBERED, models=models)
-    found = improvable()
+    models = tuple(
+        Model(None, SimpleNamespace(mean_square=np.array([gap + 1.0])), None if name is None else Added(name))
+        for gap, name in zip(gaps, (*named, None), strict=False)
+    )
+    findings, found = Found(models, NUMBERED), improvable()
     found = replace(found, gap=replace(found.gap, floor={"q": 1.0}))
     return Examined(found, findings, lambda most: answer(*named[:most], in_turn=gaps))
 
