@@ -106,7 +106,8 @@ def _of_unknown(where: Where, causes: Sequence[Cause], present: Sequence[Cause])
 
 
 def _of_effects(causes: Sequence[Cause], shrink: Shrink | None, in_simulator: frozenset[str]) -> str:
-    present = [c for c in causes if c.present] or causes[:1]
+    stays = [c for c in causes if c.present]
+    present = stays or causes[:1]
     named = f"{what(present[0], in_simulator)}{or_else(present[0], causes)}"
     beyond_air = None if shrink is None else shrink.beyond_air_percent
     if present[0].block == "air" and len(present) == 1:
@@ -117,6 +118,8 @@ def _of_effects(causes: Sequence[Cause], shrink: Shrink | None, in_simulator: fr
     removed = (
         _removed(shrink) if beyond_air is None else f"{beyond_air:.0f} % of the gap that is not the air's"
     )
+    if not stays:
+        return f"{named}; the eight fitted derivatives alone remove {removed}."
     added = "adding it"
     if shrink is not None and shrink.by_numbers_percent is not None:
         # The share of fitted derivatives must not pass for the effect's.
