@@ -136,7 +136,7 @@ def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
 
     def noted(maneuvers: list[Maneuver], *_: object) -> SimpleNamespace:
         judged.extend(maneuvers)
-        return SimpleNamespace(diagnosis=diagnosis(notes=("The command was held.",)))
+        return SimpleNamespace(diagnosis=diagnosis(notes=("The command was held.",)), findings=None)
 
     monkeypatch.setattr(reading, "examine", noted)
     monkeypatch.setattr(reading, "with_static_errors", lambda told, _: told)
