@@ -31,7 +31,7 @@ SECONDS = FIRST_STEP_S + 6.0
 @cache
 def sound(kind: str) -> bytes:
     if kind == "tlog":
-        return recorded("linear", 1.0, maneuvers=TWO).read_bytes()
+        return recorded("linear", 1.0, maneuvers=TWO[:1]).read_bytes()
     return {"bin": dataflash_flight, "ulg": px4_flight}[kind](SECONDS)
 
 

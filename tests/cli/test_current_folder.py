@@ -106,7 +106,7 @@ def test_live_runs_no_file_of_the_current_folder(started: Callable[..., Command]
 
 
 def test_demo_runs_no_file_of_the_current_folder(started: Callable[..., Command]) -> None:
-    command = started("demo", "--speed", "50")
+    command = started("demo", "--speed", "2")
     command.until(lambda: "following" in command.out.read_text())
     assert command.end() == 130, command.err.read_text()
     assert command.ran == []

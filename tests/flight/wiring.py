@@ -13,7 +13,6 @@ from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
 
-LOG = Path(__file__).parents[2] / "logs" / "bundled-demo.tlog"
 TRIM_US = 1500
 
 Pulse = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
@@ -21,7 +20,7 @@ Pulse = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]
 
 
 def wired(
-    outputs: Mapping[int, Pulse], parameters: Mapping[str, float], log: Path = LOG
+    outputs: Mapping[int, Pulse], parameters: Mapping[str, float], log: Path
 ) -> Iterator[list[Columns]]:
     """Batches of the log: its elevator moves these outputs, and nothing else is said of its servos.
 

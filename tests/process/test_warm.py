@@ -4,7 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from tests.flights import FOUR, recorded
 
 # In a process of its own: other tests call the same kernels with arrays of their own.
 _NEW_AFTER_WARMING = """
@@ -30,7 +30,7 @@ print("\\n".join(sorted(compiled() - before)))
 
 
 def test_after_setup_no_command_compiles_anything_more(tmp_path: Path) -> None:
-    log = ROOT / "logs" / "bundled-demo.tlog"
+    log = recorded("uav", 1.0, maneuvers=FOUR[:3])  # two are diagnosed, and one is held out
     run = subprocess.run(
         [sys.executable, "-c", _NEW_AFTER_WARMING, str(log)],
         cwd=tmp_path, capture_output=True, text=True, timeout=120, check=True,

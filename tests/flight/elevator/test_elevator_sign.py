@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,14 +14,13 @@ from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.pieces import between
 from advisor.mavlink.logs.logs import open_log
+from tests.flights import TWO, recorded
 from tests.gap.generator import Setup, fly
-
-LOG = Path(__file__).parents[3] / "logs" / "bundled-demo.tlog"
 
 
 def read(reversed_is=None):
-    """Batches of the log, as if SERVO2_REVERSED had been another."""
-    batches = list(open_log(LOG))
+    """Batches of a flight, as if SERVO2_REVERSED had been another."""
+    batches = list(open_log(recorded("linear", 1.0, maneuvers=TWO)))
     for c in (c for batch in batches for c in batch if c.name == "PARAM_VALUE"):
         names = np.array([raw.rstrip(b"\0") for raw in c.fields["param_id"].tolist()])
         if reversed_is is not None:
@@ -98,5 +96,5 @@ def test_a_manoeuvre_that_tells_nothing_decides_nothing():
 
 
 def test_a_diagnosis_knows_what_was_assumed_of_the_elevator():
-    (note,) = maneuvers_of([LOG], Aircraft()).notes
+    (note,) = maneuvers_of([recorded("linear", 1.0, maneuvers=TWO)], Aircraft()).notes
     assert "full travel of 25 deg" in note

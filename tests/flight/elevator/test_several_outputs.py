@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -109,9 +110,13 @@ KINDS = {
 }
 
 
+def flight() -> Path:
+    return recorded("linear", 1.0, maneuvers=TWO)
+
+
 def batches(made: Kind) -> Iterator[list[Columns]]:
     """A flight of two manoeuvres with this elevator."""
-    return wired(made.outputs, made.parameters, recorded("linear", 1.0, maneuvers=TWO))
+    return wired(made.outputs, made.parameters, flight())
 
 
 @dataclass(frozen=True)
@@ -154,7 +159,7 @@ def test_what_the_elevator_is_made_of_is_said(kind: str) -> None:
 
 def test_before_the_aircraft_has_answered_it_is_said_that_nothing_is_known() -> None:
     stream = FlightStream(listed(ElevatorOutput(1), ElevatorOutput(2)))
-    stream.feed(between(next(wired(ELEVONS, {})), 0, 20_000))
+    stream.feed(between(next(wired(ELEVONS, {}, flight())), 0, 20_000))
     assert "Nothing says which way outputs 1 and 2 move the nose" in stream.elevator_notes[1]
 
 
@@ -187,7 +192,7 @@ def test_live_and_replay_see_the_same_elevator(kind: str) -> None:
 
 def test_signs_with_which_the_outputs_cancel_are_a_problem_that_names_them() -> None:
     aircraft = listed(ElevatorOutput(1, DOWN), ElevatorOutput(2, DOWN))
-    stream, found, _ = flown(wired({1: both, 2: turned(both)}, {}), aircraft)
+    stream, found, _ = flown(wired({1: both, 2: turned(both)}, {}, flight()), aircraft)
     assert not found
     problem, *_ = stream.problems()
     assert problem.code == "elevator_signs"
