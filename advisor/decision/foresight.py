@@ -9,6 +9,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import LOCAL, N_LOCAL, N_PARAMETERS, SHARED, respond
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.covariance import cramer_rao, influence
+from advisor.oem.extra import Extra
 from advisor.oem.problem import Assembly, OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
@@ -82,7 +83,11 @@ def unmeasured(end_s: float, step_s: float) -> Signal:
 
 
 def foresee(
-    theta: FloatArray, assembly: Assembly, noise: FloatArray, prior: FloatArray | None = None
+    theta: FloatArray,
+    assembly: Assembly,
+    noise: FloatArray,
+    prior: FloatArray | None = None,
+    extra: Extra | None = None,
 ) -> Expectation | None:
     """Return the expected errors of one manoeuvre at the stamps of an assembly.
 
@@ -94,6 +99,8 @@ def foresee(
         (4,) standard deviation of each output's noise.
     prior
         Precision of the parameters before the flight, as in :func:`advisor.oem.covariance.influence`.
+    extra
+        Parameters that are estimated as well, such as a servo's lag.
 
     Returns
     -------
@@ -102,12 +109,14 @@ def foresee(
     """
     sensitivities = np.empty((len(assembly.z), N_PARAMETERS))
     y = response_from_trim(theta, assembly, sensitivities)
-    effect = None if y is None else influence(assembly, sensitivities, noise, prior=prior)
+    effect = None if y is None else influence(assembly, sensitivities, noise, extra, prior)
     if y is None or effect is None:
         return None
     alpha = y[assembly.rows[0]["alpha"]] if "alpha" in assembly.rows[0] else np.zeros(1)
     excursion = float(np.max(np.abs(alpha - alpha[0])))
-    return Expectation(cramer_rao(assembly, effect.rows, noise), excursion, effect.rows)
+    effect = effect.first(len(theta))
+    covariance = cramer_rao(assembly, effect.rows, noise) + effect.prior_covariance
+    return Expectation(covariance, excursion, effect.rows)
 
 
 def response_from_trim(
@@ -120,6 +129,16 @@ def response_from_trim(
     sensitivities
         (n, N_PARAMETERS), filled in. None: not wanted.
     """
+    local = local_at_trim(theta, assembly)
+    if local is None:
+        return None
+    y = np.empty(len(assembly.z))
+    wanted = np.empty((0, N_PARAMETERS)) if sensitivities is None else sensitivities
+    return y if respond(assembly.grid, shared_of(theta), local, y, wanted) else None
+
+
+def local_at_trim(theta: FloatArray, assembly: Assembly) -> FloatArray | None:
+    """Return the local parameters (1, N_LOCAL) of a manoeuvre that begins in equilibrium; else None."""
     model = ShortPeriod(theta)
     try:
         begin = -np.linalg.solve(model.a, model.b * assembly.grid.elevator[0] + model.c)
@@ -128,9 +147,7 @@ def response_from_trim(
     local = np.zeros((1, N_LOCAL))
     for name, value in zip(("Z_0", "M_0", "alpha_initial", "q_initial"), (*model.c, *begin), strict=True):
         local[0, LOCAL.index(name)] = value
-    y = np.empty(len(assembly.z))
-    wanted = np.empty((0, N_PARAMETERS)) if sensitivities is None else sensitivities
-    return y if respond(assembly.grid, shared_of(theta), local, y, wanted) else None
+    return local
 
 
 def shared_of(theta: FloatArray) -> FloatArray:

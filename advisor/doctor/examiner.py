@@ -182,12 +182,13 @@ class Examiner:
             colour = np.maximum(1.0, flown.std / flown.std_cr)
         if {"Z_alpha", "M_alpha", "M_q", "M_delta_e"} <= self._aircraft.model.keys():
             model = ShortPeriod.from_mapping(self._aircraft.model)
-            return Assumed(model, noise, "the model in the aircraft file", colour)
+            return Assumed(model, noise, "the model in the aircraft file", colour, self._aircraft)
         if flown is not None:
             number = len(self._maneuvers)
             source = f"an estimate from {number} manoeuvre{'s' if number > 1 else ''} flown"
-            return Assumed(ShortPeriod(flown.theta), noise, source, colour)
-        return Assumed(TYPICAL, noise, "a typical aircraft of 10 kg (yours: model in the aircraft file)")
+            return Assumed(ShortPeriod(flown.theta), noise, source, colour, self._aircraft)
+        source = "a typical aircraft of 10 kg (yours: model in the aircraft file)"
+        return Assumed(TYPICAL, noise, source, colour, self._aircraft)
 
     def _paced(self, arrivals: dict[str, Arrival]) -> dict[str, Paced]:
         """Return the channels that identification needs, with the messages that set their pace."""

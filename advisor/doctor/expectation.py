@@ -2,6 +2,8 @@
 
 Nothing is simulated with noise. A measurement's information follows from its sensitivity to each parameter
 (Cramér-Rao). A sampled command adds an uncertainty: the edges of the input lie somewhere between two samples.
+Natural lateness and places of instruments, and a servo's lag that the file leaves open, are estimated with
+the derivatives, as in flight.
 """
 
 from collections.abc import Mapping
@@ -9,15 +11,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.foresight import foresee, response_from_trim, shared_of, unmeasured
+from advisor.decision.foresight import foresee, local_at_trim, response_from_trim, shared_of, unmeasured
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import OUTPUTS
 from advisor.model.short_period import ShortPeriod
+from advisor.oem.instruments import extra_of, unknown_instruments
 from advisor.oem.prepare import OUTPUTS as COUNTED
 from advisor.oem.prior import precision_without_alpha
-from advisor.oem.problem import Assembly, OutputErrorProblem, Record, assemble
+from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
+from advisor.oem.surface import Servo
 
 UNITS_OF_TIME = (3, 2, 1, 1)
 RESPONSE_ALPHA_DEG = 4.0
@@ -30,6 +35,8 @@ _LEAD_IN_S = 1.0
 _EDGES_S = (0.04, 0.05, 0.06, 0.07, 0.08)
 """Times that a hand takes for a step of the stick, s."""
 _SHIFT_S = 2e-3
+_OPEN_LAG_S = 0.05
+"""Lag of a servo about which an open lag is estimated, s: that of small servos."""
 
 TYPICAL = ShortPeriod.from_mapping(
     {"Z_alpha": -4.0, "Z_delta_e": -0.3, "M_alpha": -40.0, "M_q": -4.0, "M_delta_e": -45.0}
@@ -49,6 +56,8 @@ class Assumed:
     """Origin of model and noise, in words."""
     colour: FloatArray = field(default_factory=lambda: np.ones(len(PARAMETERS)))
     """Ratio of corrected errors to Cramér-Rao bounds in flight, shape (8,); 1 for white residuals."""
+    aircraft: Aircraft = field(default_factory=Aircraft)
+    """The crew's aircraft file, which states or leaves open a servo's lag and a vane's place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +96,9 @@ def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float 
     edges = _LEAD_IN_S + unit_s * np.cumsum([0, *UNITS_OF_TIME])
     end_s = float(edges[-1]) + max(2.0, 10.0 * unit_s)
     outputs = [name for name in COUNTED if name in rates_hz and (name != "a_z" or airspeed_m_s)]
-    shape = _assembly(edges, 1.0, end_s, {"alpha": rates_hz["q"], **rates_hz}, ["alpha", "q"], airspeed_m_s)
+    both = ["alpha", "q"]
+    rates = {"alpha": rates_hz["q"], **rates_hz}
+    shape = assemble(_problem(edges, 1.0, end_s, rates, both, airspeed_m_s))
     unit_response = response_from_trim(_about_trim(model), shape)
     if unit_response is None:
         return ExpectedErrors(dict.fromkeys(PARAMETERS, np.nan), unit_s, np.nan)
@@ -112,25 +123,33 @@ def _errors(
     outputs: list[str],
     airspeed_m_s: float | None,
 ) -> FloatArray:
-    def assembly(at: FloatArray) -> Assembly:
-        return _assembly(at, amplitude, end_s, rates_hz, outputs, airspeed_m_s)
-
     theta = _about_trim(assumed.model)
+    stated_s = assumed.aircraft.elevator.lag_s
+    servo = Servo(_OPEN_LAG_S if stated_s is None else stated_s)
+
+    def problem(at: FloatArray) -> OutputErrorProblem:
+        return _problem(at, amplitude, end_s, rates_hz, outputs, airspeed_m_s, servo)
+
+    laid = assemble(problem(edges))
+    local = local_at_trim(theta, laid)
+    names = [
+        x
+        for x in unknown_instruments(problem(edges), assumed.aircraft)
+        if x.prior is not None or (x.name == "servo_lag_s" and x.stated is None)
+    ]
+    shifts = _SHIFT_S * np.eye(len(edges))
+    ends = [response_from_trim(theta, assemble(problem(edges + s))) for s in (*shifts, *-shifts)]
+    if local is None or any(end is None for end in ends):
+        return np.full(len(PARAMETERS), np.nan)
+    extra = extra_of(problem(edges), laid, shared_of(theta), local, names)
     noise = np.array([assumed.noise.get(name, NOISE[name]) for name in OUTPUTS])
     prior = None if "alpha" in outputs else precision_without_alpha(shared_of(theta))
-    expected = foresee(theta, assembly(edges), noise, prior)
+    expected = foresee(theta, laid, noise, prior, extra)
     if expected is None:
         return np.full(len(PARAMETERS), np.nan)
-    covariance = expected.covariance.copy()
-    lateness = edge_error_s(rates_hz["elevator"]) ** 2
-    for k in range(len(edges)):
-        shift = np.zeros(len(edges))
-        shift[k] = _SHIFT_S
-        ends = [response_from_trim(theta, assembly(at)) for at in (edges + shift, edges - shift)]
-        if ends[0] is None or ends[1] is None:
-            return np.full(len(PARAMETERS), np.nan)
-        moved = expected.influence.T @ (ends[0] - ends[1]) / (2.0 * _SHIFT_S)
-        covariance += np.outer(moved, moved) * lateness
+    early, late = np.array(ends[len(edges) :]), np.array(ends[: len(edges)])
+    moved = (late - early) @ expected.influence / (2.0 * _SHIFT_S)
+    covariance = expected.covariance + edge_error_s(rates_hz["elevator"]) ** 2 * moved.T @ moved
     result: FloatArray = np.sqrt(np.diag(covariance))
     return result
 
@@ -155,14 +174,15 @@ def edge_error_s(rate_hz: float) -> float:
     return float(np.sqrt(np.mean(np.square(errors))))
 
 
-def _assembly(
+def _problem(
     edges: FloatArray,
     amplitude: float,
     end_s: float,
     rates_hz: Mapping[str, float],
     outputs: list[str],
     airspeed_m_s: float | None,
-) -> Assembly:
+    servo: Servo | None = None,
+) -> OutputErrorProblem:
     """Return the manoeuvre in the estimator's form, with every output at its own stamps."""
     levels = amplitude * np.array([0.0, -1.0, 1.0, -1.0, 1.0, 0.0])
     half = float(np.median(_EDGES_S)) / 2.0
@@ -174,4 +194,4 @@ def _assembly(
     measured = {name: unmeasured(end_s, 1.0 / rates_hz[name]) for name in outputs}
     speed = None if airspeed_m_s is None else Signal(np.array([0.0, end_s]), np.full(2, airspeed_m_s))
     record = Record(elevator=command, outputs=measured, airspeed=speed)
-    return assemble(OutputErrorProblem(records=(record,)))
+    return OutputErrorProblem(records=(record,), servo=servo or Servo())

@@ -1,12 +1,17 @@
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from scipy.signal import cont2discrete
 
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.doctor.expectation import NOISE, TYPICAL, UNITS_OF_TIME, Assumed, edge_error_s, expect, frequency
 from advisor.model.short_period import ShortPeriod
+from advisor.oem.instrument_fit import fit_instruments
+from advisor.oem.instruments import unknown_instruments
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve
@@ -17,8 +22,15 @@ JET = ShortPeriod.from_mapping(
 )
 
 
-def flown(model: ShortPeriod, unit_s: float, amplitude: float, dice: np.random.Generator) -> Record:
-    """A 3-2-1-1 integrated by scipy on a fine grid, read at 50 Hz with noise."""
+def stated(lag_s: float | None) -> Assumed:
+    """Return the assumptions of an aircraft file with a servo's lag."""
+    return replace(ASSUMED, aircraft=Aircraft(elevator=Elevator(lag_s=lag_s)))
+
+
+def flown(
+    model: ShortPeriod, unit_s: float, amplitude: float, dice: np.random.Generator, late_s: float = 0.0
+) -> Record:
+    """A 3-2-1-1 integrated by scipy on a fine grid, read at 50 Hz with noise, its command stamped late."""
     step_s = 0.002
     edges = 1.0 + unit_s * np.cumsum([0, *UNITS_OF_TIME])
     t = np.arange(0.0, edges[-1] + max(2.0, 10.0 * unit_s), step_s)
@@ -36,22 +48,33 @@ def flown(model: ShortPeriod, unit_s: float, amplitude: float, dice: np.random.G
         name: Signal(t[read], outputs[read, k] + dice.normal(0.0, NOISE[name], len(t[read])))
         for k, name in enumerate(("alpha", "q"))
     }
-    return Record(elevator=Signal(t, command), outputs=measured)
+    return Record(elevator=Signal(t + late_s, command), outputs=measured)
 
 
-def test_many_noisy_fits_scatter_as_expected() -> None:
-    expected = expect(ASSUMED, {"elevator": 500.0, "alpha": 50.0, "q": 50.0}, None)
+def test_many_fits_with_noise_and_a_natural_lateness_scatter_as_expected() -> None:
+    """Telemetry is late by 15 ms and half an interval of the command (standard deviation)."""
+    expected = expect(stated(0.0), {"elevator": 500.0, "alpha": 50.0, "q": 50.0}, None)
     dice = np.random.default_rng(11)
     estimates = []
     for _ in range(40):
-        record = flown(TYPICAL, expected.unit_s, np.radians(expected.amplitude_deg), dice)
-        solution = solve(OutputErrorProblem(records=(record,)))
-        assert isinstance(solution, Solution)
-        estimates.append(solution.theta)
+        late_s = dice.normal(0.0, 0.016)
+        record = flown(TYPICAL, expected.unit_s, np.radians(expected.amplitude_deg), dice, late_s)
+        problem = OutputErrorProblem(records=(record,))
+        plain = solve(problem)
+        assert isinstance(plain, Solution)
+        unknown = unknown_instruments(problem, Aircraft(elevator=Elevator(lag_s=0.0)))
+        estimates.append(fit_instruments(plain, unknown).solution.theta)
     scatter = np.std(estimates, axis=0)
     ratio = scatter / np.array([expected.std[name] for name in PARAMETERS])
     # 40 values tell a standard deviation to 11 %; edges take a fiftieth of a second here, none there.
     assert np.all((ratio > 0.7) & (ratio < 1.35)), dict(zip(PARAMETERS, ratio, strict=True))
+
+
+def test_a_servo_whose_lag_the_file_leaves_open_tells_less_of_the_moment() -> None:
+    rates = {"elevator": 50.0, "alpha": 50.0, "q": 50.0}
+    known, left_open = (expect(assumed, rates, None) for assumed in (stated(0.05), ASSUMED))
+    assert left_open.std["M_delta_e"] > 1.5 * known.std["M_delta_e"]
+    assert left_open.std["M_q"] > 1.2 * known.std["M_q"]
 
 
 def test_the_manoeuvre_moves_the_angle_of_attack_as_far_as_it_says() -> None:
