@@ -2,12 +2,12 @@
 
     python -m benchmarks.gap_size
 
-Counted over ``advisor/gap`` are lines of code, without docstrings, comments and blank lines, so that an
-explanation costs nothing; constants, which are names of numbers; those among them that decide, by the kind in
-their docstring (``benchmarks.pages.constants``); comparisons with the name of an effect or a block; and
-functions of a cyclomatic complexity above 15 (McCabe 1976). A new effect does not count: the folders that
-describe effects, ``EFFECTS``, are left out of all counts but the last. ``make check`` and ``.ci/run`` fail
-above a limit.
+Counted over ``advisor/gap`` and ``advisor/side_gap``, which share one engine, are lines of code, without
+docstrings, comments and blank lines, so that an explanation costs nothing; constants, which are names of
+numbers; those among them that decide, by the kind in their docstring (``benchmarks.pages.constants``);
+comparisons with the name of an effect or a block; and functions of a cyclomatic complexity above 15
+(McCabe 1976). A new effect does not count: the folders that describe effects, ``EFFECTS``, are left out of
+all counts but the last. ``make check`` and ``.ci/run`` fail above a limit.
 """
 
 import ast
@@ -22,6 +22,7 @@ from advisor.gap.kit.effect import BLOCKS as BLOCKS_OF_EFFECTS
 from benchmarks.pages.constants import DECIDES, rows_in
 
 ROOM = Path(__file__).parents[1] / "advisor" / "gap"
+ROOMS = (ROOM, ROOM.parent / "side_gap")
 EFFECTS = (
     ROOM / "candidates",
     ROOM / "effects",
@@ -31,13 +32,13 @@ EFFECTS = (
 """Folders that describe effects, by their table and their equations."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
-    "lines of code": 5710,
-    "constants": 205,
-    "constants that decide": 38,
+    "lines of code": 7080,
+    "constants": 224,
+    "constants that decide": 54,
     "names compared": 11,
     "complex functions": 0,
 }
-"""Upper bound of each count. Lines have 2 % to spare, so that a mend needs no cut elsewhere."""
+"""Upper bound of each count."""
 MOST_COMPLEX = 15
 _LAYOUT = frozenset(
     {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
@@ -56,7 +57,7 @@ def main() -> int:
 def counted() -> dict[str, int]:
     """All counts, by the names of ``LIMITS``."""
     found = dict.fromkeys(LIMITS, 0)
-    for path in sorted(ROOM.rglob("*.py")):
+    for path in sorted(path for room in ROOMS for path in room.rglob("*.py")):
         text = path.read_text(encoding="utf-8")
         tree = ast.parse(text)
         found["complex functions"] += sum(_complexity(f) > MOST_COMPLEX for f in _functions(tree))

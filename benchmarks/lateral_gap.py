@@ -228,7 +228,9 @@ def judged(found: SideDiagnosis | None, case: Withheld, size: float) -> tuple[st
     if found is None:
         return "no answer", False, False
     if found.verdict != "effect":
-        said = f"{found.verdict} ({found.none:.2f}, {found.parameters:.2f})"
+        shares = found.probabilities
+        assert shares is not None
+        said = f"{found.verdict} ({shares.none:.2f}, {shares.parameters:.2f})"
         return said, not case.is_named and found.verdict == "none", False
     present = [one for one in found.causes if one.cause.present]
     first = present[0].cause.parameters

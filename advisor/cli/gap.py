@@ -46,7 +46,7 @@ _OF_A_FLIGHT = {
     "exports": "--export", "proving": "--prove", "specification": "--simulator", "figure": "--figure",
     "axis": "--axis",
 }  # fmt: skip
-_OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "why", "everything", "figure")}
+_OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "everything", "figure")}
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
 }  # fmt: skip
@@ -170,7 +170,7 @@ def command(
         if out is not None:
             _refuse_out(out, asked.aircraft_file)
         orders = orders_of(exports, aircraft, [*asked.inputs, out], "lateral")
-        return compare_lateral(asked, aircraft, as_json, prior, out, orders, proving)
+        return compare_lateral(asked, aircraft, as_json, prior, out, orders, proving, why)
     decided = [decided_on(log, asked.no_marks) for log in asked.logs]
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     if out is not None:

@@ -18,7 +18,7 @@ from advisor.analysis.whole_flights import WholeFlights, holds_no_test, read_who
 from advisor.cli.doctor import examine_log
 from advisor.cli.log_options import LogsAsked
 from advisor.doctor.document import doctor_document
-from advisor.gap.inference.diagnose import Progress
+from advisor.gap.inference.engine import Progress
 from advisor.report.document import analysis_document
 from advisor.report.page.content import Content, Document, Origin
 from advisor.session.diagnosis import diagnosed

@@ -21,8 +21,9 @@ from advisor.cli.options import USAGE
 from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of
 from advisor.cli.stages import Stages
+from advisor.gap.alternative import Weighed
 from advisor.gap.candidates.distinguish import way_to_distinguish
-from advisor.gap.document import changed_document, gap_document
+from advisor.gap.document import changed_document, gap_document, weighed_document
 from advisor.gap.inference.prior import FIELD, FieldPrior, field_prior
 from advisor.gap.result import IMPROVING, Value
 from advisor.gap.verdict.text import title_of_verdict
@@ -31,7 +32,7 @@ from advisor.report.gap_sizes import sizes_of
 from advisor.report.gap_steps import GapStep, to_decide
 from advisor.side_gap.comparison import SideGap
 from advisor.side_gap.diagnosis import SideDiagnosis
-from advisor.side_gap.stage import LIKELY
+from advisor.side_gap.flight import LIKELY
 from advisor.words.certainty import is_decided
 from advisor.words.digits import with_half
 from advisor.words.plain import picked, plain
@@ -53,6 +54,7 @@ def compare_lateral(
     out: Path | None,
     orders: "list[ExportOrder]",
     proving: Sequence[str] = (),
+    why: bool = False,
 ) -> int:
     """Compare roll and yaw of the aircraft file with the flight, print the result and write the files."""
     shares = FIELD if prior is None else field_prior(prior)
@@ -85,6 +87,11 @@ def compare_lateral(
         click.echo(json.dumps(document, allow_nan=False, indent=1))
     else:
         click.echo("\n".join(side_gap_lines(found)))
+        if why and found.diagnosis is not None:
+            from advisor.report.console import PlainConsole
+            from advisor.report.gap_causes import why_of
+
+            PlainConsole().print(*why_of(found.diagnosis))
         print_proof(proof)
         if written:
             click.echo(f"The improved simulator is in {printable(str(out))}.")
@@ -197,7 +204,6 @@ def side_gap_document(found: SideGap) -> dict[str, Any]:
     told: dict[str, Any] = plain({
         **picked(found, "verdict sentence maneuvers not_identifiable"),
         "title": _title(found),
-        "decided": found.diagnosis is not None and is_decided(found.diagnosis.answers),
         "next": [] if (step := _to_decide(found.diagnosis)) is None else [step],
         "gap": {"before": before, "by_channel": found.before, "by_channel_after": found.after},
         "parameters_changed": [changed_document(one) for one in found.derivatives if one.differs],
@@ -205,15 +211,16 @@ def side_gap_document(found: SideGap) -> dict[str, Any]:
         "instruments": {n: {"value": v.value, "std": v.std} for n, v in found.instruments.items()},
         "shrink": shrink,
         **_diagnosis_document(found.diagnosis),
-        "decisions": [
-            {
-                "name": "the simulator's derivatives of roll and yaw",
-                "statistic": found.statistic,
-                "limit": found.limit,
-                "margin": found.limit - found.statistic,
-            }
-        ],
     })  # fmt: skip
+    told["decisions"].insert(
+        0,
+        {
+            "name": "the simulator's derivatives of roll and yaw",
+            "statistic": found.statistic,
+            "limit": found.limit,
+            "margin": found.limit - found.statistic,
+        },
+    )
     return told
 
 
@@ -222,12 +229,12 @@ def _diagnosis_document(found: SideDiagnosis | None) -> dict[str, Any]:
     keys."""
     if found is None:
         return {
-            "probabilities": None, "where": None, "causes": [], "waterfall": [], "peaks": None,
+            **weighed_document(Weighed()), "where": None, "causes": [], "waterfall": [], "peaks": None,
             "cannot_see": {},
         }  # fmt: skip
     where = found.where
     return {
-        "probabilities": picked(found, "none parameters unknown effects"),
+        **weighed_document(found),
         "where": where
         and {
             **picked(where, "block share"),

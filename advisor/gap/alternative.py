@@ -4,6 +4,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from advisor.gap.decision import Decision
+
 Kind = Literal["none", "parameters", "effect", "air", "unknown"]
 """Kind of an alternative. ``air`` is an effect of the air, ``effect`` one of the aircraft or its
 telemetry."""
@@ -78,3 +80,33 @@ class Probabilities:
     unknown: Mapping[str, float] = field(default_factory=dict)
     """Probability of an effect without a name, by block."""
     effects: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Weighed:
+    """The alternatives of a diagnosis with their evidence."""
+
+    evidence: tuple[AlternativeEvidence, ...] = ()
+    """The evidence on every alternative, likeliest first; empty for a single manoeuvre, which proves no
+    cause."""
+    why: tuple[Contribution, ...] = ()
+    """The answer against its strongest rival, in nats that add up to the log odds."""
+    answer: Alternative | None = None
+    """The likeliest alternative; None for a single manoeuvre."""
+    rival: str = ""
+    """Label of that rival; empty without ``why``."""
+    decisions: tuple[Decision, ...] = ()
+    """Every statistic that was compared with a limit, in the order of the comparisons."""
+
+    @property
+    def probabilities(self) -> Probabilities | None:
+        """Probabilities of all alternatives by kind and name; None without evidence."""
+        if not self.evidence:
+            return None
+        each = [(one.alternative, one.probability) for one in self.evidence]
+        return Probabilities(
+            none=sum(p for a, p in each if a.kind == "none"),
+            parameters=sum(p for a, p in each if a.kind == "parameters"),
+            unknown={a.block: p for a, p in each if a.kind == "unknown"},
+            effects={a.name: p for a, p in each if a.is_effect},
+        )

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.alternative import AlternativeEvidence
+from advisor.gap.alternative import AlternativeEvidence, Weighed
 from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification
 from advisor.gap.verdict.text import answers_of, in_words, limits_of, title_of
 from advisor.process.parts import FailedPart
@@ -80,16 +80,12 @@ def gap_document(
         ],
         "yardsticks": {c: {"before": a, "after": b} for c, (a, b) in d.yardsticks.items()},
         "improved_model": improved_model,
-        "decisions": [
-            {"name": f"{one.about} {one.name}", **picked(one, "about statistic limit margin unit holds")}
-            for one in d.decisions
-        ],
-        **_judged(d),
+        **weighed_document(d),
     })  # fmt: skip
     return document
 
 
-def _judged(d: Diagnosis) -> dict[str, Any]:
+def weighed_document(d: Weighed) -> dict[str, Any]:
     """Return the probabilities of all alternatives, their evidence, and the reasons for the answer."""
     return {
         "probabilities": d.probabilities,
@@ -98,6 +94,10 @@ def _judged(d: Diagnosis) -> dict[str, Any]:
         "answer": d.answer and d.answer.label,
         "decided": is_decided(answers_of(d.evidence)),
         "rival": d.rival or None,
+        "decisions": [
+            {"name": f"{one.about} {one.name}", **picked(one, "about statistic limit margin unit holds")}
+            for one in d.decisions
+        ],
     }
 
 

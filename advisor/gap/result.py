@@ -7,8 +7,7 @@ from typing import Literal
 from advisor.flight.instruments.atmosphere import AirData
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.alternative import Alternative, AlternativeEvidence, Contribution, Probabilities
-from advisor.gap.decision import Decision
+from advisor.gap.alternative import Weighed
 from advisor.words.quantiles import NORMAL_95
 
 GapVerdict = Literal["none", "parameters", "effect", "unknown", "untested"]
@@ -230,7 +229,7 @@ class Trace:
 
 
 @dataclass(frozen=True)
-class Diagnosis:
+class Diagnosis(Weighed):
     """The complete result of a diagnosis."""
 
     verdict: GapVerdict
@@ -255,8 +254,6 @@ class Diagnosis:
     """Channel to the measures of the simulator as given and of the final model."""
     share_irreducible: float
     """Share of the final model's error that is noise and moving air. The rest is model error."""
-    decisions: tuple[Decision, ...] = ()
-    """Every statistic that was compared with a limit, in the order of the comparisons."""
     derivatives: tuple[ComparedDerivative, ...] = ()
     """Derivatives of simulator and flight, those that differ most first; empty without a simulator."""
     traces: tuple[Trace, ...] = ()
@@ -278,15 +275,6 @@ class Diagnosis:
     """Air of the manoeuvres: the kind of their air speed, and the density; None where nobody asked."""
     airspeed_excess: float = 0.0
     """Relative excess of the true air speed over the one in use, as the final model has it."""
-    evidence: tuple[AlternativeEvidence, ...] = ()
-    """The evidence on every alternative, likeliest first; empty for a single manoeuvre, which proves no
-    cause."""
-    why: tuple[Contribution, ...] = ()
-    """The answer against its strongest rival, in nats that add up to the log odds."""
-    answer: Alternative | None = None
-    """The likeliest alternative; None for a single manoeuvre."""
-    rival: str = ""
-    """Label of that rival; empty without ``why``."""
     although_refused: tuple[int, ...] = ()
     """Numbers of the manoeuvres in use that ``advisor analyze`` refuses by their data alone."""
 
@@ -294,19 +282,6 @@ class Diagnosis:
     def improves(self) -> bool:
         """Whether there is an improved simulator: by an effect, or by other numbers."""
         return self.verdict in IMPROVING and not self.is_left_as_given
-
-    @property
-    def probabilities(self) -> Probabilities | None:
-        """Probabilities of all alternatives by kind and name; None without evidence."""
-        if not self.evidence:
-            return None
-        each = [(one.alternative, one.probability) for one in self.evidence]
-        return Probabilities(
-            none=sum(p for a, p in each if a.kind == "none"),
-            parameters=sum(p for a, p in each if a.kind == "parameters"),
-            unknown={a.block: p for a, p in each if a.kind == "unknown"},
-            effects={a.name: p for a, p in each if a.is_effect},
-        )
 
 
 def spelled(effect: str) -> str:

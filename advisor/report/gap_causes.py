@@ -9,9 +9,9 @@ from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from advisor.gap.alternative import Alternative, Kind
+from advisor.gap.alternative import Alternative, Kind, Weighed
 from advisor.gap.decision import Decision
-from advisor.gap.result import Cause, Diagnosis, Unseen, spelled
+from advisor.gap.result import Cause, Unseen, spelled
 from advisor.gap.verdict.text import BLOCKS, in_words
 from advisor.report.gap_reasons import heading, in_percent, weighed
 from advisor.report.gap_sizes import marked, sizes_of
@@ -90,7 +90,7 @@ def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def why_of(d: Diagnosis) -> Iterator[RenderableType]:
+def why_of(d: Weighed) -> Iterator[RenderableType]:
     """Yield the answer against its strongest rival, then every statistic with its limit."""
     if d.answer is not None:
         *reasons, total = weighed((reason.nats, reason.sentence) for reason in d.why)

@@ -1,31 +1,34 @@
 """Explanations of a lateral flight: no gap, wrong numbers, side gusts, one effect, or two at once."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
-from advisor.gap.alternative import Alternative
+from advisor.gap.alternative import Alternative, Weighed
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
-from advisor.gap.inference.posterior import NONE, PARAMETERS
+from advisor.gap.inference.engine import Decided, decided, first_stage
+from advisor.gap.inference.explanation import Row
+from advisor.gap.inference.posterior import NONE, relabelled
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Cause, Value, Where
+from advisor.gap.search.air import NATURAL_GUST_ANGLE
+from advisor.gap.verdict.reasons import weighed
 from advisor.gap.verdict.statements import what
-from advisor.gap.verdict.text import in_words, place
-from advisor.side_gap.disturbance import SENSORS
-from advisor.side_gap.effects import SideEffect, side_effects, unseen
+from advisor.gap.verdict.text import answers_of, place
+from advisor.side_gap.effects import block_of, side_effects, unseen
 from advisor.side_gap.evidence import Gain, information_of, posterior_of, share_of
 from advisor.side_gap.fit import Fit, N
+from advisor.side_gap.flight import LIKELY, SideFlight, SideModel
+from advisor.side_gap.gusts import coloured_likelihood
 from advisor.side_gap.models import Case, base_of, plain_fit, refitted, simulated
-from advisor.side_gap.stage import LIKELY, Stage, Tried, stage_of
 from advisor.words.certainty import Answers
 
 PEAKS = ("p", "r")
 """Outputs whose largest errors are reported."""
 AIR = "side gusts"
-_BLOCKS = {**{output: block for block, output in SENSORS.items()}, "throttle": "rolling_moment"}
-"""Output, or the throttle, to its block; a control and the air are blocks themselves."""
+SIDE_GUSTS = Alternative("air", "side_gusts", "air")
 Kind = Literal["none", "parameters", "effect", "unknown"]
 
 
@@ -53,21 +56,13 @@ class SideCause:
     @property
     def block(self) -> str:
         """Block of the simulator in which the effect acts."""
-        return next(
-            (block for block, output in SENSORS.items() if output == self.of), _BLOCKS.get(self.of, self.of)
-        )
+        return block_of(self.of)
 
 
-@dataclass(frozen=True, slots=True)
-class SideDiagnosis:
-    """Probability of every explanation, and the likeliest effects."""
+@dataclass(frozen=True)
+class SideDiagnosis(Weighed):
+    """All explanations with their evidence, and the likeliest effects."""
 
-    none: float
-    parameters: float
-    effects: Mapping[str, float]
-    """Name of every effect that was tried to the probability that it is the main cause."""
-    unknown: Mapping[str, float]
-    """Probability of a law that no effect describes, by block."""
     causes: tuple[SideCause, ...]
     """Effects of the model in the order in which they were found, then alternatives, likeliest first."""
     peaks: Mapping[str, float]
@@ -82,25 +77,21 @@ class SideDiagnosis:
 
     @property
     def verdict(self) -> Kind:
-        """Kind of the likeliest single explanation; the blocks of the unknown count together."""
-        return max(self._kinds, key=lambda kind: self._kinds[kind])
+        """Kind of the answer."""
+        assert self.answer is not None
+        return "effect" if self.answer.is_effect else self.answer.kind  # type: ignore[return-value]
 
     @property
-    def probability(self) -> float:
-        """Probability of the verdict."""
-        return self._kinds[self.verdict]
-
-    @property
-    def _kinds(self) -> Mapping[Kind, float]:
-        likeliest = max(self.effects.values(), default=0.0)
-        unknown = sum(self.unknown.values())
-        return {"none": self.none, "parameters": self.parameters, "effect": likeliest, "unknown": unknown}
+    def answers(self) -> Answers:
+        """Every answer in words with its probability, the likeliest first."""
+        return answers_of(self.evidence)
 
     @property
     def where(self) -> Where | None:
         """Block of the named effect, or else the likeliest one of a law without a name; None without both."""
-        without = sum(self.unknown.values())
-        ranked = {block: p / without for block, p in self.unknown.items()} if without > 0.0 else {}
+        each = {a.block: one.probability for one in self.evidence if (a := one.alternative).kind == "unknown"}
+        without = sum(each.values())
+        ranked = {block: p / without for block, p in each.items()} if without > 0.0 else {}
         if self.verdict == "effect" and self.causes:
             block = self.causes[0].block
             ranked = {block: 1.0, **{other: p for other, p in ranked.items() if other != block}}
@@ -109,16 +100,6 @@ class SideDiagnosis:
         first = max(ranked, key=lambda block: ranked[block])
         ranking = sorted(((b, p / ranked[first]) for b, p in ranked.items()), key=lambda one: -one[1])
         return Where(first, ranked[first], tuple(ranking))
-
-    @property
-    def answers(self) -> Answers:
-        """Every answer in words with its probability, the likeliest first."""
-        found = [(in_words(NONE), self.none), (in_words(PARAMETERS), self.parameters)]
-        found += [(name.replace("_", " "), p) for name, p in self.effects.items()]
-        if self.unknown:
-            block = max(self.unknown, key=lambda one: self.unknown[one])
-            found.append((in_words(Alternative("unknown", "unknown", block)), sum(self.unknown.values())))
-        return sorted(found, key=lambda answer: -answer[1])
 
     @property
     def sentence(self) -> str:
@@ -139,79 +120,62 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> Sid
     listed : number of causes that are returned.
     """
     first = plain_fit(case)
-    share = 1.0 if first is None else share_of(first)
-    plain = None if first is None else refitted(case, first, ERROR_IF_WRONG, share)
+    plain = None if first is None else refitted(case, first, ERROR_IF_WRONG, share_of(first))
     as_given = None if plain is None else simulated(case, plain)
     if plain is None or as_given is None:
         return None
     table = list(side_effects(case.flown))
-    stage = stage_of(case, plain, share, table, prior)
-    effects = dict(stage.probability)
-    if stage.air > 0.0:
-        effects[AIR.replace(" ", "_")] = stage.air
-    stages = [stage, *_second(case, stage, table, prior)]
+    flight = SideFlight(case, plain, table)
+    found = decided(flight, first_stage(flight), prior, lambda rows: [_named_air(row) for row in rows])
+    told = weighed(found.posteriors[0])
     return SideDiagnosis(
-        stage.none,
-        stage.parameters,
-        effects,
-        stage.unknown,
-        tuple(_causes(case, stages, as_given))[:listed],
-        peaks_of(as_given),
-        peaks_of(plain),
-        unseen(case.flown),
-        _waterfall(stages),
-    )
+        evidence=told.evidence, why=told.why, answer=told.answer, rival=told.rival, decisions=told.decisions,
+        causes=tuple(_causes(case, found, as_given))[:listed],
+        peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain),
+        cannot_see=unseen(case.flown), waterfall=_waterfall(found.chosen[1:]),
+    )  # fmt: skip
 
 
-def _second(case: Case, stage: Stage, table: Sequence[SideEffect], prior: FieldPrior) -> Iterator[Stage]:
-    """Yield the stage after the one effect that was found, where its model can be fitted again."""
-    found = stage.found
-    if found is None:
-        return
-    share = share_of(found.fit)
-    # With the effect, another lateness of commands and outputs changes the outputs by something else.
-    anew = replace(found.fit, free=tuple(one._replace(column=None) for one in found.fit.free))
-    plain = refitted(case, anew, ERROR_IF_WRONG, share)
-    if plain is not None:
-        others = [e for e in table if not set(e.places) & set(found.effect.places)]
-        yield stage_of(case, plain, share, others, prior)
+def _named_air(row: Row[SideModel]) -> Row[SideModel]:
+    """Return the row with side gusts as its answer, where they alone are beyond the natural ones."""
+    gusts = row.explanation.gusts
+    blown = row.alternative == NONE and gusts is not None and gusts.angle > NATURAL_GUST_ANGLE
+    return relabelled(row, SIDE_GUSTS) if blown else row
 
 
-def _causes(case: Case, stages: Sequence[Stage], as_given: Fit) -> Iterator[SideCause]:
+def _causes(case: Case, found: Decided[SideModel], as_given: Fit) -> Iterator[SideCause]:
     """Yield the effects of the model, then the alternatives to the first of them."""
-    stage, together = stages[0], 1.0
-    fit, tolerance, share = stage.plain, ERROR_IF_WRONG, stage.share
-    added: list[tuple[Tried, float]] = []
-    for one in stages:
-        if one.found is not None:
-            together *= one.probability[one.found.effect.name]
-            added.append((one.found, together))
-            fit, tolerance, share = one.found.fit, one.found.tolerance, one.share
+    posterior, together = found.posteriors[0], 1.0
+    added = found.chosen[1:]
     if added:
         # The whole model leaves less colour than the model in which its last effect was sought.
-        share = share_of(fit)
-        fit = refitted(case, fit, tolerance, share) or fit
-    for tried, probability in added:
-        yield _cause(case, tried, fit, tolerance, probability, share, present=True)
-    alternatives: list[tuple[float, Tried | None]]
-    alternatives = [(stage.probability[t.effect.name], t) for t in stage.ranked if t is not stage.found]
-    if stage.air > 0.0:
-        alternatives.append((stage.air, None))
-    for probability, other in sorted(alternatives, key=lambda pair: -pair[0]):
-        if other is None:
-            yield _air(case, stage, as_given)
+        share = share_of(added[-1].fit)
+        fit = refitted(case, added[-1].fit, added[-1].tolerance, share) or added[-1].fit
+        for stage, one in zip(found.posteriors, added, strict=False):
+            assert one.alternative is not None
+            together *= stage.of(one.alternative)
+            yield _cause(case, one, fit, added[-1].tolerance, together, share, present=True)
+    share = found.heat**-0.5
+    taken = {one.alternative for one in added}
+    for alternative, probability in posterior.by_alternative.items():
+        if not alternative.is_effect or alternative in taken:
+            continue
+        other = posterior.explanation_of(alternative)
+        if alternative == SIDE_GUSTS:
+            yield _air(case, other, probability, posterior.answer == SIDE_GUSTS, as_given)
             continue
         again = other.fit
         if probability > LIKELY:
-            again = refitted(case, other.fit, other.tolerance, stage.share) or other.fit
-        yield _cause(case, other, again, other.tolerance, probability, stage.share, present=False)
+            again = refitted(case, other.fit, other.tolerance, share) or other.fit
+        yield _cause(case, other, again, other.tolerance, probability, share, present=False)
 
 
 def _cause(
-    case: Case, tried: Tried, fit: Fit, tolerance: float, probability: float, share: float, present: bool
+    case: Case, tried: SideModel, fit: Fit, tolerance: float, probability: float, share: float, present: bool
 ) -> SideCause:
     """Return an effect with its sizes in a fit that has the effect."""
     effect = tried.effect
+    assert effect is not None
     mean, covariance = posterior_of(fit, information_of(fit, share), case.known(tolerance, fit.free))
     places = [one.place for one in fit.free]
     at = [N + places.index(place) for place in effect.places]
@@ -231,24 +195,24 @@ def _cause(
     return SideCause(effect.of, effect.named, cause, effect.said(what(cause)), tried.gain, peaks_of(fit))
 
 
-def _air(case: Case, stage: Stage, as_given: Fit) -> SideCause:
+def _air(case: Case, one: SideModel, probability: float, is_found: bool, as_given: Fit) -> SideCause:
     """Return side gusts as a cause."""
-    is_found = stage.air > max(stage.none, stage.parameters, *stage.probability.values())
+    assert one.gusts is not None
     speed = float(np.mean([np.mean(record.airspeed.y) for record in case.flown.problem.records]))
-    size = Value(stage.gusts.angle * speed, stage.gusts.angle_std * speed)
-    cause = Cause("turbulence", "air", stage.air, {"sigma_v_m_s": size}, (), "", float(np.nan), is_found)
+    size = Value(one.gusts.angle * speed, one.gusts.angle_std * speed)
+    cause = Cause("turbulence", "air", probability, {"sigma_v_m_s": size}, (), "", float(np.nan), is_found)
     said = f"The air was not still: side gusts of about {size.value:.2g} m/s"
-    return SideCause("air", AIR, cause, said, Gain(stage.air_gain, 0.0), peaks_of(as_given))
+    gain = Gain(one.gusts.likelihood - coloured_likelihood(one.fit), 0.0)
+    return SideCause("air", AIR, cause, said, gain, peaks_of(as_given))
 
 
-def _waterfall(stages: Sequence[Stage]) -> tuple[tuple[str, float], ...]:
+def _waterfall(added: Sequence[SideModel]) -> tuple[tuple[str, float], ...]:
     """Return the gap that remains with each effect of the model."""
-    added = [stage.found for stage in stages if stage.found is not None]
     if not added:
         return ()
     told = np.unique(added[-1].fit.assembly.channel)
     last = added[-1].fit.noise[told]
-    return tuple((one.effect.name, float(np.mean((one.fit.noise[told] / last) ** 2)) - 1.0) for one in added)
+    return tuple((one.name, float(np.mean((one.fit.noise[told] / last) ** 2)) - 1.0) for one in added)
 
 
 def peaks_of(fit: Fit) -> Mapping[str, float]:

@@ -23,6 +23,7 @@ from advisor.gap.kit.skew import skew_beyond
 from advisor.gap.kit.variant import Variant
 from advisor.gap.result import spelled
 from advisor.model.lateral import LATERAL
+from advisor.side_gap.disturbance import SENSORS
 from advisor.side_gap.setting import PROPELLER, Flown, Place
 
 THROTTLE_MOVES = 0.02
@@ -57,6 +58,11 @@ class SideEffect:
         """Name of the effect in documents: ``aileron_actuator_lag``, ``roll_rate_scale``."""
         return self.named.replace(" ", "_")
 
+    @property
+    def block(self) -> str:
+        """Block of the simulator in which the effect acts."""
+        return block_of(self.of)
+
     def said(self, sentence: str) -> str:
         """Return the pitch axis' sentence in the words of this axis; the control leads where none changes."""
         for old, new in self.words.items():
@@ -81,6 +87,8 @@ class SideEffect:
         return None if self.variant.sides is None else ((self.of, self.variant.sides[0]), (-1.0, 0.0, 1.0))
 
 
+_BLOCKS = {**{output: block for block, output in SENSORS.items()}, "throttle": "rolling_moment"}
+"""Output, or the throttle, to its block; a control is a block itself."""
 _SERVO = (
     (LAG, ("lag_s",), (0.05,)),
     (DELAY, ("delay_s",), (0.05,)),
@@ -112,6 +120,11 @@ _SCALED = {
 }
 _SCALE_STD, _SKEW_STD_S, _ARM_STD_M = 0.1, 0.1, 0.3
 """Prior standard deviations of a scale error, 1, of late stamps, s, and of an accelerometer's arm, m."""
+
+
+def block_of(of: str) -> str:
+    """Return the block of a control, an output, the throttle or the air."""
+    return _BLOCKS.get(of, of)
 
 
 def side_effects(flown: Flown) -> Iterator[SideEffect]:

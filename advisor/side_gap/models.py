@@ -1,8 +1,7 @@
 """Models of a lateral flight: the plain one with natural lateness, and one for each effect."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from advisor.oem.lateral_prepare import prepare_lateral
 from advisor.oem.lateral_start import lateral_start
 from advisor.oem.prepare import signal_of
 from advisor.side_gap.effects import SideEffect
-from advisor.side_gap.fit import Fit, Free, Known, N, Point, fitted, outputs
+from advisor.side_gap.fit import Fit, Free, Known, Point, fitted
 from advisor.side_gap.setting import AIR_SPEED, COMMAND, Flown, Place
 
 SMALL_SHARE = 0.1
@@ -126,14 +125,6 @@ def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
     return (*kept, *own)
 
 
-class Start(NamedTuple):
-    """A start of an effect's fit."""
-
-    squares: float
-    """Sum of squares over the noise, after a linear refit of all else."""
-    point: Point
-
-
 def effect_fit(case: Case, plain: Fit, effect: SideEffect, begin: Point, share: float) -> Fit | None:
     """Return the fit with an effect from a start, with derivatives that may be wrong."""
     free = free_with(case, effect, plain)
@@ -143,81 +134,6 @@ def effect_fit(case: Case, plain: Fit, effect: SideEffect, begin: Point, share: 
 def refitted(case: Case, fit: Fit, tolerance: float, share: float) -> Fit | None:
     """Return a fit again, with another tolerance of the derivatives."""
     return fitted(case.flown, fit.point, fit.free, case.known(tolerance, fit.free, share))
-
-
-def best_start(case: Case, plain: Fit, effect: SideEffect) -> Start:
-    """Return the start of an effect that leaves least, by one simulation for each start of the table.
-
-    An effect at the place of a natural number starts at that number, and saves what its prior has cost.
-    """
-    saved = [
-        ((value - one.mean) / one.std) ** 2
-        for one, value in zip(plain.free, plain.values[N:], strict=True)
-        if one.place in effect.places
-    ]
-    if saved:
-        squares = _Left(case, plain).along(plain.fitted)[1]
-        return Start(float(np.sum(squares) - sum(saved)), plain.point)
-    return min(_starts(case, plain, effect), key=lambda start: start.squares)
-
-
-def _starts(case: Case, plain: Fit, effect: SideEffect) -> Iterator[Start]:
-    """Yield every start of an effect. Along the way from no effect to a start the outputs count as linear."""
-    left = _Left(case, plain)
-    place, sides = effect.sides or (("", ""), (0.0,))
-    for values in effect.starts:
-        setting = dict(plain.point.setting)
-        base = base_of(case, effect)
-        for at, value, known in zip(effect.places, values, base, strict=True):
-            setting[at] = np.full(len(case.flown), known + value)
-        tried = []
-        for side in sides:
-            setting[place] = np.full(len(case.flown), side)
-            tried.append(left.along(outputs(case.flown, plain.point._replace(setting=setting))))
-        squares = np.array([squares for _, squares in tried])
-        best = np.argmin(squares, axis=0)
-        if effect.sides is None:
-            del setting[place]
-            share = float(np.clip(tried[0][0], *SECANT))
-            setting[effect.places[0]] = np.full(len(case.flown), base[0] + share * values[0])
-        else:
-            setting[place] = np.array(sides)[best]
-        yield Start(float(np.sum(np.min(squares, axis=0))), plain.point._replace(setting=setting))
-
-
-SECANT = (0.25, 2.0)
-"""Least and greatest part of a start that the straight line from no effect may suggest."""
-
-
-class _Left:
-    """Sums of squares that changed outputs leave, with all else refitted linearly."""
-
-    def __init__(self, case: Case, plain: Fit) -> None:
-        self._plain = plain
-        known = case.known(ERROR_IF_WRONG, plain.free)
-        self._columns = plain.columns * plain.weight[:, None]
-        self._information = self._columns.T @ self._columns + np.diag(known.precision)
-        own = plain.assembly.free[plain.assembly.free >= N]
-        self._own = plain.sensitivities[:, own] * plain.weight[:, None]
-        self._parts = [plain.assembly.owner == m for m in range(plain.assembly.maneuvers)]
-        self._begin = self._without(plain.residual * plain.weight)
-
-    def along(self, y: FloatArray) -> tuple[float, FloatArray]:
-        """Return the best part of the way to outputs ``y`` (N,), and the sums of squares (m,) left there."""
-        if not np.all(np.isfinite(y)):
-            return 1.0, np.full(len(self._parts), np.inf)
-        way = self._without((y - self._plain.fitted) * self._plain.weight)
-        share = float(way @ self._begin) / max(float(way @ way), 1e-12)
-        left = self._begin - float(np.clip(share, *SECANT)) * way
-        return share, np.array([float(left[rows] @ left[rows]) for rows in self._parts])
-
-    def _without(self, left: FloatArray) -> FloatArray:
-        """Return weighed rows (N,) without what all other parameters absorb."""
-        left = left.copy()
-        for rows in self._parts:
-            mine = self._own[rows]
-            left[rows] -= mine @ np.linalg.lstsq(mine, left[rows], rcond=None)[0]
-        return np.asarray(left - self._columns @ np.linalg.solve(self._information, self._columns.T @ left))
 
 
 def base_of(case: Case, effect: SideEffect) -> FloatArray:

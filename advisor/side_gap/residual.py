@@ -1,7 +1,6 @@
 """The residual of a lateral model: the disturbance that explains most of it, block by block."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -13,24 +12,8 @@ from advisor.side_gap.fit import FLOOR, Fit
 from advisor.side_gap.setting import Flown
 
 
-@dataclass(frozen=True, slots=True)
-class Beside:
-    """The residual of a lateral model, with and without what side gusts explain."""
-
-    whole: Residual
-    beside_air: float
-    """Size of what side gusts leave."""
-
-    @property
-    def blocks_but_air(self) -> Mapping[str, float]:
-        """Probability of each block, given that something without a name acts in one that is not the air."""
-        others = {block: share for block, share in self.whole.blocks.items() if block != AIR}
-        total = sum(others.values())
-        return {block: share / total for block, share in others.items()}
-
-
-def residual_of(fit: Fit, flown: Flown, share: float) -> Beside:
-    """Return the disturbance that explains the residual of a fit.
+def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
+    """Return the disturbance that explains the residual of a fit; its block is never the air.
 
     Parameters
     ----------
@@ -49,8 +32,9 @@ def residual_of(fit: Fit, flown: Flown, share: float) -> Beside:
     by_air = next(probe.explained for probe in probes if probe.block == AIR)
     most = probes[0].explained
     whole, beside = (float(np.sqrt(e) * max(sizes) / NATURAL) for e in (most, max(most - by_air, 0.0)))
-    blocks = shares_of([p.block for p in probes], [share**2 * p.gain for p in probes])
-    return Beside(Residual(whole, blocks), beside)
+    named = [probe for probe in probes if probe.block != AIR]
+    blocks = shares_of([probe.block for probe in named], [share**2 * probe.gain for probe in named])
+    return Residual(whole, blocks, beside)
 
 
 def _probe(fit: Fit, block: str, courses: Sequence[Course], noise: FloatArray) -> Probe:

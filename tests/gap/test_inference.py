@@ -11,15 +11,24 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
-from advisor.gap.inference import stage
 from advisor.gap.inference.diagnose import _with_air
-from advisor.gap.inference.explanation import Explanation, Row
-from advisor.gap.inference.posterior import NONE, PARAMETERS, _pairs, _with_residual, posterior_of, stated_as
+from advisor.gap.inference.engine import _lead, decided, first_stage
+from advisor.gap.inference.explanation import Evidence, Explanation, Row
+from advisor.gap.inference.posterior import (
+    NONE,
+    PARAMETERS,
+    _pairs,
+    _with_residual,
+    posterior_of,
+    rows_of,
+    stated_as,
+)
 from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.residual import Residual
 from advisor.gap.inference.sizes import natural_share, with_sizes
+from advisor.gap.inference.stage import Stage, stage_of, within_model_error
 from advisor.gap.records.prepare import prepare
-from advisor.gap.verdict.reasons import decisions_of, none_means_no_gap, rival_of, why_of
+from advisor.gap.verdict.reasons import none_means_no_gap, weighed
 from advisor.report.gap_causes import decision_in_words
 from tests.gap.generator import Setup, fly
 
@@ -56,17 +65,19 @@ def test_two_ways_of_one_answer_add_up():
 @given(st.lists(st.floats(-500.0, 500.0), min_size=6, max_size=6))
 def test_the_reasons_add_up_to_the_log_odds_even_where_the_rival_has_no_chance(nats):
     told = posterior_of(map(row, EVERY, nats))
-    parts = [part.nats for part in why_of(told, rival_of(told))]
-    mine = np.logaddexp.reduce([r.weight for r in told.rows if r.alternative.name == told.answer.name])
-    other = np.logaddexp.reduce([r.weight for r in told.rows if r.alternative.name == rival_of(told).name])
+    said = weighed(told)
+    parts = [part.nats for part in said.why]
+    names = told.answer.name, said.rival.partition("@")[0]
+    mine, other = (
+        np.logaddexp.reduce([r.weight for r in told.rows if r.alternative.name == n]) for n in names
+    )
     assert sum(parts) == pytest.approx(mine - other, abs=1e-6)
 
 
 @pytest.mark.parametrize("answer", EVERY)
 def test_every_decision_on_an_answer_has_a_sentence(answer):
     told = posterior_of([row(answer, 3.0), *(row(other) for other in EVERY if other != answer)])
-    found = SimpleNamespace(sought_air=SimpleNamespace(found=None))
-    lines = [decision_in_words(one) for one in decisions_of(found, told, rival_of(told))]
+    lines = [decision_in_words(one) for one in weighed(told).decisions]
     # The rival, or the answer, is both blocks of the unknown together.
     odds = "3.05" if answer.kind == "unknown" else "2.31"
     assert lines[0].endswith(f"its log odds against the next answer are {odds} nats (at least 0)")
@@ -81,11 +92,11 @@ class Model(SimpleNamespace):
 
 
 @pytest.mark.parametrize(("apart", "nats"), [(0.0, 0.0), (0.0025, 5.0), (0.005, 20.0), (0.05, 1000.0)])
-def test_a_difference_below_a_simulators_own_error_decides_by_few_nats(monkeypatch, apart, nats):
+def test_a_difference_below_a_simulators_own_error_decides_by_few_nats(apart, nats):
     """The error is half a per cent of the peak, with forty independent numbers: 20 nats at its size."""
-    monkeypatch.setattr(stage, "change_of", lambda problem, one, other: apart)
-    best, other = (Model(likelihood=likelihood, fitted=None, form_error=0.0) for likelihood in (1000.0, 0.0))
-    told = stage._within_model_error(None, [best, other], 0.0)
+    flight = SimpleNamespace(apart=lambda one, other: apart)
+    best, other = (Model(likelihood=likelihood, form_error=0.0) for likelihood in (1000.0, 0.0))
+    told = within_model_error(flight, [best, other], 0.0)
     assert told[0].likelihood - told[1].likelihood == pytest.approx(nats)
 
 
@@ -121,12 +132,99 @@ def test_moving_air_is_the_answer_where_it_removes_more_of_the_gap_than_the_effe
     assert [row.alternative for row in told] == [named, MOMENT]
 
 
+def explanation(alternative=None, nats=0.0, **more):
+    """Return an explanation of so many nats, likewise with right and with wrong derivatives."""
+    told = Evidence(nats, nats)
+    name = "" if alternative is None else alternative.name
+    return Explanation(
+        alternative=alternative, name=name, evidence=told, natural=told.more(-50.0), likelihood=nats, **more
+    )
+
+
+SPREAD = FieldPrior(none=0.3, parameters=0.3, effect=0.3, unknown=0.1)
+
+
+class Flight:
+    """A flight whose models are made by hand; ``table`` has an effect by its name."""
+
+    is_stated, tried = True, (3, 0)
+
+    def __init__(self, nats, second=(), residual=0.5, moving=None, together=()):
+        self.nats, self.second, self.left, self.moving = nats, dict(second), residual, moving
+        self.together, self.asked = dict(together), []
+
+    def explained(self, base, most):
+        self.asked.append((base and base.name, most))
+        added = self.second if base else self.nats
+        told = [explanation(stated_as(name), nats) for name, nats in added.items()]
+        return 1.0, [explanation(), *told]
+
+    def at_the_files(self, one, plain, heat):
+        return None
+
+    def apart(self, one, other):
+        return 1.0
+
+    def residual(self, one, heat):
+        return Residual(self.left, {"moment_equation": 1.0}, 0.5)
+
+    def in_moving_air(self, stage):
+        if self.moving is None:
+            return None
+        return Stage(explanation(None, self.moving), (), (), stage.heat)
+
+    def pairs(self, plain, leads):
+        yield from ((-gain, *names) for names, gain in self.together.items())
+
+
+def test_an_axis_without_moving_air_has_no_way_in_it():
+    flight = Flight({"actuator_lag": 8.0})
+    rows = rows_of(flight, stage_of(flight, None, 6), SPREAD)
+    assert not any(row.in_moving_air for row in rows)
+
+
+@pytest.mark.parametrize(("moving", "likeliest"), [(-20.0, False), (20.0, True)])
+def test_a_flight_in_moving_air_is_a_rival_of_one_in_still_air(moving, likeliest):
+    flight = Flight({"actuator_lag": 8.0}, moving=moving)
+    told = posterior_of(rows_of(flight, stage_of(flight, None, 6), SPREAD))
+    assert told.rows[0].in_moving_air is likeliest
+
+
+def test_what_moving_air_explains_is_no_law_without_a_name_where_the_air_moves():
+    """The residual is far beyond a simulator's own in still air, and within it beside the air."""
+    flight = Flight({}, residual=12.0, moving=5.0)
+    told = posterior_of(rows_of(flight, stage_of(flight, None, 6), SPREAD))
+    assert told.of(MOMENT) < 0.1
+    still = Flight({}, residual=12.0)
+    told = posterior_of(rows_of(still, stage_of(still, None, 6), SPREAD))
+    assert told.of(MOMENT) > 0.9
+
+
+def test_a_second_effect_is_sought_after_the_first():
+    flight = Flight({"transport_delay": 60.0}, {"actuator_lag": 20.0})
+    found = decided(flight, first_stage(flight), SPREAD, lambda rows: rows)
+    assert [one.name for one in found.chosen] == ["", "transport_delay", "actuator_lag"]
+    assert flight.asked == [(None, 6), ("transport_delay", 3)]
+
+
+def test_without_an_effect_as_the_answer_no_second_one_is_sought():
+    flight = Flight({"transport_delay": -60.0})
+    found = decided(flight, first_stage(flight), SPREAD, lambda rows: rows)
+    assert len(flight.asked) == len(found.posteriors) == 1
+
+
+def test_the_effect_that_explains_most_with_a_second_one_leads():
+    both = {("transport_delay", "actuator_backlash"): 50.0, ("actuator_lag", "transport_delay"): 20.0}
+    flight = Flight({"transport_delay": 5.0, "actuator_lag": 9.0}, together=both)
+    assert _lead(flight, stage_of(flight, None, 6)).name == "transport_delay"
+
+
 def staged(plain, effects=(), laws=(), best=None):
     """Return a stage of explanations with their log evidence by name."""
 
     def made(name, nats):
-        variant = SimpleNamespace(block="moment_equation", effect=name)
-        return SimpleNamespace(name=name, variant=variant, evidence=SimpleNamespace(either=nats))
+        alternative = MOMENT if (name, nats) in laws else stated_as(name) if name else None
+        return SimpleNamespace(name=name, alternative=alternative, evidence=SimpleNamespace(either=nats))
 
     nothing, some, others = made("", plain), [made(*e) for e in effects], [made(*e) for e in laws]
     return SimpleNamespace(plain=nothing, effects=some, laws=others, best=some[0] if some else nothing)
@@ -137,7 +235,7 @@ def pairs(first_nats, second):
     stage_1 = staged(0.0, [("transport_delay", first_nats)])
     way = Row(DELAY, stage_1.best, {"fit": first_nats})
     prior = FieldPrior(none=0.4, parameters=0.2, effect=0.3, unknown=0.1)
-    return list(_pairs([way], stage_1.plain, stage_1.best, second, 26, 18, prior))
+    return list(_pairs([way], stage_1.plain, stage_1.best, second, (26, 18), prior))
 
 
 def test_a_second_cause_keeps_the_first_one_as_the_answer():
@@ -156,8 +254,7 @@ def test_an_effect_that_leaves_much_to_a_law_is_rather_one_law_without_a_name(fi
 
 def test_play_differs_from_servo_to_servo_three_times_as_much_as_other_effects():
     def error(*names):
-        variant = SimpleNamespace(names=names)
-        return Explanation(variant, None, None, None, None, None, 0.0, 0.0, change=0.2).form_error
+        return explanation(numbers=names, change=0.2).form_error
 
     assert error("half_width_rad") == pytest.approx(0.02)
     assert error("lag_s") == pytest.approx(0.006)

@@ -11,12 +11,14 @@ from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.aircraft.sensors import Beta
 from advisor.cli.side_gap import side_gap_document, side_gap_lines
+from advisor.gap.alternative import Alternative, AlternativeEvidence, together
 from advisor.gap.result import Cause, Value
-from advisor.side_gap import diagnosis
+from advisor.side_gap import flight as flight_of_side
 from advisor.side_gap.comparison import SideGap
 from advisor.side_gap.diagnosis import SideCause, SideDiagnosis, diagnose_side
 from advisor.side_gap.evidence import Gain
 from advisor.side_gap.fit import Fit, Free
+from advisor.side_gap.flight import SideFlight, SideModel
 from advisor.side_gap.models import case_of
 from tests.oem.lateral_builders import JET
 from tests.side_gap.test_comparison import maneuvers
@@ -32,33 +34,36 @@ PLAY = SideCause(
     Gain(30.0, 4.0),
     {"p": 0.05, "r": 0.04},
 )
+
+
+def weighed(shares):
+    """Return probabilities by label as the evidence of a diagnosis."""
+    kinds = {"none": "none", "parameters": "parameters"}
+    told = []
+    for label, p in shares.items():
+        name, _, block = label.partition("@")
+        kind = "unknown" if block else kinds.get(name, "effect")
+        told.append(AlternativeEvidence(Alternative(kind, name, block), (), p))
+    answer = together((one.alternative, one.probability) for one in told)[0][0]
+    return {"evidence": tuple(told), "answer": answer}
+
+
 DIAGNOSIS = SideDiagnosis(
-    0.2, 0.05, {"aileron_actuator_backlash": 0.7, "aileron_actuator_lag": 0.05}, {}, (PLAY,), PEAKS, PEAKS, {}
-)
+    causes=(PLAY,), peaks=PEAKS, peaks_by_numbers=PEAKS, cannot_see={},
+    **weighed(
+        {"aileron_actuator_backlash": 0.7, "none": 0.2, "parameters": 0.05, "aileron_actuator_lag": 0.05}
+    ),
+)  # fmt: skip
 FOUND = SideGap("effect", PLAY.sentence, (), 0.0, 0.0, {}, {}, (1, 2, 3), (), {}, {}, DIAGNOSIS)
 
 
-@pytest.mark.parametrize(
-    ("none", "parameters", "effects", "verdict"),
-    [
-        (0.5, 0.2, (0.3,), "none"),
-        (0.3, 0.5, (0.2,), "parameters"),
-        (0.3, 0.1, (0.4, 0.2), "effect"),
-        (0.4, 0.0, (0.35, 0.25), "none"),
-    ],
-)
-def test_the_verdict_is_the_likeliest_single_explanation(none, parameters, effects, verdict):
-    named = {f"effect {k}": p for k, p in enumerate(effects)}
-    assert replace(DIAGNOSIS, none=none, parameters=parameters, effects=named).verdict == verdict
-
-
 def test_the_blocks_of_the_unknown_count_together_and_the_likeliest_is_the_place():
-    unknown = {"rolling_moment": 0.35, "aileron": 0.2}
-    told = replace(
-        DIAGNOSIS, none=0.1, parameters=0.05, effects={"aileron_actuator_lag": 0.3}, unknown=unknown
-    )
+    shares = {
+        "unknown@rolling_moment": 0.35, "actuator_lag": 0.3, "unknown@aileron": 0.2, "none": 0.1,
+        "parameters": 0.05,
+    }  # fmt: skip
+    told = replace(DIAGNOSIS, **weighed(shares))
     assert told.verdict == "unknown"
-    assert told.probability == pytest.approx(0.55)
     assert (told.where.block, told.where.share) == ("rolling_moment", pytest.approx(0.35 / 0.55))
     assert told.sentence == "Something acts in the rolling moment that no known effect explains."
 
@@ -96,7 +101,8 @@ def test_without_a_simulator_the_text_has_neither_its_probabilities_nor_a_table_
 
 
 def test_an_undecided_answer_is_not_decided_in_the_document_and_has_the_flight_that_separates_the_two():
-    near = replace(DIAGNOSIS, none=0.5, parameters=0.05, effects={"aileron_actuator_backlash": 0.45})
+    shares = {"none": 0.5, "aileron_actuator_backlash": 0.45, "parameters": 0.05}
+    near = replace(DIAGNOSIS, **weighed(shares))
     document = side_gap_document(replace(FOUND, verdict="none", diagnosis=near))
     assert document["decided"] is False
     assert document["title"] == "NOT DECIDED BETWEEN NOTHING TO CORRECT AND AILERON ACTUATOR BACKLASH"
@@ -151,19 +157,23 @@ def test_two_effects_at_once_are_both_said_and_stand_before_the_alternatives():
     assert document["waterfall"][0] == {"effect": "aileron_actuator_backlash", "after": 0.4}
 
 
-@pytest.mark.parametrize("found", [True, False])
-def test_a_second_effect_is_sought_only_after_a_first_and_elsewhere(found, monkeypatch):
+def test_effects_that_set_the_same_number_are_never_two_causes():
     first, same, elsewhere = (
         SimpleNamespace(places=places) for places in ((("p", "scale"),), (("p", "scale"),), (("r", "scale"),))
     )
+    flight = SideFlight(None, None, [first, same, elsewhere])
+    assert flight._beside(SimpleNamespace(effect=first)) == [elsewhere]
+
+
+def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_anew(monkeypatch):
     late = Free(("aileron", "delay_s"), 0.01, 1e-3, column=np.ones(3))
     fit = Fit(None, None, (late,), *(np.ones(3) for _ in range(2)), 0.0, *(np.ones((3, 1)) for _ in range(3)))
-    one = SimpleNamespace(found=SimpleNamespace(effect=first, fit=fit) if found else None)
-    tables, again = [], []
-    monkeypatch.setattr(diagnosis, "share_of", lambda _: 1.0)
-    monkeypatch.setattr(diagnosis, "refitted", lambda case, fit, *_: again.append(fit) or fit)
-    monkeypatch.setattr(diagnosis, "stage_of", lambda *given: tables.append(given[3]))
-    assert len(list(diagnosis._second(None, one, [first, same, elsewhere], None))) == int(found)
-    assert tables == ([[elsewhere]] if found else [])
-    # The effect changes what a late command does: its derivative is taken anew.
-    assert all(free.column is None for fit in again for free in fit.free)
+    again = []
+    monkeypatch.setattr(flight_of_side, "share_of", lambda _: 1.0)
+    monkeypatch.setattr(flight_of_side, "refitted", lambda case, fit, *_: again.append(fit) or fit)
+    monkeypatch.setattr(flight_of_side, "Starts", lambda *_: SimpleNamespace(of_each=[]))
+    monkeypatch.setattr(
+        SideFlight, "_model", lambda *_: SideModel(**dict.fromkeys(SideModel.__dataclass_fields__))
+    )
+    SideFlight(None, fit, []).explained(SimpleNamespace(fit=fit, effect=None), 3)
+    assert [free.column for one in again for free in one.free] == [None]

@@ -1,6 +1,6 @@
-"""From the plain fit of a flight to the posterior of its explanations."""
+"""The posterior of all explanations of a flight in pitch, with the offset of α and the air."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,25 +14,20 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.inference.engine import Decided, Progress, decided, first_stage
 from advisor.gap.inference.evidence import FlightProblem
-from advisor.gap.inference.explanation import Explanation, Row
+from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.laws import laws_of
-from advisor.gap.inference.posterior import NONE, Posterior, posterior_of, relabelled, rows_of, stated_as
+from advisor.gap.inference.pitch import PitchFlight, PitchModel
+from advisor.gap.inference.posterior import NONE, relabelled, stated_as
 from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.sizes import with_sizes
-from advisor.gap.inference.stage import Stage, stage_of
 from advisor.gap.kit.variant import Variant
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.search.air import SoughtAir, moving_air
-from advisor.gap.search.screen import Screen
 
-Progress = Callable[[str, float], None]
-"""Function that receives a sentence about the work and the share done, 0 to 1."""
-_LEADS, _SECOND = 4, 3
-"""Numerical: number of effects that are paired with all others, and that are fitted in full as a second
-cause."""
 _SET_WITHIN_RAD = {True: 0.009, False: 0.0035}
 """Prior: standard deviation of an offset of α without a fault, rad, of an autopilot's estimate and of a vane.
 ArduPlane's estimate is off by 0.2 to 0.5 degrees; a vane's zero is set to 0.2 degrees."""
@@ -41,16 +36,10 @@ _OFF_BY_RAD = 0.03
 
 
 @dataclass(frozen=True)
-class Inference:
+class Inference(Decided[PitchModel]):
     """Everything that the answer reads."""
 
     problem: EffectProblem
-    posteriors: tuple[Posterior, ...]
-    """Posterior of the first effect, and of a second one in addition to it."""
-    chosen: tuple[Explanation, ...]
-    """The plain model, then the model of each added effect."""
-    heat: float
-    """Nats of white noise that count as one."""
     sought_air: SoughtAir
     floor: FloatArray
     """Shape (channels,): noise where nothing was flown."""
@@ -75,58 +64,23 @@ def infer(
     kinematics
         Check of α against the motion, which alone shows a constant offset.
     """
-    flight = FlightProblem.of(problem, baseline)
-    table, laws = _table(problem, flight, aircraft)
+    begun = FlightProblem.of(problem, baseline)
+    table, laws = _table(problem, begun, aircraft)
+    flight = PitchFlight(begun, baseline, table, laws)
     progress(f"trying {len(table) + len(laws)} ways to explain the residual", 0.2)
-    stage = stage_of(flight, baseline, table, laws)
-    best = stage.best
-    progress("looking for what has no name", 0.6)
-    names, names_of_laws = (sorted({v.effect for v in some}) for some in (table, laws))
-    lead, second = _lead(stage, table), None
-    if lead is not None:
-        others = [v for v in table if v.effect != lead.name]
-        second = stage_of(lead.problem, lead.fitted, others, laws, _SECOND, lead.form_error)
-    rows = rows_of(problem, stage, names, names_of_laws, prior, lead, second)
-    rows = _with_offset(rows, kinematics, problem, prior, len(names))
-    progress("looking at the air", 0.7)
-    sought = moving_air(problem, best.fitted)
-    floor = floor_of(problem, best.fitted, best.held_out)
-    rows = _with_air(rows, stage.plain, sought, _known_air(problem, aircraft), floor)
-    posterior = posterior_of(rows)
-    posteriors, chosen = [posterior], [stage.plain]
-    answer = posterior.answer
-    if answer.kind == "effect" and answer.name in {one.name for one in stage.effects}:
-        first = posterior.explanation_of(answer)
-        chosen.append(first)
-        if second is None or first is not lead:
-            others = [v for v in table if v.effect != answer.name]
-            progress("looking for a second cause", 0.8)
-            second = stage_of(first.problem, first.fitted, others, laws, _SECOND, first.form_error)
-        rows = rows_of(problem, second, names, names_of_laws, prior)
-        posteriors.append(posterior_of(rows))
-        also = posteriors[-1].answer
-        if also.kind == "effect":
-            chosen.append(posteriors[-1].explanation_of(also))
-    return Inference(problem, tuple(posteriors), tuple(chosen), stage.heat, sought, floor)
+    stage = first_stage(flight)
+    progress("looking at the air", 0.6)
+    sought = moving_air(problem, stage.best.fitted)
+    floor = floor_of(problem, stage.best.fitted, stage.best.held_out)
+    known = _known_air(problem, aircraft)
 
+    def beyond(rows: list[Row[PitchModel]]) -> list[Row[PitchModel]]:
+        with_offset = _with_offset(rows, kinematics, problem, prior, flight.tried[0])
+        return _with_air(with_offset, stage.plain, sought, known, floor)
 
-def _lead(stage: Stage, table: Sequence[Variant]) -> Explanation | None:
-    """Return the likely effect that explains most together with a second one, by a quick look at every pair.
-
-    Two effects may hide each other: neither alone explains anything.
-    """
-    likely: dict[str, Explanation] = {}
-    for one in sorted(stage.effects, key=lambda one: -one.evidence.either):
-        likely.setdefault(one.name, one)
-    leads = list(likely.values())[:_LEADS]
-
-    best, named = np.inf, set[str]()
-    for lead in leads:
-        others = [v for v in table if v.effect != lead.name]
-        for quick in Screen(lead.problem, lead.fitted).quick_fits(others):
-            if quick.cost < best:
-                best, named = quick.cost, {lead.name, quick.variant.effect}
-    return next((lead for lead in leads if lead.name in named), None)
+    progress("looking for a second cause", 0.7)
+    found = decided(flight, stage, prior, beyond)
+    return Inference(found.posteriors, found.chosen, found.heat, problem, sought, floor)
 
 
 def _table(
@@ -143,8 +97,12 @@ def _table(
 
 
 def _with_offset(
-    rows: Sequence[Row], kinematics: KinematicCheck, problem: EffectProblem, prior: FieldPrior, names: int
-) -> list[Row]:
+    rows: Sequence[Row[PitchModel]],
+    kinematics: KinematicCheck,
+    problem: EffectProblem,
+    prior: FieldPrior,
+    names: int,
+) -> list[Row[PitchModel]]:
     """Return the rows with a constant offset of α as one more explanation.
 
     Trims absorb an offset, so that it goes with every other explanation. Only "nothing" excludes it.
@@ -163,7 +121,7 @@ def _with_offset(
     ]
 
 
-def _gaining(row: Row, nats: float) -> Row:
+def _gaining(row: Row[PitchModel], nats: float) -> Row[PitchModel]:
     return replace(row, terms={**row.terms, "offset": nats})
 
 
@@ -174,8 +132,8 @@ def _known_air(problem: EffectProblem, aircraft: Aircraft) -> float:
 
 
 def _with_air(
-    rows: Sequence[Row], plain: Explanation, sought: SoughtAir, known: float, floor: FloatArray
-) -> list[Row]:
+    rows: Sequence[Row[PitchModel]], plain: PitchModel, sought: SoughtAir, known: float, floor: FloatArray
+) -> list[Row[PitchModel]]:
     """Return the rows with moving air as the main cause where an effect removes less of the gap than air."""
     air = sought.found
     if air is None or air.is_natural or (not air.gust and air.angle_std <= known):
@@ -183,7 +141,7 @@ def _with_air(
     name = stated_as("gust" if air.gust else "turbulence")
     beyond = air.mean_square_beyond_air
 
-    def outweighed(row: Row) -> bool:
+    def outweighed(row: Row[PitchModel]) -> bool:
         if row.alternative.kind == "unknown":
             return False
         left = row.model.held_out.mean_square

@@ -14,6 +14,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG, derivative_scale, small_without_alpha
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts
+from advisor.gap.inference.explanation import Evidence
 from advisor.gap.records.floor import effective_sample_size
 from advisor.gap.simulator.layout import DERIVATIVES
 
@@ -27,25 +28,6 @@ _EACH = 1.0 - 0.5 ** (1.0 / len(DERIVATIVES))
 """Prior probability that a derivative is wrong: all of the file's are right in half of the flights."""
 _LOG_SHARE = np.where(_WRONG, np.log(_EACH), np.log(1.0 - _EACH)).sum(axis=1)
 """Shape (64,): log prior probability of every set."""
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """Log marginal likelihood of one explanation, nats."""
-
-    right: float
-    """With all of the file's derivatives right."""
-    wrong: float
-    """With some of them wrong, each by itself."""
-
-    @property
-    def either(self) -> float:
-        """Log marginal likelihood where both cases are alike likely before the flight."""
-        return float(np.logaddexp(self.right, self.wrong) - np.log(2.0))
-
-    def more(self, nats: float) -> "Evidence":
-        """Return the evidence with ``nats`` added in both cases."""
-        return Evidence(self.right + nats, self.wrong + nats)
 
 
 @dataclass(frozen=True)

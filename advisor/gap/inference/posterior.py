@@ -2,16 +2,16 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Generic
 
 import numpy as np
 
 from advisor.gap.alternative import Alternative, together
 from advisor.gap.effects import EFFECTS
-from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.inference.explanation import Explanation, Row
+from advisor.gap.inference.explanation import E, Row
 from advisor.gap.inference.prior import FieldPrior
-from advisor.gap.inference.residual import Residual, if_lacking, if_right, residual_of
-from advisor.gap.inference.stage import Stage
+from advisor.gap.inference.residual import Residual, if_lacking, if_right
+from advisor.gap.inference.stage import Flight, Stage
 
 _ALWAYS = frozenset({"air"})
 """Blocks with a disturbance in most flights: such a residual is no law that the simulator lacks."""
@@ -21,10 +21,10 @@ residual of the likeliest."""
 
 
 @dataclass(frozen=True)
-class Posterior:
+class Posterior(Generic[E]):
     """Probabilities of all alternatives of a stage, which sum to 1."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[Row[E], ...]
     """Rows of all alternatives, the likeliest first."""
     shares: tuple[float, ...]
     """Probability of each row."""
@@ -46,7 +46,7 @@ class Posterior:
         """The likeliest of nothing, wrong numbers, each effect, and all blocks of the unknown together."""
         return together(self.by_alternative.items())[0][0]
 
-    def explanation_of(self, alternative: Alternative) -> Explanation:
+    def explanation_of(self, alternative: Alternative) -> E:
         """Return the likeliest explanation of an alternative."""
         mine = [row for row in self.rows if row.alternative == alternative]
         return max(mine, key=lambda row: row.weight).explanation
@@ -58,77 +58,79 @@ def stated_as(name: str) -> Alternative:
     return Alternative("air" if block == "air" else "effect", name, block)
 
 
-def _unknown_in(law: Explanation) -> Alternative:
-    assert law.variant is not None
-    return Alternative("unknown", "unknown", law.variant.block)
-
-
 NONE, PARAMETERS = Alternative("none", "none"), Alternative("parameters", "parameters")
 
 
 def rows_of(
-    problem: EffectProblem,
-    stage: Stage,
-    names: Sequence[str],
-    laws: Sequence[str],
+    flight: Flight[E],
+    stage: Stage[E],
     prior: FieldPrior,
-    lead: Explanation | None = None,
-    second: Stage | None = None,
-) -> list[Row]:
+    lead: E | None = None,
+    second: Stage[E] | None = None,
+) -> list[Row[E]]:
     """Return the rows of one stage.
 
     Parameters
     ----------
-    names, laws
-        Effects of the catalogue, and laws outside of it, that were tried.
     prior
         How often each kind of answer is right before a flight is looked at.
     lead, second
         An effect and the stage after it: with a second cause, the first one leaves another residual.
     """
-    ways = [*_ways(stage, names, laws, prior)]
+    ways = [*_ways(flight, stage, prior)]
     if lead is not None and second is not None:
-        ways += _pairs(ways, stage.plain, lead, second, len(names), len(laws), prior)
+        ways += _pairs(ways, stage.plain, lead, second, flight.tried, prior)
+    moving = flight.in_moving_air(stage)
+    if moving is not None:
+        # Moving air is as likely before the flight as any one effect.
+        odds = float(np.log(prior.effect / max(flight.tried[0], 1) / prior.none))
+        ways += [
+            replace(way, terms={**way.terms, "air": odds}, in_moving_air=True)
+            for way in _ways(flight, moving, prior)
+        ]
     ways.sort(key=lambda way: -way.weight)
-    models = {id(way.model): way.model for way in ways}
+    models = {id(way.model.solution): way.model for way in ways}
     near = list(models.items())[:_SEARCHED]
-    residuals = {key: residual_of(problem, one.fitted, stage.heat) for key, one in near}
+    residuals = {key: flight.residual(one, stage.heat) for key, one in near}
     of_others = residuals[near[0][0]]
     return [
-        row for way in ways for row in _with_residual(way, residuals.get(id(way.model), of_others), prior)
+        row
+        for way in ways
+        for row in _with_residual(way, residuals.get(id(way.model.solution), of_others), prior)
     ]
 
 
-def _ways(stage: Stage, names: Sequence[str], laws: Sequence[str], prior: FieldPrior) -> Iterator[Row]:
+def _ways(flight: Flight[E], stage: Stage[E], prior: FieldPrior) -> Iterator[Row[E]]:
     """Yield the ways in which each alternative may be true, without a look at the residual."""
-    plain, each = stage.plain, prior.effect / max(len(names), 1)
-    stated = plain.problem.is_stated
+    stated, (names, laws) = flight.is_stated, flight.tried
+    plain, each = stage.plain, prior.effect / max(names, 1)
     none = prior.none + (0.0 if stated else prior.parameters)
-    natural = 0.5 / max(len(names), len(stage.effects), 1)
+    natural = 0.5 / max(names, len(stage.effects), 1)
     without = 1.0 - natural * len(stage.effects)
     yield _row(NONE, plain, plain.evidence.right, without * none)
     if stated:
         yield _row(PARAMETERS, plain, plain.evidence.wrong, without * prior.parameters)
     for one in stage.effects:
+        assert one.alternative is not None
         # As little of an effect as every aircraft has is no finding.
         yield _row(NONE, one, one.natural.right, natural * none)
         if stated:
             yield _row(PARAMETERS, one, one.natural.wrong, natural * prior.parameters)
         forms = sum(other.name == one.name for other in stage.effects)
-        yield _row(stated_as(one.name), one, one.evidence.either, each / forms)
+        yield _row(one.alternative, one, one.evidence.either, each / forms)
     for one in stage.laws:
-        yield _row(_unknown_in(one), one, one.evidence.either, 0.5 * prior.unknown / len(laws))
+        assert one.alternative is not None
+        yield _row(one.alternative, one, one.evidence.either, 0.5 * prior.unknown / laws)
 
 
 def _pairs(
-    ways: Sequence[Row],
-    plain: Explanation,
-    lead: Explanation,
-    second: Stage,
-    names: int,
-    laws: int,
+    ways: Sequence[Row[E]],
+    plain: E,
+    lead: E,
+    second: Stage[E],
+    tried: tuple[int, int],
     prior: FieldPrior,
-) -> Iterator[Row]:
+) -> Iterator[Row[E]]:
     """Yield the ways in which an effect is true together with a second one.
 
     Where a law outside the table is the second, both may be one law that the effect resembles. The more the
@@ -138,20 +140,19 @@ def _pairs(
     of_first = max(lead.evidence.either - plain.evidence.either, 0.0)
     for one in (*second.effects, *second.laws):
         outside = any(one is law for law in second.laws)
-        share = 0.5 * prior.unknown / laws if outside else prior.effect / max(names - 1, 1)
+        share = 0.5 * prior.unknown / tried[1] if outside else prior.effect / max(tried[0] - 1, 1)
         gained = one.evidence.either - second.plain.evidence.either
         more = gained + float(np.log(share / (prior.none + prior.parameters)))
         way = replace(first, terms={**first.terms, "second": more}, pair=one)
         left = max(gained, 0.0) / max(of_first + max(gained, 0.0), 1e-12) if outside else 0.0
-        if left > 0.0:
-            yield replace(
-                way, alternative=_unknown_in(one), terms={**way.terms, "second": more + float(np.log(left))}
-            )
+        if left > 0.0 and one.alternative is not None:
+            terms = {**way.terms, "second": more + float(np.log(left))}
+            yield replace(way, alternative=one.alternative, terms=terms)
         if left < 1.0:
             yield replace(way, terms={**way.terms, "second": more + float(np.log1p(-left))})
 
 
-def _row(alternative: Alternative, one: Explanation, evidence: float, share: float) -> Row:
+def _row(alternative: Alternative, one: E, evidence: float, share: float) -> Row[E]:
     numbers = evidence - one.likelihood - one.unseen - one.model_error
     return Row(
         alternative, one,
@@ -160,14 +161,15 @@ def _row(alternative: Alternative, one: Explanation, evidence: float, share: flo
     )  # fmt: skip
 
 
-def _with_residual(way: Row, residual: Residual, prior: FieldPrior) -> Iterator[Row]:
+def _with_residual(way: Row[E], residual: Residual, prior: FieldPrior) -> Iterator[Row[E]]:
     """Yield the way as right, and as one that only resembles a law outside the table.
 
     Such a law leaves a residual that a disturbance of free course explains, in one block.
     """
-    yield replace(way, terms={**way.terms, "residual": if_right(residual.size)})
+    size = residual.beside_air if way.in_moving_air else residual.size
+    yield replace(way, terms={**way.terms, "residual": if_right(size)})
     lacking = float(np.log(0.5 * prior.unknown / (prior.none + prior.parameters + prior.effect)))
-    as_lacking = if_lacking(residual.size)
+    as_lacking = if_lacking(size)
     for block, share in residual.blocks.items():
         if block in _ALWAYS:
             yield replace(way, terms={**way.terms, "residual": as_lacking + float(np.log(0.5 * share))})
@@ -176,7 +178,7 @@ def _with_residual(way: Row, residual: Residual, prior: FieldPrior) -> Iterator[
         yield replace(way, alternative=Alternative("unknown", "unknown", block), terms={**way.terms, **told})
 
 
-def posterior_of(rows: Iterable[Row]) -> Posterior:
+def posterior_of(rows: Iterable[Row[E]]) -> Posterior[E]:
     """Return the rows with their probabilities, the likeliest first."""
     ordered = sorted(rows, key=lambda row: -row.weight)
     weights = np.array([row.weight for row in ordered])
@@ -184,6 +186,6 @@ def posterior_of(rows: Iterable[Row]) -> Posterior:
     return Posterior(tuple(ordered), tuple(map(float, shares / np.sum(shares))))
 
 
-def relabelled(row: Row, alternative: Alternative) -> Row:
+def relabelled(row: Row[E], alternative: Alternative) -> Row[E]:
     """Return the row as a way in which another alternative is true."""
     return replace(row, alternative=alternative)

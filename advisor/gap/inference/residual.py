@@ -32,6 +32,13 @@ class Residual:
     channel counts in which that ratio is largest."""
     blocks: Mapping[str, float]
     """Probability of each block, given that something without a name acts in one."""
+    size_beside_air: float | None = None
+    """Size of what moving air does not explain; None where the air is no part of the models."""
+
+    @property
+    def beside_air(self) -> float:
+        """Size of the residual where the air moves."""
+        return self.size if self.size_beside_air is None else self.size_beside_air
 
 
 def residual_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> Residual:

@@ -34,6 +34,16 @@ class Screened:
     """Cost of the quick fit, comparable with ``EffectFit.cost``."""
     noise: FloatArray
 
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.variant.effect
+
+    @property
+    def price(self) -> float:
+        """Cost with a price for the number of numbers (Akaike's criterion)."""
+        return self.cost + 2.0 * len(self.variant.names)
+
 
 _Descent = Generator[SearchPoint, tuple[SimulatedPoint | None, float], Screened | None]
 """A search that asks for one point after another, and receives its evaluation and the best decrease so

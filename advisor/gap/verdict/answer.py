@@ -1,6 +1,6 @@
 """The answer: a reader of the posterior. Sizes, numbers and sentences are those of the answer's own model."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +11,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.nuisances import PROPELLER
-from advisor.gap.decision import LEAST_SIGMA
+from advisor.gap.decision import CERTAIN, LEAST_SIGMA, Decision
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import sole_informative_maneuver
@@ -20,12 +20,13 @@ from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.foresight.foresee import unseen_effects
 from advisor.gap.inference.diagnose import Inference
 from advisor.gap.inference.evidence import covariance_of
-from advisor.gap.inference.explanation import Explanation
 from advisor.gap.inference.findings import Added, Circumstances, Findings, Model, Unexplained
 from advisor.gap.inference.laws import sentence_of_law
+from advisor.gap.inference.pitch import PitchModel
 from advisor.gap.inference.posterior import NONE, PARAMETERS, Posterior, stated_as
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Where
+from advisor.gap.search.air import SoughtAir
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_excess, airspeed_scale_of
 from advisor.gap.verdict.causes import causes_of
@@ -49,13 +50,7 @@ from advisor.gap.verdict.numbers import (
     traces_of,
     waterfall_of,
 )
-from advisor.gap.verdict.reasons import (
-    decisions_of,
-    evidence_in,
-    none_means_no_gap,
-    rival_of,
-    why_of,
-)
+from advisor.gap.verdict.reasons import none_means_no_gap, weighed
 from advisor.gap.verdict.statements import in_simulator
 from advisor.gap.verdict.text import answers_of, sentence_of
 from advisor.words.certainty import as_sure
@@ -90,14 +85,14 @@ def answer_of(
     return _diagnosed(found, posterior, e, aircraft, kinematics, holdout, named), e
 
 
-def _named(found: Inference, answer: Alternative) -> tuple[Explanation, ...]:
+def _named(found: Inference, answer: Alternative) -> tuple[PitchModel, ...]:
     """Return the models of the effects that the answer names, one after another."""
     if answer.kind != "effect" or len(found.chosen) < 2 or found.chosen[1].name != answer.name:
         return ()
     return found.chosen[1:]
 
 
-def _models(found: Inference, named: Sequence[Explanation]) -> tuple[Model, ...]:
+def _models(found: Inference, named: Sequence[PitchModel]) -> tuple[Model, ...]:
     """Return the plain model and the model of each named effect, each with the effect that comes next."""
     explanations = [found.chosen[0], *named]
     models = [
@@ -107,14 +102,16 @@ def _models(found: Inference, named: Sequence[Explanation]) -> tuple[Model, ...]
     return as_measured(found.problem, models)
 
 
-def _added(one: Explanation) -> Added:
+def _added(one: PitchModel) -> Added:
     """Return the effect of an explanation; throttle or height may have moved in one manoeuvre only."""
     assert one.variant is not None
     place = one.fitted.point.place(one.fitted.point.index_of(one.name)).start
     return Added(one.name, sole_informative_maneuver(one.fitted, place) if one.variant.needs else None)
 
 
-def _unexplained(posterior: Posterior, answer: Alternative, law: Explanation | None) -> Unexplained | None:
+def _unexplained(
+    posterior: Posterior[PitchModel], answer: Alternative, law: PitchModel | None
+) -> Unexplained | None:
     """Return the residual without a name, where that is the answer."""
     if answer.kind != "unknown":
         return None
@@ -129,12 +126,12 @@ def _unexplained(posterior: Posterior, answer: Alternative, law: Explanation | N
 
 def _diagnosed(
     found: Inference,
-    posterior: Posterior,
+    posterior: Posterior[PitchModel],
     e: Findings,
     aircraft: Aircraft,
     kinematics: KinematicCheck,
     holdout: int | None,
-    named: Sequence[Explanation],
+    named: Sequence[PitchModel],
 ) -> Diagnosis:
     e, kept = on_holdout(e, holdout)
     problem, answer = e.problem, posterior.answer
@@ -163,12 +160,11 @@ def _diagnosed(
     nuisances = effects.keys() - {c.effect for c in present} if shrink is not None else ()
     where = _where(posterior, e, gap, known, present)
     outside = [c for c in present if c.block == "air" or c.effect == "alpha_bias"]
-    evidence = tuple(evidence_in(posterior))
+    told = weighed(posterior)
     sentence = sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft))
-    rival = rival_of(posterior)
     return Diagnosis(
         verdict=verdict,
-        sentence=as_sure(sentence, answers_of(evidence)),
+        sentence=as_sure(sentence, answers_of(told.evidence)),
         gap=gap, where=where, causes=causes, shrink=shrink,
         waterfall=waterfall_of(e.models, e.floor, outside, gap.before),
         cannot_see=unseen_effects(
@@ -178,19 +174,25 @@ def _diagnosed(
         reference_airspeed_m_s=problem.flights.reference_m_s if speed_is_known(problem, aircraft) else None,
         airspeed_excess=airspeed_excess(fitted), effects=effects,
         share_irreducible=irreducible(with_air, e.floor, gap),
-        decisions=tuple(decisions_of(found, posterior, rival)),
+        decisions=(*told.decisions, *_of_the_air(found.sought_air)),
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
         derivatives=compared_derivatives(problem, fitted, known),
         notes=notes_of(e, aircraft, holdout, verdict, nuisances),
         maneuvers=tuple(f.number for f in problem.flights.flights),
-        evidence=evidence,
-        why=tuple(why_of(posterior, rival)),
-        rival=rival.label,
-        answer=answer,
+        evidence=told.evidence, why=told.why, rival=told.rival, answer=answer,
     )  # fmt: skip
 
 
-def _where(posterior: Posterior, e: Findings, gap: Gap, known: FloatArray, present: Sequence[Cause]) -> Where:
+def _of_the_air(sought: SoughtAir) -> Iterator[Decision]:
+    """Yield the likelihood of moving air, where there is some."""
+    if sought.found is not None:
+        name = "gust" if sought.found.gust else "turbulence"
+        yield Decision(name, "likelihood", sought.found.gain, CERTAIN, "nats")
+
+
+def _where(
+    posterior: Posterior[PitchModel], e: Findings, gap: Gap, known: FloatArray, present: Sequence[Cause]
+) -> Where:
     """Return the block of the answer; blocks score by the probability of all that is in them."""
     if posterior.answer == PARAMETERS:
         return _of_the_derivatives(e.problem, e.last.fitted, known, gap)

@@ -13,8 +13,8 @@ from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.diagnose import Inference
 from advisor.gap.inference.evidence import covariance_of
-from advisor.gap.inference.explanation import Explanation
 from advisor.gap.inference.findings import Findings
+from advisor.gap.inference.pitch import PitchModel
 from advisor.gap.inference.posterior import Posterior, stated_as
 from advisor.gap.kit.variant import Variant
 from advisor.gap.result import Cause, Gap, Value
@@ -28,11 +28,11 @@ _CREDIBLE = 0.05
 
 def causes_of(
     found: Inference,
-    posterior: Posterior,
+    posterior: Posterior[PitchModel],
     e: Findings,
     kinematics: KinematicCheck,
     gap: Gap,
-    named: Sequence[Explanation],
+    named: Sequence[PitchModel],
 ) -> tuple[Cause, ...]:
     """Return the named causes in the order of the model, then the alternatives to the first, likeliest
     first."""
@@ -65,9 +65,9 @@ def causes_of(
 def _cause(
     found: Inference,
     e: Findings,
-    one: Explanation,
-    model: Explanation,
-    posterior: Posterior,
+    one: PitchModel,
+    model: PitchModel,
+    posterior: Posterior[PitchModel],
     probability: float,
     present: bool,
 ) -> Cause:
@@ -83,7 +83,7 @@ def _cause(
     return with_model_errors(cause, found.problem)
 
 
-def _offset(kinematics: KinematicCheck, posterior: Posterior, gap: Gap, present: bool) -> Cause:
+def _offset(kinematics: KinematicCheck, posterior: Posterior[PitchModel], gap: Gap, present: bool) -> Cause:
     offset = kinematics.offset
     return Cause(
         "alpha_bias", "alpha_sensor", posterior.of(stated_as("alpha_bias")),
@@ -93,7 +93,9 @@ def _offset(kinematics: KinematicCheck, posterior: Posterior, gap: Gap, present:
     )  # fmt: skip
 
 
-def _not_told_from(name: str, posterior: Posterior, channels: Sequence[str]) -> tuple[tuple[str, ...], str]:
+def _not_told_from(
+    name: str, posterior: Posterior[PitchModel], channels: Sequence[str]
+) -> tuple[tuple[str, ...], str]:
     """Return the effects that the evidence does not exclude, and what would distinguish them."""
     names = [
         a.name

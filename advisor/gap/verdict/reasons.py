@@ -2,15 +2,22 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.alternative import Alternative, AlternativeEvidence, Column, Contribution, together
-from advisor.gap.decision import CERTAIN, Decision
+from advisor.gap.alternative import (
+    Alternative,
+    AlternativeEvidence,
+    Column,
+    Contribution,
+    Weighed,
+    together,
+)
+from advisor.gap.decision import Decision
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import whole_gap
-from advisor.gap.inference.diagnose import Inference
 from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, Posterior, posterior_of, relabelled
 from advisor.words.certainty import DECIDED
@@ -25,6 +32,7 @@ _WORDS = {
     "model_error": "allowance for the error of every simulator",
     "residual": "residual that is left",
     "second": "second cause in addition",
+    "air": "how often the air moves",
     "offset": "offset of the angle of attack by the flight path",
     "gap": "visible gap of the simulator as given",
     "rest": "other ways in which each may be true",
@@ -32,12 +40,29 @@ _WORDS = {
 """Words: parts of the log odds."""
 
 
-def rival_of(posterior: Posterior) -> Alternative:
+def weighed(posterior: Posterior[Any]) -> Weighed:
+    """Return all alternatives with the parts of their likeliest way, and the answer against its rival."""
+    answer, rival = posterior.answer, _rival_of(posterior)
+    label = answer.block if answer.kind == "unknown" else answer.name
+    (_, probability), *_ = together(posterior.by_alternative.items())
+    return Weighed(
+        evidence=tuple(_evidence_in(posterior)),
+        why=tuple(_why_of(posterior, rival)),
+        answer=answer,
+        rival=rival.label,
+        decisions=(
+            Decision(label, "against its rival", _log_odds(posterior, rival), 0.0, "nats"),
+            Decision(label, "decided", probability, DECIDED, "probability"),
+        ),
+    )
+
+
+def _rival_of(posterior: Posterior[Any]) -> Alternative:
     """Return the likeliest alternative with another name than the answer."""
     return together(posterior.by_alternative.items())[1][0]
 
 
-def evidence_in(posterior: Posterior) -> Iterator[AlternativeEvidence]:
+def _evidence_in(posterior: Posterior[Any]) -> Iterator[AlternativeEvidence]:
     """Yield every alternative with the parts of its likeliest row."""
     for alternative, p in posterior.by_alternative.items():
         row = _best_row(posterior, alternative)
@@ -45,7 +70,7 @@ def evidence_in(posterior: Posterior) -> Iterator[AlternativeEvidence]:
         yield AlternativeEvidence(alternative, columns, p)
 
 
-def why_of(posterior: Posterior, rival: Alternative) -> Iterator[Contribution]:
+def _why_of(posterior: Posterior[Any], rival: Alternative) -> Iterator[Contribution]:
     """Yield the parts of the log odds of the answer against its rival, the largest first; they add up."""
     mine, other = (_best_row(posterior, a) for a in (posterior.answer, rival))
     names = dict.fromkeys([*mine.terms, *other.terms])
@@ -55,7 +80,7 @@ def why_of(posterior: Posterior, rival: Alternative) -> Iterator[Contribution]:
         yield Contribution(name, nats, _WORDS[name])
 
 
-def _log_odds(posterior: Posterior, rival: Alternative) -> float:
+def _log_odds(posterior: Posterior[Any], rival: Alternative) -> float:
     """Return the log odds of the answer against a rival, nats; all blocks of the unknown count together."""
     mine, other = (
         np.logaddexp.reduce([r.weight for r in posterior.rows if r.alternative.name == a.name])
@@ -64,25 +89,13 @@ def _log_odds(posterior: Posterior, rival: Alternative) -> float:
     return float(mine - other)
 
 
-def _best_row(posterior: Posterior, alternative: Alternative) -> Row:
+def _best_row(posterior: Posterior[Any], alternative: Alternative) -> Row[Any]:
     return max((r for r in posterior.rows if r.alternative == alternative), key=lambda row: row.weight)
 
 
-def decisions_of(found: Inference, posterior: Posterior, rival: Alternative) -> Iterator[Decision]:
-    """Yield every statistic that is compared with a limit on the way to the verdict."""
-    answer, odds = posterior.answer, _log_odds(posterior, rival)
-    label = answer.block if answer.kind == "unknown" else answer.name
-    yield Decision(label, "against its rival", odds, 0.0, "nats")
-    (_, probability), *_ = together(posterior.by_alternative.items())
-    yield Decision(label, "decided", probability, DECIDED, "probability")
-    if found.sought_air.found is not None:
-        air = found.sought_air.found
-        yield Decision("gust" if air.gust else "turbulence", "likelihood", air.gain, CERTAIN, "nats")
-
-
 def none_means_no_gap(
-    posterior: Posterior, file_model: HeldOut | None, floor: FloatArray, plain: HeldOut
-) -> Posterior:
+    posterior: Posterior[Any], file_model: HeldOut | None, floor: FloatArray, plain: HeldOut
+) -> Posterior[Any]:
     """Return the posterior in which "none" means that nothing is above the floor.
 
     A visible gap moves the probability of "none" to wrong numbers, as far as fitted derivatives remove the
@@ -94,7 +107,7 @@ def none_means_no_gap(
     stays = 0.05 ** ((gap / _GAP_AT_5_PERCENT) ** 2)
     by_numbers = float(np.clip(1.0 - left / max(gap, 1e-12), 0.0, 1.0))
     blocks = [row.alternative for row in posterior.rows if row.alternative.kind == "unknown"]
-    rows: list[Row] = []
+    rows: list[Row[Any]] = []
     for row in posterior.rows:
         if row.alternative != NONE:
             rows.append(row)

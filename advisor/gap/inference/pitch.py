@@ -1,0 +1,166 @@
+"""Pitch, as the engine asks for it: fits with an effect, their evidence, and what they leave."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.alternative import Alternative
+from advisor.gap.fitting.fit import EffectFit, fit
+from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
+from advisor.gap.fitting.problem import EffectProblem, counts
+from advisor.gap.inference.evidence import FlightProblem, evidence_of, log_likelihood, temperature
+from advisor.gap.inference.explanation import Explanation
+from advisor.gap.inference.posterior import stated_as
+from advisor.gap.inference.residual import Residual, residual_of
+from advisor.gap.inference.sizes import natural_share
+from advisor.gap.inference.stage import Stage, likeliest
+from advisor.gap.kit.variant import Variant
+from advisor.gap.search.screen import Screen
+
+_LAWS = 2
+"""Numerical: number of laws outside the catalogue that are fitted in full."""
+_AT_THE_FILE = 3
+"""Numerical: number of effects that are fitted in full because they are the likeliest with the file's
+derivatives. A wrong derivative hides such an effect from the fit in which all are free."""
+_SYMMETRIC = float(np.log(2.0))
+"""Log prior gain, nats, of a number that cannot be negative: its Gaussian prior has half the range."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PitchModel(Explanation):
+    """An explanation in pitch with its fit."""
+
+    variant: Variant | None
+    """Effect or law that is added; None for derivatives alone."""
+    problem: FlightProblem
+    """The flight with the tolerance of the derivatives under which the model was fitted."""
+    fitted: EffectFit
+    held_out: HeldOut
+
+    @property
+    def values(self) -> FloatArray:
+        """Numbers of the added effect, shape (numbers,); empty for derivatives alone."""
+        return np.zeros(0) if self.variant is None else np.asarray(self.fitted.point.values[-1])
+
+
+@dataclass(frozen=True)
+class PitchFlight:
+    """A flight in pitch."""
+
+    problem: FlightProblem
+    plain: EffectFit
+    table: Sequence[Variant]
+    laws: Sequence[Variant]
+    """Effects of the catalogue, and laws outside of it, with a prior on each number."""
+
+    @property
+    def tried(self) -> tuple[int, int]:
+        """Numbers of effects and laws by name."""
+        return len({v.effect for v in self.table}), len({v.effect for v in self.laws})
+
+    @property
+    def is_stated(self) -> bool:
+        """Whether the aircraft file states all derivatives."""
+        return self.problem.is_stated
+
+    def explained(self, base: PitchModel | None, most: int) -> tuple[float, list[PitchModel]]:
+        """Return the temperature, and a model with each likely effect or law in addition."""
+        problem, begin = (self.problem, self.plain) if base is None else (base.problem, base.fitted)
+        table = self._beside(base)
+        loose = problem.within(ERROR_IF_WRONG)
+        plain = fit(loose, begin.point, begin.noise, iterations=4)
+        screen = Screen(loose, plain)
+        chosen = [*likeliest(screen.quick_fits(table), most), *likeliest(screen.quick_fits(self.laws), _LAWS)]
+        if problem.is_stated:
+            seen = {one.name for one in chosen}
+            near = problem.within(ERROR_IF_RIGHT)
+            tight = Screen(near, fit(near, plain.point, plain.noise, iterations=4))
+            others = [variant for variant in table if variant.effect not in seen]
+            chosen += likeliest(tight.quick_fits(others), _AT_THE_FILE)
+        fits = [(one.variant, fit(loose, one.point, one.noise, iterations=8)) for one in chosen]
+        fits = [(variant, made) for variant, made in fits if np.isfinite(made.cost)]
+        heat = temperature(problem, min((plain, *(made for _, made in fits)), key=lambda made: made.cost))
+        return heat, [
+            self._model(loose, None, plain, plain, heat),
+            *(self._model(loose, variant, made, plain, heat) for variant, made in fits),
+        ]
+
+    def at_the_files(self, one: PitchModel, plain: PitchModel, heat: float) -> PitchModel | None:
+        """Return an explanation fitted again where the file's derivatives are right; None without a fit."""
+        near = one.problem.within(ERROR_IF_RIGHT)
+        made = fit(near, one.fitted.point, one.fitted.noise, iterations=5)
+        return self._model(near, one.variant, made, plain.fitted, heat) if np.isfinite(made.cost) else None
+
+    def apart(self, one: PitchModel, other: PitchModel) -> float:
+        """Return the largest difference between two models, as a share of the peaks."""
+        return change_of(self.problem, one.fitted, other.fitted)
+
+    def residual(self, one: PitchModel, heat: float) -> Residual:
+        """Return the disturbance that explains what a model leaves."""
+        return residual_of(self.problem, one.fitted, heat)
+
+    def in_moving_air(self, stage: Stage[PitchModel]) -> None:
+        """Return nothing: the air is compared with the answer afterwards."""
+
+    def pairs(self, plain: PitchModel, leads: Sequence[PitchModel]) -> Iterator[tuple[float, str, str]]:
+        """Yield the price of each lead with each other effect, and both names."""
+        for lead in leads:
+            for quick in Screen(lead.problem, lead.fitted).quick_fits(self._beside(lead)):
+                yield quick.cost, lead.name, quick.name
+
+    def _beside(self, base: PitchModel | None) -> list[Variant]:
+        """Return the effects that may act next to that of a model."""
+        return [variant for variant in self.table if base is None or variant.effect != base.name]
+
+    def _model(
+        self, problem: FlightProblem, variant: Variant | None, made: EffectFit, plain: EffectFit, heat: float
+    ) -> PitchModel:
+        """Return a model with its evidence, which unseen manoeuvres may cut."""
+        held, told = hold_out(problem, made), evidence_of(problem, made, heat)
+        likelihood = log_likelihood(problem, made) / heat
+        if variant is None:
+            return PitchModel(
+                alternative=None, variant=None, problem=problem, fitted=made, held_out=held,
+                evidence=told, natural=told, likelihood=likelihood, change=change_of(problem, plain, made),
+            )  # fmt: skip
+        unseen = 0.0 if variant.needs else _lost_unseen(problem, plain, made, held) / heat
+        extra = _extra(variant, len(problem.flights)) + unseen
+        return PitchModel(
+            alternative=Alternative("unknown", "unknown", variant.block)
+            if any(variant.effect == law.effect for law in self.laws)
+            else stated_as(variant.effect),
+            name=variant.effect, numbers=variant.names,
+            variant=variant, problem=problem, fitted=made, held_out=held,
+            evidence=told.more(extra),
+            natural=evidence_of(problem, made, heat, natural_share(variant)).more(extra),
+            likelihood=likelihood, unseen=unseen, change=change_of(problem, plain, made),
+        )  # fmt: skip
+
+
+def change_of(problem: EffectProblem, one: EffectFit, other: EffectFit) -> float:
+    """Return the largest difference between two models, as a share of each telling channel's peak."""
+    squares = mean_squares(problem, [a - b for a, b in zip(one.residuals, other.residuals, strict=True)])
+    share = np.sqrt(np.mean(squares, axis=0)) / problem.flights.peaks
+    return float(np.max(share[problem.flights.telling]))
+
+
+def _extra(variant: Variant, maneuvers: int) -> float:
+    """Return the log prior, nats, of what a Gaussian about zero leaves out: one side, choices, a time."""
+    low, high = variant.bounds[0]
+    extra = _SYMMETRIC if low >= 0.0 or high <= 0.0 else 0.0
+    if variant.sides is not None:
+        extra -= 0.5 * maneuvers * float(np.log(len(variant.sides[1])))
+    if "at_s" in variant.fixed:
+        extra -= float(np.log(max(maneuvers - 1, 1)))
+    return extra
+
+
+def _lost_unseen(problem: EffectProblem, plain: EffectFit, made: EffectFit, held: HeldOut) -> float:
+    """Return by how much less an effect gains on manoeuvres held out than in the fit, nats; at most 0."""
+    n = counts(problem)
+    in_fit = float(np.sum(n * np.log(plain.noise / made.noise)))
+    was, now = (np.maximum(h.innovation_square, 1e-12) for h in (hold_out(problem, plain), held))
+    return min(0.0, float(np.sum(0.5 * n * np.log(was / now))) - in_fit)

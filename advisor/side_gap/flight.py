@@ -1,0 +1,228 @@
+"""Roll and yaw, as the engine asks for it: fits with an effect, their evidence, and what they leave."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.gap.alternative import Alternative
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
+from advisor.gap.inference.explanation import Evidence, Explanation
+from advisor.gap.inference.residual import Residual
+from advisor.gap.inference.sizes import natural_share
+from advisor.gap.inference.stage import Stage, likeliest, within_model_error
+from advisor.side_gap.disturbance import courses_of
+from advisor.side_gap.effects import SideEffect
+from advisor.side_gap.evidence import (
+    Gain,
+    gain_of,
+    information_of,
+    log_evidence,
+    probabilities,
+    share_of,
+    squares_of,
+)
+from advisor.side_gap.fit import Fit, Free, Known
+from advisor.side_gap.gusts import Gusts, coloured_likelihood, side_gusts
+from advisor.side_gap.models import Case, effect_fit, refitted
+from advisor.side_gap.residual import residual_of
+from advisor.side_gap.starts import Starts
+
+_TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
+LIKELY = 0.01
+"""Probability above which an effect is tried in side gusts and its sizes are stated."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SideModel(Explanation):
+    """An explanation in roll and yaw with its fit."""
+
+    effect: SideEffect | None
+    """Effect that is added; None for derivatives alone."""
+    fit: Fit
+    beyond: Evidence
+    """Nats of the evidence beyond the marginal likelihood: sides of a prior, loss on unseen manoeuvres."""
+    gain: Gain
+    """Gain on unseen manoeuvres over fitted derivatives alone, nats."""
+    starts: Starts | None = None
+    """Starts of all effects in addition to the plain model; None elsewhere."""
+    gusts: Gusts | None = None
+    """Side gusts of the model; None in still air."""
+
+    @property
+    def solution(self) -> Fit:
+        """The fit, which explanations in still and in moving air share."""
+        return self.fit
+
+    @property
+    def tolerance(self) -> float:
+        """Likelier relative error of the derivatives."""
+        return ERROR_IF_RIGHT if self.evidence.right > self.evidence.wrong else ERROR_IF_WRONG
+
+
+@dataclass(frozen=True)
+class SideFlight:
+    """A flight in roll and yaw, with its plain fit."""
+
+    case: Case
+    plain: Fit
+    table: Sequence[SideEffect]
+
+    @property
+    def tried(self) -> tuple[int, int]:
+        """Number of effects; there are no laws outside the catalogue."""
+        return len(self.table), 0
+
+    @property
+    def is_stated(self) -> bool:
+        """Whether the aircraft file states derivatives."""
+        return bool(self.case.stated)
+
+    def explained(self, base: SideModel | None, most: int) -> tuple[float, list[SideModel]]:
+        """Return the temperature, and a model with each likely effect in addition."""
+        begin = self.plain
+        if base is not None:
+            # With an effect, another lateness of commands and outputs changes the outputs by something else.
+            begin = replace(base.fit, free=tuple(one._replace(column=None) for one in base.fit.free))
+        share = share_of(begin)
+        plain = begin if base is None else refitted(self.case, begin, ERROR_IF_WRONG, share) or base.fit
+        starts = Starts(self.case, plain, self._beside(base))
+        chosen = likeliest(starts.of_each, most)
+        fits = [(one.effect, effect_fit(self.case, plain, one.effect, one.point, share)) for one in chosen]
+        return share**-2, [
+            replace(self._model(None, plain, plain, share), starts=starts),
+            *(self._model(effect, fit, plain, share) for effect, fit in fits if fit is not None),
+        ]
+
+    def at_the_files(self, one: SideModel, plain: SideModel, heat: float) -> SideModel | None:
+        """Return an explanation fitted again where the file's derivatives are right; None without a fit."""
+        share = heat**-0.5
+        made = refitted(self.case, one.fit, ERROR_IF_RIGHT, share)
+        if made is None:
+            return None
+        return replace(self._model(one.effect, made, plain.fit, share), starts=one.starts)
+
+    def apart(self, one: SideModel, other: SideModel) -> float:
+        """Return the largest difference between two models, as a share of the peaks."""
+        return change_of(one.fit, other.fit)
+
+    def residual(self, one: SideModel, heat: float) -> Residual:
+        """Return the disturbance that explains what a model leaves."""
+        return residual_of(one.fit, self.case.flown, heat**-0.5)
+
+    def pairs(self, plain: SideModel, leads: Sequence[SideModel]) -> Iterator[tuple[float, str, str]]:
+        """Yield the price of each lead with each other effect, and both names."""
+        assert plain.starts is not None
+        starts = {start.name: start for start in plain.starts.of_each}
+        for lead in leads:
+            for other in self._beside(lead):
+                if other.name in starts:
+                    price = plain.starts.together(starts[lead.name], starts[other.name])
+                    yield price, lead.name, other.name
+
+    def _beside(self, base: SideModel | None) -> list[SideEffect]:
+        """Return the effects that set no number which that of a model sets."""
+        taken = set(base.effect.places) if base is not None and base.effect is not None else set()
+        return [effect for effect in self.table if not taken & set(effect.places)]
+
+    def in_moving_air(self, stage: Stage[SideModel]) -> Stage[SideModel]:
+        """Return the likely explanations again, in side gusts that enter all outputs together.
+
+        The plain model in still air and in gusts differ by the likelihood of their residuals: coloured
+        instruments against gusts.
+        """
+        plain = stage.plain
+        told = [plain.evidence.right, *(one.evidence.either for one in stage.effects)]
+        likely = [one for one, p in zip(stage.effects, probabilities(told)[1:], strict=True) if p > LIKELY]
+        courses = courses_of(plain.fit, self.case.flown)
+        blown = [
+            self._blown(one, side_gusts(one.fit, courses, self._wide(one.fit))) for one in (plain, *likely)
+        ]
+        first, *others = within_model_error(self, blown, 0.0)
+        assert first.gusts is not None
+        gain = first.gusts.likelihood - coloured_likelihood(plain.fit)
+        over = plain.evidence.right + gain - first.evidence.right
+        first, *others = (
+            replace(
+                one,
+                evidence=one.evidence.more(over),
+                natural=one.natural.more(over),
+                likelihood=one.likelihood + over,
+            )
+            for one in (first, *others)
+        )
+        return Stage(first, tuple(others), (), stage.heat)
+
+    def _wide(self, fit: Fit) -> Known:
+        return self.case.known(ERROR_IF_WRONG, fit.free)
+
+    def _blown(self, one: SideModel, gusts: Gusts) -> SideModel:
+        """Return an explanation in side gusts."""
+
+        def told(free: Sequence[Free]) -> Evidence:
+            right, wrong = (gusts.evidence(one.fit, self.case.known(each, free)) for each in _TOLERANCES)
+            return Evidence(right + one.beyond.right, wrong + one.beyond.wrong)
+
+        return replace(
+            one,
+            gusts=gusts,
+            evidence=told(one.fit.free),
+            natural=told(_narrowed(one.fit.free, one.effect)),
+            likelihood=gusts.highest(self._wide(one.fit)),
+            model_error=0.0,
+        )
+
+    def _model(self, effect: SideEffect | None, fit: Fit, plain: Fit, share: float) -> SideModel:
+        """Return a model with its evidence, which unseen manoeuvres may cut."""
+        told, likelihood = information_of(fit, share), share**2 * fit.likelihood
+        free = fit.free, _narrowed(fit.free, effect)
+        right, wrong = (
+            [log_evidence(fit, told, self.case.known(t, f), share) for f in free] for t in _TOLERANCES
+        )
+        if effect is None:
+            evidence = Evidence(right[0], wrong[0])
+            return SideModel(
+                alternative=None, effect=None, fit=fit, evidence=evidence, natural=evidence,
+                likelihood=likelihood, beyond=Evidence(0.0, 0.0), gain=Gain(0.0, 0.0),
+                change=change_of(plain, fit),
+            )  # fmt: skip
+        was = squares_of(plain, information_of(plain, share), self._wide(plain))
+        counts = np.bincount(fit.assembly.channel, minlength=len(fit.noise)).astype(float)
+        # Half of the prior lies below zero, where the bounds exclude a size.
+        extra = np.log(2.0) if effect.is_one_sided else 0.0
+        if effect.sides is not None:
+            extra -= len(self.case.flown) * np.log(len(effect.sides[1]))
+        gains, unseen = [], []
+        for tolerance in _TOLERANCES:
+            now = squares_of(fit, told, self.case.known(tolerance, fit.free))
+            gains.append(gain_of(was.held_out, now.held_out, counts, share))
+            unseen.append(min(gains[-1].total - gain_of(was.in_fit, now.in_fit, counts, share).total, 0.0))
+        beyond = Evidence(*(float(extra + lost) for lost in unseen))
+        evidence, natural = (
+            Evidence(r + beyond.right, w + beyond.wrong) for r, w in zip(right, wrong, strict=True)
+        )
+        likelier = int(evidence.wrong > evidence.right)
+        return SideModel(
+            alternative=Alternative("effect", effect.name, effect.block),
+            name=effect.name, numbers=effect.variant.names, effect=effect, fit=fit,
+            evidence=evidence, natural=natural, likelihood=likelihood,
+            beyond=beyond, unseen=unseen[likelier], gain=gains[likelier], change=change_of(plain, fit),
+        )  # fmt: skip
+
+
+def _narrowed(free: Sequence[Free], effect: SideEffect | None) -> list[Free]:
+    """Return the free numbers with as narrow a prior of an effect's own as every aircraft has."""
+    if effect is None:
+        return list(free)
+    share = natural_share(effect.variant)
+    return [one._replace(std=share * one.std) if one.place in effect.places else one for one in free]
+
+
+def change_of(one: Fit, other: Fit) -> float:
+    """Return the largest difference between the outputs of two fits, as a share of each output's peak."""
+    shares = []
+    for channel in np.unique(one.assembly.channel):
+        rows = one.assembly.channel == channel
+        apart = one.fitted[rows] - other.fitted[rows]
+        shares.append(np.sqrt(np.mean(apart**2)) / max(float(np.ptp(one.assembly.z[rows])) / 2.0, 1e-12))
+    return float(max(shares))

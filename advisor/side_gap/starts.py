@@ -1,0 +1,123 @@
+"""Starts of effects in addition to a fit: all else is refitted linearly, and so is every pair."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import nnls
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.fitting.prior import ERROR_IF_WRONG
+from advisor.side_gap.effects import SideEffect
+from advisor.side_gap.fit import Fit, N, Point, outputs
+from advisor.side_gap.models import Case, base_of
+
+SECANT = (0.25, 2.0)
+"""Least and greatest part of a start that the straight line from no effect may suggest."""
+
+
+class Start(NamedTuple):
+    """A start of an effect's fit."""
+
+    effect: SideEffect
+    cost: float
+    """Twice the negative log likelihood, after a linear refit of all else."""
+    point: Point
+    way: FloatArray
+    """(N,) weighed change of the outputs from no effect to the start, without what all else absorbs."""
+    saved: float = 0.0
+    """Part of the decrease of the cost that is the prior of a natural number at the effect's place."""
+
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.effect.name
+
+    @property
+    def price(self) -> float:
+        """Cost with a price for the number of numbers (Akaike's criterion)."""
+        return self.cost + 2.0 * len(self.effect.places)
+
+
+class Starts:
+    """The best start of each effect of a table."""
+
+    def __init__(self, case: Case, plain: Fit, table: Sequence[SideEffect]) -> None:
+        self._case, self._plain = case, plain
+        known = case.known(ERROR_IF_WRONG, plain.free)
+        self._columns = plain.columns * plain.weight[:, None]
+        self._information = self._columns.T @ self._columns + np.diag(known.precision)
+        own = plain.assembly.free[plain.assembly.free >= N]
+        self._own = plain.sensitivities[:, own] * plain.weight[:, None]
+        self._parts = [plain.assembly.owner == m for m in range(plain.assembly.maneuvers)]
+        self._begin = self._without(plain.residual * plain.weight)
+        self._cost = -2.0 * plain.likelihood - float(self._begin @ self._begin)
+        self.of_each = [start for effect in table if (start := self._best(effect)) is not None]
+
+    def together(self, one: Start, other: Start) -> float:
+        """Return the price of both effects at once, by the ways to their starts."""
+        left = nnls(np.column_stack([one.way, other.way]), self._begin)[1] ** 2
+        count = len(one.effect.places) + len(other.effect.places)
+        return self._cost + left - one.saved - other.saved + 2.0 * count
+
+    def _best(self, effect: SideEffect) -> Start | None:
+        """Return the start of an effect that leaves least, by one simulation for each start of the table.
+
+        None where the model runs away at every start.
+
+        An effect at the place of a natural number starts at that number, and saves what its prior has cost.
+        """
+        plain = self._plain
+        saved = sum(
+            ((value - one.mean) / one.std) ** 2
+            for one, value in zip(plain.free, plain.values[N:], strict=True)
+            if one.place in effect.places
+        )
+        if not saved:
+            return min(self._each(effect), key=lambda start: start.cost, default=None)
+        cost = self._cost + float(self._begin @ self._begin) - saved
+        return Start(effect, cost, plain.point, np.zeros(len(self._begin)), saved)
+
+    def _each(self, effect: SideEffect) -> Iterator[Start]:
+        """Yield every start of an effect. Along the way from no effect to a start the outputs count as
+        linear."""
+        case, point = self._case, self._plain.point
+        place, sides = effect.sides or (("", ""), (0.0,))
+        base = base_of(case, effect)
+        for values in effect.starts:
+            setting = dict(point.setting)
+            for at, value, known in zip(effect.places, values, base, strict=True):
+                setting[at] = np.full(len(case.flown), known + value)
+            ways = []
+            for side in sides:
+                setting[place] = np.full(len(case.flown), side)
+                y = outputs(case.flown, point._replace(setting=setting))
+                if not np.all(np.isfinite(y)):
+                    break
+                ways.append(self._without((y - self._plain.fitted) * self._plain.weight))
+            if len(ways) < len(sides):
+                continue
+            shares = [float(np.clip(self._share(way), *SECANT)) for way in ways]
+            left = [self._begin - share * way for share, way in zip(shares, ways, strict=True)]
+            squares = np.array([[float(one[rows] @ one[rows]) for rows in self._parts] for one in left])
+            best = np.argmin(squares, axis=0)
+            if effect.sides is None:
+                del setting[place]
+                setting[effect.places[0]] = np.full(len(case.flown), base[0] + shares[0] * values[0])
+            else:
+                setting[place] = np.array(sides)[best]
+            way = np.sum([ways[k] * rows for k, rows in zip(best, self._parts, strict=True)], axis=0)
+            cost = self._cost + float(np.sum(np.min(squares, axis=0)))
+            yield Start(effect, cost, point._replace(setting=setting), way)
+
+    def _share(self, way: FloatArray) -> float:
+        """Return the best part of a way."""
+        return float(way @ self._begin) / max(float(way @ way), 1e-12)
+
+    def _without(self, left: FloatArray) -> FloatArray:
+        """Return weighed rows (N,) without what all other parameters absorb."""
+        left = left.copy()
+        for rows in self._parts:
+            mine = self._own[rows]
+            left[rows] -= mine @ np.linalg.lstsq(mine, left[rows], rcond=None)[0]
+        return np.asarray(left - self._columns @ np.linalg.solve(self._information, self._columns.T @ left))
