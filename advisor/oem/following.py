@@ -3,19 +3,77 @@
 Each refresh is complete: all data so far, all parameters, corrected errors. Most refreshes update the last
 solution with the newest samples (``carried``). Twice per second the model is solved anew over all data, from
 the last optimum. The noise model, and the use of the angle of attack, are checked every two seconds. Servo
-lag and delay of the command are allowed for by one more step (``doubt``).
+lag and delay of the command are allowed for by one more step (``Doubt``).
 """
 
 import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
 from advisor.oem.carried import UpdatableSolution
-from advisor.oem.doubt import Doubt
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import report
+from advisor.oem.extra import Prior
+from advisor.oem.instrument_fit import share_of, weighed
+from advisor.oem.instruments import OF_ALPHA, Instrument, extra_of, unknown_instruments
 from advisor.oem.prepare import prepare
-from advisor.oem.solution import Solution, solve
+from advisor.oem.solution import Solution, evaluate, solve
+
+N = len(PARAMETERS)
+
+
+@dataclass(frozen=True, slots=True)
+class Doubt:
+    """Doubt that unknown instruments of the command add to an estimate that takes them as known.
+
+    The servo's lag and delay have priors, and the samples tell how far both may be off. One joint
+    Gauss-Newton step of derivatives and instruments moves the estimate. The joint covariance widens it.
+    """
+
+    step: FloatArray
+    """(8,) step of the derivatives."""
+    covariance: FloatArray
+    """(8, 8) addition to the covariance."""
+    covariance_cr: FloatArray
+    """(8, 8) addition to the Cramér-Rao bound."""
+
+    @classmethod
+    def about(cls, solution: Solution, aircraft: Aircraft) -> "Doubt":
+        """Return the doubt about a solution; none where the samples do not bear the instruments."""
+        share = share_of(solution)
+        names = [weighed(x, share) for x in _with_priors(solution, aircraft)]
+        optimum = solution.optimum
+        extra = extra_of(solution.problem, solution.assembly, optimum.shared, optimum.local, names)
+        joint = evaluate(solution.problem, solution.assembly, optimum, extra)
+        if not isinstance(joint, Solution):
+            return cls(np.zeros(N), np.zeros((N, N)), np.zeros((N, N)))
+        step = joint.influence.step(solution.residual, extra)[:N]
+        wider = joint.covariance[:N, :N] - solution.covariance[:N, :N]
+        return cls(step, wider, joint.covariance_cr[:N, :N] - solution.covariance_cr[:N, :N])
+
+    def on(self, estimate: Estimate) -> Estimate:
+        """Return an estimate with the doubt, of the solution or of one that follows it closely."""
+        return replace(
+            estimate,
+            theta=estimate.theta + self.step,
+            covariance=estimate.covariance + self.covariance,
+            covariance_cr=estimate.covariance_cr + self.covariance_cr,
+        )
+
+
+def _with_priors(solution: Solution, aircraft: Aircraft) -> Iterator[Instrument]:
+    """Yield the instruments of the command that have a prior or a statement with a width."""
+    for x in unknown_instruments(solution.problem, aircraft):
+        width = x.known_to * abs(x.stated or 0.0)
+        if x.name not in OF_ALPHA and (x.prior is not None or width > 0.0):
+            yield x if x.prior is not None else replace(x, prior=Prior(x.read(solution.problem), width))
+
 
 CARRY_S = 0.5
 """Time in s after which the model is solved anew. The air speed, taken as constant, changes by up to 4 % in

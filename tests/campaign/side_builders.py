@@ -13,7 +13,7 @@ from advisor.flight.signals.record import Channel
 from advisor.model.lateral import LATERAL, Trim
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.oem.lateral_estimate import LateralEstimate
-from advisor.oem.lateral_modes import Errors, lateral_modes
+from advisor.oem.lateral_estimator import Errors, lateral_modes
 from tests.oem.lateral_builders import JET, vector
 
 T = np.arange(0.0, 10.0, 0.04)

@@ -6,7 +6,7 @@ from advisor.decision.lateral_test import lateral_flight_test
 from advisor.model.lateral import LATERAL, Trim
 from advisor.oem.estimate import Estimate
 from advisor.oem.lateral_estimate import LateralEstimate
-from advisor.oem.lateral_modes import Errors, lateral_modes
+from advisor.oem.lateral_estimator import Errors, lateral_modes
 from tests.oem.lateral_builders import JET, vector
 
 N = len(LATERAL.shared)

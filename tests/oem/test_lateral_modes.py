@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from advisor.model.lateral import LATERAL, Trim, modes_of, state_matrix
-from advisor.oem.lateral_modes import Errors, lateral_modes
+from advisor.oem.lateral_estimator import Errors, lateral_modes
 from tests.oem.lateral_builders import JET, vector
 
 TRIM = Trim(130.0, 0.07, 0.105)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from advisor.oem.recursion import accumulated
+from advisor.oem.colour import accumulated
 
 
 @pytest.mark.parametrize("shape", [(1,), (400,), (400, 5)])

@@ -10,8 +10,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS, Reference
-from advisor.exports.models.ardupilot.plane import plane_text
 from advisor.exports.models.flown import FlownModel, side_of
+from advisor.exports.models.formats.ardupilot_format import plane_text
 from advisor.exports.models.improvement import STILL_AIR
 from advisor.exports.models.write import carry_out, order_of
 from advisor.gap.result import Value

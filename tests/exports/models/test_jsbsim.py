@@ -7,8 +7,8 @@ import jsbsim
 import numpy as np
 import pytest
 
+from advisor.exports.models.formats.jsbsim_format import aircraft_text
 from advisor.exports.models.improvement import SLOPES, ExportedServo
-from advisor.exports.models.jsbsim.aircraft import aircraft_text
 from advisor.exports.models.jsbsim.run import model_of
 from advisor.exports.models.jsbsim.source import parse, surface_of, terms_of
 from advisor.gap.result import Value

@@ -1,15 +1,194 @@
-"""``ardupilot``: coefficients of the built-in plane and, next to them, parameters of its servos."""
+"""``ardupilot``: coefficients of the built-in plane and, next to them, parameters of its servos.
 
+ArduPilot's plane in the loop reads the keys by ``--model plane:FILE.json``, and keeps its own numbers for
+missing keys. Its conventions, from its source (``libraries/SITL/SIM_Plane``):
+
+- forces are divided by a fixed mass of 2 kg: lift, drag and side force are scaled by 2 kg/m;
+- the drag is c_drag_p + C_L²/(π·oswald·b²/s): a scaled lift needs c_drag_p and oswald scaled alike;
+- the torque is used as the rotational acceleration: pitch is divided by I_yy, and derivatives of roll and yaw
+  with the products of inertia inside fit as they are, c_l_b = L_β/(q̄·S·b);
+- rates are made dimensionless by c/(2·V) and b/(2·V), as in ``advisor.oem.coefficients``;
+- the sideslip is positive with wind from the right;
+- ``CGOffset`` moves the forces off the centre of gravity: it is zero, as the derivatives are about it.
+
+The file is read from its first brace, and lines behind ``#`` are comments (``AP_JSON``).
+"""
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.exports.models.ardupilot.plane import FRAME_WORDS, lacking, plane_text
-from advisor.exports.models.ardupilot.servos import parameters_text
-from advisor.exports.models.exported import Exported
-from advisor.exports.models.flown import FlownModel
+from advisor.aircraft.reference import SIDE_PARAMETERS, Reference
+from advisor.exports.models.ardupilot.servos import calibrated, parameters_text, travel_of
+from advisor.exports.models.exported import Exported, commented, effects_beside
+from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.formats import AxisAsked, ModelFormat, refuse_lacking
+from advisor.exports.models.improvement import (
+    REFERENCE_KEYS,
+    Improvement,
+    air_note,
+    missing_reference,
+)
 from advisor.words.problems import ConfigurationError
+
+MASS_KG = 2.0
+"""Mass of ArduPilot's plane, kg."""
+OWN_DRAG, OWN_OSWALD = 0.1, 0.9
+"""Drag without lift and Oswald's factor of ArduPilot's own plane (``skywalker_2013``). Neither is found by
+the flight, so each is kept for the user's aircraft."""
+SIDE_KEYS = ("wing_area_m2", "span_m")
+FACTORS = {"beta": "b", "p": "p", "r": "r", "delta_a": "deltaa", "delta_r": "deltar"}
+"""Factor of a derivative to the spelling of ArduPilot's keys."""
+_CONTROLS = {"delta_a": "aileron", "delta_r": "rudder"}
+FIRST_VERSION = "4.7"
+"""First ArduPlane that reads such a file (ArduPilot's pull request 29809, April 2025)."""
+LOADED = "Loaded plane aero coefficients from"
+"""Line that ArduPlane prints where it has read the file."""
+FRAME_WORDS = (
+    "-heavy", "-jet", "-sr75", "-revthrust", "-elevon", "-vtail", "-dspoilers", "-redundant", "-elevrev",
+    "-catapult", "-bungee", "-throw", "-tailsitter", "-steering", "-3d", "-ice", "-soaring",
+)  # fmt: skip
+"""Words that change ArduPilot's plane wherever they stand in the name of the model, its file included."""
+
+AXES = {"pitch": "pitch", "lateral": "roll and yaw"}
+Keys = dict[str, float | list[float]]
+
+
+class Part(NamedTuple):
+    """Coefficients of one axis."""
+
+    keys: Keys
+    notes: Sequence[str]
+    left: Sequence[str]
+    """Known numbers and effects that the file does not carry."""
+
+
+def plane_text(model: FlownModel, file_name: str) -> Exported:
+    """Return the coefficients of all known axes as JSON with comments.
+
+    Raises
+    ------
+    ConfigurationError
+        The aircraft file lacks keys for each known axis.
+    """
+    aircraft = model.aircraft
+    parts, left = [], []
+    for axis, missing in lacking(aircraft).items():
+        found = model.pitch if axis == "pitch" else model.side
+        if found is None:
+            left.append(f"{AXES[axis]}, of which nothing is known")
+        elif missing:
+            left.append(f"{AXES[axis]}, for want of {', '.join(missing)} in the aircraft file")
+        else:
+            parts.append(
+                _pitch(found, aircraft) if isinstance(found, Improvement) else _side(found, aircraft)
+            )
+    if not parts:
+        raise ConfigurationError(f"--export ardupilot: {file_name} was not written: {'; '.join(left)}.")
+    keys: Keys = {key: value for part in parts for key, value in part.keys.items()}
+    keys["CGOffset"] = [0.0, 0.0, 0.0]
+    rounded = {k: float(f"{v:.6g}") if isinstance(v, float) else v for k, v in keys.items()}
+    left += [one for part in parts for one in part.left]
+    notes = [note for part in parts for note in part.notes]
+    head = [*_head(model.name, file_name), *notes, *(f"Not in this file: {one}." for one in left)]
+    return Exported(_commented(head) + json.dumps(rounded, indent=1) + "\n", tuple(left))
+
+
+def _head(name: str, file_name: str) -> Iterator[str]:
+    stem = file_name.removesuffix(".json")
+    yield f"{name}: coefficients by the inflight advisor, for the plane of ArduPilot's simulation. Load:"
+    yield f"  sim_vehicle.py -v ArduPlane --model plane:{file_name} --add-param-file {stem}.parm"
+    yield f'ArduPlane {FIRST_VERSION} and later print "{LOADED} {file_name}".'
+    yield "An older one flies its own plane without a word: take a newer one, or apply pull request 29809."
+
+
+def _commented(head: list[str]) -> str:
+    # ArduPilot's reader begins at the first brace of the file.
+    return commented([line.translate({ord("{"): "(", ord("}"): ")"}) for line in head], "#")
+
+
+def _pitch(pitch: Improvement, aircraft: Aircraft) -> Part:
+    """Return lift, drag and pitching moment."""
+    reference = pitch.reference
+    found = pitch.coefficients()
+    travel = travel_of(aircraft, "elevator")
+    neutral, full = travel.neutral_rad, travel.per_half_rad
+    c = {name: one.value for name, one in found.items()}
+    mass, inertia = reference.mass_kg or math.nan, reference.iyy_kg_m2 or math.nan
+    lift, moment = MASS_KG / mass, 1.0 / inertia
+    keys: Keys = {
+        "s": reference.wing_area_m2 or math.nan,
+        "c": reference.chord_m or math.nan,
+        "c_lift_0": lift * (c["C_L_0"] + c["C_L_delta_e"] * neutral),
+        "c_lift_a": lift * c["C_L_alpha"],
+        "c_lift_q": lift * c["C_L_q"],
+        "c_lift_deltae": lift * c["C_L_delta_e"] * full,
+        "c_drag_p": lift * OWN_DRAG,
+        "oswald": lift * OWN_OSWALD,
+        "c_m_0": moment * (c["C_m_0"] + c["C_m_delta_e"] * neutral),
+        "c_m_a": moment * c["C_m_alpha"],
+        "c_m_q": moment * c["C_m_q"],
+        "c_m_deltae": moment * c["C_m_delta_e"] * full,
+    }
+    if reference.span_m is not None:
+        keys["b"] = reference.span_m
+    notes = [
+        f"c_lift_* are C_L times 2 kg / {mass:.6g} kg: the mass of ArduPilot's plane is 2 kg.",
+        f"c_drag_p and oswald are scaled alike: C_D0 {OWN_DRAG:g} and e {OWN_OSWALD:g} are ArduPilot's own.",
+        f"c_m_* are C_m divided by I_yy = {inertia:.6g} kg m2: ArduPilot takes the torque as acceleration.",
+        f"c_*_deltae are per 500 us of pulse width, {math.degrees(full):+.4g} deg here.",
+        f"Pitch at {pitch.true_airspeed_m_s:.4g} m/s true. {pitch.air_note}",
+        "C_L and C_m per radian: " + ", ".join(f"{name} {value:.6g}" for name, value in c.items()) + ".",
+    ]
+    return Part(keys, notes, (*effects_beside(pitch), *pitch.untold))
+
+
+def _side(side: SideModel, aircraft: Aircraft) -> Part:
+    """Return side force, roll and yaw."""
+    reference = aircraft.reference
+    area, span = reference.wing_area_m2 or math.nan, reference.span_m or math.nan
+    speed = side.true_airspeed_m_s
+    pressure = side.air.dynamic_pressure(side.trim.airspeed_m_s)
+    moment = 1.0 / (pressure * area * span)
+    scale = {"Y": MASS_KG * speed / (pressure * area), "L": moment, "N": moment}
+    rate = 2.0 * speed / span
+    travel = {factor: travel_of(aircraft, name).per_half_rad for factor, name in _CONTROLS.items()}
+    factors = {"beta": 1.0, "p": rate, "r": rate, **travel}
+    keys: Keys = {"s": area, "b": span}
+    for parameter in SIDE_PARAMETERS:
+        if parameter in side.values:
+            letter, factor = parameter[0], parameter[2:]
+            value = scale[letter] * factors[factor] * side.number(parameter)
+            keys[f"c_{letter.lower()}_{FACTORS[factor]}"] = value
+    notes = [
+        "c_l_* and c_n_* hold the moments of inertia: ArduPilot takes the torque as acceleration.",
+        "c_y_* are for 2 kg, the mass of ArduPilot's plane.",
+        "c_*_deltaa and c_*_deltar are per 500 us of pulse width, "
+        f"{math.degrees(travel['delta_a']):+.4g} and {math.degrees(travel['delta_r']):+.4g} deg here.",
+        f"Roll and yaw at {speed:.4g} m/s true. {air_note(side.air)}",
+    ]
+    return Part(keys, notes, side.left_out)
+
+
+def lacking(aircraft: Aircraft) -> Mapping[str, list[str]]:
+    """Return for each axis the keys of the aircraft file that its coefficients lack."""
+    reference: Reference = aircraft.reference
+    known = calibrated(aircraft)
+    return {
+        "pitch": [
+            *missing_reference(reference, REFERENCE_KEYS),
+            *(["elevator.calibration"] if "elevator" not in known else []),
+        ],
+        "lateral": [
+            *missing_reference(reference, SIDE_KEYS),
+            *(f"{name}.calibration" for name in ("aileron", "rudder") if name not in known),
+        ],
+    }
+
 
 PARAMETERS = ".parm"
 """Ending of the file of parameters that stands next to the coefficients."""

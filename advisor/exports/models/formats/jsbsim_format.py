@@ -1,15 +1,178 @@
-"""``jsbsim``: a copy of the user's own JSBSim aircraft, corrected in both axes."""
+"""``jsbsim``: a copy of the user's own JSBSim aircraft, corrected in both axes.
 
+A derivative is corrected where its 95 % interval excludes the prior value. The prior is the aircraft file's
+``model``, else the JSBSim aircraft itself. The aircraft's own terms are multiplied by a factor. A function is
+added where there is no term or where the terms do not reach the value. A function also replaces a factor that
+would turn the sign.
+
+The curves of effects are those of the aircraft file. Squares and cubes are of α or of the elevator; a
+moment is by the rate of α. They count from ``about_rad`` or else from the trim. All are proportional to the
+dynamic pressure.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.exports.models.exported import Exported
+from advisor.exports.models.exported import Exported, effects_beside
 from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.formats import AxisAsked, ModelFormat
-from advisor.exports.models.jsbsim.aircraft import aircraft_text
-from advisor.exports.models.jsbsim.run import Model, model_of
+from advisor.exports.models.improvement import SLOPES, ExportedServo, Improvement
+from advisor.exports.models.jsbsim.knobs import Knob, knob_for, missed, settled
+from advisor.exports.models.jsbsim.run import Model, measure, model_of
 from advisor.exports.models.jsbsim.side import side_text
+from advisor.exports.models.jsbsim.slopes import Request, Slopes
+from advisor.exports.models.jsbsim.source import (
+    AXES,
+    PLAIN,
+    SURFACES,
+    AddedFunction,
+    corrected,
+    parse,
+    surface_of,
+    terms_of,
+)
+from advisor.gap.effects import EFFECTS
 from advisor.words.problems import ConfigurationError
+
+
+def aircraft_text(improvement: Improvement, model: Model) -> Exported:
+    """Return the corrected aircraft, measured at the speed and height flown, or at sea level for an unknown
+    height.
+
+    Raises
+    ------
+    ConfigurationError
+        The aircraft does not load or trim at the speed flown, or cannot be corrected.
+    """
+    content, name = model.file.read_bytes(), model.file.name
+    root = parse(content, name)
+    terms, surface = terms_of(root), surface_of(root)
+    names = [n for parameter in SLOPES for n in terms.get(parameter, ())]
+    asked = Request(names, surface, improvement.true_airspeed_m_s, improvement.air.height_m or 0.0)
+
+    def measured(knobs: Sequence[Knob]) -> Slopes:
+        # Measured without the servo, because backlash and dead band would hide a small deflection.
+        changed = corrected(content, name, [knob.change for knob in knobs], ExportedServo(), "")
+        return measure(changed.encode(), model, asked)
+
+    first = measure(content, model, asked)
+    if not first.powered:
+        # A failed trim leaves the engines in any state, and costs time.
+        asked = replace(asked, powered=False)
+        first = measure(content, model, asked)
+    targets = _targets(improvement, first, terms, SURFACES.get(surface))
+    knobs = [knob_for(parameter, terms.get(parameter, ()), first, surface) for parameter in targets]
+    knobs, now = settled(knobs, first, targets, surface, measured)
+    if off := missed(now, targets):
+        # Curves count from the trim, so that an added function about the trim leaves the trim alone.
+        knobs = [knob_for(p, () if p in off else terms.get(p, ()), first, surface) for p in targets]
+        knobs, now = settled(knobs, first, targets, surface, measured)
+    if off := missed(now, targets):
+        raise ConfigurationError(
+            f"--export jsbsim: {name} cannot be given {off[0]} = {targets[off[0]]:.4g}; "
+            "use --export matlab or aircraft."
+        )
+    # Effects come last, because their contributions at the trim were found in addition to these.
+    added, carried = functions_of(improvement.effects, now, surface)
+    servo = replace(improvement.servo, lag_s=max(improvement.servo.lag_s, 0.0))
+    changes = [*(knob.change for knob in knobs), *added]
+    text = corrected(content, name, changes, servo, _note(improvement, first, targets))
+    return Exported(text, (*_left_out(improvement, surface), *effects_beside(improvement, *carried)))
+
+
+def _left_out(improvement: Improvement, surface: str) -> list[str]:
+    """Return the parts of servo and derivatives that the aircraft cannot carry."""
+    servo = improvement.servo
+    left = ["a lag below the model's own"] if servo.lag_s < 0.0 else []
+    if servo.damping and servo.lag_s > 0.0:
+        left.append(f"the servo's damping of {servo.damping:.2g}, which is 1 here")
+    if surface not in SURFACES:
+        # Per radian in flight, per full travel in the aircraft.
+        unknown = [p for p in SLOPES if p.endswith("delta_e") and p not in improvement.prior]
+        left += [f"{p}: the elevator's position is no angle" for p in unknown]
+    return left
+
+
+def _targets(
+    improvement: Improvement, first: Slopes, terms: Mapping[str, Sequence[str]], per_rad: float | None
+) -> dict[str, float]:
+    """Return the derivative to its target value: contradicted derivatives, and moments that a change of lift
+    moves.
+
+    ``per_rad`` is the number of units of the elevator's property in a radian. None: the property is no angle.
+    """
+    found = {}
+    for parameter in SLOPES:
+        own = first.derivatives[parameter]
+        unit = (per_rad or math.nan) if parameter.endswith("delta_e") else 1.0
+        prior = improvement.prior.get(parameter, own * unit)
+        value = improvement.model[parameter].value
+        if improvement.differs(parameter, prior) and not math.isnan(prior):
+            # A term is changed by the ratio, because the file's numbers may belong to another air density.
+            by_difference = own + (value - prior) / unit
+            found[parameter] = own * value / prior if prior and parameter in terms else by_difference
+    moved = ["M" + parameter[1:] for parameter in found if parameter[0] == "Z"]
+    return found | {parameter: first.derivatives[parameter] for parameter in moved if parameter not in found}
+
+
+def _note(improvement: Improvement, first: Slopes, targets: Mapping[str, float]) -> str:
+    """Return the comment at the top: the changes, and the condition in which they hold."""
+    changed = [f"{p} {first.derivatives[p]:.4g} becomes {target:.4g}" for p, target in targets.items()]
+    servo = improvement.servo.lines() or ["as it was"]
+    return (
+        f"Corrected by advisor gap for {improvement.name} at {improvement.true_airspeed_m_s:.4g} m/s. "
+        f"Derivatives (SI): {', '.join(changed) or 'as they were'}. Servo: {', '.join(servo)}."
+    )
+
+
+def functions_of(
+    effects: Mapping[str, Mapping[str, float]], slopes: Slopes, surface: str
+) -> tuple[list[AddedFunction], list[str]]:
+    """Return the functions, and the names of the effects that the functions carry completely.
+
+    Parameters
+    ----------
+    effects
+        Effects of the aircraft file.
+    slopes
+        Slopes of the aircraft that receives the functions.
+    surface
+        Property of the elevator's position.
+    """
+    functions: list[AddedFunction] = []
+    carried = []
+    for effect, values in effects.items():
+        curve = EFFECTS[effect].curve
+        if curve is None or not values.keys() <= {*curve.powers, "about_rad"}:
+            # A separated flow has further parameters, which no square and no cube expresses.
+            continue
+        variable, powers = curve.variable, curve.powers
+        unit = SURFACES.get(surface) if variable == "delta_e" else 1.0
+        if variable == "alpha_dot":
+            strength = values["M_alpha_dot"] * slopes.inertia / slopes.pressure_psf / slopes.chord_time_s
+            functions.append(
+                AddedFunction(effect, "PITCH", strength, "aero/alphadot-rad_sec", further="aero/ci2vel")
+            )
+            carried.append(effect)
+        elif unit is not None:
+            about = unit * values["about_rad"] if "about_rad" in values else slopes.trim[variable]
+            functions += [
+                AddedFunction(
+                    name,
+                    AXES[name[0]],
+                    values[name] / unit**power / (slopes.per_force(name[0]) * slopes.pressure_psf),
+                    surface if variable == "delta_e" else PLAIN[variable],
+                    about,
+                    power,
+                )
+                for name, power in powers.items()
+                if values.get(name)
+            ]
+            carried.append(effect)
+    return functions, carried
 
 
 class JsbsimFormat(ModelFormat):
