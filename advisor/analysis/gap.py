@@ -33,8 +33,7 @@ from advisor.words.printable import printable
 from advisor.words.problems import Problem, UnusableInputError
 
 _PAUSE_S = 60.0
-"""Time between the last manoeuvre of one log and the first of the next, s. No clock has measured this
-time."""
+"""Time between the last manoeuvre of one log and the first of the next, s. No clock measured it."""
 
 
 @dataclass(frozen=True)
@@ -248,8 +247,7 @@ def with_true_reference(aircraft: Aircraft, true_over_read: float) -> Aircraft:
 
 
 def _simulator_at_true_speed(simulator: Simulator, true_over_read: float) -> Simulator:
-    """Return the simulator with a true reference speed. That of ``linear`` is the aircraft file's, as
-    read."""
+    """Return the simulator with a true reference speed. ``linear`` has the aircraft file's."""
     if isinstance(simulator, IdentifiedSimulator) or not isinstance(simulator, LinearSimulator):
         return simulator
     read = simulator.reference_m_s

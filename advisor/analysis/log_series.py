@@ -1,5 +1,4 @@
-"""Several logs as one campaign, in the order of their true times. Each message carries the number of its
-flight.
+"""Several logs as one campaign, in the order of their true times. Messages carry their flight's number.
 
 ``Campaign.feed`` takes the columns of a series unchanged. A link that follows the logs is the next flight.
 """
@@ -39,8 +38,7 @@ class LogSeries:
         self.reordered = self.logs != list(logs)
         """Whether the order differs from the order given."""
         self.unreadable: dict[int, Problem] = {}
-        """Flight number to the reason for which its log could not be read to the end. Filled while
-        reading."""
+        """Flight number to the reason for which its log ends early. Filled while reading."""
         self._left_out: set[int] = set()
 
     @property

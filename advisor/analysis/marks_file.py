@@ -88,8 +88,7 @@ def write_by_hand(log: Path, by_hand: ByHand) -> None:
 
 
 def keep_by_hand(log: Path, by_hand: ByHand) -> str:
-    """Write the decisions next to a log; return a sentence with the file's path, or with the reason of a
-    failure."""
+    """Write the decisions next to a log; return a sentence with the file's path or the failure's reason."""
     path = printable(str(path_beside(log)))
     try:
         write_by_hand(log, by_hand)

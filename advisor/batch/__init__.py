@@ -1,2 +1,1 @@
-"""Many flights: every log analyzed once, in processes, resumable; with tables and changes over all
-flights."""
+"""Many flights: every log analyzed once, in processes, resumable; with tables and changes."""

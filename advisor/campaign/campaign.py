@@ -115,8 +115,7 @@ class Campaign:
         self._settling = Settling() if settle else None
 
     def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
-        """Take the next messages, in order of arrival. The result does not depend on how they are cut into
-        batches."""
+        """Take the next messages, in order of arrival. The result does not depend on the batches."""
         told = self._take(self._flights.feed(columns))
         self._repeat_remarks()
         return told

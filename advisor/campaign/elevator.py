@@ -85,8 +85,7 @@ class ElevatorCampaign:
         self._heard.append(Heard.of(self.flight_test, usable))
 
     def take_better(self, maneuver: Maneuver, because: str | None) -> None:
-        """Take another record of a manoeuvre in the former one's place; exclude it where a reason is
-        given."""
+        """Take another record of a manoeuvre in the former one's place; exclude it for a given reason."""
         self._replace(maneuver)
         self.exclude(maneuver.number, because)
 
@@ -132,8 +131,7 @@ class ElevatorCampaign:
 
     @property
     def joined(self) -> Sequence[JudgedManeuver]:
-        """Manoeuvres of the joint estimate: the newest accepted ones in flight, all accepted ones at the
-        end."""
+        """Manoeuvres of the joint estimate: the newest accepted in flight, all accepted at the end."""
         accepted = self._accepted
         return accepted if self._ended else accepted[-NEWEST:]
 

@@ -1,7 +1,6 @@
 """Decisions by hand on the flights of a campaign: marks, exclusions, notes, remarks.
 
-Each decision is bound to vehicle time and not to a manoeuvre's number, because numbers move when a mark is
-added.
+Each decision is bound to vehicle time and not to a manoeuvre's number, because a mark moves the numbers.
 """
 
 from collections.abc import Callable, Sequence
@@ -54,8 +53,7 @@ class ByHand:
         return tuple(r.text for r in self.notes if r.concerns(maneuver))
 
     def excluding(self, maneuver: Maneuver, because: str | None) -> "ByHand":
-        """Return the decisions with a manoeuvre excluded for a reason, or included again where the reason is
-        None."""
+        """Return the decisions with a manoeuvre excluded for a reason, or included again for None."""
         others = tuple(r for r in self.excluded if not r.concerns(maneuver))
         added = () if because is None else (_on(maneuver, because),)
         return replace(self, excluded=(*others, *added))

@@ -81,15 +81,13 @@ def _is_no_news(used: FoundInstruments, found: FoundInstruments) -> bool:
 
 
 def of_another_power_on(aircraft: Aircraft) -> Aircraft:
-    """Return what is known of an aircraft in a power-on that no manoeuvre has told of: no delay of the
-    command."""
+    """Return what is known of an aircraft before any manoeuvre of a power-on: no delay of the command."""
     found = found_of(aircraft)
     return aircraft if found is None else with_found(aircraft, found.without("command_delay_s"))
 
 
 def told(aircraft: Aircraft) -> str:
-    """Return the sentence for the event log about the lag that every estimate uses now; empty without a
-    lag."""
+    """Return the event log's sentence about the lag that every estimate uses now; empty without a lag."""
     found, stated = found_of(aircraft), aircraft.elevator.lag_s
     lag_s = None if found is None else found.value("servo_lag_s")
     if found is None or lag_s is None:

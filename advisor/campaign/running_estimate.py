@@ -28,8 +28,7 @@ GAIN = 0.01
 SHOWN = ("Z_alpha", "M_alpha", "M_q", "M_delta_e")
 """Derivatives that screens show while a manoeuvre is being flown."""
 AGREES_BELOW = float(chdtri(len(SHOWN), 0.05))
-"""Largest squared distance from the joint estimate, in standard deviations, that chance exceeds once in
-twenty."""
+"""Largest squared distance from the joint estimate, in standard deviations, that chance exceeds in 5 %."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -41,8 +41,7 @@ COMMANDS = {
     "locate": "Print where settings and recordings are kept.",
     "completion": "Print what makes a shell complete the advisor's commands.",
 }
-"""Command name to its line in ``advisor --help``. The lines stand here so that the help imports no
-command."""
+"""Command name to its line in ``advisor --help``. They stand here: the help imports no command."""
 
 
 COMPLETION_VARIABLE = "_ADVISOR_COMPLETE"
@@ -213,8 +212,7 @@ def _tell(sentence: str) -> None:
 
 
 def _let_go(stream: TextIO) -> None:
-    """Flush a stream. Drop text that nobody can take, so that the interpreter's shutdown does not fail on
-    it."""
+    """Flush a stream. Drop text that nobody can take, so that Python's shutdown does not fail."""
     try:
         stream.flush()
     except OSError:

@@ -76,8 +76,7 @@ def _choose(conditions: Conditions, known: Knowledge, plan: CampaignPlan) -> Cho
 
 
 def _distance_to_stop(covariance: FloatArray, plan: CampaignPlan, known: Knowledge) -> float:
-    """Return a measure of the distance to the stop after one more manoeuvre with these errors; smaller is
-    better."""
+    """Return the distance to the stop after one more manoeuvre with these errors; smaller is better."""
     if plan.rule == "information":
         return share_after(known, covariance, 1)
     std = np.sqrt(np.diag(covariance))
@@ -108,8 +107,7 @@ def _held_by(history: Sequence[CandidateManeuver], plan: CampaignPlan, known: Kn
 
 
 def _first_input(aircraft: Aircraft) -> NextInput:
-    """Return the advice before any estimate: the textbook's 3-2-1-1, small, timed by the prior model if there
-    is one."""
+    """Return the advice before any estimate: the textbook's 3-2-1-1, small, timed by any prior model."""
     unit = 0.5
     if set(PARAMETERS) <= set(aircraft.model):
         frequency = ShortPeriod.from_mapping(aircraft.model).natural_frequency

@@ -98,8 +98,7 @@ def find_change(history: Sequence[CandidateManeuver]) -> Change | None:
 
 
 def _compare(before: Pooled, after: Pooled) -> float:
-    """Return the distance between both sides, divided by its limit. Noise does not explain a value above
-    1."""
+    """Return the distance between both sides, over its limit. Noise explains no value above 1."""
     distance, dof = disagreement(before.shared, after.shared)
     if dof == 0:
         return 0.0
@@ -113,8 +112,7 @@ def _widening(before: Pooled, after: Pooled) -> float:
 
 
 def _back_to_normal(before: Pooled, after: Sequence[Posterior]) -> bool:
-    """Return whether the newest manoeuvre agrees with those before the change. Then the others were merely
-    poor."""
+    """Return whether the newest manoeuvre agrees with those before the change. The others were then poor."""
     if len(after) < 2:
         return False
     with_old, dof = disagreement(before.shared, after[-1].shared)
@@ -152,8 +150,7 @@ _CAUSES = {
 
 
 def _simplest_cause(before: Shared, after: Shared, widening: float) -> str:
-    """Return the simplest cause that explains the differences of all six derivatives; empty when no cause
-    does."""
+    """Return the simplest cause that explains the differences of all six derivatives; empty without one."""
     misfits = {name: _misfit(before, after, np.array(powers, float)) for name, powers in _CAUSES.items()}
     best = min(misfits, key=lambda name: misfits[name])
     return best if misfits[best] < widening * float(chdtri(len(DERIVATIVES) - 1, CONSISTENCY)) else ""

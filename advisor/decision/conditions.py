@@ -26,8 +26,7 @@ LINEAR_RAD = float(np.radians(5.0))
 """Largest deviation of α from trim at which the short-period model is taken as linear, rad, where no limit is
 given."""
 ALPHA_MARGIN = 0.9
-"""Share of an angle-of-attack limit that the next input may use. The margin allows for errors of the
-model."""
+"""Share of an angle-of-attack limit that the next input may use. The margin is for the model's errors."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,8 +21,7 @@ from advisor.words.digits import distinct_texts
 NEEDED = ("elevator", "q")
 SAMPLES_PER_PERIOD = 8.0
 """Fewest samples of elevator and pitch rate in one natural period. An aircraft of 2 rad/s needs 2.6 Hz, one
-of 9 rad/s needs 11 Hz. Between slower samples the input is unknown, and no interval shows the resulting
-error."""
+of 9 rad/s needs 11 Hz. Between slower samples the input is unknown, and no interval shows it."""
 _LONGEST_GAP = (0.3, 0.2, 1.0)
 """Longest gap: a share of the natural period, then its least and greatest value, s."""
 _SHORTEST_FREE = 0.75
@@ -76,8 +75,7 @@ def leapt(maneuver: Maneuver) -> Reason:
 
 
 def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
-    """Return reasons for a manoeuvre outside the limits: bank, saturation, angle of attack, throttle, other
-    controls."""
+    """Return reasons for leaving the limits: bank, saturation, angle of attack, throttle, other controls."""
     return [
         *banked(maneuver, aircraft.limits.bank_deg),
         *saturated(maneuver, "elevator", aircraft.elevator.ends_deg),

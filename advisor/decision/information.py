@@ -41,8 +41,7 @@ class Knowledge:
     """Knowledge of the aircraft after some manoeuvres."""
 
     posterior: Posterior
-    """Pooled estimate of all consistent manoeuvres, wider where they scatter more than their stated
-    errors."""
+    """Pooled estimate of all consistent manoeuvres, wider where they scatter beyond their errors."""
     prediction: Prediction
     """Predicted response to the flown inputs."""
     tolerance_percent: float
@@ -74,8 +73,7 @@ class Knowledge:
 
         Either the error of the predicted response is within the tolerance. Such a small error of the model,
         which no interval of a long campaign contains, does not delay the stop. Or chance explains the error,
-        and the prediction was more precise than the tolerance. An imprecise prediction would agree with any
-        response.
+        and the prediction was more precise than the tolerance. An imprecise one would agree with all.
         """
         unsure = self.foretold_percent >= self.tolerance_percent
         return self.missed_percent < self.tolerance_percent or (self.surprise < 1.0 and not unsure)
@@ -87,8 +85,7 @@ class Knowledge:
 
     @property
     def share(self) -> Mapping[str, float]:
-        """Criterion's quantity to its uncertainty as a share of its tolerance. Infinite for an unknown
-        quantity.
+        """Criterion's quantity to its uncertainty as a share of its tolerance. Infinite where unknown.
 
         The quantities are the outputs by their names, then the named parameters.
         """

@@ -15,8 +15,7 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.words.digits import distinct_texts
 
 COLOURED = 0.5
-"""Lag-1 correlation of a residual above which the residual counts as driven, by moving air or a model
-error."""
+"""Lag-1 correlation of a residual above which it counts as driven, by moving air or a model error."""
 
 
 def judge_campaign(
@@ -64,8 +63,7 @@ def _results(
 
 
 def contradicting(history: Sequence[CandidateManeuver]) -> Mapping[int, Outlier]:
-    """Return usable manoeuvres that contradict all the others, by index. The rule ``information`` leaves them
-    out."""
+    """Return usable manoeuvres that contradict all the others, by index. ``information`` leaves them out."""
     usable = [(i, estimate) for i, flown in enumerate(history) if (estimate := flown.usable)]
     found = outliers(posteriors_at_one_speed([estimate for _, estimate in usable]))
     return {usable[k][0]: outlier for k, outlier in found.items()}

@@ -21,8 +21,7 @@ GROUPS: Mapping[Group, str] = {
     "I, II-C, IV": "light or highly manoeuvrable aircraft",
     "II-L, III": "medium and heavy aircraft",
 }
-"""Classes with equal requirements, and the aircraft that they hold. Category A counts all of Class II as
-II-L."""
+"""Classes with equal requirements, and their aircraft. Category A counts all of Class II as II-L."""
 Mode = Literal["dutch_roll", "roll", "spiral"]
 Least = tuple[float, ...]
 """Least values of one level. Each value is better where it is larger."""

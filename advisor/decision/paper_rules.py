@@ -110,8 +110,7 @@ def scatter_by_parameter(theta: FloatArray, criterion: Criterion = "eq12") -> Fl
 
 
 def scatter_percent(theta: FloatArray, criterion: Criterion = "eq12") -> float:
-    """Return the stop criterion: Euclidean norm over the eight parameters of `scatter_by_parameter`, in
-    percent.
+    """Return the stop criterion: norm over the eight parameters of `scatter_by_parameter`, in percent.
 
     The norm takes absolute values, so the sign of a parameter's mean does not matter.
     """
@@ -119,8 +118,7 @@ def scatter_percent(theta: FloatArray, criterion: Criterion = "eq12") -> float:
 
 
 def scattered_most(theta: FloatArray, criterion: Criterion = "eq12") -> str:
-    """Return the parameter that contributes most to `scatter_percent`. A parameter without a value comes
-    first."""
+    """Return the parameter that contributes most to `scatter_percent`. One without a value comes first."""
     return PARAMETERS[int(np.argmax(np.nan_to_num(scatter_by_parameter(theta, criterion), nan=np.inf)))]
 
 

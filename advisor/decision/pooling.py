@@ -116,8 +116,7 @@ def common_airspeed(estimates: Sequence[Estimate]) -> float | None:
 
 
 def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
-    """Return an (8, 8) factor on the Cramér-Rao bounds: the squared median ratio of corrected to plain
-    errors."""
+    """Return an (8, 8) factor on the Cramér-Rao bounds: the squared median of corrected to plain errors."""
     plain = np.sqrt(np.array([np.diag(e.own_covariance_cr) for e in estimates]))
     corrected = np.sqrt(np.array([np.diag(e.own_covariance) for e in estimates]))
     usable = np.isfinite(plain) & np.isfinite(corrected) & (plain > 0.0)

@@ -29,8 +29,7 @@ PREDICTED = ("alpha", "q", "a_z")
 MOMENTS = 200
 """Number of times at which a response is compared: 50 ms apart in a record of 10 s."""
 MOST_INPUTS = 12
-"""Number of newest manoeuvres that stand for all. Crews repeat a few inputs, and a long campaign stays
-fast."""
+"""Number of newest manoeuvres that stand for all. Crews repeat inputs, and long campaigns stay fast."""
 _REMEMBERED = 512
 """Responses kept for the next decision, 30 kB each."""
 _SPEED_POWER = np.array([SPEED_EXPONENTS[PARAMETERS[k]] for k in DERIVATIVES], dtype=float)
@@ -190,8 +189,7 @@ def _airspeed(maneuver: Maneuver) -> float | None:
 def _horizon(command: Signal, derivatives: tuple[float, ...]) -> float:
     """Return the time to which a response is compared. For a diverging model, a deviation has doubled there.
 
-    The pilot of an unstable aircraft corrects within that time. An open loop over a longer time means
-    nothing.
+    The pilot of an unstable aircraft corrects within that time. A longer open loop means nothing.
     """
     z_alpha, z_q, _, m_alpha, m_q, _ = derivatives
     trace, determinant = z_alpha + m_q, z_alpha * m_q - (1.0 + z_q) * m_alpha

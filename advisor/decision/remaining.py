@@ -76,8 +76,7 @@ def by_information(known: Knowledge, next_covariance: FloatArray, odds: Odds) ->
 
 
 def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> float:
-    """Return the largest uncertainty over its tolerance after ``more`` manoeuvres with ``next_covariance``
-    each.
+    """Return the largest uncertainty over its tolerance after ``more`` manoeuvres of ``next_covariance``.
 
     Trims and the constants that hold them belong to each manoeuvre: only their variances add up.
     """

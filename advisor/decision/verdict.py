@@ -75,8 +75,7 @@ class RuleProgress:
     limit_percent: float = 25.0
     """Limit of the criterion: 25 % of Eq. (12), or 100 % of the tolerance for ``information``."""
     prediction_percent: Mapping[str, float | None] = field(default_factory=dict)
-    """Under ``information``: output to the 95 % band of its predicted response, % of its peak. None:
-    unknown."""
+    """Under ``information``: output to the 95 % band of its prediction, % of its peak. None: unknown."""
     parameter_percent: Mapping[str, float | None] = field(default_factory=dict)
     """Under ``information``: named parameter to its 95 % half-width, % of its own tolerance."""
     now_percent: float | None = None

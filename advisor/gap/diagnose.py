@@ -187,8 +187,7 @@ def _without_dead_pitot(maneuver: Maneuver) -> Maneuver:
 
 
 def _with_speed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Aircraft:
-    """Return the aircraft with the air speed that the motion implies, if file and log leave the speed
-    open."""
+    """Return the aircraft with the air speed that the motion implies, if file and log leave it open."""
     if aircraft.stated_airspeed_m_s or all(measures_speed(m) for m in maneuvers):
         return aircraft
     return replace(aircraft, airspeed_m_s=speed_of_the_motion(maneuvers))

@@ -215,8 +215,7 @@ class TrimDifference:
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """Measured and simulated values of one channel in one manoeuvre, at the channel's own stamps, for
-    plotting."""
+    """Measured and simulated values of one channel in one manoeuvre, at the channel's stamps, for plots."""
 
     number: int
     channel: str

@@ -328,8 +328,7 @@ def _read(
     y: FloatArray,
     g: FloatArray,
 ) -> None:
-    """Write the outputs at event ``e``, and their derivatives, from states ``x`` with sensitivities
-    ``by``."""
+    """Write the outputs at event ``e``, and their derivatives, from states ``x``, sensitivities ``by``."""
     n, width = by.shape
     z, own = scratch.before, len(grid.place) + len(x)
     _feature(grid, e, x, 0.0, z)

@@ -56,8 +56,7 @@ class Trim:
 
 
 def state_matrix(theta: FloatArray, trim: Trim) -> FloatArray:
-    """Return A of ẋ = A·x about wings-level flight, shape (4, 4), for ``theta`` (15,) at the reference
-    speed."""
+    """Return A of ẋ = A·x about wings-level flight, shape (4, 4), for ``theta`` (15,) at reference speed."""
     a = np.zeros((4, 4))
     for value, (row, column, _) in zip(theta, LATERAL.place, strict=False):
         if column < 4:
@@ -84,8 +83,7 @@ class Modes:
 def modes_of(a: FloatArray) -> Modes:
     """Return the modes of a state matrix (4, 4).
 
-    The faster oscillation is the Dutch roll. Roll and spiral that oscillate together are no modes of their
-    own.
+    The faster oscillation is the Dutch roll. Roll and spiral that oscillate together are not separate.
     """
     values = np.linalg.eigvals(a)
     swinging = sorted((complex(v) for v in values if v.imag > 1e-9), key=abs)

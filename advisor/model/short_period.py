@@ -69,8 +69,7 @@ class ShortPeriod:
         return complex(first), complex(second)
 
     def trim(self) -> tuple[FloatArray, float]:
-        """Return the equilibrium state (2,) with q = 0 and its elevator; the least-norm one where there are
-        several."""
+        """Return the equilibrium state (2,) with q = 0 and its elevator; the least-norm one of several."""
         t = self.theta
         system = np.array([[t[1], t[3]], [t[5], t[7]]])
         alpha, elevator = np.linalg.lstsq(system, -self.c, rcond=None)[0]

@@ -41,8 +41,7 @@ def can_do_without(maneuver: Maneuver, aircraft: Aircraft) -> bool:
 
 
 def why_not_measured(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
-    """Return why these manoeuvres have no measured angle of attack, as half a sentence; empty where they have
-    one."""
+    """Return why these manoeuvres have no measured angle of attack, as half a sentence; else empty."""
     if aircraft.alpha.source == "none":
         return "alpha is left out, as the aircraft file asks"
     if not all(has(m.channels, "alpha") for m in maneuvers):
@@ -53,8 +52,7 @@ def why_not_measured(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
 
 
 def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
-    """Return why no measured angle of attack is used in these manoeuvres, as half a sentence; empty where one
-    is."""
+    """Return why no measured angle of attack is used in these manoeuvres, as half a sentence; else empty."""
     if why := why_not_measured(maneuvers, aircraft):
         return why
     check = combine(

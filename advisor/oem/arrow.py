@@ -242,8 +242,7 @@ def solved_within(
 
     A component that would leave its range is fixed at the end of the range, and the others are solved for
     again. Clipping the solution instead would lead away from the optimum where parameters are correlated. H
-    is scaled to a unit diagonal. Directions with relative singular values below ``indifferent`` are not
-    moved.
+    is scaled to a unit diagonal. Directions of relative singular values below ``indifferent`` stay.
     """
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
     normal, right = H / np.outer(scale, scale), g / scale
@@ -269,8 +268,7 @@ def _solution(normal: FloatArray, right: FloatArray, indifferent: float) -> Floa
 
 
 def inverse_of(information: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the inverse of a symmetric matrix (n, n), and the undetermined share of each unknown (n,), 0 to
-    1.
+    """Return the inverse of a symmetric matrix (n, n), and each unknown's undetermined share (n,), 0 to 1.
 
     The matrix is scaled to a unit diagonal, so that units do not matter. Directions in which the matrix is
     singular to working precision are left out.

@@ -34,8 +34,7 @@ CHANCE = 0.01
 GAIN = 0.02
 """Least relative decrease of some parameter's variance for a step."""
 LEAST_SHARE = 0.01
-"""Least variance of the step as a share of the estimate's for a test of the step. Round-off decides below
-it."""
+"""Least variance of the step, as a share of the estimate's, for its test. Round-off decides below it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,8 +126,7 @@ def _unsure(solution: Solution, change: FloatArray) -> FloatArray:
 
 
 def _chance(change: FloatArray, covariance: FloatArray, unit: FloatArray) -> float:
-    """Return the probability of a change at least this long under its covariance, in units of ``unit``
-    (8,)."""
+    """Return the probability of a change at least this long under its covariance, in ``unit`` (8,)."""
     values, vectors = np.linalg.eigh(covariance / np.outer(unit, unit))
     along = vectors.T @ (change / unit)
     return float(chdtrc(len(change), np.sum(along**2 / np.maximum(values, LEAST_SHARE))))

@@ -75,8 +75,7 @@ class InstrumentEstimate:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Estimate:
-    """The parameters of one axis from one manoeuvre, or from several together: by default the eight of
-    Eq. (3).
+    """The parameters of one axis from one manoeuvre, or from several together: by default those of Eq. (3).
 
     Estimates, fits and channels are equal where they are one object: == of arrays has no single truth.
     """

@@ -30,8 +30,7 @@ from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
 COLOURED = 0.5
-"""Least lag-1 correlation of the pitch rate's residual for moving air. Below it nothing drives the
-aircraft."""
+"""Least lag-1 correlation of the pitch rate's residual for moving air. Below it the air is still."""
 UNEXPLAINED = 0.004
 """Least unexplained share of the pitch rate's variance for moving air."""
 CLEARLY = 10.0
@@ -77,8 +76,7 @@ def fit_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> "Fit | NoE
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """Output error with the instruments of the log, before steps get their times and moving air is allowed
-    for."""
+    """Output error with the instruments of the log, before times of steps and moving air are allowed for."""
 
     maneuvers: Sequence[Maneuver]
     aircraft: Aircraft
@@ -275,8 +273,7 @@ def _given(found: FoundInstruments | None) -> Iterator[InstrumentEstimate]:
 
 
 def _supposing_a_lag(solution: Solution, aircraft: Aircraft) -> FloatArray | None:
-    """Return the estimate under a servo lag of ``SUPPOSED_LAG_S``, shape (8,); None where the servo is
-    known."""
+    """Return the estimate under a servo lag of ``SUPPOSED_LAG_S``, shape (8,); None for a known servo."""
     if not lag_is_unknown(aircraft):
         return None
     servo = Servo(SUPPOSED_LAG_S, solution.problem.servo.delay_s)

@@ -37,8 +37,7 @@ class Evaluated:
     noise: Coloured
     """Colour of each output's noise."""
     contributions: FloatArray
-    """(m, p + k) contribution of each manoeuvre's residuals to each parameter; the contributions sum to
-    zero."""
+    """(m, p + k) contribution of each manoeuvre's residuals to each parameter; they sum to zero."""
     systematic: FloatArray
     """(p + k, p + k) covariance by dynamics that the model lacks, alike in all manoeuvres."""
     extra: Extra | None = None

@@ -35,8 +35,7 @@ ROUNDS = 6
 SETTLED = 0.1
 """Largest pending step of a converged estimate, in standard deviations."""
 UNSETTLED = 3.0
-"""Pending step, in standard deviations, above which the search has diverged: the model does not fit the
-record."""
+"""Pending step, in standard deviations, above which the search has diverged: no model fits the record."""
 MOST_MANEUVERS = 7
 """Number of the newest manoeuvres from which the noise is estimated. More would change its values little."""
 _UNIT = np.ones(len(OUTPUTS))
@@ -111,8 +110,7 @@ def _better(
 ) -> tuple[Linearization | None, Whitened | None]:
     """Return the likeliest point along the step; None where the likelihood falls all the way.
 
-    A whole step ignores that the filter's gains change with the parameters, and overshoots in a curved
-    valley.
+    A whole step ignores that the filter's gains change with the parameters, and overshoots in curved valleys.
     """
     best: tuple[Linearization | None, Whitened | None] = (None, None)
     lowest = seen.cost

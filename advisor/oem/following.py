@@ -86,8 +86,7 @@ CLOSE_ENOUGH = 1e-4
 
 
 class Follower:
-    """An estimator that follows one manoeuvre after another, and restarts when the manoeuvre's number
-    changes."""
+    """An estimator that follows one manoeuvre after another, and restarts when its number changes."""
 
     def __init__(self, aircraft: Aircraft) -> None:
         self._aircraft = aircraft

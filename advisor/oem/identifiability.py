@@ -29,8 +29,7 @@ LARGEST_SHIFT = 0.5
 """Largest change of a parameter under the supposed servo lag, over the new value or the natural size,
 whichever is larger."""
 LEAST_OWN_MOTION = 0.02
-"""Least motion of the elevator that no feedback explains, root mean square, as a share of the whole
-motion."""
+"""Least motion of the elevator that no feedback explains, RMS, as a share of the whole motion."""
 LEVEL_UNKNOWN = "not identifiable without a measured angle of attack, whose level it goes with"
 SUPPOSED_LAG_S = 0.05
 """Servo lag, s, that would not be noticed in the fit."""

@@ -81,8 +81,7 @@ def cost_of(
     air: AirModel,
     start_variance: float = DIFFUSE,
 ) -> float:
-    """Return -2 log likelihood of a residual, shape (n,), up to a constant and without rows that are still
-    diffuse.
+    """Return -2 log likelihood of a residual, shape (n,), up to a constant and without diffuse rows.
 
     The arguments are those of ``gains_of``. A search for the noise calls this a few hundred times, so nothing
     is kept.
@@ -95,6 +94,5 @@ def cost_of(
 
 
 def _memory(air: AirModel) -> FloatArray:
-    """Return coloured noise by channel and its correlation time, the gust and its correlation time, shape
-    (7,)."""
+    """Return coloured noise by channel with correlation time, the gust with its own, shape (7,)."""
     return np.array([*air.coloured, air.memory_s, air.gust, air.gust_memory_s])

@@ -39,8 +39,7 @@ SMALLEST_ARM_M = 0.02
 STEADY_MOMENT_RAD = 0.02
 """Standard deviation of the elevator deflection that balances the moments which do not scale with V², rad. A
 change of power asks for a degree or so of trim. From 0.005 to 0.08 rad no derivative of a business
-jet's held step moves by a fiftieth of its interval. No derivative of an autopilot's test leaves its
-interval."""
+jet's held step moves by a fiftieth of its interval. No derivative of the autopilots' tests leaves it."""
 
 
 VANE_PLACE_S = 0.1
@@ -62,8 +61,7 @@ class Instrument:
     starts: tuple[float, ...] = ()
     """Values at which the search starts, in addition to the present one."""
     usual: Callable[[OutputErrorProblem], float] | None = None
-    """Standard deviation of the parameter over sound instruments. None: no such parameter without
-    evidence."""
+    """Standard deviation of the parameter over sound instruments. None: not without evidence."""
     known_to: float = 0.0
     """Standard deviation of a stated value over the value."""
     prior: Prior | None = None
@@ -110,8 +108,7 @@ def _held_for(problem: OutputErrorProblem) -> float:
 
 
 def _half_interval(problem: OutputErrorProblem) -> float:
-    """Return half the interval of the command. A shorter lag looks like an unknown time between two
-    stamps."""
+    """Return half the interval of the command. A shorter lag looks like an unknown time between stamps."""
     return 0.5 * float(np.median(np.concatenate([np.diff(r.elevator.t) for r in problem.records])))
 
 

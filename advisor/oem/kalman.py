@@ -57,8 +57,7 @@ def observed_by(system: FloatArray, seen_by_alpha: float, vane_m: float, imu_m: 
 def _begun(
     system: FloatArray, memory: FloatArray, start_variance: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the matrix of α, q, θ and the gust, half its square, and the covariance at the start, shape (8,
-    8)."""
+    """Return the matrix of α, q, θ and the gust, half its square, and the first covariance, shape (8, 8)."""
     z_a, z_q, m_a, m_q = system[0], system[1], system[2], system[3]
     A, P = np.zeros((4, 4)), np.zeros((STATES, STATES))
     A[0, 0], A[0, 1], A[0, 3] = z_a, 1.0 + z_q, z_a

@@ -117,8 +117,7 @@ def beta_arm_m(aircraft: Aircraft) -> float | None:
 
 
 def begun(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProblem:
-    """Return the problem at the start of the search: an unknown lag is short, all else at its prior's
-    mean.
+    """Return the problem at the start of the search: a short unknown lag, all else at its prior's mean.
 
     A lag and the roll mode act alike on the roll rate. A search from a long lag may exchange them.
     """

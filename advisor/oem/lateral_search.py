@@ -183,8 +183,7 @@ class _System(NamedTuple):
         return cls(information, gradient, free, k)
 
     def solved(self, damping: float, held: Mapping[int, float]) -> _Step | None:
-        """Return the step with the nuisance parameters ``held`` moved by given amounts; None where
-        singular."""
+        """Return the step with the nuisance parameters ``held`` moved by given amounts, or None."""
         total = _SHARED + self.nuisances
         fixed = np.isin(self.free, [_SHARED + j for j in held])
         amount = np.array([held[int(j) - _SHARED] for j in self.free[fixed]])

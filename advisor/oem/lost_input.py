@@ -86,8 +86,7 @@ def _with_values(record: Record, at: Index, values: FloatArray) -> Record:
 
 
 def _correction(solution: Solution, at: Index) -> FloatArray:
-    """Return the change of each lost sample that, together with the parameters, explains the residuals
-    best."""
+    """Return the change of each lost sample that best explains the residuals with the parameters."""
     (record,) = solution.problem.records
     step = 0.1 * float(np.ptp(record.elevator.y))
     answers = np.empty((len(solution.fitted), len(at)))

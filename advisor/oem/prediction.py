@@ -2,8 +2,7 @@
 
 Sensitivities of the outputs carry the errors of derivatives and estimated instruments to the response (delta
 method). Trim, initial states and biases are refitted in every manoeuvre, so what they absorb is no error of
-the prediction. Correlated errors, such as those of a servo's lag and of M_δe, cancel where they move no
-response.
+the prediction. Correlated errors, as of a servo's lag and of M_δe, cancel where they move no response.
 """
 
 from collections.abc import Mapping

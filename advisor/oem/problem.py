@@ -32,8 +32,7 @@ class Record:
     held: bool = False
     """Whether the input is held between its stamps instead of linear."""
     inferred_alpha: Signal | None = None
-    """α in rad from the motion, where none is measured. The search starts from it, and no residual uses
-    it."""
+    """α in rad from the motion, where none is measured. The search starts from it; no residual uses it."""
 
     @property
     def alpha(self) -> Signal:

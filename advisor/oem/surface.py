@@ -28,8 +28,7 @@ class Servo:
     delay_s: float = 0.0
 
     def grid(self, command_t: FloatArray) -> tuple[FloatArray, float]:
-        """Return the times of corners in the surface's motion, and the longest step that follows the
-        motion."""
+        """Return the times of corners in the surface's motion, and the longest step that follows it."""
         return command_t + self.delay_s, LONGEST_STEP_S if self.lag_s > 0.0 else np.inf
 
     def move(
@@ -59,8 +58,7 @@ class Servo:
     def course(
         self, command_t: FloatArray, command: FloatArray, t: FloatArray, held: bool = False
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the surface at the stamps, just after them, and its rates, each (E,); arguments of
-        ``move``."""
+        """Return the surface at the stamps, just after them, and its rates, each (E,), as for ``move``."""
         at, start, arrival = self.move(command_t, command, t, held)
         return at, start, padded((arrival - start[:-1]) / np.diff(t))
 
@@ -104,8 +102,7 @@ class Servo:
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the stamps of the run (n,), and the command just after (n,) and before the next (n - 1,).
 
-        A servo with a lag is at rest at the first known command, where its run starts. The run ends with
-        ``t``.
+        A servo with a lag rests at the first known command, where its run starts. The run ends with ``t``.
         """
         stamps = command_t + self.delay_s
         if held:

@@ -38,8 +38,7 @@ def cost_of(
 
 
 LARGEST_GUST_RAD = 0.26
-"""Largest standard deviation of the gust angle, rad. Beyond 15 deg no lift is linear in the angle of
-attack."""
+"""Largest standard deviation of the gust angle, rad. Beyond 15 deg no lift is linear in α."""
 _STEPS = (0.7, 0.35, 0.15)
 """Steps of the search in the logarithms of the noise parameters: from a factor of two to one of 1.16."""
 _RANGE = (1e-12, 1e3)
@@ -62,8 +61,7 @@ class Turbulence:
 
     @property
     def present(self) -> bool:
-        """Whether moving air exceeds what instrument noise explains, and is large enough to matter (0.1
-        deg)."""
+        """Whether moving air exceeds what instrument noise explains, and is large enough (0.1 deg)."""
         return self.gain > 20.0 and self.gust_angle > 0.0017 and self.is_air
 
     @property
@@ -116,8 +114,7 @@ def find_turbulence(
 
 
 def _residual_angle(rows: Sequence[Rows], system: FloatArray, rms: FloatArray) -> float:
-    """Return the root mean square residual of the angle of attack, rad; without that channel, from the
-    lift."""
+    """Return the root mean square residual of the angle of attack, rad; without it, from the lift."""
     if any(np.any(r.channel == ALPHA) for r in rows):
         return float(rms[ALPHA])
     speed = float(np.mean([r.speed for r in rows]))

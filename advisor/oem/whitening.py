@@ -4,8 +4,7 @@
 
 With Γ = L·Lᵀ the autocovariance of ν, the innovations of a scalar Kalman filter over ν, each over its
 standard deviation, are L⁻¹·ν. The source is Harvey, *Forecasting, Structural Time Series Models and the
-Kalman Filter*, section 3.4. The filter starts with the stationary variance of x, so it needs no time to
-settle.
+Kalman Filter*, section 3.4. The filter starts with the stationary variance of x, and needs no time to settle.
 """
 
 from dataclasses import dataclass

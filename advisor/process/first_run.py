@@ -80,8 +80,7 @@ def _writable(folder: Path) -> bool:
 
 
 def _key(stages: Stages) -> str:
-    """Return a hash of versions, machine and folder, on which machine code depends in addition to the
-    sources."""
+    """Return a hash of versions, machine and folder, on which machine code depends too."""
     parts = (version("numba"), _own_version(), sys.version, platform.machine(), __file__, *stages)
     return sha256("\0".join(parts).encode()).hexdigest()[:16]
 

@@ -10,8 +10,7 @@ from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
 
 _MOST_BYTES = 256 * 1024
-"""Largest file, bytes. A settings file holds a few kB, and the limit keeps the time of reading below a
-second."""
+"""Largest file, bytes. A settings file holds a few kB, and the limit keeps reading below a second."""
 _MOST_VALUES = 20_000
 """Most values, lists and sections together. A thousand decisions by hand on one log have 8,000. Ten times as
 many would take seconds to check."""

@@ -1,5 +1,4 @@
-"""The ``advisor.analyze/1`` document for scripts, in SI units, with None in place of missing values and
-NaN."""
+"""The ``advisor.analyze/1`` document for scripts, in SI units, with None for missing values and NaN."""
 
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
@@ -150,8 +149,7 @@ def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
 
 
 def parameters(estimate: Estimate | NoEstimate | None) -> dict[str, Any] | None:
-    """Return every parameter as ``{value, std, std_cr}``. An unidentifiable parameter has None and the
-    reason."""
+    """Return every parameter as ``{value, std, std_cr}``. An unidentifiable one has None and the reason."""
     if not isinstance(estimate, Estimate):
         return None
     return {

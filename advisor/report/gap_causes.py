@@ -51,8 +51,7 @@ def confusion_sentence(c: Cause) -> str:
 
 
 def unseen(effects: Sequence[Unseen]) -> Table:
-    """Return the effects that the flight cannot show, with the data that would show them; one row for each
-    reason."""
+    """Return the effects that the flight cannot show, with the data that would show them, by reason."""
     table = Table.grid(padding=(0, 2))
     table.add_column(max_width=26)
     table.add_column()

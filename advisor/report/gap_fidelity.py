@@ -1,5 +1,4 @@
-"""Size of the gap: the error along the worst manoeuvre, and standard measures of fidelity, before and
-after."""
+"""Size of the gap: the error along the worst manoeuvre, and measures of fidelity, before and after."""
 
 from collections.abc import Iterator, Sequence
 

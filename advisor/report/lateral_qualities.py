@@ -27,8 +27,7 @@ MODES: Mapping[str, tuple[str, str]] = {
 """Field of `LateralModes` to its name for people and its unit."""
 NAMES = {"dutch_roll": "Dutch roll", "roll": "roll", "spiral": "spiral"}
 OPTIONAL = frozenset({"Y_p", "Y_r", "Y_delta_a"})
-"""Derivatives that count as zero where the aircraft file states the others: a few per cent on every
-aircraft."""
+"""Derivatives that count as zero where the aircraft file states the others: a few per cent everywhere."""
 
 
 def modes_told(modes: LateralModes) -> dict[str, Quality]:

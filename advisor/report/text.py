@@ -81,8 +81,7 @@ def parameter_cells(row: ParameterRow) -> tuple[str, ...]:
 
 
 class AnalysisText:
-    """Text of the whole analysis; rich prints it at the width of the terminal, without colour where
-    unwanted."""
+    """Text of the whole analysis; rich prints it at the width of the terminal, without unwanted colour."""
 
     def __init__(
         self,

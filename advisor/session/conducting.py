@@ -42,8 +42,7 @@ Tell = Callable[[SessionReport], object]
 
 
 class Conducting(Protocol):
-    """Runs a campaign over a source. Every method except ``run`` returns at once, before its request is
-    done."""
+    """Runs a campaign over a source. Every method but ``run`` returns before its request is done."""
 
     def run(self, tell: Tell) -> None:
         """Work until `stop`, in the calling thread. ``tell`` receives every report.

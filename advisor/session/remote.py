@@ -40,8 +40,7 @@ class ConductorTask:
     """Function that reads the decisions by hand since the start. None: the source cannot be read again from
     its beginning."""
     door: Door | None = None
-    """Address of the process of the link, which tells the link's health without delay. None: no such
-    process."""
+    """Address of the link's process, which tells the link's health without delay. None: no such process."""
 
 
 class RemoteConductor:
@@ -155,8 +154,7 @@ class RemoteConductor:
         return code, watch
 
     def _pass_on(self, pipe: IO[bytes]) -> None:
-        """Send the task, then every request. A request that a process has not taken waits for the next
-        process."""
+        """Send the task, then every request. A request that a process has not taken waits for the next."""
         request = _ENOUGH
         with suppress(BrokenPipeError, ValueError):
             pickle.dump(self._task, pipe)

@@ -11,8 +11,7 @@ from advisor.mavlink.link.health import LinkStatistics
 from advisor.session.behind import backlog_s, behind_sentence
 
 Condition = Literal["good", "poor", "waiting", "lost", "stale", "ended"]
-"""State of the data's arrival. Stale: a process of the advisor does not answer, and all that is shown is
-old."""
+"""State of the data's arrival. Stale: a process of the advisor does not answer; all shown is old."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +48,7 @@ class LinkRequest:
     """A crew's request to the link."""
 
     what: Literal["follow", "outputs", "take"]
-    """Follow another vehicle; ask the vehicle once for its elevator's output; or use an output as the
-    elevator."""
+    """Follow another vehicle; ask once for the elevator's output; or use an output as the elevator."""
     number: int = 0
     """System id of the vehicle to follow, or number of the output."""
 
@@ -59,8 +57,7 @@ class Source(Protocol):
     """Delivers batches of columns in order of arrival. All calls except ``health`` come from one thread."""
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
-        """Wait at most ``timeout_s`` for the next batch; return an empty one for nothing yet, or None at the
-        end.
+        """Wait at most ``timeout_s`` for the next batch; return an empty one so far, or None at the end.
 
         Raises
         ------
@@ -78,8 +75,7 @@ class Source(Protocol):
         """Carry out a crew's request to the link. Other sources do nothing."""
 
     def keep(self, by_hand: ByHand) -> str:
-        """Keep the decisions by hand with the data; return a sentence on the place, or on the reason of a
-        failure."""
+        """Keep the decisions by hand with the data; return a sentence on the place or the failure."""
 
     def close(self) -> None:
         """Release sockets and files."""

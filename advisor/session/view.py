@@ -42,8 +42,7 @@ class View:
 
     @property
     def obstacles(self) -> tuple[Problem, ...]:
-        """Reasons for which nothing can be judged: of the present data, and at the end of the whole
-        stream."""
+        """Reasons for which nothing can be judged: of present data, and finally of the whole stream."""
         found = self.problems if self.health.condition == "ended" else self.state.no_data
         wrong = (f.problem for f in self.state.instruments if f.refuses)
         return tuple({p.code: p for p in (*found, *wrong)}.values())

@@ -60,8 +60,7 @@ def skewed(grid: FloatArray, h: float, p: FloatArray) -> FloatArray:
 
 
 def lagging(y: FloatArray, h: float, lag_s: float) -> FloatArray:
-    """Return a series of shape (n,) behind a first-order lag, linear between samples; a negative lag
-    leads."""
+    """Return a series of shape (n,) behind a first-order lag, linear between samples; negative leads."""
     if lag_s <= 0.0:
         return y - lag_s * np.gradient(y, h) if lag_s < 0.0 else y
     return lagged(np.full(len(y) - 1, h), y[:-1], y[1:], lag_s, float(y[0]))
@@ -70,8 +69,7 @@ def lagging(y: FloatArray, h: float, lag_s: float) -> FloatArray:
 def second_order_response(
     surface: FloatArray, h: float, omega_rad_s: float, damping: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the bend of a structural mode that follows the surface, rad, and its rate, each of shape (n +
-    1,)."""
+    """Return the bend of a structural mode that follows the surface, rad, and its rate, each (n + 1,)."""
     n = len(surface)
     bend, rate = np.zeros(n + 1), np.zeros(n + 1)
     if omega_rad_s <= 0.0:

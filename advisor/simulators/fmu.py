@@ -184,8 +184,7 @@ class FmuSimulator:
         self._fmu.begin(values)
 
     def _steady(self, condition: Condition, start: Mapping[int, float]) -> tuple[float, float]:
-        """Return the angle of attack and elevator for which neither α nor q changes in the first step
-        (Newton)."""
+        """Return α and elevator for which neither α nor q changes in the first step (Newton)."""
 
         def change(at: FloatArray) -> FloatArray:
             self._start_at(condition, start, float(at[0]), float(at[1]))

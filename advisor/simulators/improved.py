@@ -1,5 +1,4 @@
-"""The gap in the user's own simulator: the effects are added, and it flies manoeuvres that no search has
-used."""
+"""The gap in the user's own simulator: with the effects it flies manoeuvres that no search has used."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -29,8 +29,7 @@ class Isolated:
 
     The parent imports nothing of the simulator, and receives numbers and text only. The folder in which the
     parent was started stands last on the child's path of modules. What the child prints goes nowhere. The
-    child and all that it starts form a process group, which ends with the simulator. The child's memory is
-    limited.
+    child and all that it starts form a process group, which ends with the simulator. Its memory is limited.
 
     Parameters
     ----------
@@ -83,8 +82,7 @@ class Isolated:
         return Replay(**{name: row and np.array(row) for name, row in columns.items()}, trim=trim)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
-        """Return dimensional short-period derivatives at the condition, or None where the simulator has
-        none."""
+        """Return dimensional short-period derivatives at the condition, or None without any."""
         derivatives: Mapping[str, float] | None = self._ask("linearise", condition)
         return derivatives
 

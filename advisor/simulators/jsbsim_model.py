@@ -177,8 +177,7 @@ def _equipped(path: Path) -> "ET.ElementTree[ET.Element]":
 
 
 def _files(tree: "ET.ElementTree[ET.Element]", folders: Sequence[Path]) -> list[ET.Element]:
-    """Return the outermost elements of a model and of the systems that it includes, as far as they are
-    found."""
+    """Return the outermost elements of a model and of the included systems that are found."""
     root = tree.getroot()
     assert root is not None
     found = [root]

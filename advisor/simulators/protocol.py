@@ -106,8 +106,7 @@ class Replay:
     beta: FloatArray | None = None
     """Sideslip, rad, positive where the wind comes from the right."""
     trim: Mapping[str, float] = field(default_factory=dict)
-    """Controls of the trimmed flight: ``elevator`` in rad and those of ``CONTROLS``, as far as they are
-    known."""
+    """Controls of the trimmed flight: ``elevator`` in rad and those known of ``CONTROLS``."""
 
 
 class Simulator(Protocol):
@@ -149,8 +148,7 @@ class Simulator(Protocol):
 
 
 Factory = Callable[[str, Aircraft], Simulator]
-"""Function that makes a simulator from the part of a specification behind the colon, and from the aircraft
-file.
+"""Function that makes a simulator from a specification's part behind the colon, and from the aircraft file.
 
 It raises ``advisor.words.problems.ConfigurationError`` where that part names nothing that can be loaded.
 """

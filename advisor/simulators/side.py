@@ -39,8 +39,7 @@ from advisor.words.quantiles import NORMAL_95
 STEP_S = 0.02
 """Interval of the inputs, and of the stamps at which a replay is read, s: as on the pitch axis."""
 OWN_DELAY, OWN_LAG = Prior(0.0, 0.1), Prior(FIRST_LAG_S, 0.1)
-"""Delay and lag between the simulator's input and its surfaces, s. Replays have no noise and tell them
-alone."""
+"""Delay and lag between the simulator's input and its surfaces, s. Noiseless replays tell them alone."""
 TURNS = {"aileron": ("L_delta_a", "L_p"), "rudder": ("N_delta_r", "N_beta")}
 """Control to the derivative by which it turns, and to that which it turns against: their ratio is the answer
 of ``interface.control_fault``."""
@@ -193,8 +192,7 @@ def _file(surrogate: LateralSolution, aircraft: Aircraft, said: str) -> Aircraft
 
 
 def _beyond(surrogate: LateralSolution, name: str, least: float, other_s: float = 0.0) -> float:
-    """Return a lag or delay of the simulator with another time, s; 0 where below the least one or its
-    error."""
+    """Return a lag or delay of the simulator with another time, s; 0 if below the least one or its error."""
     value, std = surrogate.nuisances.get(name, (0.0, 0.0))
     value += other_s
     return value if value > max(least, NORMAL_95 * std) else 0.0

@@ -74,8 +74,7 @@ def _other_kind(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> float:
 
 
 def _is_likelier(scale: float, std: float, other: float) -> bool:
-    """Return whether a measured relative excess is likelier under the other kind of air speed, despite its
-    prior."""
+    """Return whether a measured relative excess is likelier under the other kind, despite its prior."""
     spread = TRUE_AIR_SPEED.prior_std[0] ** 2 + std**2
     return scale**2 - (scale - other) ** 2 > 2.0 * spread * log(_ODDS)
 

@@ -37,8 +37,7 @@ class Environment(Protocol):
     """The least that an environment must do. Angles are in rad, α, q and θ positive nose up."""
 
     def reset(self, speed: float, height: float, alpha: float, theta: float, **conditions: Any) -> Any:
-        """Begin at a true air speed (m/s), a height (m), angles and the conditions it takes, at rest in
-        rotation."""
+        """Begin at a true air speed (m/s), a height (m), angles and the conditions it takes, not rotating."""
 
     def step(self, dt: float, **controls: float) -> Any:
         """Advance by ``dt`` seconds with ``elevator`` (rad, trailing edge down) and the controls it takes."""

@@ -110,8 +110,7 @@ def surrogate_of(
 
 
 def trimmed_at(p: FloatArray, flight: PreparedManeuver) -> FloatArray:
-    """Return driving numbers, shape (entries,), with the trim terms of a manoeuvre at the simulator's
-    start."""
+    """Return driving numbers, shape (entries,), with a manoeuvre's trim terms at the simulator's start."""
     theta, reference = float(flight.trim[THETA_FROM]), float(flight.trim[REFERENCE])
     speed, height = float(flight.slow[SPEED, 0]), float(flight.slow[HEIGHT, 0])
     return trimmed(p, flight.alpha_trim, theta, speed, height, reference)

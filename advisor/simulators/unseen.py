@@ -129,8 +129,7 @@ def _since(effect: Variant, values: FloatArray, kept: Sequence[int], whole: Exam
 
 
 def with_nuisances(point: SearchPoint, unseen: UnseenManeuvers) -> SearchPoint:
-    """Return a model together with the nuisance parameters of the diagnosis without the manoeuvres kept
-    apart."""
+    """Return a model with the nuisance parameters of the diagnosis without the manoeuvres kept apart."""
     found = unseen.found.findings.last.fitted.point
     for effect, values in zip(found.effects, found.values, strict=True):
         if effect.is_nuisance and effect not in point.effects:

@@ -22,8 +22,7 @@ _OLD = "the verdicts below are that old, and the link and its recording go on."
 
 
 def advise(view: View) -> Advice:
-    """Return the most important advice: a lost link, unusable data, the manoeuvre in the air, or the
-    verdicts.
+    """Return the most important advice: a lost link, unusable data, the manoeuvre in flight, or the verdicts.
 
     Once the flight test says stop on each axis that is tested, no further data are needed.
     """

@@ -262,8 +262,7 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         self.say("axis: elevator" if self._side is None else "axis: roll and yaw")
 
     def delay_update(self, delay: float = _AT_ONCE_S) -> None:
-        """Paint at once. Textual alone would hide transitions for 50 ms, which mounted screens do not
-        have."""
+        """Paint at once. Textual would hide transitions for 50 ms, and mounted screens have none."""
         super().delay_update(_AT_ONCE_S)
 
     def refresh_css(self, animate: bool = True) -> None:

@@ -27,8 +27,7 @@ class KeyAtHand:
 
 
 def keys_at_hand(app: App[None], screen: Screen[Any] | None = None) -> list[KeyAtHand]:
-    """Return the keys of the table in `advisor.tui.keys` that are active on a screen. None: on the newest
-    screen."""
+    """Return the keys of the table in `advisor.tui.keys` that are active on a screen. None: the newest."""
     return [
         KeyAtHand(
             app.get_key_display(active.binding),
@@ -42,8 +41,7 @@ def keys_at_hand(app: App[None], screen: Screen[Any] | None = None) -> list[KeyA
 
 
 def commands(app: App[None], screen: Screen[Any]) -> list[SystemCommand]:
-    """Return every action of the advisor for the palette: the active ones, then those of the engineer's
-    screen.
+    """Return every action of the advisor for the palette: the active ones, then the engineer's.
 
     An action of the engineer's screen that is chosen elsewhere first shows that screen.
     """
@@ -90,8 +88,7 @@ _HEADING = Style(bold=True, underline=True)
 def help_page(text: str) -> Text:
     """Return a help text, in a small part of Markdown, as one text that wraps to any width.
 
-    Textual's own Markdown mounts a widget for every paragraph and cell, which takes a third of a second for a
-    page.
+    Textual's own Markdown mounts a widget for every paragraph and cell, a third of a second for a page.
     """
     page = Text()
     for block in _BLOCKS.split(text.strip()):

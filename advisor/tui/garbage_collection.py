@@ -18,8 +18,7 @@ class Garbage:
     """Runs collections at times when nobody waits, in place of Python's own."""
 
     def begin(self) -> None:
-        """Take over from Python. Objects imported so far live as long as the application and are never
-        examined."""
+        """Take over from Python. Objects imported so far stay alive and are never examined."""
         gc.freeze()
         gc.disable()
 

@@ -47,8 +47,7 @@ def files_of(pane: Pane, view: View) -> dict[str, str]:
 
 
 def save(pane: Pane, view: View) -> str:
-    """Write the files of a pane into the folder of the log; return a sentence on the place, or on the
-    failure.
+    """Write the files of a pane into the folder of the log; return a sentence on the place or failure.
 
     A file of an earlier save is replaced. A file that is half written never has the final name.
     """

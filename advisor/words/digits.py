@@ -10,8 +10,7 @@ MOST_DIGITS = 9
 def distinct_texts(
     value: float, limit: float, digits: int = 0, style: Literal["f", "g"] = "f"
 ) -> tuple[str, str]:
-    """Write a number and its limit with ``digits`` digits, and with more digits where both texts would be
-    equal.
+    """Write a number and its limit with ``digits`` digits, and with more where both texts would be equal.
 
     "1.9 s (at least 1.9)" contradicts itself; "1.86 s (at least 1.90)" does not.
 

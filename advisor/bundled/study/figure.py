@@ -24,8 +24,7 @@ class Curve:
     rule: Rule
     noise_percent: float
     quantiles: tuple[tuple[float, float, float] | None, ...]
-    """Quantiles 10 %, 50 %, 90 % over the campaigns with a value, for each manoeuvre. None where no campaign
-    has one."""
+    """Quantiles 10 %, 50 %, 90 % over the campaigns with a value, for each manoeuvre. None without any."""
 
 
 def curve(rule: Rule, noise_percent: float, outcomes: Sequence[RuleOutcome]) -> Curve:

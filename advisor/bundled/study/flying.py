@@ -97,8 +97,7 @@ def fly_named(scene: Scene, name: str) -> NoiselessManeuver:
 
 
 def as_maneuver(flight: NoiselessManeuver) -> Maneuver:
-    """Return the flight in the form of a manoeuvre cut from the stream: the command, its begin and its
-    end."""
+    """Return the flight in the form of a manoeuvre cut from the stream: command, begin and end."""
     moving = np.flatnonzero(np.abs(flight.elevator - flight.elevator[0]) > 1e-9)
     start, end = flight.t[moving[0]], flight.t[min(moving[-1] + 1, len(flight.t) - 1)]
     span = Span(

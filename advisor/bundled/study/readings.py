@@ -132,8 +132,7 @@ class ReadingResult:
 def needed_by_reading(
     campaigns: Sequence[Sequence[Estimate]],
 ) -> dict[tuple[str, Rule], tuple[int | None, ...]]:
-    """Return the manoeuvres that each campaign needs under every reading, by the reading's name and the
-    rule."""
+    """Return the manoeuvres that each campaign needs under every reading, by reading and rule."""
     return {
         (reading.name, rule): tuple(_needed(campaign, accepting, reading) for campaign in campaigns)
         for reading in READINGS

@@ -36,8 +36,7 @@ class Row:
         return 100.0 * float(np.mean([n is None for n in self.needed]))
 
     def needed_quantile(self, share: float) -> int | None:
-        """Return the number of manoeuvres within which ``share`` of the campaigns stopped; None for fewer
-        stops."""
+        """Return the number of manoeuvres that stopped ``share`` of the campaigns; None for fewer stops."""
         order = sorted(np.inf if n is None else n for n in self.needed)
         value = order[max(0, int(np.ceil(share * len(order))) - 1)]
         return None if np.isinf(value) else int(value)

@@ -21,8 +21,7 @@ messages give identity, mode and parameters."""
 
 
 def cut_tlog(log: Path, first: int, last: int) -> bytes:
-    """Return the packets of a tlog between two positions, after the newest heartbeats and parameters before
-    them.
+    """Return the packets of a tlog between two positions, after the newest earlier heartbeats and parameters.
 
     Parameters
     ----------

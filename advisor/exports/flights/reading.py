@@ -116,8 +116,7 @@ def grid_times(channels: Mapping[str, Channel]) -> FloatArray:
 
 
 def on_grid(channel: Channel, t: FloatArray) -> FloatArray:
-    """Return a channel at the times ``t``, shape (n,): linear between its stamps, NaN outside and in its
-    gaps."""
+    """Return a channel at the times ``t``, shape (n,): linear between stamps, NaN outside and in gaps."""
     if len(channel) == 0 or len(t) == 0:
         return np.full(len(t), np.nan)
     y = np.interp(t, channel.t, channel.y, left=np.nan, right=np.nan)

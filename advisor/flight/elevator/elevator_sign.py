@@ -34,8 +34,7 @@ class ElevatorSign:
         """Whether the sign is reversed. None before the first conclusive manoeuvre."""
 
     def right(self, maneuver: Maneuver) -> tuple[Maneuver, list[Notice]]:
-        """Return the manoeuvre with the elevator's sign corrected, and a notice when a reversed sign is
-        found."""
+        """Return the manoeuvre with the elevator's sign corrected, and a notice of a reversed sign."""
         found = []
         stated = maneuver.scale is not None and maneuver.scale.reversed
         if self._direction is not None:

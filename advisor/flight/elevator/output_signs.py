@@ -31,8 +31,7 @@ def pitch_signs(
     alpha: Channel | None,
     singly: bool = False,
 ) -> list[bool | None]:
-    """Return whether a positive deflection of each output lifts the nose; None for an output that rests or is
-    unsure.
+    """Return whether a positive deflection of each output lifts the nose; None for a resting or unsure one.
 
     Least squares of the pitch rate on the integrals of the elevator, the pitch rate and the angle of attack.
     The elevator is the sum of all outputs, each with either sign. The right signs let the roll part of

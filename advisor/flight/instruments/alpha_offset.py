@@ -36,8 +36,7 @@ UNKNOWN = AlphaOffset()
 
 
 def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
-    """Return the mean of α − (θ − γ), its error, and its change, from the climb rate. NaN without a climb
-    rate.
+    """Return the mean of α − (θ − γ), its error, and its change, from the climb rate. NaN without one.
 
     Parameters
     ----------
@@ -86,8 +85,7 @@ def speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> Floa
 
 
 def weighted(values: Sequence[float], stds: Sequence[float]) -> tuple[float, float]:
-    """Return the mean of values weighted by their errors, and its error, widened where the values scatter
-    more."""
+    """Return the mean of values weighted by their errors, and its error, widened for larger scatter."""
     y, s = np.array(values), np.maximum(np.array(stds), 1e-12)
     w = 1.0 / s**2
     mean = float(np.sum(w * y) / np.sum(w))

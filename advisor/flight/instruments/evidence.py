@@ -37,8 +37,7 @@ _LONGEST_GAP_S = 0.5
 """Longest gap, s, across which a rate is integrated."""
 _FEWEST_SAMPLES = 20
 _SHORTEST_S = 2.0
-"""Shortest record, s, that tells a mean specific force. A change of the climb rate by 1 m/s is 5 % of 1 g
-there."""
+"""Shortest record, s, that tells a mean specific force. There, 1 m/s of climb rate is 5 % of 1 g."""
 _CLIMB_M_S = 1.0
 """Error of a change of the climb rate, m/s: lag of its filter in a manoeuvre."""
 _ALIGNMENT = 0.02
@@ -223,8 +222,7 @@ def force_against_alpha(channels: Channels) -> Evidence:
 def _parts(
     channels: Channels,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray] | None:
-    """Return stamps, pitch rate and turning rate of the path, then stamps and values of α; None without
-    them."""
+    """Return stamps, pitch rate and turning rate of the path, then stamps and values of α; or None."""
     if not usable(channels, "q", "theta", "a_z", "alpha", "airspeed"):
         return None
     q, source = channels["q"], channels["alpha"]

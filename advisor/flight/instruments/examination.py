@@ -52,8 +52,7 @@ FORCE_UNITS_M_S2 = {
     "mg": GRAVITY_M_S2 / 1000.0,
     **{f"{n} counts a g": GRAVITY_M_S2 / n for n in (2048, 4096, 8192, 16384)},
 }
-"""Units in which accelerometers are sent, m/s². Counts are those of 16-bit sensors with ranges of 16, 8, 4
-and 2 g."""
+"""Units in which accelerometers are sent, m/s². Counts are of 16-bit sensors of 16, 8, 4 and 2 g."""
 _SPEED_UNITS_M_S = {"knots": 0.514444, "km/h": 1.0 / 3.6, "mph": 0.44704, "ft/s": 0.3048}
 
 

@@ -115,8 +115,7 @@ def check_alpha(
 
 
 def _followers(t: FloatArray, command: FloatArray) -> FloatArray:
-    """Return the command after two equal lags, for several lags, shape (n, k): together they span the
-    response."""
+    """Return the command after two equal lags, for several lags, shape (n, k), which span the response."""
     moved = command - command[0]
     first = np.zeros(len(_FOLLOW_S))
     found = np.zeros((len(t), len(_FOLLOW_S)))

@@ -42,8 +42,7 @@ class Excitation:
     rate: float
     """Half of the range of the rate, rad/s."""
     relative_error: float
-    """Relative standard error of the elevator's effect: one over the root of 3·F. Infinite without an
-    effect."""
+    """Relative standard error of the elevator's effect: 1/√(3·F). Infinite without an effect."""
     external_error: float
     """Relative standard error for the external input alone, as in a closed loop."""
     effect: float
@@ -85,8 +84,7 @@ def excitation(maneuver: Maneuver, loop: Loop = PITCH) -> Excitation | None:
 
 
 def _external(maneuver: Maneuver, loop: Loop) -> FloatArray:
-    """Return the part of the elevator that no linear feedback of the motion explains, at the elevator's
-    stamps."""
+    """Return the part of the elevator that no linear feedback of the motion explains, at its stamps."""
     elevator, q = maneuver.channels[loop.control], maneuver.channels[loop.rate]
     rate = np.interp(elevator.t, q.t, q.y)
     theta = maneuver.channels.get(loop.angle)

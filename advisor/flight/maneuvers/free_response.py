@@ -8,8 +8,7 @@ from advisor.flight.maneuvers.movement import Movement, is_still
 from advisor.flight.signals.samples import Samples
 
 FREE_S = (3.0, 8.0)
-"""Least and greatest length of the free response, s. Between them the free response is as long as the
-input."""
+"""Least and greatest length of the free response, s. Between them it is as long as the input."""
 _PARTING_S = (0.5, 0.6)
 """Least and greatest length of a rest that separates two movements, s. Between them the length is three
 quarters of the longest step. The next input may come one second later."""
@@ -61,8 +60,7 @@ class FreeResponse:
         self._end_s = movement.last_step_s + min(max(duration_s, FREE_S[0]), FREE_S[1])
 
     def take(self, t: float, u: float) -> Ended | None:
-        """Take the stamp (s) and elevator (rad) of the newest sample; return None while the response goes
-        on."""
+        """Take the stamp (s) and elevator (rad) of the newest sample; return None during the response."""
         least, most = (share * self.movement.amplitude for share in _LEAVES)
         if abs(u - self.movement.trim) <= min(max(5.0 * self.movement.quiet, least), most):
             self._away_s = []

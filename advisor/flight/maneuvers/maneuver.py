@@ -38,8 +38,7 @@ class Span:
     """Extent of a manoeuvre in the stream of elevator samples, as the segmenter found it."""
 
     record_from_s: float
-    """First stamp of the record, s. The record begins with a lead-in before the first step, which the fit
-    uses."""
+    """First stamp of the record, s. It begins with a lead-in before the first step, for the fit."""
     start_s: float
     """Onset of the first elevator step, s."""
     last_step_s: float
@@ -62,8 +61,7 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Maneuver:
-    """A span with its data. ``channels`` holds at least ``elevator``, and every channel keeps its own
-    stamps."""
+    """A span with its data. ``channels`` holds at least ``elevator``, and each channel has its own stamps."""
 
     number: int
     boot: int
@@ -134,8 +132,7 @@ _AGREE_RAD = 3e-4
 """Largest median difference of pitch angle, rad, between two records of one motion. A log in steps of 0.01
 deg is 1e-4 rad off. Two simulated flights of one schedule with 1 % of noise differ by 1.4e-3 rad."""
 _SKEW_S = 0.01
-"""Largest difference between the stamps of one attitude in two logs, s: the time of computing, sending or
-writing."""
+"""Largest difference between the stamps of one attitude in two logs, s: of computing, sending or writing."""
 _COMMON = 0.5
 """Least shared time of two records of one manoeuvre, as a share of the shorter record."""
 _FEWEST = 10
@@ -163,8 +160,7 @@ def are_one(a: Maneuver, b: Maneuver) -> bool:
 
 
 def is_fuller(a: Maneuver, b: Maneuver) -> bool:
-    """Return whether ``a`` is the better record of one manoeuvre: marked, or with more samples of elevator
-    and q."""
+    """Return whether ``a`` is the better record of one manoeuvre: marked, or with more of elevator and q."""
     return _fullness(a) > _fullness(b)
 
 

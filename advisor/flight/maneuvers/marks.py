@@ -76,8 +76,7 @@ class Due:
     marks: tuple[Mark, ...] = ()
     """Complete marks in seconds since boot, the one that ended first before the others."""
     spans: tuple[tuple[Span, int | None], ...] = ()
-    """Spans of the finder that an open mark held back and no mark has replaced, each with its order of
-    arrival."""
+    """Spans of the finder that an open mark held back and no mark replaced, each with its arrival's order."""
     notices: tuple[Notice, ...] = ()
     """Sentences on marks that cannot be used."""
 
@@ -177,15 +176,13 @@ class Marks:
         return any(m.overlaps(span.start_s, span.last_step_s) for m in (*self._waiting, *self._closed))
 
     def before(self, span: Span) -> Span:
-        """Return the span of an input outside of all marks, with its free response ended where a mark
-        begins."""
+        """Return the span of an input outside of all marks, with its response ended where a mark begins."""
         begin_s = [m.start_s for m in (*self._waiting, *self._closed)]
         within = [at_s for at_s in begin_s if span.last_step_s <= at_s < span.end_s]
         return replace(span, end_s=min(within), closed_by="next input") if within else span
 
     def due(self, arrived_s: float) -> Due:
-        """Return the final marks and spans when every channel has arrived up to ``arrived_s``, s since
-        boot."""
+        """Return the final marks and spans once every channel has arrived up to ``arrived_s``, since boot."""
         ready = [m for m in self._waiting if m.end_s <= arrived_s]
         return self._due(ready) if ready or self._held or self._notices else Due()
 

@@ -150,8 +150,7 @@ def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | Non
 def _steps(
     t: FloatArray, d: FloatArray, extent: tuple[int, int], amplitude: float, level: float, arrival_s: float
 ) -> tuple[tuple[float, float], ...]:
-    """Return the lobes on either side of trim as steps, with onset at half of the way, and the median as
-    level.
+    """Return the lobes on either side of trim as steps, with onset at half way, and the median as level.
 
     Parameters
     ----------

@@ -53,8 +53,7 @@ _SLOWEST_S = 0.15
 _SHARP = 0.5
 """Least share of a sharp step that happens within twice ``_SHARP_S``."""
 _FEWEST_SHARP = 3
-"""Least number of sharp steps. The loop itself makes one where it is switched on, and one where its demand
-jumps."""
+"""Least number of sharp steps. The loop makes one when switched on, and one when its demand jumps."""
 
 _WHAT = {
     "ground": "movements without flight",

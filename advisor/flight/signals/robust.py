@@ -9,8 +9,7 @@ _MEDIAN = 0.6745
 
 
 def robust_std(departures: FloatArray) -> float:
-    """Return the standard deviation of normal noise from the median absolute departure, which few outliers
-    change.
+    """Return the standard deviation of normal noise from the median absolute departure, robust to outliers.
 
     Parameters
     ----------

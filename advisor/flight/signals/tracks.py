@@ -189,8 +189,7 @@ value is in degrees."""
 
 
 def _in_radians(channel: Channel) -> Channel:
-    """Return a vane's channel in radians. A named value carries no unit; its size shows degrees or
-    radians."""
+    """Return a vane's channel in radians. A named value has no unit: its size shows it."""
     if not channel.source.startswith("NAMED_VALUE_FLOAT") or np.max(np.abs(channel.y)) <= _LARGEST_ALPHA_RAD:
         return channel
     return replace(channel, y=np.radians(channel.y))

@@ -50,8 +50,7 @@ def standard_height(density_kg_m3: float | FloatArray) -> FloatArray:
 
 
 def density(pressure_pa: float | FloatArray, temperature_c: float | None) -> FloatArray:
-    """Return the density in kg/m³ of dry air; at the standard atmosphere's temperature where none is
-    known."""
+    """Return the density in kg/m³ of dry air; at the standard temperature where none is known."""
     if temperature_c is None:
         return standard_density(pressure_pa)
     return np.asarray(pressure_pa / (_GAS_CONSTANT * (temperature_c + _CELSIUS_K)))

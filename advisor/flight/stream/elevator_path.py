@@ -47,8 +47,7 @@ class ElevatorPath:
         return self._watch.newest_s
 
     def mode_changed(self, earliest_s: float, order: int) -> None:
-        """Take a change of the flight mode by the message of this order, at ``earliest_s`` at the
-        earliest."""
+        """Take a change of the flight mode by the message of this order, not before ``earliest_s``."""
         self._watch.mode_changed(earliest_s, order)
 
     def so_far(self) -> Maneuver | None:
@@ -121,8 +120,7 @@ class ElevatorPath:
         return events
 
     def _found(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
-        """Return the events of a movement that the finder has found, unless the movement lies in a marked
-        stretch."""
+        """Return the events of a movement that the finder has found, unless it lies in a marked stretch."""
         return [] if self._marks.hides(span, up_to_order) else self._flown(span, up_to_order)
 
     def _marked(self, due: Due, up_to_order: int | None) -> list[FlightEvent]:

@@ -200,8 +200,7 @@ class Flights:
         return through
 
     def _once(self, maneuver: Maneuver) -> FlightEvent:
-        """Return the event of a manoeuvre with its number in the campaign: a new manoeuvre, or a known
-        one."""
+        """Return the event of a manoeuvre with its number in the campaign, new or known."""
         for i, known in enumerate(self._found):
             if known.power_on != maneuver.power_on and are_one(maneuver, known):
                 self._again += 1

@@ -23,8 +23,7 @@ _BUNDLED = b"Bundled aircraft"
 """Beginning of the STATUSTEXT with which this project's simulator introduces itself."""
 
 _RELEASES = ((255, ""), (192, "-rc"), (128, "-beta"), (64, "-alpha"), (0, "-dev"))
-"""Least FIRMWARE_VERSION_TYPE (MAVLink common.xml), the lowest byte of a version, with its suffix for
-users."""
+"""Least FIRMWARE_VERSION_TYPE (MAVLink common.xml), a version's lowest byte, with its suffix for users."""
 
 READER = b"Log reader: "
 """Beginning of a STATUSTEXT with which a reader of logs gives a sentence to the user."""
@@ -102,8 +101,7 @@ class Identity:
     def provenance(self, source: str, stated: str) -> str:
         """Return the provenance of a channel, by the vehicle's identity.
 
-        On ArduPilot, AOA_SSA is derived from inertial speed and estimated wind. Elsewhere its origin is
-        unknown.
+        On ArduPilot, AOA_SSA is derived from inertial speed and estimated wind. Else its origin is unknown.
         """
         if source not in ("AOA_SSA.AOA", "AOA_SSA.SSA") or self.vehicle is None:
             return stated

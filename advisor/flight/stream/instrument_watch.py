@@ -15,8 +15,7 @@ _EVERY_S = 10.0
 _LATE_S = 1.0
 """Newest stretch that an examination leaves out, s, because its packets may still be on the way."""
 _ENOUGH = 6
-"""Stretches with motion after which the watch ends. Their errors are then well below an instrument's own
-scatter."""
+"""Stretches with motion after which the watch ends. Errors are then well below an instrument's scatter."""
 
 
 class InstrumentWatch:

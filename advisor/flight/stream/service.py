@@ -22,11 +22,9 @@ WINDOW_S = 3.0
 STEP_S = 0.5
 """Time between two judgements, s."""
 LAPSED_AFTER_S = 1.0
-"""Time for which a problem must persist before its report, s. With ``WINDOW_S`` the report comes within 5
-s."""
+"""Time for which a problem must persist before its report, s. With ``WINDOW_S`` it comes within 5 s."""
 SERVED_AFTER_S = 5.0
-"""Time without any problem before its end is reported, s, so that a rate near its limit causes no alternating
-reports."""
+"""Time without any problem before its end is reported, s, so that reports do not alternate near a limit."""
 PAUSE_S = 2.5
 """Silence of the vehicle after which counting restarts, s: two heartbeats, one of them lost."""
 

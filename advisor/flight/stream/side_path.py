@@ -54,8 +54,7 @@ class SidePath:
         self._messages: dict[str, str] = {}
 
     def mode_changed(self, earliest_s: float, order: int) -> None:
-        """Take a change of the flight mode by the message of this order, at ``earliest_s`` at the
-        earliest."""
+        """Take a change of the flight mode by the message of this order, not before ``earliest_s``."""
         for watch in self._watches.values():
             watch.mode_changed(earliest_s, order)
 

@@ -1,5 +1,4 @@
-"""Reasons for which a stream cannot serve to identify a short period: missing or slow messages, with
-remedies.
+"""Reasons for which a stream cannot serve to identify a short period: missing or slow messages, and remedies.
 
 The necessary rate depends on the aircraft. Before an estimate exists, only a floor can be demanded. A 3-2-1-1
 is matched to the short period, and its shortest step is about a third of the natural period. With fewer than

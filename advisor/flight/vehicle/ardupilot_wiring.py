@@ -38,8 +38,7 @@ WORDS = Words(
 
 
 def ardupilot_wiring(parameters: Parameters) -> Wiring:
-    """Return the outputs by SERVOn_FUNCTION, MIN, TRIM, MAX and REVERSED, with ArduPilot's defaults where
-    unknown."""
+    """Return the outputs by SERVOn_FUNCTION, MIN, TRIM, MAX and REVERSED, with ArduPilot's defaults."""
     functions = {
         n: int(parameters[f"SERVO{n}_FUNCTION"]) for n in _OUTPUTS if f"SERVO{n}_FUNCTION" in parameters
     }

@@ -2,8 +2,7 @@
 
 The first vehicle heard is followed. A vehicle that falls silent, or has no elevator, is left for the only
 other vehicle that sends and has an elevator. A vehicle that has served for a while is kept, however long it
-is silent. Its flight test must not end in that of another aircraft. Where several vehicles qualify, the crew
-is asked.
+is silent. Its flight test must not end in that of another aircraft. If several qualify, the crew is asked.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,12 +22,10 @@ SERVED_S = 60.0
 """Total time of service after which a vehicle is kept, s: two manoeuvres with their pauses."""
 
 FOLLOW = b"Advisor follows vehicle "
-"""Text that the advisor writes into its own stream when a hand chooses another vehicle; a number ends the
-text."""
+"""Text that the advisor adds to its stream when a hand chooses another vehicle; a number ends the text."""
 
 TAKE = b"Advisor takes for the elevator output "
-"""Text that the advisor writes into its own stream when a hand accepts a guess; the output's number ends the
-text."""
+"""Text that the advisor adds to its stream when a hand accepts a guess; the output's number ends the text."""
 
 _OUTPUTS = frozenset({"SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"})
 _ATTITUDES = frozenset({"ATTITUDE", "ATTITUDE_QUATERNION"})

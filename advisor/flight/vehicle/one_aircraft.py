@@ -9,8 +9,7 @@ from advisor.words.problems import Problem
 _PROBE_US = (1400.0, 1600.0)
 """Pulses between which two elevators' scales are compared, us: within the travel of every servo."""
 _SCALES_AGREE = 0.05
-"""Relative difference of an elevator's scale between flights that counts as equal, as when a trim is set
-anew."""
+"""Relative difference of an elevator's scale between flights that counts as equal, as after a new trim."""
 
 
 class OneAircraft:
@@ -48,8 +47,7 @@ class OneAircraft:
         return f"{name}: the vehicle is {vehicle}, and {first} in {first_name}; both count as one aircraft."
 
     def doubt_elevator(self, name: str, elevator: Surface) -> str:
-        """Return a sentence where the elevator is driven otherwise than in the first flight; else an empty
-        one."""
+        """Return a sentence where the elevator is driven otherwise than in the first flight, else ""."""
         first_name, first = self._elevator = self._elevator or (name, elevator)
         if elevator.outputs == first.outputs and _scales_agree(elevator, first):
             return ""

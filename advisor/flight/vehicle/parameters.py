@@ -34,8 +34,7 @@ Stated = tuple[float, float]
 
 
 def tells_of_outputs(name: str) -> bool:
-    """Return whether a parameter describes servo outputs, filters, an air speed sensor, or a log's
-    topics."""
+    """Return whether a parameter describes servo outputs, filters, air speed, or a log's topics."""
     return name.startswith(_PREFIXES) or name in AIRSPEED_SENSOR or name == LOG_PROFILE
 
 

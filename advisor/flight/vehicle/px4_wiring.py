@@ -71,8 +71,7 @@ def banks(parameters: Parameters) -> list[str]:
 
 
 def servo_outputs(parameters: Parameters) -> list[ServoOutput]:
-    """Return the first output of each servo. Servo n is on output n + 1 where no output's function is
-    known."""
+    """Return the first output of each servo. Servo n is on output n + 1 where no function is known."""
     found: dict[int, ServoOutput] = {}
     for bank, group in enumerate(banks(parameters)):
         for k in OUTPUTS:

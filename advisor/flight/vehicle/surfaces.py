@@ -59,8 +59,7 @@ class Calibration:
     pairs: tuple[tuple[float, float], ...]
 
     def deflection(self, pwm_us: FloatArray) -> FloatArray:
-        """Return the surface angle in rad, trailing edge down positive, held at the last pair beyond the
-        ends."""
+        """Return the surface angle in rad, positive trailing edge down, held beyond the end pairs."""
         pwm, deg = zip(*sorted(self.pairs), strict=True)
         return np.asarray(np.radians(np.interp(pwm_us, pwm, deg)))
 
@@ -92,8 +91,7 @@ class Part:
     sure: bool = True
     """Whether a calibration or a parameter gives the output's sign."""
     side: str = ""
-    """Outputs of one side follow one demand, so that each can replace the others. Empty: a side of its
-    own."""
+    """Outputs of one side follow one demand: each can replace the others. Empty: a side of its own."""
 
     @property
     def demand(self) -> str:
@@ -107,8 +105,7 @@ class Surface:
 
     parts: tuple[Part, ...]
     calibrated: bool
-    """Whether a calibration exists. Without one, the parameters' limits and an assumed 25 deg give the
-    scale."""
+    """Whether a calibration exists. Else the parameters' limits and an assumed 25 deg give the scale."""
     said: str
     """Sentence for the user on the outputs and their scale."""
     doubts: tuple[Problem, ...] = ()
@@ -116,8 +113,7 @@ class Surface:
 
     @property
     def outputs(self) -> tuple[int, ...]:
-        """Servo outputs 1..32. Elevons, a V-tail, a split elevator or a stabilator with a tab have
-        several."""
+        """Servo outputs 1..32. Elevons, V-tails, split elevators and stabilators with tabs have several."""
         return tuple(part.output for part in self.parts)
 
     @property
@@ -137,8 +133,7 @@ class Surface:
         return tuple(part.output for part in self.parts if not part.sure) if len(self.parts) > 1 else ()
 
     def angles(self, pwm_us: FloatArray) -> FloatArray:
-        """Return the angle that each output commands, rad, from pulses; both of shape (n, number of
-        outputs)."""
+        """Return the angle that each output commands, rad, from pulses; both of shape (n, outputs)."""
         columns = [part.scale.deflection(pwm_us[:, k]) for k, part in enumerate(self.parts)]
         return np.stack(columns, axis=1)
 

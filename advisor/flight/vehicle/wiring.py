@@ -120,8 +120,7 @@ class Wiring:
 
     words: Words
     roles: Mapping[int, Role] = field(default_factory=dict)
-    """Output number, from 1, to its role where known. Outputs that move no surface have a role without a
-    name."""
+    """Output number, from 1, to its role where known. Outputs without a surface have a nameless role."""
     scales: Mapping[int, Scale] = field(default_factory=dict)
     known_directions: frozenset[int] = frozenset()
     """Outputs whose direction the parameters give."""

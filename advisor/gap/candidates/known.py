@@ -52,8 +52,7 @@ def _as_stated(effects: Effects, variants: Sequence[Variant]) -> Iterator[tuple[
 
 
 def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]:
-    """Return the remaining candidates. A single parameter may differ from the file's; a shape is kept as it
-    is."""
+    """Return the remaining candidates. A single parameter may differ from the file's; a shape is kept."""
     left = []
     for variant in variants:
         known = {} if EFFECTS[variant.effect].of_one_flight else effects.get(variant.effect, {})
@@ -79,8 +78,7 @@ def beyond_servo(aircraft: Aircraft, variants: Sequence[Variant]) -> list[Varian
 def less_of_the_servo(
     aircraft: Aircraft, effects: Effects
 ) -> tuple[Aircraft, dict[str, Mapping[str, float]]]:
-    """Return the aircraft with a quicker servo than its file states, and the effects without the negative
-    ones.
+    """Return the aircraft with a quicker servo than its file states, and the positive effects.
 
     No simulator flies a negative lag or delay, so such a value is subtracted from the file's.
     """

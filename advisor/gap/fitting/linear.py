@@ -57,8 +57,7 @@ class SensitivityColumns:
 
     @property
     def own(self) -> FloatArray:
-        """Shape (rows, m): sensitivities to initial states, trim and offsets, then speed errors and
-        edges."""
+        """Shape (rows, m): sensitivities to initial states, trim, offsets, speed errors and edges."""
         return self.columns[:, : self.m]
 
     @property
@@ -231,8 +230,7 @@ def _offsets(problem: EffectProblem, flight: PreparedManeuver) -> FloatArray:
 
 
 def _own_prior(problem: EffectProblem, flight: PreparedManeuver, own: int) -> FloatArray:
-    """Return the inverse prior variances of a manoeuvre's nuisance parameters, 0 for flat priors, shape
-    (own,).
+    """Return the inverse prior variances of a manoeuvre's nuisance parameters, 0 if flat, shape (own,).
 
     Edges come last. Errors of the air speed come before them, in units of their own standard deviation.
     Initial states and trim come first, then offsets.
@@ -251,8 +249,7 @@ def _own_prior(problem: EffectProblem, flight: PreparedManeuver, own: int) -> Fl
 
 
 def pulse_response(problem: EffectProblem, flight: PreparedManeuver, p: FloatArray, where: int) -> FloatArray:
-    """Return the response on the grid, shape (4, n + 1), to a disturbance of unit area at the start of the
-    record.
+    """Return the response on the grid, shape (4, n + 1), to a unit-area disturbance at the record's start.
 
     ``where`` is a row of the disturbances of ``advisor.gap.simulator.simulate``.
     """

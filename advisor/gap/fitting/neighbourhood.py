@@ -58,8 +58,7 @@ class _Kept:
     weights: FloatArray
     """Shape (rows,): weights of the rows."""
     columns: FloatArray
-    """Shape (rows, m + k + 1): sensitivities to nuisance and shared parameters, and the residual of the
-    fit."""
+    """Shape (rows, m + k + 1): sensitivities to nuisance and shared parameters, and the fit's residual."""
     products: FloatArray
     """Shape (channels, m + k + 1, m + k + 1): inner products of the columns, by channel."""
     inner: FloatArray
@@ -74,8 +73,7 @@ class _Kept:
 
     @property
     def still(self) -> list[int]:
-        """Indices of the columns that need no simulation: sensitivities to the derivatives, and the
-        residual."""
+        """Columns that need no simulation, by index: sensitivities to the derivatives, and the residual."""
         return [*range(self.m, self.m + len(DERIVATIVES)), self.columns.shape[1] - 1]
 
 
@@ -260,8 +258,7 @@ class Neighbourhood:
         return _Flown(problem.innovations(i, raw) * kept.weights[:, None], at, points)
 
     def choose_sides(self, point: SearchPoint, entries: Sequence[float]) -> SearchPoint:
-        """Return the point with the side of least residual in every manoeuvre, nuisance parameters
-        refitted."""
+        """Return the point with the side of least residual in every manoeuvre, with nuisances refitted."""
         problem = self.problem
         p = [problem.driving(replace(point, sides=np.full(len(self.kept), side))) for side in entries]
         best = []
@@ -290,8 +287,7 @@ def _still(i: int, asked: Sequence[_Asked], width: int) -> FloatArray:
 def _with_one_another(still: FloatArray, known: FloatArray, flown: _Flown) -> FloatArray:
     """Return inner products of the columns within each point, shape (width, width).
 
-    ``still`` has the columns as sums of the known ones, ``known`` the inner products of the known ones with
-    all.
+    ``still`` has the columns as sums of the known ones, ``known`` inner products of the known ones with all.
     """
     XX = still.T @ known
     XX[flown.at] = XX[:, flown.at].T

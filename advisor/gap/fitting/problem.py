@@ -98,13 +98,11 @@ class SearchPoint:
 
 @dataclass(frozen=True)
 class EffectProblem:
-    """The data, the fixed part of the simulation, the prior, and the motion of the command between its
-    stamps."""
+    """The data, the fixed part of the simulation, the prior, and the command's motion between stamps."""
 
     flights: PreparedManeuvers
     base: FloatArray
-    """Driving numbers from the aircraft file, shape (entries,), or (manoeuvres, entries) where they
-    differ."""
+    """Driving numbers from the aircraft file, shape (entries,), or (manoeuvres, entries) if they differ."""
     held: bool = False
     """Whether the command is held between its stamps; if not, it moves linearly."""
     instruments: FloatArray | None = None
@@ -238,8 +236,7 @@ class EffectProblem:
         return lane(self.fly_all(flight, p[None]), 0)
 
     def read_grids(self, flight: PreparedManeuver, grids: Sequence[FloatArray], p: FloatArray) -> FloatArray:
-        """Return series on the grid, each of shape (4, n + 1), read at the channels' stamps, shape (rows,
-        k)."""
+        """Return series on the grid, each of shape (4, n + 1), read at their stamps, shape (rows, k)."""
         return self.read_all(flight, packed(grids), np.tile(p, (len(grids), 1)))
 
     def read_delayed(

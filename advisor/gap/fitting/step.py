@@ -105,8 +105,7 @@ def solve_blocks(
 
 
 def bounds_of(point: SearchPoint) -> tuple[FloatArray, FloatArray]:
-    """Return lower and upper bounds of the shared parameters, with derivatives of an aircraft that can be
-    flown."""
+    """Return lower and upper bounds of the shared parameters, with derivatives of a flyable aircraft."""
     free = np.full(len(point.derivatives), np.inf)
     lower = np.concatenate([-free, *[np.array([b[0] for b in e.bounds]) for e in point.effects]])
     upper = np.concatenate([_MOST, *[np.array([b[1] for b in e.bounds]) for e in point.effects]])

@@ -208,8 +208,7 @@ def _responses(
 
 
 def _needed(signatures: Signatures, numbers: int) -> float:
-    """Return the least power of a signature: detection in nearly every flight, the parameters' price, enough
-    change."""
+    """Return the least power of a signature: near-sure detection, the parameters' price, enough change."""
     price = numbers * float(np.log(signatures.rows))
     # A filter of moving air leaves far less of a change than the outputs show.
     least = _least_change(signatures.problem) * float(np.mean(floor_margins(signatures.problem.flights) ** 2))
@@ -252,8 +251,7 @@ def _foreseen(
 
 
 def _shares(problem: EffectProblem, fitted: EffectFit) -> Mapping[str, float]:
-    """Return nonlinear terms as shares of the linear one, per unit of size, at the largest motion of the
-    plan.
+    """Return nonlinear terms as shares of the linear one, per unit of size, at the plan's largest motion.
 
     A linear term of zero has no shares.
     """
@@ -279,8 +277,7 @@ def _cosine(a: FloatArray, b: FloatArray) -> float:
 
 
 def _least_change(problem: EffectProblem) -> float:
-    """Return the least mean square change of the outputs for a named effect, relative to the instruments'
-    noise.
+    """Return the least mean square change of the outputs for a named effect, over the instruments' noise.
 
     With very good instruments their noise does not limit. A low-order description is itself no better than a
     share of each channel's peak.

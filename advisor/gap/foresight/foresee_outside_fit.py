@@ -49,8 +49,7 @@ class _Air:
     """Cosine between the gust and the nearest course of turbulence."""
 
     def expected(self, spread: float, peak: float) -> float:
-        """Return the expected gain for turbulence and a gust, rad, at the best size that a filter may
-        assume."""
+        """Return the expected gain for turbulence and a gust, rad, at the best size for a filter."""
         power = self.gains + (spread * self.gains) ** 2 + (peak * self.gust) ** 2
         assumed = (_ANGLES**2)[:, None]
         taken = assumed / (1.0 + assumed * self.gains) * power - np.log1p(assumed * self.gains)
@@ -60,8 +59,7 @@ class _Air:
 def foresee_air(
     problem: EffectProblem, fitted: EffectFit, signatures: Signatures, unit_s: float
 ) -> list[Foreseen]:
-    """Return the smallest turbulence and the smallest (1 − cos) gust, which lasts two time units of the
-    input."""
+    """Return the smallest turbulence and the smallest (1 − cos) gust, of two time units of the input."""
     if "alpha" not in problem.channels:
         return [impossible(effect, problem.flights) for effect in ("turbulence", "gust")]
     air = _air(problem, fitted, signatures, 2.0 * unit_s)
@@ -76,8 +74,7 @@ def foresee_air(
 
 
 def speed_signature(problem: EffectProblem, fitted: EffectFit, signatures: Signatures) -> Signature:
-    """Return the signature of alternately fast and slow manoeuvres, relative to a simulator at constant
-    speed."""
+    """Return the signature of alternately fast and slow manoeuvres, against a simulator at constant speed."""
     p = problem.driving(fitted.point)
     columns = []
     for i, flight in enumerate(problem.flights.flights):

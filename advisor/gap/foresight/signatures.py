@@ -46,8 +46,7 @@ class Signatures:
         self._latency_bounds = low - now, high - now
 
     def of(self, columns: Sequence[FloatArray]) -> FloatArray:
-        """Return the signature of a response, given per manoeuvre with shape (rows,), in the units of the
-        channels."""
+        """Return the signature of a response, per manoeuvre of shape (rows,), in the channels' units."""
         parts = [self.within(i, column[:, None])[:, 0] for i, column in enumerate(columns)]
         return self._freed_of_shared(np.concatenate(parts))
 

@@ -16,8 +16,7 @@ Change = Callable[[FloatArray, FloatArray], None]
 manoeuvre."""
 
 Course = Callable[[FloatArray, Values, FloatArray], None]
-"""Function that changes driving numbers, given an effect's parameters and each manoeuvre's share of the
-effect."""
+"""Function that changes driving numbers, given an effect's parameters and its share in each manoeuvre."""
 
 ONSET = {"rate_per_s": ANY, "step": ANY, "at_s": ANY, "over_s": 0.0}
 """Parameters of a change in the aircraft file, each with its least allowed value."""

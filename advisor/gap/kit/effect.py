@@ -61,13 +61,11 @@ class Effect:
     stated: tuple[str, str] | None = None
     """Section and key of the aircraft file that state the effect's size in the simulator."""
     outside_fits: Callable[[PreparedManeuvers], bool] | None = None
-    """Function that returns whether flights let the effect be judged outside the fits; None for other
-    effects."""
+    """Function that returns whether flights let it be judged outside the fits; None for other effects."""
     of_one_flight: bool = False
     """Whether the effect belongs to one flight and says nothing about another."""
     of_one_imu: bool = False
-    """Whether an α that an autopilot computes from its own pitch rate and accelerations cannot show the
-    effect."""
+    """Whether an α that an autopilot computes from its own rates and accelerations cannot show the effect."""
     of_the_stick: bool = True
     """Whether the elevator alone can show the effect; if not, another input must vary."""
     need: Need | None = None

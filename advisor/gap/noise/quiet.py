@@ -62,8 +62,7 @@ def whitening_of(problem: EffectProblem, fitted: EffectFit, first_look: bool = F
 
 
 def noise_in_quiet(problem: EffectProblem, fitted: EffectFit) -> AirModel | None:
-    """Return coloured instruments or moving air where nothing was flown; None where white noise describes
-    it."""
+    """Return coloured instruments or moving air where nothing was flown; None where it is white."""
     if not problem.flights.shows_air:
         return None
     parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, fitted, i)]
@@ -109,11 +108,9 @@ def gusts_in(
 
 
 def _begun_anew(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> list[FloatArray]:
-    """Return per manoeuvre the stacked residuals, with nuisance parameters refitted to the instruments'
-    noise.
+    """Return per manoeuvre the stacked residuals, with nuisances refitted to the instruments' noise.
 
-    A filter that allows for any gust gives no information on an initial state, which may be anywhere after a
-    fit.
+    A filter that allows for any gust tells nothing of an initial state, which a fit may leave anywhere.
     """
     problem, fitted = unfiltered(problem, fitted)
     owns = solve_blocks(problem, fitted.linear, 1.0 / noise, fitted.point).free
@@ -122,8 +119,7 @@ def _begun_anew(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) ->
 
 
 def _likelier(problem: EffectProblem, fitted: EffectFit, i: int, noise: FloatArray) -> float:
-    """Return how much better moving air explains a manoeuvre's residual than any other block; 0 where it does
-    not."""
+    """Return how much better moving air explains a manoeuvre's residual than any other block, else 0."""
     best, second, *_ = probe_blocks(*in_one_maneuver(problem, fitted, i), noise)
     return best.gain / max(second.gain, 1e-9) if best.block == "air" else 0.0
 
@@ -185,8 +181,7 @@ def quiet_rms(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
 
 
 def instrument_noise(problem: EffectProblem) -> FloatArray:
-    """Return the white noise of each channel from differences of its samples, shape (4,); 1 for a missing
-    channel.
+    """Return the white noise of each channel from differences of its samples, shape (4,); 1 where missing.
 
     A channel with a resolution coarser than its noise shows no differences where nothing is flown.
     """

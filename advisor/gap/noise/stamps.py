@@ -83,8 +83,7 @@ def _flown(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray]:
 
 
 def stamp_jitter(problem: EffectProblem, fitted: EffectFit, rates: list[FloatArray]) -> float:
-    """Return the standard deviation of the stamps in s; 0 where no residual gets rougher with the channel's
-    rate.
+    """Return the standard deviation of the stamps in s; 0 where no residual roughens with the channel's rate.
 
     The channel with the largest error relative to its noise decides.
     """

@@ -56,8 +56,7 @@ def airspeed_on(
 ) -> FloatArray:
     """Return the air speed as it is read, in m/s, shape (n,), at ``grid`` seconds after ``start_s``.
 
-    Accelerometers show the change of the true air speed, which is ``true_over_read`` times that of the
-    reading.
+    Accelerometers show the change of the true air speed, which is ``true_over_read`` times the reading's.
     """
     found = maneuver.channels
     t, y = found["airspeed"].t - start_s, found["airspeed"].y
@@ -109,8 +108,7 @@ def speed_error_factors(
 
 
 def along_the_path(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:
-    """Return thrust minus drag over mass, a_x cos α + a_z sin α, m/s², shape (n,); 0 where it was not
-    measured."""
+    """Return thrust minus drag over mass, a_x cos α + a_z sin α, m/s², shape (n,); 0 if not measured."""
     found = maneuver.channels
     if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "alpha")):
         return np.zeros(len(grid))

@@ -33,14 +33,12 @@ class PreparedManeuver:
     n: int
     t_u: FloatArray
     t_held: FloatArray
-    """Time after which each value was held: its stamp, or the middle of the stamps that were lost before
-    it."""
+    """Time after which each value was held: its stamp, or the middle of the stamps lost before it."""
     u: FloatArray
     """Elevator command at its stamps, rad."""
     u_trim: float
     slow: FloatArray
-    """Shape (7, n) on the grid: speed, a_x, bank, throttle, height, thrust minus drag over weight, r sin
-    φ."""
+    """Shape (7, n) on the grid: speed, a_x, bank, throttle, height, (thrust − drag)/weight, r sin φ."""
     trim: FloatArray
     """Shape (4,): α and θ at the start, reference speed, and 1 where derivatives scale with speed."""
     outputs: Mapping[str, Signal]
@@ -114,8 +112,7 @@ class PreparedManeuvers:
     speed_moves: float
     """Largest relative departure of the speed from its mean over all manoeuvres."""
     alpha_is_derived: bool
-    """Whether α is an autopilot's estimate from inertial sensors, which sees no gust, instead of a vane's
-    reading."""
+    """Whether α is an autopilot's estimate from inertial sensors, which sees no gust, and not a vane's."""
     alpha_is_smoothed: bool
     """Whether α was filtered before it was stored. Its roughness then says nothing about its errors."""
     has: frozenset[str]
@@ -126,8 +123,7 @@ class PreparedManeuvers:
     peaks: FloatArray
     """Shape (channels,): median over the manoeuvres of the largest departure from the starting value."""
     chord_m: float | None = None
-    """Mean chord of the wing, m, as the aircraft file states it or its mass tells; None where neither is
-    stated."""
+    """Mean chord of the wing, m, as the aircraft file states it or its mass tells; None without both."""
 
     def __len__(self) -> int:
         return len(self.flights)

@@ -48,8 +48,7 @@ def tolerance_of(flights: PreparedManeuvers) -> FloatArray:
 
 
 def effective_sample_size(residual: FloatArray) -> float:
-    """Return the effective sample size N/(1 + 2 Σ ρ_k) of a residual, with the sum up to the first zero of
-    ρ."""
+    """Return the effective sample size N/(1 + 2 Σ ρ_k) of a residual, summed up to the first zero of ρ."""
     v = residual - np.mean(residual)
     n = len(v)
     power = float(v @ v)

@@ -37,8 +37,7 @@ def prepare(
 ) -> PreparedManeuvers:
     """Prepare the manoeuvres for the comparison, without those that ``usable_of`` rejects.
 
-    ``true_over_read`` is the ratio of the true air speed to the air speed that is read, 1 where it is
-    unknown.
+    ``true_over_read`` is the ratio of the true air speed to the air speed that is read, 1 if unknown.
     """
     usable = usable_of(maneuvers)
     measured = bool(usable) and all(map(measures_speed, usable))
@@ -143,8 +142,7 @@ def _with_speed_errors(
 
 
 def _largest_departure(flights: Sequence[PreparedManeuver]) -> float:
-    """Return the largest relative departure of the air speed from its mean over all manoeuvres; 0 without
-    any."""
+    """Return the largest relative departure of the air speed from its mean over all manoeuvres, or 0."""
     if not flights:
         return 0.0
     speeds = np.concatenate([flight.slow[SPEED] for flight in flights])

@@ -48,8 +48,7 @@ def held_from(t: FloatArray) -> FloatArray:
 def step_unseen(maneuver: Maneuver) -> bool:
     """Return whether a step of the command may lie in a hole of the log, so that its time is unknown.
 
-    A whole pulse may lie in a hole between the first and the last step: the command is equal before and
-    after.
+    A whole pulse may lie in a hole between the first and the last step: the command is equal on both sides.
     """
     t, span = maneuver.channels["elevator"].t, maneuver.span
     interval = np.diff(t)

@@ -57,8 +57,7 @@ def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float 
 
 
 def with_telemetry(point: SearchPoint, flights: PreparedManeuvers) -> SearchPoint:
-    """Return the point with the delay that telemetry may put between the stamps of the command and its
-    effect."""
+    """Return the point with the delay that telemetry may put between stamps of the command and effect."""
     effects = tuple(latency(flights) if e is LOOP else e for e in point.effects)
     return replace(point, effects=effects)
 
@@ -100,8 +99,7 @@ def first_fit(problem: EffectProblem, aircraft: Aircraft) -> EffectFit:
     rates.
 
     The file's derivatives are usually nearer. Where a sign or a unit in the file is wrong, no step leads away
-    from them. All starts are tried where the regression differs strongly, or where the fit leaves a large
-    residual.
+    from them. All starts are tried where the regression differs strongly, or the fit leaves a large residual.
     """
     flights = problem.flights
     own = np.zeros((len(flights), len(NUISANCES)))

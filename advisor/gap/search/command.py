@@ -36,7 +36,6 @@ def read_command(linear: EffectProblem, fitted: EffectFit) -> tuple[EffectProble
 
 
 def read_otherwise(problem: EffectProblem, fitted: EffectFit) -> tuple[EffectProblem, EffectFit]:
-    """Return the baseline model with the other reading of the command: held instead of linear, or the
-    reverse."""
+    """Return the baseline model with the other reading of the command: held, not linear, or the reverse."""
     other = replace(problem, held=not problem.held)
     return other, fit(other, fitted.point, fitted.noise)

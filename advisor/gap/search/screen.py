@@ -1,5 +1,4 @@
-"""Fast screening of all candidates: the baseline's sensitivities are kept, only the effect's own are
-computed."""
+"""Fast screening of all candidates: only the effect's own sensitivities are computed anew."""
 
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
@@ -46,8 +45,7 @@ class Screened:
 
 
 _Descent = Generator[SearchPoint, tuple[SimulatedPoint | None, float], Screened | None]
-"""A search that asks for one point after another, and receives its evaluation and the best decrease so
-far."""
+"""A search that asks for one point after another, and receives its evaluation and the best decrease."""
 
 
 class Screen:

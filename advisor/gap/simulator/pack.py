@@ -1,5 +1,4 @@
-"""A pack of simulations: an array of shape (``ROWS``, ``LANES``), the meaning of its rows, and its initial
-values.
+"""A pack of simulations: an array of shape (``ROWS``, ``LANES``), its rows' meaning, and its initial values.
 
 The first rows are the driving numbers of ``advisor.gap.simulator.layout``. Each column, or lane, is one
 simulation.

@@ -30,8 +30,7 @@ def right_sides(
     reference
         Reference speed of the derivatives, m/s.
     lift, engine
-        Shape (k,): lagging angle of attack (rad) and lagging throttle, relative to its start, of each set of
-        numbers.
+        Shape (k,): lagging angle of attack (rad) and lagging throttle, relative to its start, of each set.
 
     Returns
     -------

@@ -53,8 +53,7 @@ def through_servo(
 def through_friction(
     link: float, way: float, begin: float, end: float, dt: float, holds: float, drags: float, tau: float
 ) -> tuple[float, float, float]:
-    """Return surface, direction of sliding and integral of the deflection after a linear piece of the
-    command.
+    """Return surface, direction of sliding and integral of the deflection after a linear command.
 
     The model is a position loop with dry friction. At rest the surface holds until the command is ``holds``
     rad away. A sliding surface lags by ``tau`` s behind a point ``drags`` rad short of the command, and rests

@@ -14,14 +14,12 @@ from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 _inlined = kernel(error_model="numpy", fastmath={"contract"}, inline="always")
-"""Decorator of a part of a step. As calls instead of inlined code, the parts take more than four times as
-long."""
+"""Decorator of a part of a step. As calls, not inlined, the parts take over four times as long."""
 
 
 @kernel()
 def _attached(beyond: float) -> float:
-    """Return the attached share of the lift. At 0 the flow is separated over half the chord (Kirchhoff's
-    flow)."""
+    """Return the attached share of the lift. At 0, Kirchhoff's flow is separated over half the chord."""
     chord = 1.0 / (1.0 + np.exp(2.0 * beyond))
     return float(0.25 * (1.0 + np.sqrt(chord)) ** 2)
 
@@ -87,8 +85,7 @@ def hold_over_step(
     x: FloatArray, lanes: int, delta: FloatArray, above: FloatArray, slow: FloatArray, level: float,
     disturbed: tuple[float, float, float],
 ) -> None:  # fmt: skip
-    """Write the values that stay constant over a step: gravity, and forces and moments independent of the
-    state.
+    """Write the values that stay constant over a step: gravity, forces and moments free of the state.
 
     Parameters
     ----------
@@ -181,8 +178,7 @@ def moment(x: FloatArray, m: int, q: float, alpha_dot: float, da: float, behind:
 def rates(x: FloatArray, lanes: int, h: float, d_air: float, alpha_trim: float, first: bool) -> None:
     """Write α̇ and q̇ by Eqs. (1)-(2), half a step ahead of the state by the rates known so far.
 
-    ``first``: the rates known so far are zero, so the result belongs to the start of the step, like the
-    outputs.
+    ``first``: the rates known so far are zero, so the result belongs to the step's start, like the outputs.
     """
     for m in range(lanes):
         a = x[row.ALPHA, m] + 0.5 * h * x[row.KA, m] + x[row.DOSE, m] * d_air

@@ -84,8 +84,7 @@ def _lesser(one: float, other: float) -> float:
 def surface(
     h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray
 ) -> FloatArray:
-    """Return the mean deflection over each step, relative to trim, behind all parts between stick and
-    surface.
+    """Return the mean deflection over each step, relative to trim, behind all parts from stick to surface.
 
     The command consists of pieces that end at its stamps. Nonlinear parts take every piece separately, so
     that an edge inside a step keeps its area. Linear parts are solved for the mean of the command over the
@@ -216,8 +215,7 @@ def _beyond(x: float, dead: float) -> float:
 
 @kernel()
 def _mean_beyond(begin: float, end: float, dead: float) -> float:
-    """Return the mean of the part beyond the dead band while the argument moves linearly from begin to
-    end."""
+    """Return the mean of the part beyond the dead band as the argument moves linearly from begin to end."""
     if abs(end - begin) < ARRIVED_RAD:
         return float(_beyond(begin, dead))
     squares = max(abs(end) - dead, 0.0) ** 2 - max(abs(begin) - dead, 0.0) ** 2

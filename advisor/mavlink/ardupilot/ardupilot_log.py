@@ -54,8 +54,7 @@ _FIELDS = frozenset[str]().union(*_RECORDS.values(), *SDLOG2_RECORDS.values()) |
     *(former for renamed in RENAMED.values() for former in renamed),
     *(today for renamed in RENAMED.values() for today in renamed.values()),
 }
-"""Fields that are read: the necessary ones, the stamps, the number of a sensor, and those that some versions
-have."""
+"""Fields that are read: the necessary ones, stamps, a sensor's number, and those of some versions."""
 _OF_WHOLE_LOG = (*VEHICLE_RECORDS, *HEALTH_RECORDS, *SYSTEM_ID_RECORDS)
 """Records that later stretches of a log need. All are rare."""
 _UNDIVIDED = ("TIME",)
@@ -128,8 +127,7 @@ def _messages(stored: Mapping[str, RecordTable], known: Known) -> tuple[Iterator
 
 
 def _believable(table: RecordTable) -> RecordTable:
-    """Return the fields whose values fit their names. Damage to a definition can turn a number into a
-    text."""
+    """Return the fields whose values fit their names. A damaged definition can make a number a text."""
     fields = {
         name: values
         for name, values in table.fields.items()

@@ -120,8 +120,7 @@ class Translation:
     def _message(
         self, name: str, table: RecordTable, fields: dict[str, ArrayLike], place: int = 0
     ) -> Columns:
-        """Return one message for each row of a record. ``place`` keeps several messages of one row in
-        order."""
+        """Return one message for each row of a record. ``place`` keeps a row's messages in order."""
         return self._made(name, table.order + place, table.time_us, fields)
 
     def _made(self, name: str, order: IntArray, time_us: IntArray, fields: dict[str, ArrayLike]) -> Columns:
@@ -177,8 +176,7 @@ class Translation:
         return self._message("SCALED_PRESSURE", baro, fields)
 
     def _servo_outputs(self) -> Iterator[Columns]:
-        """Yield SERVO_OUTPUT_RAW, one for each bank of 16. RCOU has outputs 1 to 14, RCO2 15 to 18, RCO3 19
-        to 32."""
+        """Yield SERVO_OUTPUT_RAW, one for each bank of 16. RCOU has 1 to 14, RCO2 15 to 18, RCO3 19 to 32."""
         pulses: dict[int, NDArray[Any]] = {}
         if "RCOU" not in self._tables:
             return

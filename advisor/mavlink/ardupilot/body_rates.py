@@ -44,8 +44,7 @@ class Rates:
 
 
 def body_rates(tables: Mapping[str, RecordTable]) -> Rates | None:
-    """Return the rates of IMU, else GYR, PIDP, RATE, else those derived from the angles of ATT; None without
-    any."""
+    """Return the rates of IMU, else GYR, PIDP, RATE, else those derived from ATT; None without any."""
     if "IMU" in tables:
         return _read(tables["IMU"], ("GyrX", "GyrY", "GyrZ"), 1.0, "")
     if "GYR" in tables:
@@ -107,8 +106,7 @@ def _stands_still(pid: RecordTable) -> bool:
 def _from_angles(att: RecordTable, delay_s: float) -> Rates | None:
     """Return the rates from differences of the angles, delayed like the gyro's rates.
 
-    The angle of attack is also late. Together with a rate without delay, derivatives would come out wrong by
-    half.
+    The angle of attack is also late. With a rate without delay, derivatives would be wrong by half.
     """
     t = att.time_us.astype(np.float64) * 1e-6
     step_s = np.diff(t)

@@ -108,8 +108,7 @@ def _at(table: RecordTable, time_us: IntArray) -> RecordTable:
 
 
 def _joined(tables: Mapping[str, RecordTable]) -> dict[str, RecordTable]:
-    """Return the tables with former records of further sensors as further numbers in the field I of the
-    first."""
+    """Return the tables with former records of further sensors as numbers in the field I of the first."""
     found = dict(tables)
     for name, apart in SENSORS_APART.items():
         further = [found.pop(other) for other in apart if other in found]

@@ -36,8 +36,7 @@ def flown(table: RecordTable, health: Collection[str]) -> RecordTable:
     Only the fields in ``health`` tell of a sensor's health (:func:`stated_health`).
 
     ARSP.Pri names the primary sensor. Where that sensor is not both healthy and in use, the lowest-numbered
-    such sensor counts. Without one, the lowest-numbered healthy sensor counts. (ArduPilot log messages ARSP
-    and IMU.)
+    such sensor counts. Without one, the lowest-numbered healthy sensor counts. (ArduPilot's ARSP and IMU.)
     """
     if len(table) == 0:
         return table
@@ -87,8 +86,7 @@ def said(
     health: Collection[str],
     silences: Iterable[Silence],
 ) -> list[Said]:
-    """Return sentences on the first sensor in use, on each change of sensor, and on times without a healthy
-    one.
+    """Return sentences on the first sensor in use, on each change of sensor, and on times without health.
 
     Where sensor 0 is in use throughout, there is no sentence.
 

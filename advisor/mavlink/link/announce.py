@@ -14,8 +14,7 @@ from advisor.words.ascii_output import plain
 CHUNK_BYTES = 50
 MOST_CHUNKS = 4
 SPOKEN = "@"
-"""First character of a text that MAVProxy's speech module speaks, from any component of its vehicle's
-system."""
+"""First character of a text that MAVProxy's speech module speaks, from any of its vehicle's components."""
 
 
 def status_text(text: str, number: int) -> list[Any]:

@@ -28,8 +28,7 @@ class Address:
 
     kind: Kind
     host: str
-    """Host to listen on or to call; empty for every interface. Device of a serial line, or path of a local
-    socket."""
+    """Host to listen on or to call; empty for every interface. Serial device, or path of a local socket."""
     port: int
     """Network port, or the baud rate of a serial line."""
     text: str
@@ -37,8 +36,7 @@ class Address:
 
     @property
     def speaks_first(self) -> bool:
-        """Whether a packet must be sent before any is received, because the peer learns our address from
-        it."""
+        """Whether a packet must be sent before any is received, because it tells the peer our address."""
         return self.kind == "udpout"
 
 

@@ -37,8 +37,7 @@ class Conversation:
         self._talkers.append(talker)
 
     def hear(self, frames: list[Frame], vehicle: Ids | None, now_s: float) -> list[str]:
-        """Pass the vehicle's frames and every heartbeat to the talkers; return sentences for the crew, each
-        once."""
+        """Pass the vehicle's frames and every heartbeat to the talkers; return new sentences for the crew."""
         system = vehicle[0] if vehicle is not None else None
         heard = [frame for frame in frames if frame.system == system or frame.message_id == HEARTBEAT]
         said = []

@@ -39,8 +39,7 @@ class Decoding:
         return columns
 
     def counted(self, statistics: LinkStatistics) -> LinkStatistics:
-        """Return the statistics with the decoder's counts of the vehicle's frames: lost, late, and
-        repeated."""
+        """Return the statistics with the decoder's counts of the vehicle's frames: lost, late, repeated."""
         vehicle = statistics.vehicle
         received = self._scanner.statistics.senders.get(vehicle) if vehicle is not None else None
         if received is None:

@@ -58,8 +58,7 @@ class Delivery:
             self._counts[frame.message_id] += 1
 
     def look(self, now_s: float) -> dict[int, float] | None:
-        """Return the rate of each message over a window that is complete now, Hz; None for an incomplete
-        window."""
+        """Return the rate of each message over a window, Hz; None while the window is incomplete."""
         if self._since_s is None:
             self._begin(now_s)
         assert self._since_s is not None

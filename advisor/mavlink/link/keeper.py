@@ -44,8 +44,7 @@ from advisor.words.problems import UnusableInputError
 
 TELL_EVERY_S = 0.2
 ALONE_FOR_S = 60.0
-"""Time for which a link without an advisor waits for a silent vehicle before its end, s. The recording is
-whole."""
+"""Time for which a link without an advisor waits for a silent vehicle before its end, s."""
 MOST_BEHIND_BYTES = 64_000_000
 """Backlog of a reader, bytes, above which the reader is cut off. The reader connects again and reads the
 recording."""
@@ -233,8 +232,7 @@ class Keeper:
             self._guarded(-1)
 
     def _lend_socket(self, connection: Connection) -> None:
-        """Share a UDP socket: packets that arrive after this process's death wait in it for the next
-        process."""
+        """Share a UDP socket: packets after this process's death wait in it for the next."""
         descriptor = self._link.descriptor if os.name == "posix" else None
         connection.send(descriptor is not None)
         if descriptor is not None:

@@ -138,8 +138,7 @@ class Observe:
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """Says that the sender looks after the process. When the sender goes without ``Stop``, the process is
-    alone.
+    """Says that the sender looks after the process, which is alone when the sender goes without ``Stop``.
 
     The answer says whether the descriptor of a UDP socket follows.
     """

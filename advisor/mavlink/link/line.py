@@ -75,8 +75,7 @@ class Line:
             self._stop.wait(_TRY_EVERY_S)
 
     def take(self, wait_s: float) -> list[tuple[Peer, bytes]]:
-        """Return the bytes that have arrived, after waiting at most ``wait_s``. A cut connection is opened
-        again.
+        """Return the bytes that have arrived, after waiting at most ``wait_s``. Reopen a cut connection.
 
         Raises
         ------

@@ -207,8 +207,7 @@ class Link:
         return self._recorder
 
     def listen_to(self, vehicle: Ids) -> None:
-        """Count, watch and answer this vehicle. The decoder of the stream says which vehicle the flight
-        follows."""
+        """Count, watch and answer this vehicle. The stream's decoder says which vehicle to follow."""
         self._orders.append(vehicle)
 
     def follow(self, system: int) -> None:

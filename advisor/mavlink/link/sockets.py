@@ -84,8 +84,7 @@ class UdpTransport(Transport):
 
 
 class StreamTransport(Transport):
-    """TCP transport, calling (``tcp``) or waiting for one caller after the other (``tcpin``); or a local
-    socket."""
+    """TCP transport, calling (``tcp``) or waiting for callers in turn (``tcpin``); or a local socket."""
 
     def __init__(self, address: Address, timeout_s: float = 2.0) -> None:
         self._listener: socket.socket | None = None

@@ -17,8 +17,7 @@ from advisor.mavlink.wire.framing import Frame
 CHANNELS = 4
 """Number of overridden channels: roll, pitch, throttle and yaw by the usual order."""
 SIMULATED = ("SIM_SPEEDUP", "SIM_BAT_DRAIN")
-"""Parameters of ArduPilot's and of PX4's simulation in the loop. No autopilot on board of an aircraft has
-one."""
+"""Parameters of ArduPilot's and of PX4's simulation in the loop. No autopilot on board has one."""
 _STATIONS = ("SYSID_MYGCS", "MAV_GCS_SYSID")
 """Parameters with the id of the ground station from which ArduPilot takes an override."""
 _ASK_EVERY_S, _ASK_FOR_S, _SEND_EVERY_S = 0.5, 5.0, 0.02

@@ -79,8 +79,7 @@ def _is_measured(validated: Topic) -> BoolArray:
 
 
 def _is_believed(sensor: Topic, number: int, validated: Topic | None) -> BoolArray:
-    """Return whether the autopilot uses the sensor of this number at each sample; without the field, sensor
-    1."""
+    """Return whether the autopilot uses this sensor number at each sample; without the field, sensor 1."""
     good = np.isfinite(sensor[_INDICATED])
     if validated is None:
         return good & (number == 1)
@@ -144,8 +143,7 @@ def _wind(topics: Topics) -> list[TimedMessages]:
 
 
 def _throttle(topics: Topics) -> Series | None:
-    """Return the throttle in percent: thrust along the body's x axis, or the throttle command in older
-    logs."""
+    """Return the throttle in percent: thrust along the body's x axis, or older logs' throttle command."""
     thrust, lever = first(topics, "vehicle_thrust_setpoint"), first(topics, "actuator_controls_0")
     chosen = thrust or lever
     if chosen is None:

@@ -47,8 +47,7 @@ class Outputs:
 
 
 def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
-    """Return the outputs by the parameters that describe them, else by their agreement with the pitch
-    command."""
+    """Return the outputs by the parameters that describe them, else by agreement with the pitch command."""
     moving = _moving(topics.get("actuator_outputs", []))
     if any(role.surface for role in px4_wiring(parameters).roles.values()):
         return _of_surfaces(topics, moving, parameters)

@@ -68,8 +68,7 @@ def topics_of(log: Any) -> dict[str, list[Topic]]:
 
 
 def _wide(values: NDArray[Any]) -> NDArray[Any]:
-    """Return floating-point values in double precision. Damaged values are converted here without a
-    warning."""
+    """Return floating-point values in double precision. Damaged values raise no warning here."""
     return values.astype(np.float64) if values.dtype.kind == "f" else values
 
 

@@ -86,8 +86,7 @@ def side_by_side(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]
 
 
 def air_data(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Return fields of VFR_HUD from records of air speed, climb rate and throttle, with NaN for a missing
-    throttle."""
+    """Return fields of VFR_HUD from records of air speed, climb rate and throttle, NaN without a throttle."""
     fields = side_by_side(*records)
     return {"throttle": np.full(len(next(iter(fields.values()))), np.nan), **fields}
 

@@ -141,8 +141,7 @@ class _Collected:
         return Stretch(tables, begins, math.inf)
 
     def _end_run(self) -> Iterator[Stretch]:
-        """Take the definitions of a run that is over; yield the last stretch of a log that ends before the
-        run."""
+        """Take the definitions of a run that is over; yield the last stretch of a log that ends earlier."""
         run, self._run = self._run, []
         is_another = False
         for definition in run:

@@ -7,8 +7,7 @@ row prove one.
 
 A late path also brings packets that the first path has lost. Such a packet comes among repeats and continues
 their sequence numbers. When the path is late by more than `LATE_US`, the packet is dropped, because a message
-without a time stamp would count as new. When the first path falls silent, the late path's packets count as
-new.
+without a time stamp would count as new. Once the first path is silent, the late path's packets count as new.
 """
 
 import numpy as np
@@ -22,8 +21,7 @@ REPEAT_US = 18_000_000
 """Longest time after which a packet may repeat an earlier one, us. Radios and routers hold packets up to 15
 s."""
 LATE_US = 2_000_000
-"""Lateness of a path, us, above which it brings nothing but repeats. Channels accept packets up to this
-age."""
+"""Lateness of a path, us, above which it brings nothing but repeats. Channels accept up to this age."""
 _PATH_US = 2_000_000
 """Time after its last packet for which a path is remembered, us. A heartbeat comes once a second."""
 _RUN = 8
@@ -52,8 +50,7 @@ PACKET_COLUMNS = 3
 PACKETS = 1 << 15
 """Number of packets remembered: those of ``REPEAT_US`` at 1800 a second."""
 COUNT = 256
-"""Entry of ``newest`` with the number of packets so far. It stands after one entry for each sequence
-number."""
+"""Entry of ``newest`` with the number of packets so far. It follows one entry for each sequence number."""
 
 
 @kernel()

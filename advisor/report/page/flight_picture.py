@@ -97,8 +97,7 @@ def _as_judged(channel: Channel, judged: Sequence[JudgedManeuver]) -> Channel:
 
 
 def thinned(channel: Channel, bins: int) -> tuple[FloatArray, FloatArray]:
-    """Return times and values that draw an equal line: lowest and highest of each bin, and a break in each
-    gap.
+    """Return times and values that draw an equal line: lowest and highest of each bin, and breaks in gaps.
 
     Parameters
     ----------

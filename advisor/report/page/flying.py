@@ -101,8 +101,7 @@ def _drawn(name: str, found: Document, *, across: bool) -> Callable[[], str]:
 def ellipse(found: Document) -> tuple[FloatArray, FloatArray]:
     """Return n/α and ω_n along the joint 95 % region, each of shape (n,).
 
-    The region is an ellipse in the logarithms, whose errors are the relative errors: both quantities stay
-    positive.
+    The region is an ellipse in the logarithms, whose errors are the relative errors: both stay positive.
     """
     load, frequency = found["n_alpha"], found["natural_frequency"]
     across, up = (one["std"] / one["value"] for one in (load, frequency))

@@ -25,8 +25,7 @@ def maneuvers(content: Content) -> Section:
 
 
 def maneuver_row(maneuver: Mapping[str, Any], *, several: bool) -> tuple[str, ...]:
-    """Return number, start, input, mode, verdict and sentence of a manoeuvre; its log where there are
-    several."""
+    """Return number, start, input, mode, verdict and sentence of a manoeuvre; its log among several."""
     accepted = maneuver["verdict"] == "accepted"
     why = [maneuver["sentence"], *(f"note: {note}" for note in maneuver.get("notes", ()))]
     if maneuver.get("excluded_because") is not None:

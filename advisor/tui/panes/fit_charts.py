@@ -34,8 +34,7 @@ SIDE_AXIS = Shown(LATERAL.inputs, LATERAL.outputs)
 
 
 def since_start(judged: JudgedManeuver, t: FloatArray) -> FloatArray:
-    """Return stamps aligned at the start of the input: seconds since the first elevator step, shape as
-    ``t``."""
+    """Return stamps aligned at the start of the input: seconds since the first elevator step, as ``t``."""
     return t - judged.maneuver.span.start_s
 
 

@@ -49,8 +49,7 @@ def _airspeed_m_s(view: View) -> float | None:
 
 
 def _newest(view: View, name: str) -> float | None:
-    """Return the newest value that the campaign was given. None: not received, or older than the crew
-    thinks."""
+    """Return the newest value that the campaign was given. None: not received, or too old."""
     if view.health.behind:
         return None
     status = view.state.channels.get(name)

@@ -44,8 +44,7 @@ class Lines(Static):
             self.update(text, layout=higher)
 
     def _rows(self, text: str) -> float:
-        """Return the number of rows of a text; NaN, unequal to everything, where the text must be wrapped
-        first."""
+        """Return the number of rows of a text; NaN, unequal to all, where the text must be wrapped."""
         height = self.styles.height
         if height is not None and not height.is_auto:
             return height.value

@@ -15,8 +15,7 @@ from advisor.tui.panes.pane import Pane
 from advisor.words.vehicle_time import clock
 
 Columns = tuple[tuple[str, int], ...]
-"""Name and width of each column. The widths do not depend on the rows, so that growing content moves
-nothing."""
+"""Name and width of each column. Widths ignore the rows, so that growing content moves nothing."""
 
 _FIRST: Columns = (("no.", 3), ("start", 7), ("input", 15))
 _MIDDLE: tuple[Columns, ...] = (

@@ -23,8 +23,7 @@ class Pane(Part, Vertical):
     HELP = ""
     """Content and use of the pane, for the help key."""
     can_focus = True
-    """Whether the pane takes the focus. A pane whose content takes the keys (a table, a scrolling text) does
-    not."""
+    """Whether the pane takes the focus. One whose content takes the keys (a table, a scroll) does not."""
 
     _parts: tuple[object, ...] = ()
     """Parts of the last moment that was painted."""

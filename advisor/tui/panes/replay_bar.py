@@ -14,8 +14,7 @@ _WIDTH = 24
 
 
 class ReplayBar(Part, Lines):
-    """Playing or paused, speed, position in the log, and the vehicle's time there. A click on the bar goes
-    there."""
+    """Playing or paused, speed, position in the log, and the vehicle's time there. A click goes there."""
 
     class Sought(Message):
         """A place on the bar was clicked."""

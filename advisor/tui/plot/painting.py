@@ -165,8 +165,7 @@ def whole(axis: Axis) -> Axis:
 
 
 def down_the_side(axis: Axis | LogAxis, rows: int, gutter: int) -> list[str]:
-    """Return the labels of the y axis, one string of ``gutter`` characters for each row, highest value
-    first."""
+    """Return the labels of the y axis, one string of ``gutter`` characters a row, highest first."""
     column = [" " * gutter] * rows
     for tick, label in zip(axis.ticks, axis.labels, strict=True):
         row = round((axis.high - tick) / (axis.high - axis.low) * (rows - 1))

@@ -189,8 +189,7 @@ manoeuvres alone.
         self.ask(question, lambda text: self._decided(HandDecision(verb, text, number)))
 
     def _decided(self, decision: HandDecision) -> None:
-        """Pass the decision on, and show a message. The table follows when everything has been computed
-        anew."""
+        """Pass the decision on, and show a message. The table follows once all is computed anew."""
         self.post_message(self.Decided(decision))
         if decision.verb != "note":
             self.say(f"{decision.verb} manoeuvre {decision.number}: every decision is made again")

@@ -39,8 +39,7 @@ from advisor.words.problems import ConfigurationError
 
 
 def aircraft_text(improvement: Improvement, model: Model) -> Exported:
-    """Return the corrected aircraft, measured at the speed and height flown, or at sea level for an unknown
-    height.
+    """Return the corrected aircraft, measured at the speed and height flown, or at sea level where unknown.
 
     Raises
     ------
@@ -99,8 +98,7 @@ def _left_out(improvement: Improvement, surface: str) -> list[str]:
 def _targets(
     improvement: Improvement, first: Slopes, terms: Mapping[str, Sequence[str]], per_rad: float | None
 ) -> dict[str, float]:
-    """Return the derivative to its target value: contradicted derivatives, and moments that a change of lift
-    moves.
+    """Return the derivative to its target: contradicted derivatives, and moments that lift changes move.
 
     ``per_rad`` is the number of units of the elevator's property in a radian. None: the property is no angle.
     """

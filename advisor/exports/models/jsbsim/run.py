@@ -36,8 +36,7 @@ class Model:
 
 
 def model_of(what: str) -> Model:
-    """Return the aircraft that ``jsbsim:`` names, with the engines and systems of its own JSBSim tree, if
-    any.
+    """Return the aircraft that ``jsbsim:`` names, with engines and systems of its JSBSim tree, if any.
 
     Raises
     ------

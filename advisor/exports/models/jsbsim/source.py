@@ -76,8 +76,7 @@ def parse(content: bytes, name: str) -> ET.Element:
 
 
 def terms_of(root: ET.Element) -> Mapping[str, tuple[str, ...]]:
-    """Return each derivative with the names of the model's functions that make it, in the order of the
-    file."""
+    """Return each derivative with the names of the model's functions that make it, in the file's order."""
     found: dict[str, tuple[str, ...]] = {}
     for letter, axis in AXES.items():
         for function in _functions(root, axis):
