@@ -15,8 +15,7 @@ KEYS = tuple(key for key in keys_of(Aircraft) if key.example)
 
 
 BEYOND_US = 20.0
-"""Distance by which pulses may exceed a calibration's ends, us. A servo's trim and a transmitter's differ by
-so much."""
+"""Distance by which pulses may exceed a calibration, us. Trims of servo and transmitter differ so much."""
 
 
 @dataclass(frozen=True, slots=True)

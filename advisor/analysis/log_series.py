@@ -54,8 +54,7 @@ class LogSeries:
         return f"The logs are taken in the order of their times: {listed}." if self.reordered else ""
 
     def batches(self) -> Iterator[list[Columns]]:
-        """Yield the messages of all logs. A log that cannot be read is left out and listed in
-        ``unreadable``."""
+        """Yield the messages of all logs. A log that cannot be read is only listed in ``unreadable``."""
         for flight in sorted(set(range(len(self.logs))) - self._left_out):
             try:
                 for columns in self._read(flight):

@@ -26,8 +26,7 @@ class ChangeOverFlights:
 
 
 def change_over_flights(flights: Sequence[tuple[int, Estimate]]) -> ChangeOverFlights | None:
-    """Return the most significant change over the flights of one aircraft; None when noise explains all
-    differences.
+    """Return the most significant change over the flights of one aircraft; None when noise explains all.
 
     Parameters
     ----------

@@ -336,8 +336,7 @@ class Campaign:
             self._reader_notes += (notice.text,)
 
     def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
-        """Take a manoeuvre that came a second time: the better record counts, and an exclusion of either
-        holds."""
+        """Take a manoeuvre that came twice: the better record counts, and an exclusion of either holds."""
         maneuver = event.maneuver
         where = f" in {self._flights.name}" if self._flights.name else ""
         better = "; this record holds more and takes the place" if event.takes_place else ""

@@ -20,8 +20,7 @@ from advisor.process.parts import Parts
 from advisor.words.problems import Problem
 
 NEWEST = 7
-"""Number of newest accepted manoeuvres that are estimated together during the flight. The elevator has the
-same number."""
+"""Number of newest accepted manoeuvres that are estimated together in flight, as for the elevator."""
 OF_EACH = 3
 """Number of them that are kept of each control, so that inputs of one control alone do not make the estimate
 forget the other. The least number in which one contradicts two that agree."""

@@ -1,8 +1,7 @@
 """The instruments, identified during a campaign and used in every later estimate.
 
 They are estimated from all accepted manoeuvres together. Single estimates, verdicts and criteria take them as
-given, with their errors (``oem.found``). A servo's lag that the crew leaves open must be known to a tenth
-first.
+given, with their errors (``oem.found``). A servo's lag that the crew leaves open must be known to a tenth.
 """
 
 from dataclasses import replace
@@ -17,8 +16,7 @@ from advisor.oem.found import FoundInstruments, found_of, with_found
 from advisor.oem.instruments import KNOWN_TO
 
 CONTRADICTS = 3.0
-"""Difference between two estimates of one derivative, in standard deviations, that counts as a
-contradiction."""
+"""Difference between two estimates of a derivative, in standard deviations, that counts as contradiction."""
 MUCH_SURER = 1.5
 """Ratio of standard deviations above which the surer value replaces the one in use."""
 

@@ -11,13 +11,7 @@ import click
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli.batch_reports import ReportTask, page_of, write_reports
-from advisor.cli.options import (
-    UNUSABLE,
-    aircraft_option,
-    read_aircraft,
-    refuse_unwritable_folder,
-    writing,
-)
+from advisor.cli.options import UNUSABLE, aircraft_option, read_aircraft, refuse_unwritable_folder, writing
 from advisor.cli.report import refuse_missing_libraries
 from advisor.cli.running import Progress, runner_of, running_options
 from advisor.words.printable import printable

@@ -10,10 +10,7 @@ from click.shell_completion import CompletionItem
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import (
-    UNUSABLE,
-    json_option,
-)
+from advisor.cli.options import UNUSABLE, json_option
 from advisor.words.printable import printable
 from advisor.words.problems import Problem, UnusableInputError
 

@@ -6,10 +6,7 @@ from pathlib import Path
 import click
 
 from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import (
-    refuse_unwritable,
-    refuse_unwritable_folder,
-)
+from advisor.cli.options import refuse_unwritable, refuse_unwritable_folder
 from advisor.cli.stages import Stages
 from advisor.exports.flights.formats import WRITERS, parse_formats, write_formats
 from advisor.exports.flights.staging import refuse_inputs, staged

@@ -13,14 +13,7 @@ from click.core import ParameterSource
 from advisor.cli.gap_figure import refuse_figure, write_figure
 from advisor.cli.improvement_export import export_option, listed, orders_of, write_exports
 from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import (
-    UNUSABLE,
-    USAGE,
-    decided_on,
-    json_option,
-    refuse_unwritable,
-    writing,
-)
+from advisor.cli.options import UNUSABLE, USAGE, decided_on, json_option, refuse_unwritable, writing
 from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of, prove_option, refuse_proving
 from advisor.cli.stages import Stages

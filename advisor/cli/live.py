@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import (
-    NEWEST,
-)
+from advisor.cli.options import NEWEST
 from advisor.cli.screen import Show, advise, headless
 from advisor.process.interrupt import STOPPED, in_order
 from advisor.words.printable import printable

@@ -1,5 +1,4 @@
-"""Content of the page of ``advisor report``: logs heard as one campaign, telemetry examined, gap
-diagnosed."""
+"""Content of the page of ``advisor report``: logs as one campaign, telemetry examined, gap diagnosed."""
 
 import hashlib
 import platform

@@ -40,8 +40,7 @@ def refuse_proving(proving: Sequence[str]) -> None:
 def proof_of(
     proving: Sequence[str], prove: "Callable[[list[Path], Callable[[str, float], None]], Proof]"
 ) -> "Proof | None":
-    """Return the proof that was asked for; None where none was, or where nothing can be proved, which is
-    said.
+    """Return the proof that was asked for; None where none was, or nothing can be proved, which is said.
 
     Parameters
     ----------

@@ -22,8 +22,7 @@ _TELL_EVERY_S = 10.0
 
 
 def running_options(command: F) -> F:
-    """Add the options ``--workers N`` and ``--scheduler ADDRESS``, which the command receives by these
-    names."""
+    """Add the options ``--workers N`` and ``--scheduler ADDRESS``, which the command receives by name."""
     workers = click.option(
         "--workers",
         type=click.IntRange(1),

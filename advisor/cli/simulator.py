@@ -7,13 +7,7 @@ from pathlib import Path
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.cli.options import (
-    UNUSABLE,
-    aircraft_option,
-    json_option,
-    read_aircraft,
-    target_system_option,
-)
+from advisor.cli.options import UNUSABLE, aircraft_option, json_option, read_aircraft, target_system_option
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, UnusableInputError
 

@@ -36,8 +36,7 @@ def next_input(
     stopped: bool,
     course: CriterionCourse | None = None,
 ) -> NextInput:
-    """Return the input to fly after the last manoeuvre of ``history``. ``course`` is explained in
-    ``flight_test``.
+    """Return the input to fly after the last of ``history``. ``course`` is explained in ``flight_test``.
 
     The number of further manoeuvres is foretold once a manoeuvre was usable; before, nothing tells it.
     """
@@ -126,8 +125,7 @@ def _same_but_better(flown: CandidateManeuver) -> str:
 
 
 def _mend(flown: CandidateManeuver) -> str:
-    """Return the remedy for a faulty channel, which comes before any other input; empty where all channels
-    are sound."""
+    """Return the remedy for a faulty channel, which precedes any other input; empty where all are sound."""
     if flown.reasons and (flown.reasons[0].by_instrument or flown.reasons[0].code in NO_CURE_BY_INPUT):
         return _remedy(flown)
     wrong = flown.maneuver.distrusts if flown.maneuver else ()

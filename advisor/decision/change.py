@@ -70,8 +70,7 @@ class Change:
 
 
 def find_change(history: Sequence[CandidateManeuver]) -> Change | None:
-    """Return the most significant change between manoeuvres of a campaign; None when noise explains all
-    differences.
+    """Return the most significant change between manoeuvres of a campaign; None when noise explains all.
 
     At least two manoeuvres must stand before the change. With only one, either side may be the outlier.
     """

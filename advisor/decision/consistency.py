@@ -6,14 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import chdtri
 
-from advisor.decision.pooling import (
-    Posterior,
-    Shared,
-    disagreement,
-    pool,
-    pooled,
-    pooled_without_each,
-)
+from advisor.decision.pooling import Posterior, Shared, disagreement, pool, pooled, pooled_without_each
 
 WIDEN_BELOW = 0.05
 """Probability below which scatter between manoeuvres widens the intervals."""
@@ -121,11 +114,9 @@ def _distance(outlier: Posterior, others: Shared) -> Outlier:
 
 
 def excess(posteriors: Sequence[Posterior]) -> float:
-    """Return the variance ratio of the scatter between manoeuvres to their stated errors, 1 unless
-    significant.
+    """Return the variance ratio of the scatter between manoeuvres to stated errors, 1 unless significant.
 
-    The Birge ratio of metrology: χ² of the derivatives about their pooled value, divided by its degrees of
-    freedom.
+    Metrology's Birge ratio, χ² of derivatives about their pooled value, divided by its degrees of freedom.
     """
     if len(posteriors) < 2:
         return 1.0

@@ -51,21 +51,17 @@ class Knowledge:
     tolerance: FloatArray
     """Shape (8,). Tolerance for the 95 % half-width of each named parameter."""
     surprise: float
-    """Distance of the newest manoeuvre from its prediction, as a share of the 99 % limit. NaN without a
-    prediction."""
+    """Distance of the newest manoeuvre from its prediction, as a share of the 99 % limit. NaN without one."""
     missed_percent: float
-    """Largest error of the newest manoeuvre's predicted response, % of the response's peak. NaN without a
-    prediction."""
+    """Largest error of the newest manoeuvre's prediction, % of the response's peak. NaN without one."""
     foretold_percent: float
-    """Half-width of the 95 % band of the newest manoeuvre's prediction, % of its peak. NaN without a
-    prediction."""
+    """Half-width of the 95 % band of the newest manoeuvre's prediction, % of its peak. NaN without one."""
     widening: float
     """Variance ratio by which contradictions between manoeuvres have widened ``posterior``, at least 1."""
     left_out: tuple[int, ...]
     """Indices of manoeuvres that contradict all the others."""
     not_identifiable: Mapping[str, str]
-    """Parameter to the reason for which no manoeuvre identifies it. Its small stated error is then no
-    knowledge."""
+    """Parameter to the reason for which no manoeuvre identifies it. Its small error is then no knowledge."""
 
     @property
     def predicted(self) -> bool:

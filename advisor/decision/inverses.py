@@ -24,8 +24,7 @@ def covariance_of(information: FloatArray) -> FloatArray:
 
 
 def _inverse(matrix: FloatArray, known: np.ndarray, unknown: float) -> FloatArray:
-    """Return the inverse of symmetric positive semi-definite matrices (..., n, n), scaled so that units do
-    not matter.
+    """Return the inverse of symmetric positive semi-definite matrices (..., n, n), whatever the units.
 
     Rows and columns that are not ``known`` (..., n) become zero, with ``unknown`` on the diagonal.
     """

@@ -21,8 +21,7 @@ from advisor.oem.lateral_estimate import LateralEstimate
 
 FIRST_UNIT_S = 1.0
 """Step of the first doublet, s, before any mode is known. It lies between half a Dutch roll of a small
-aircraft (0.9 s) and of a jet (1.7 s). It has at least two time constants of either's roll
-(0.1 s and 0.5 s)."""
+aircraft (0.9 s) and of a jet (1.7 s). It has at least two time constants of either's roll (0.1, 0.5 s)."""
 _CONTROLS = ("aileron", "rudder")
 
 

@@ -11,12 +11,7 @@ from advisor.decision.advice import ENOUGH
 from advisor.decision.heard import Heard, first_stop
 from advisor.decision.lateral_advice import FlownInput, next_lateral
 from advisor.decision.tolerance import SHARE
-from advisor.decision.verdict import (
-    INFORMATION_LIMIT_PERCENT,
-    FlightTestVerdict,
-    NextInput,
-    RuleProgress,
-)
+from advisor.decision.verdict import INFORMATION_LIMIT_PERCENT, FlightTestVerdict, NextInput, RuleProgress
 from advisor.model.lateral import LATERAL
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.words.quantiles import NORMAL_95

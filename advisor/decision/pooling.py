@@ -96,8 +96,7 @@ def values_at_one_speed(estimates: Sequence[Estimate]) -> FloatArray:
 
 
 def _at_one_speed(estimates: Sequence[Estimate]) -> tuple[FloatArray, FloatArray]:
-    """Return (n, 8) factors on the parameters of each estimate, without gravity's part, and (n, 8) the
-    parameters."""
+    """Return (n, 8) factors on each estimate's parameters, without gravity's part, and (n, 8) parameters."""
     theta = np.array([e.theta for e in estimates])
     reference = common_airspeed(estimates)
     if reference is None:

@@ -94,8 +94,7 @@ def progress(
     plan: CampaignPlan,
     course: CriterionCourse | None = None,
 ) -> RuleProgress:
-    """Return the stop criterion of one rule after each manoeuvre. ``course`` is explained in
-    ``flight_test``."""
+    """Return one rule's stop criterion after each manoeuvre. ``course`` is explained in ``flight_test``."""
     course = course or CriterionCourse(plan)
     limit = limit_percent(rule, plan)
     values: list[float | None] = []

@@ -7,8 +7,7 @@ from typing import Literal
 from advisor.gap.decision import Decision
 
 Kind = Literal["none", "parameters", "effect", "air", "unknown"]
-"""Kind of an alternative. ``air`` is an effect of the air, ``effect`` one of the aircraft or its
-telemetry."""
+"""Kind of an alternative. ``air`` is an effect of the air, ``effect`` one of aircraft or telemetry."""
 KINDS: tuple[Kind, ...] = ("none", "parameters", "effect", "air", "unknown")
 
 
@@ -87,8 +86,7 @@ class Weighed:
     """The alternatives of a diagnosis with their evidence."""
 
     evidence: tuple[AlternativeEvidence, ...] = ()
-    """The evidence on every alternative, likeliest first; empty for a single manoeuvre, which proves no
-    cause."""
+    """The evidence on every alternative, likeliest first; empty for one manoeuvre, which proves no cause."""
     why: tuple[Contribution, ...] = ()
     """The answer against its strongest rival, in nats that add up to the log odds."""
     answer: Alternative | None = None

@@ -146,8 +146,7 @@ class Yardsticks:
     """Share of the mean square error; with ``bias`` and ``variance`` the shares add up to 1."""
     r2: float
     within_tolerance: float | None
-    """Share of the samples within the tolerance of simulator qualification; None where no tolerance is
-    published."""
+    """Share of the samples within the tolerance of simulator qualification; None without a published one."""
 
 
 @dataclass(frozen=True, slots=True)

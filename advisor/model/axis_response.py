@@ -16,8 +16,7 @@ from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 REACH = 0.25
-"""Largest product of a step and the largest row sum of the matrix. The error of a step is below 1e-5 of the
-states."""
+"""Largest product of a step and the largest row sum of the matrix. Its error is below 1e-5 of the states."""
 MOST_PARTS = 16
 """Most parts of a step: rates of 200 1/s at 50 Hz. A search that asks for faster ones has gone astray."""
 LARGEST = 1e9
@@ -133,8 +132,7 @@ def respond_axis(
 def _respond_in(
     grid: AxisGrid, m: int, theta: FloatArray, y: FloatArray, g: FloatArray, motion: FloatArray
 ) -> bool:
-    """Solve the model over manoeuvre ``m`` with ``theta``, all parameters; return False where it
-    overflows."""
+    """Solve the model over manoeuvre ``m`` with ``theta``, all parameters; return False if it overflows."""
     n, known, inputs = grid.linear.shape[1], len(grid.place), grid.inputs.shape[1]
     width = known + n + grid.changed.shape[1] if g.shape[0] > 0 else 0
     x = theta[known : known + n].copy()
@@ -374,8 +372,7 @@ def _feel(
     y: FloatArray,
     g: FloatArray,
 ) -> None:
-    """Add the parameters' part of the rate of state ``i`` to an output ``y`` (1,) and to its derivatives
-    ``g`` (p,)."""
+    """Add the parameters' part of the rate of state ``i`` to an output ``y`` (1,), derivatives ``g`` (p,)."""
     n, width = by.shape
     matrix, z = scratch.matrix, scratch.before
     for j in range(len(z)):

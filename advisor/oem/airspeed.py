@@ -25,8 +25,7 @@ LAG_STEP_S = 0.02
 SMALLEST_GAIN = 0.3
 """Least share of the disagreement's power that a lag must remove to be used."""
 LARGEST_DISAGREEMENT = 0.03
-"""Largest disagreement of instrument and motion, relative to the mean speed. Above it the instrument alone is
-used."""
+"""Largest disagreement of instrument and motion, relative to the mean speed, with which both are used."""
 FEWEST_SAMPLES = 8
 MOTION = ("a_x", "a_z", "theta", "alpha")
 

@@ -75,8 +75,7 @@ def normal_equations(
 
 @kernel()
 def cholesky(a: FloatArray) -> bool:
-    """Compute the lower factor in place; return False where ``a`` is not positive definite to working
-    precision."""
+    """Compute the lower factor in place; return False where ``a`` is not numerically positive definite."""
     n = a.shape[0]
     for j in range(n):
         pivot = a[j, j]
@@ -259,8 +258,7 @@ def solved_within(
 
 
 def _solution(normal: FloatArray, right: FloatArray, indifferent: float) -> FloatArray:
-    """Return the solution for a matrix with unit diagonal; singular values are computed only where some may
-    be tiny."""
+    """Return the solution for a matrix with unit diagonal; singular values only where some may be tiny."""
     factor, info = dpotrf(normal, lower=1, clean=0)
     if info == 0 and np.min(np.diag(factor)) > _SOUND:
         return solved(factor, right)
@@ -285,8 +283,7 @@ def inverse_of(information: FloatArray) -> tuple[FloatArray, FloatArray]:
 def unabsorbed(
     columns: FloatArray, own: FloatArray, weight: FloatArray, indifferent: float | None = None
 ) -> FloatArray:
-    """Return the part of ``columns`` (n, k) that a manoeuvre's nuisance parameters ``own`` (n, l) cannot
-    absorb.
+    """Return the part of ``columns`` (n, k) that a manoeuvre's nuisances ``own`` (n, l) cannot absorb.
 
     ``weight`` (n,) is the inverse noise of the rows. Directions of ``own`` with relative singular values
     below ``indifferent`` absorb nothing; None: below rounding.

@@ -56,8 +56,7 @@ def solve_many(elevator: Signal, t: FloatArray, alpha: FloatArray, q: FloatArray
     t : (k,) stamps of both outputs.
     alpha, q : (n, k) measurements.
 
-    Every search begins at the estimate of the rows' mean; where that leads nowhere, at the row's own
-    regression.
+    Every search begins at the estimate of the rows' mean; if that leads nowhere, at the row's regression.
     """
 
     def problem(a: FloatArray, b: FloatArray) -> OutputErrorProblem:

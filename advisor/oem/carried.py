@@ -126,8 +126,7 @@ class UpdatableSolution:
         return True
 
     def _through(self, g: FloatArray) -> FloatArray:
-        """Return the derivatives (k, 14) of the outputs by all parameters, from those by the state at the
-        start."""
+        """Return the derivatives (k, 14) of the outputs by all parameters, from those by the first state."""
         whole = g.copy()
         whole[:, _INITIAL] = 0.0
         return np.asarray(whole + g[:, _INITIAL] @ self._sensitivities)

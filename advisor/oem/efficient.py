@@ -50,8 +50,7 @@ class Step:
     gain: float
     """Largest relative decrease of a parameter's variance."""
     chances: FloatArray
-    """Probabilities, under this noise model, of each output's whitened autocorrelation and of the length of
-    the step."""
+    """Probabilities, under this model, of each output's whitened autocorrelation and the step's length."""
 
 
 def efficient(solution: Solution) -> Solution:

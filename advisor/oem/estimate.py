@@ -81,8 +81,7 @@ class Estimate:
     """
 
     theta: FloatArray
-    """Shape (8,), in the order of ``names``. In a joint estimate Z_0 and M_0 are means over the
-    manoeuvres."""
+    """Shape (8,), in the order of ``names``. In a joint estimate Z_0 and M_0 are means over manoeuvres."""
     covariance_cr: FloatArray
     """Shape (8, 8). Cramér-Rao bound, which holds for white residuals."""
     covariance: FloatArray
@@ -109,8 +108,7 @@ class Estimate:
     instruments: tuple[InstrumentEstimate, ...] = ()
     """Instrument parameters that the data determine, as used in this estimate."""
     found: FoundInstruments | None = None
-    """All instrument parameters of the fit, also those that only priors determine. None: no such
-    parameter."""
+    """All instrument parameters of the fit, also those that only priors determine. None: there is none."""
     common: FloatArray = field(default_factory=lambda: np.zeros((len(PARAMETERS), len(PARAMETERS))))
     """Shape (8, 8), part of ``covariance`` that all estimates with the same given instruments share."""
     gust_rad: float | None = None

@@ -57,8 +57,7 @@ def estimate(
 
 
 def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estimate | NoEstimate:
-    """Return one estimate over several manoeuvres, with shared derivatives and separate nuisance
-    parameters."""
+    """Return one estimate over several manoeuvres, with shared derivatives and own nuisance parameters."""
     fit = fit_jointly(maneuvers, aircraft)
     return fit if isinstance(fit, NoEstimate) else fit.estimate()
 

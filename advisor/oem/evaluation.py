@@ -7,15 +7,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.between import widened_by_scatter
-from advisor.oem.covariance import (
-    Coloured,
-    Influence,
-    coloured,
-    colours_of,
-    cramer_rao,
-    influence,
-    widening,
-)
+from advisor.oem.covariance import Coloured, Influence, coloured, colours_of, cramer_rao, influence, widening
 from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import Optimum
 from advisor.oem.model_error import model_error
@@ -60,8 +52,7 @@ class Evaluated:
 
     @property
     def widened(self) -> FloatArray:
-        """(p + k, p + k) covariance that also contains what the manoeuvres have in common and the model
-        lacks."""
+        """(p + k, p + k) covariance that also has what the manoeuvres have in common and the model lacks."""
         size = len(self.covariance)
         return np.asarray(self.scattered + self.systematic[:size, :size])
 

@@ -6,8 +6,7 @@ A and B are the matrices of Eqs. (1)-(3), V is the true air speed, and the eleva
     n/α = V/g·(M_δe·Z_α - M_α·Z_δe)/(M_q·Z_δe - (1 + Z_q)·M_δe)        CAP = ω_n²/(n/α)
 
 T_θ2 is the zero of pitch rate to elevator, and n/α the ratio of the steady load factor to the steady angle of
-attack. The static margin is -C_mα/C_Lα = M_α·I_yy/(Z_α·m·V·c), with drag's part in the lift direction
-neglected.
+attack. The static margin is -C_mα/C_Lα = M_α·I_yy/(Z_α·m·V·c), with drag's part in lift direction neglected.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -83,8 +83,7 @@ def cost_of(
 ) -> float:
     """Return -2 log likelihood of a residual, shape (n,), up to a constant and without diffuse rows.
 
-    The arguments are those of ``gains_of``. A search for the noise calls this a few hundred times, so nothing
-    is kept.
+    Arguments: see ``gains_of``. A search for noise calls this a few hundred times, so nothing is kept.
     """
     observed = observed_by(system, air.seen_by_alpha, 0.0, 0.0)
     nothing = np.empty(0)

@@ -136,8 +136,7 @@ def _evaluated(fit: LateralFit, prior: Priors, nuisances: Sequence[Nuisance]) ->
 
 
 def _at_least(bound: FloatArray, covariance: FloatArray) -> FloatArray:
-    """Return the covariance with no error below that of ``bound``: instruments are no better than
-    ``LEAST_NOISE``."""
+    """Return the covariance with no error below that of ``bound``: instruments have ``LEAST_NOISE``."""
     stated = np.diag(covariance)
     ratio = np.divide(np.diag(bound), stated, out=np.ones_like(stated), where=stated > 0.0)
     factor = np.sqrt(np.maximum(ratio, 1.0))

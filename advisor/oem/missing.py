@@ -22,8 +22,7 @@ WORTH_NAMING = 1.05
 
 
 def price(solution: Solution) -> FloatArray | None:
-    """Return the error of each parameter without a_z over that with it, shape (8,), in the order of
-    ``PARAMETERS``.
+    """Return each parameter's error without a_z over that with it, shape (8,), as in ``PARAMETERS``.
 
     Returns
     -------

@@ -2,7 +2,7 @@
 
 Sensitivities of the outputs carry the errors of derivatives and estimated instruments to the response (delta
 method). Trim, initial states and biases are refitted in every manoeuvre, so what they absorb is no error of
-the prediction. Correlated errors, as of a servo's lag and of M_δe, cancel where they move no response.
+the prediction. Correlated errors, as a servo's lag and M_δe have, cancel where they move no response.
 """
 
 from collections.abc import Mapping
@@ -40,8 +40,7 @@ def prediction_band(assembly: Laid, solution: Evaluated, covariance: FloatArray)
 def widest_bands(
     assembly: Laid, optimum: Optimum, columns: FloatArray, covariance: FloatArray
 ) -> Mapping[str, float]:
-    """Return by output name the largest half-width of the 95 % band over the peak of the response, in all
-    manoeuvres.
+    """Return by output name the largest half-width of the 95 % band over the response's peak in all.
 
     Parameters
     ----------

@@ -111,8 +111,7 @@ def assemble(problem: OutputErrorProblem) -> Assembly:
 
 
 def _kinds(steps: FloatArray) -> tuple[FloatArray, Index]:
-    """Return the different steps (U, 2), and the index of each step (E, 2) among them. Equal steps share
-    matrices.
+    """Return the different steps (U, 2), and the index of each (E, 2) among them. Equal steps share matrices.
 
     Where the speed changes, hardly two steps are equal, and none is searched for.
     """

@@ -42,8 +42,7 @@ class Linearization:
 def at(
     problem: OutputErrorProblem, shared: FloatArray, local: FloatArray, instruments: Sequence[Instrument]
 ) -> Linearization | None:
-    """Return the residuals at ``shared`` (7,) and ``local`` (m, 7) parameters; None where the model
-    overflows."""
+    """Return the residuals at ``shared`` (7,) and ``local`` (m, 7) parameters; None if it overflows."""
     assembly = assemble(problem)
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     if not respond(assembly.grid, shared, local, y, g):

@@ -9,8 +9,7 @@ from advisor.words.ascii_output import plain
 
 
 class PlainConsole(Console):
-    """Console on standard output that shows text literally, because names from files and vehicles may hold
-    brackets.
+    """Console on standard output that shows text literally, as names in files and vehicles may have brackets.
 
     In an encoding other than Unicode, cells are spelled in ASCII before their widths are taken, so that
     columns stay straight.

@@ -213,8 +213,7 @@ def _where(d: Diagnosis) -> str:
 
 
 def _picture(d: Diagnosis) -> Iterator[RenderableType]:
-    """Yield the simulator as blocks: the guilty block between arrows, other named blocks, and the scores of
-    the rest."""
+    """Yield the simulator as blocks: the guilty one between arrows, others named, and scores of the rest."""
     table = Table.grid(expand=True, padding=(0, 1))
     guilty = d.where.block if d.verdict in ("effect", "unknown") else ""
     named = {c.block for c in d.causes if c.present} - {guilty}

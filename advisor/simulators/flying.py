@@ -103,8 +103,7 @@ class AsGiven:
 
 
 def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool = False) -> list[FloatArray]:
-    """Return the outputs of a simulator minus those of the surrogate with equal effects, manoeuvre by
-    manoeuvre.
+    """Return the outputs of a simulator minus those of the surrogate with equal effects, by manoeuvre.
 
     Parameters
     ----------

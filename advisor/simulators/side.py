@@ -22,11 +22,7 @@ from advisor.oem.extra import Prior
 from advisor.oem.lateral_instruments import FIRST_LAG_S, Nuisance
 from advisor.oem.lateral_prepare import prepare_lateral
 from advisor.oem.lateral_problem import NEEDED, LateralProblem, LateralRecord
-from advisor.oem.lateral_solution import (
-    LateralSolution,
-    lateral_not_identifiable,
-    solve_lateral,
-)
+from advisor.oem.lateral_solution import LateralSolution, lateral_not_identifiable, solve_lateral
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 from advisor.simulators.air import refuse_unknown_air, standard_heights, winds

@@ -50,8 +50,7 @@ def advise(view: View) -> Advice:
 
 
 def _another(view: View) -> str:
-    """Return a sentence on other vehicles that a key can follow; empty after this one has flown, and in a
-    replay."""
+    """Return a sentence on other vehicles that a key can follow; empty once this one flew and in replays."""
     others = view.state.other_vehicles
     if not others or view.state.maneuvers or view.tempo is not None:
         return ""

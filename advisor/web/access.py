@@ -109,8 +109,7 @@ def _same(a: str, b: str) -> bool:
 
 VARIABLE = "ADVISOR_PASSWORD"
 SHORTEST = 8
-"""Least length of the password. At one guess a second, eight random letters or digits outlast every
-campaign."""
+"""Least length of the password. At one guess a second, eight random letters or digits outlast campaigns."""
 
 
 def read_password(file: Path | None, needed_for: str) -> str | None:

@@ -21,8 +21,7 @@ Unicode names. A delta stands before the e of the elevator, as in M_delta_e."""
 
 
 def plain(text: str) -> str:
-    """Return the text in ASCII: stand-ins, letters without accents, a question mark for any other
-    character."""
+    """Return the text in ASCII: stand-ins, letters without accents, a question mark for all else."""
     return "".join(map(_spelled, text))
 
 

@@ -135,8 +135,7 @@ def _unit_of(name: str) -> str:
 
 
 def residuals(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> tuple[FlightTable, ...]:
-    """Return a table for each output: measured, fitted and residual of every accepted manoeuvre, at their own
-    stamps."""
+    """Return a table for each output: measured, fitted and residual of accepted manoeuvres, at own stamps."""
     accepted = [
         (one.maneuver, e) for one in state.maneuvers if one.verdict.accepted and (e := _estimate(one))
     ]

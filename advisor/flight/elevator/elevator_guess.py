@@ -1,5 +1,4 @@
-"""A guess of the elevator's output where no parameter states it: the output that the pitch rate answers
-to."""
+"""A guess of the elevator's output where no parameter states it: the one that the pitch rate answers to."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -68,8 +67,7 @@ class ElevatorGuess:
             self._t, self._pulses = self._t[kept], self._pulses[kept]
 
     def made(self, q: Channel | None) -> Guess | None:
-        """Return the guess from this stretch of the pitch rate and its outputs; None where no output is good
-        enough."""
+        """Return the guess from this stretch of pitch rate and outputs; None where none is good enough."""
         if q is None or len(q) < 2:
             return None
         inside = (self._t >= q.t[0]) & (self._t <= q.t[-1])

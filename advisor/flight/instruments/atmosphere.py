@@ -138,8 +138,7 @@ def _speed_said(speeds: Sequence[Channel]) -> str:
 
 
 def _mean(maneuvers: Sequence[Maneuver], name: str) -> float | None:
-    """Return the mean of a channel over the manoeuvres with plausible values; None without such a
-    manoeuvre."""
+    """Return the mean of a channel over the manoeuvres with plausible values; None without any."""
     low, high = PLAUSIBLE[name]
     means = [float(np.mean(m.channels[name].y)) for m in maneuvers if name in m.channels]
     real = [mean for mean in means if low <= mean <= high]

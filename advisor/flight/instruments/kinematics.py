@@ -187,8 +187,7 @@ def _orthogonal(columns: FloatArray) -> FloatArray:
 
 
 def _told_by(instruments: FloatArray | None, columns: FloatArray) -> FloatArray:
-    """Return the projection of the columns on the instruments' span; the columns themselves without
-    instruments."""
+    """Return the projection of the columns on the instruments' span; without instruments the columns."""
     return columns if instruments is None else np.asarray(instruments @ (instruments.T @ columns))
 
 

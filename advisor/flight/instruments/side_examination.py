@@ -166,8 +166,7 @@ def _bank_and_rate(work: Work) -> bool:
 
 
 def _signs(work: Work, name: str, told: Evidence, sense: float) -> bool:
-    """Hold the signs of both parts of the sideslip in a channel against ``sense``; return whether no sign
-    contradicts.
+    """Hold the signs of both parts of the sideslip in a channel against ``sense``; return whether they agree.
 
     A channel that is reversed turns both. A yaw rate or a bank that is reversed turns its own part.
     """

@@ -10,8 +10,7 @@ from advisor.words.printable import printable
 from advisor.words.problems import Problem
 
 _SOON_S = 30.0
-"""Largest time between similar movements that are listed as one, s. Nobody reads a list of single
-corrections."""
+"""Largest time between similar movements that are listed as one, s. Nobody reads lists of corrections."""
 
 
 READER_NOTICE = "log_reader"
@@ -96,8 +95,7 @@ class Activity:
     text: str
     """Sentence for people."""
     stay_s: float
-    """Begin of the vehicle's present flight mode, s since boot, which distinguishes one stay in a mode from
-    the next."""
+    """Begin of the vehicle's present flight mode, s since boot, which distinguishes stays in it."""
     boot: int = 0
     """Number of the vehicle's power-on."""
     flight: int = 0

@@ -24,8 +24,7 @@ _ABRUPT = 0.5
 """Least motion over ``EDGE_S`` in an abrupt movement, as a share of its amplitude. Hand-flown steps on record
 have at least 0.95, and a jet's step at 10 Hz has 0.37."""
 _SLOWEST = 1.1
-"""Largest ratio of two intervals of the samples to ``EDGE_S`` at which an abrupt step shows. Jitter takes
-10 %."""
+"""Largest ratio of two sampling intervals to ``EDGE_S`` at which an abrupt step shows. Jitter takes 10 %."""
 _THROUGHOUT = 0.75
 """Share of a movement outside of a limit that counts as throughout. The aircraft enters a turn from level
 flight within the movement itself."""

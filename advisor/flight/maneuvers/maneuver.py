@@ -71,8 +71,7 @@ class Maneuver:
     mode: str = ""
     """Flight mode of the manoeuvre, by the autopilot's name or number."""
     distrusts: tuple[Distrust, ...] = ()
-    """Channels that cannot be right. A frozen specific force or angle of attack is left out of
-    ``channels``."""
+    """Channels that cannot be right. A frozen specific force or α is left out of ``channels``."""
     findings: tuple[InstrumentFinding, ...] = ()
     """Contradictions of the instruments, by all records of this power-on so far. ``channels`` are free of
     those that are used."""

@@ -22,8 +22,7 @@ from advisor.flight.signals.record import Channel
 HEARD = ("RC_CHANNELS", "STATUSTEXT")
 """Messages that may hold a mark."""
 SYSTEM_ID_BEGINS, SYSTEM_ID_ENDS = b"SystemID Starting", b"SystemID stopped"
-"""Texts that ArduPlane sends when its system identification begins and ends (``AP_SystemID`` of
-ArduPlane)."""
+"""Texts that ArduPlane sends when its system identification begins and ends (``AP_SystemID``)."""
 _NO_PULSE_US = (0, 65535)
 """Values of a channel that the receiver does not have (RC_CHANNELS, MAVLink common.xml)."""
 

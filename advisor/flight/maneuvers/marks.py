@@ -23,8 +23,7 @@ LONGEST_S = 100.0
 MARK_NOTICES = frozenset({"mark_length", "marked_already", "mark_dropped"})
 """Codes of the notices on marks that cannot be used."""
 EDGE_S = 2.0
-"""Largest distance by which a mark may exceed the log, s. A power cut loses the last second of a
-recording."""
+"""Largest distance by which a mark may exceed the log, s. A power cut loses a recording's last second."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,8 +15,7 @@ from advisor.flight.maneuvers.maneuver import InputKind
 from advisor.flight.signals.messages import FloatArray
 
 SMALLEST_RAD = float(np.radians(0.15))
-"""Least amplitude of a movement, rad: somewhat more than two steps of an output of 1 us at 0.06 deg a
-microsecond."""
+"""Least amplitude of a movement, rad: somewhat over two steps of 1 us at 0.06 deg a microsecond."""
 STILL_SPREAD = 0.15
 """Largest standard deviation of a rest, as a share of the movement's amplitude. A shaking stick has 0.1; a
 sine with that amplitude has 0.7."""

@@ -134,8 +134,7 @@ def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None, control: str) 
 
 
 def _tells_nothing(maneuver: Maneuver, motion: Mapping[str, Channel], loop: Loop) -> Because | None:
-    """Return the reason for which the rate cannot show the control's effect; None where it can, or is
-    missing."""
+    """Return the reason for which the rate cannot show the control's effect; None if it can, or lacks."""
     control = loop.control
     if maneuver.span.closed_by == "no rest":
         return Because("unsettled", f"the {control} never came to rest; not a test input")

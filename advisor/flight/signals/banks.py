@@ -30,8 +30,7 @@ class Pulses:
         """Return the pulses of these outputs, shape (n, number of outputs), us.
 
         A message of the last bank makes a sample, with the newest pulses of the other banks. NaN marks a
-        message of another bank. NaN also marks a sample for which another bank was silent since the previous
-        one.
+        message of another bank. NaN also marks a sample since whose forerunner another bank was silent.
         """
         size = self.raw.shape[1]
         banks = [(n - 1) // size for n in outputs]

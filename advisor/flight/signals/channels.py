@@ -43,8 +43,7 @@ def _scaled(factor: float) -> Callable[[NDArray[Any]], FloatArray]:
 
 
 def _towards(part: Callable[[FloatArray], FloatArray]) -> Callable[..., FloatArray]:
-    """Return a component of the air's velocity from the wind's speed and the direction from which it
-    blows."""
+    """Return a component of the air's velocity from the wind's speed and the direction it blows from."""
     return lambda speed, from_deg: -np.asarray(speed, dtype=np.float64) * part(np.radians(from_deg))
 
 
@@ -140,8 +139,7 @@ class Decoded:
 
 
 def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
-    """Return the vehicle time of each message, shape (n,), s since boot; NaN for a stamp that is not
-    plausible.
+    """Return the vehicle time of each message, shape (n,), s since boot; NaN for an implausible stamp.
 
     Parameters
     ----------

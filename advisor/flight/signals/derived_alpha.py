@@ -93,8 +93,7 @@ class DerivedAlpha:
 def derived_alpha(
     climb_m_s: FloatArray, airspeed_m_s: FloatArray, theta: FloatArray, bank: FloatArray
 ) -> FloatArray:
-    """Return θ − γ with sin γ = climb rate / air speed, in rad; in a bank, the α that gives γ. NaN below
-    flying speed.
+    """Return θ − γ with sin γ = climb rate / air speed, in rad; banked, the α that gives γ. NaN if too slow.
 
     Parameters
     ----------

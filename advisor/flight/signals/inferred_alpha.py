@@ -5,8 +5,7 @@ Pitch rate, specific force, attitude and air speed give the rate of the angle of
     α̇ = q + (a_z·cos α − a_x·sin α + g·cos γ)/V
 
 (Klein & Morelli, *Aircraft System Identification*, chapter 10). The integral has the shape of the angle of
-attack, and biases of the instruments make it drift. A climb rate, where there is one, corrects level and
-drift.
+attack, and biases of the instruments make it drift. A climb rate, if there is one, corrects level and drift.
 """
 
 from collections.abc import Mapping
@@ -21,8 +20,7 @@ from advisor.flight.signals.record import Channel
 NEEDED = ("q", "theta", "a_z")
 _PASSES = 2
 _DRIFT = 2
-"""Degree of the polynomial in time with which biases of rate and force, and their change with attitude, enter
-α."""
+"""Degree of the polynomial in time with which biases of rate and force, and their attitude's, enter α."""
 
 
 def alpha_rate(

@@ -83,8 +83,7 @@ class PowerOn:
     """Shape (n,), never falling: the vehicle's clock at each of these arrivals, s since boot."""
 
     def arrivals(self, start_s: float, end_s: float) -> tuple[int, int]:
-        """Return the arrival indices of the first and the last stamp of the clock with ``start_s <= t <=
-        end_s``.
+        """Return the arrival indices of the clock's first and last stamp with ``start_s <= t <= end_s``.
 
         Raises
         ------

@@ -52,8 +52,7 @@ class Channel:
     delay_s: float = 0.0
     """Known delay of the values relative to their stamps, s, such as that of an autopilot's filter."""
     gain: float = 1.0
-    """Mean factor from the values as logged to these, such as that from the indicated to the true air
-    speed."""
+    """Mean factor from the values as logged to these, such as from the indicated to the true air speed."""
 
     def __len__(self) -> int:
         return len(self.t)

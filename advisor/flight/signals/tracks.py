@@ -6,13 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from advisor.flight.signals.channels import (
-    COMPANION_ALPHA,
-    GIVEN_AIRSPEED,
-    GIVEN_HEIGHT,
-    READINGS,
-    Decoded,
-)
+from advisor.flight.signals.channels import COMPANION_ALPHA, GIVEN_AIRSPEED, GIVEN_HEIGHT, READINGS, Decoded
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, DerivedAlpha
 from advisor.flight.signals.power_on import Course
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel

@@ -134,8 +134,7 @@ class Identity:
         )
 
     def distrusts(self, found: Sequence[Distrust]) -> list[Distrust]:
-        """Return the channels that are wrong, among those that cannot be right: the paper's model has one air
-        speed."""
+        """Return the wrong channels among those that cannot be right: the paper's model has one air speed."""
         return [d for d in found if not (self.simulated and d.channel == "airspeed")]
 
     def learn(self, piece: Sequence[Columns], now_s: float = nan, flown: bool = False) -> list[FlightEvent]:

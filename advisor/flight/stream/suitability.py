@@ -228,8 +228,7 @@ def _not_logged(
 
 
 def motion_stands_in(channels: Collection[str]) -> bool:
-    """Return whether an estimate needs no angle of attack, because specific force, air speed and attitude
-    arrive."""
+    """Return whether an estimate needs no angle of attack, with specific force, air speed and attitude."""
     return all(name in channels for name in _MOTION)
 
 

@@ -61,8 +61,7 @@ class Breaks:
         return found
 
     def take_clock(self, clock: FloatArray) -> None:
-        """Take readings of one of the vehicle's clocks, shape (n,), s since boot; the first is the last one
-        before."""
+        """Take readings of a vehicle's clock, shape (n,), s since boot; the first is the last one before."""
         for row in np.flatnonzero(np.diff(clock) >= LEAP_S):
             self._leaps.append((float(clock[row]), float(clock[row + 1])))
 

@@ -39,8 +39,7 @@ class OneAircraft:
         )
 
     def doubt(self, name: str, vehicle: Vehicle) -> str:
-        """Return a sentence where the vehicle's system id differs from that of the first flight; else an
-        empty one."""
+        """Return a sentence where the vehicle's system id differs from the first flight's, else ""."""
         first_name, first = self._vehicle = self._vehicle or (name, vehicle)
         if vehicle.system == first.system:
             return ""

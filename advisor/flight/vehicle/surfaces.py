@@ -53,8 +53,7 @@ class Scale:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """Pairs (PWM in us, deflection in deg) of the aircraft file, with linear interpolation and no
-    extrapolation."""
+    """Pairs (PWM in us, deflection in deg) of the aircraft file, interpolated linearly, not extrapolated."""
 
     pairs: tuple[tuple[float, float], ...]
 

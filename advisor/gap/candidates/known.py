@@ -29,8 +29,7 @@ AIR = frozenset(name for name, effect in EFFECTS.items() if effect.block == "air
 def with_known(
     base: FloatArray, effects: Effects, flights: PreparedManeuvers, variants: Sequence[Variant]
 ) -> FloatArray:
-    """Return the driving numbers, shape (manoeuvres, entries): ``base``, shape (entries,), with the file's
-    effects."""
+    """Return the driving numbers, shape (manoeuvres, entries): ``base``, (entries,), with file effects."""
     numbers = np.tile(base, (len(flights), 1))
     for variant, values in _as_stated(lasting(effects), variants):
         variant.apply(numbers, values, flights)
@@ -152,8 +151,7 @@ def _says(variant: Variant, parameters: Mapping[str, float]) -> bool:
 
 
 def _is_meant(variant: Variant, parameters: Mapping[str, float], variants: Sequence[Variant]) -> bool:
-    """Return whether the variant describes what the file states, and no other of the effect describes more of
-    it."""
+    """Return whether the variant describes what the file states, and no other of it describes more."""
     same = [v for v in variants if v.effect == variant.effect and _says(v, parameters)]
     return _says(variant, parameters) and all(len(v.fixed) <= len(variant.fixed) for v in same)
 

@@ -14,11 +14,9 @@ from advisor.gap.kit.variant import Variant
 def _without_rate_of_alpha(
     derivatives: FloatArray, effects: Sequence[Variant], speed_m_s: float
 ) -> FloatArray:
-    """Return the change of M_α, M_q, M_δe and the thrust's moment per unit of M_α̇, with M_α̇ α̇ expanded by
-    Eq. (1).
+    """Return the change of M_α, M_q, M_δe and thrust's moment per M_α̇, with M_α̇ α̇ expanded by Eq. (1).
 
-    The weight's part of α̇ grows with 1/V, the trimmed lift's with V: together with 1 − V², like the thrust's
-    moment.
+    The weight's part of α̇ grows with 1/V, the trimmed lift's with V: together with 1 − V², as thrust's.
     """
     z_alpha, z_q, z_delta = derivatives[:3]
     change = [0.0, 0.0, 0.0, -z_alpha, -(1.0 + z_q), -z_delta]

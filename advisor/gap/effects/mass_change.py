@@ -18,8 +18,7 @@ _MASS_AND_INERTIA = Variant(
 
 
 def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
-    """Return a change of mass with equal change of inertia; a step also has an inertia of its own as
-    alternative.
+    """Return a change of mass with equal change of inertia; a step also has its own inertia as alternative.
 
     Mass far from the centre of gravity adds more inertia than mass near it.
     """

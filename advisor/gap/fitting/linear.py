@@ -1,5 +1,4 @@
-"""The linear model about a point: sensitivities to shared parameters and to each manoeuvre's nuisance
-parameters."""
+"""The linear model about a point: sensitivities to shared and to each manoeuvre's nuisance parameters."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -48,8 +47,7 @@ stamp's resolution."""
 
 @dataclass(frozen=True)
 class SensitivityColumns:
-    """Residual and sensitivities of one manoeuvre as columns of one array, so that operations apply to all at
-    once."""
+    """Residual and sensitivities of one manoeuvre as columns of one array, for operations on all."""
 
     columns: FloatArray
     """Shape (rows, m + k + 1): sensitivities to m nuisance and k shared parameters, and the residual."""
@@ -146,8 +144,7 @@ def measured_columns(
     times: Sequence[int],
     answers: FloatArray | None = None,
 ) -> SensitivityColumns:
-    """Return residual and sensitivities of manoeuvre ``i`` in the units of its channels, by one-sided
-    differences.
+    """Return residual and sensitivities of manoeuvre ``i`` in its channels' units, by one-sided differences.
 
     Sensitivities to edges are shifted responses to an impulse at the start, because the model is nearly
     linear and nearly time-invariant over a manoeuvre. All others are simulated.

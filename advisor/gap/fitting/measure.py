@@ -106,8 +106,7 @@ def shrink_interval(before: FloatArray, after: FloatArray, floor: FloatArray) ->
 
 
 def file_model_of(problem: EffectProblem, fitted: EffectFit) -> HeldOut | None:
-    """Return the residuals of the aircraft file's derivatives, with only initial states, trim and offsets
-    refitted."""
+    """Return the residuals of the aircraft file's derivatives, initial states, trim and offsets refitted."""
     if problem.prior_derivatives is None:
         return None
     return own_refitted(problem, replace(fitted.point, derivatives=problem.prior_derivatives), fitted.noise)

@@ -39,8 +39,7 @@ class SimulatedPoint:
     """Shape (k,): half the decrease of the cost per unit of each shared parameter."""
 
     def step(self) -> tuple[FloatArray, float]:
-        """Return the step of all shared parameters within their bounds, and the decrease of the cost that it
-        promises."""
+        """Return the step of all shared parameters within their bounds, and its promised decrease of cost."""
         lower, upper = bounds_of(self.point)
         shared, H, g = self.point.shared, self.information, self.gradient
         step = solved_within(H, g, lower - shared, upper - shared, _INDIFFERENT)
@@ -182,8 +181,7 @@ class Neighbourhood:
         ]
 
     def _squares(self, kept: _Kept, flown: _Flown, along: FloatArray, own: FloatArray) -> FloatArray:
-        """Return sums of squares of one manoeuvre's residuals, nuisance parameters refitted, shape (channels,
-        points).
+        """Return sums of squares of one manoeuvre's residuals, nuisances refitted, shape (channels, points).
 
         ``along`` has the inner products of the kept columns with the simulated ones, by channel.
         """

@@ -141,8 +141,7 @@ class EffectProblem:
         return replace(point, own=point.own + np.array([own[:n] for own in owns]), edges=edges)
 
     def prior_of(self, point: SearchPoint) -> tuple[FloatArray, FloatArray]:
-        """Return inverse prior variances of the shared parameters, and the prior mean minus their values,
-        shapes (k,).
+        """Return inverse prior variances of the shared parameters, and the prior mean minus them, (k,).
 
         The prior mean is the file's for derivatives and zero for nuisance parameters. The prior is weak and
         decides only what the data leave open. Without a measured angle of attack Z_q and Z_δe also have the
@@ -205,16 +204,14 @@ class EffectProblem:
     def read_all(
         self, flight: PreparedManeuver, packs: FloatArray, p: FloatArray, flown: np.ndarray | None = None
     ) -> FloatArray:
-        """Return all channels at their own stamps, stacked, shape (rows, k), with the instruments of each row
-        of ``p``.
+        """Return all channels at their own stamps, stacked, shape (rows, k), with the instruments in ``p``.
 
         ``flown``, shape (k,), has the index of the simulation that each column reads; by default its own.
         """
         return self._read(flight, packs, np.arange(len(p)) if flown is None else flown, p)
 
     def fly_and_read(self, flight: PreparedManeuver, p: FloatArray) -> FloatArray:
-        """Return one manoeuvre simulated and read with every row of ``p``, shape (k, entries), as shape
-        (rows, k).
+        """Return one manoeuvre simulated and read with every row of ``p`` (k, entries), as shape (rows, k).
 
         Rows that differ in stamps or filters of instruments alone share a simulation.
         """

@@ -51,8 +51,7 @@ class SearchStep:
     """Shape (k,): half the decrease of the cost per unit of each shared parameter."""
 
     def promised(self, shared: FloatArray) -> float:
-        """Return the decrease of the cost that the linear model promises for a step of the shared
-        parameters."""
+        """Return the decrease of the cost that the linear model promises for a shared step."""
         return float(2.0 * self.gradient @ shared - shared @ self.information @ shared)
 
     def owns(self, shared: FloatArray) -> list[FloatArray]:
@@ -68,8 +67,7 @@ class SearchStep:
 
 
 def own_eliminated(block: Linear, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the normal equations of one manoeuvre with its nuisance parameters eliminated (Schur
-    complement).
+    """Return the normal equations of one manoeuvre without its nuisance parameters (Schur complement).
 
     Returns
     -------

@@ -33,8 +33,7 @@ def distance_from_file(problem: EffectProblem, fitted: EffectFit) -> Distance:
 def shared_std(
     problem: EffectProblem, fitted: EffectFit, effective: FloatArray, trusted: bool = False
 ) -> FloatArray:
-    """Return the standard deviations of the shared parameters, shape (k,); arguments are those of
-    ``covariance``."""
+    """Return the standard deviations of the shared parameters, shape (k,), as ``covariance`` does."""
     return np.asarray(np.sqrt(np.maximum(np.diag(covariance(problem, fitted, effective, trusted)), 0.0)))
 
 

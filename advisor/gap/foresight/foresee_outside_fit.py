@@ -86,8 +86,7 @@ def speed_signature(problem: EffectProblem, fitted: EffectFit, signatures: Signa
 
 
 def foresee_offset(problem: EffectProblem, noise: FloatArray) -> Foreseen:
-    """Return the detectability of a constant offset of α, from θ minus the climb angle, without
-    derivatives."""
+    """Return the detectability of a constant offset of α, from θ minus climb angle, without derivatives."""
     flights = problem.flights
     if not {"alpha", "theta"} <= set(flights.channels) or not {"climb_rate", "airspeed"} <= flights.has:
         return impossible("alpha_bias", flights)

@@ -57,8 +57,7 @@ class Signatures:
         return self._freed_of_own(i, weighted)
 
     def smallest(self, signature: FloatArray, power: float) -> float:
-        """Return the size at which a signature has this power, whatever latency absorbs; infinite where none
-        has.
+        """Return the size at which a signature has this power, whatever latency absorbs; else infinite.
 
         That is the smallest s with min |s·x − λ·l|² = power over the latencies λ within their bounds.
         """

@@ -12,8 +12,7 @@ from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
 Change = Callable[[FloatArray, FloatArray], None]
-"""Function that changes driving numbers (manoeuvres, entries), given the relative change of each
-manoeuvre."""
+"""Function that changes driving numbers (manoeuvres, entries), given each manoeuvre's relative change."""
 
 Course = Callable[[FloatArray, Values, FloatArray], None]
 """Function that changes driving numbers, given an effect's parameters and its share in each manoeuvre."""
@@ -38,8 +37,7 @@ def shift_moments(p: FloatArray, by: FloatArray) -> None:
 
 
 def shift_stability(p: FloatArray, by: FloatArray) -> None:
-    """Change M_α alone, as textbooks describe a shift: tail and elevator are far behind the wing and hardly
-    notice."""
+    """Change M_α alone, as textbooks describe a shift: tail and elevator, far behind, hardly notice."""
     p[:, INDEX["M_alpha"]] *= 1.0 + by
 
 

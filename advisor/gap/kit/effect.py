@@ -83,8 +83,7 @@ class Effect:
     curve: Curve | None = None
     """Form in an export of force and moment; None where no format carries the effect there."""
     servo: Mapping[str, tuple[str, float]] = field(default_factory=dict)
-    """Form in an export of the servo: parameter to the field of ``ExportedServo`` that it adds to, and a
-    factor."""
+    """Form in an export of the servo: parameter to the field of ``ExportedServo`` it adds to, and factor."""
 
 
 def without_sizes(said: Said, size: str) -> tuple[str, ...]:

@@ -81,8 +81,7 @@ def noise_in_quiet(problem: EffectProblem, fitted: EffectFit) -> AirModel | None
 
 
 def loudness(problem: EffectProblem, fitted: EffectFit) -> float:
-    """Return the median power of the residual in quiet stretches, relative to the noise of the
-    instruments."""
+    """Return the median power of the residual in quiet stretches, relative to the instruments' noise."""
     white = instrument_noise(problem)
     parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, fitted, i)]
     powers = [float(np.mean((r.residual / white[r.channel]) ** 2)) for r in _without_offsets(parts)]

@@ -38,8 +38,7 @@ def stamp_variance(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray
 
 
 def stamp_power(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
-    """Return the mean square that jitter of the stamps adds to each channel, whatever the model, shape
-    (channels,)."""
+    """Return the mean square that jitter of the stamps adds to each channel, for any model, (channels,)."""
     power = np.zeros(len(problem.channels))
     if problem.jitter_s == 0.0:
         return power
@@ -58,8 +57,7 @@ def rates_of(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray]:
 
 
 def _jerks_of(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray]:
-    """Return per manoeuvre, shape (rows,): largest deviation from a straight line within the stamps'
-    uncertainty."""
+    """Return per manoeuvre, shape (rows,): largest deviation from a line within the stamps' uncertainty."""
     reach = 0 if problem.jitter_s == 0.0 else 1 + int(_FAR * problem.jitter_s / STEP_S)
     return [
         _read(

@@ -1,5 +1,4 @@
-"""Manoeuvres as the diagnosis compares them: the command, slow inputs on a grid, and outputs at their own
-stamps."""
+"""Manoeuvres as the diagnosis compares them: the command, slow inputs on a grid, and outputs at stamps."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -87,8 +86,7 @@ class PreparedManeuver:
         return self.n * self.h
 
     def is_quiet(self, t: FloatArray) -> np.ndarray:
-        """Return which of the times ``t`` lie before the first step or late in the free response, shape (n,),
-        bool."""
+        """Return which of the times ``t`` lie before the first step or late in the free response, (n,)."""
         free = self.duration_s - self.last_step_s
         died_down = self.last_step_s + max(_QUIET_AFTER * free, _QUIET_AFTER_S)
         return np.asarray((t < self.first_step_s) | (t > died_down))

@@ -40,8 +40,7 @@ def edges_of(t: FloatArray, u: FloatArray) -> FloatArray:
 
 
 def held_from(t: FloatArray) -> FloatArray:
-    """Return the time after which each value was held, shape (n,): its stamp, or the middle of the lost
-    stamps."""
+    """Return the time after which each value was held, shape (n,): its stamp, or the lost stamps' middle."""
     return np.asarray(t - np.append(0.0, 0.5 * _lost(t)))
 
 
@@ -60,8 +59,7 @@ def step_unseen(maneuver: Maneuver) -> bool:
 
 
 def _lost(t: FloatArray) -> FloatArray:
-    """Return by how much each interval exceeds the usual one where a stamp was lost, else 0, shape (n -
-    1,)."""
+    """Return by how much each interval exceeds the usual one where a stamp was lost, else 0, (n - 1,)."""
     interval = np.diff(t)
     usual = float(np.median(interval))
     return np.where(interval > LOST_INTERVAL * usual, interval - usual, 0.0)

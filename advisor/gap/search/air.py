@@ -160,8 +160,7 @@ def _of_a_gust(
 
 
 def _mean_square(problem: EffectProblem, residuals: Sequence[FloatArray]) -> FloatArray:
-    """Return the mean square over all manoeuvres, shape (channels,), corrected for one free knot per
-    ``KNOTS_S``."""
+    """Return the mean square over all manoeuvres, shape (channels,), corrected for a knot per ``KNOTS_S``."""
     knots = sum(f.duration_s / KNOTS_S for f in problem.flights.flights)
     samples = sum(len(residual) for residual in residuals)
     powers = np.mean(mean_squares(problem, residuals), axis=0)

@@ -23,8 +23,7 @@ from advisor.gap.search.screen import Screen
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, NUISANCES
 
 _LOUD = 1.5
-"""Power of the residual where nothing is flown, relative to white noise, above which an effect is sought in
-it."""
+"""Power of the residual where nothing is flown, relative to white noise, above which an effect is sought."""
 _QUIETER = 0.7
 """Largest ratio of that power with one more effect to the power before, for the effect to be kept."""
 _AT_MOST = 2
@@ -95,8 +94,7 @@ def prior_derivatives(aircraft: Aircraft) -> FloatArray | None:
 
 
 def first_fit(problem: EffectProblem, aircraft: Aircraft) -> EffectFit:
-    """Return the baseline model fitted from the aircraft file's derivatives, or from a regression of the
-    rates.
+    """Return the baseline model fitted from the aircraft file's derivatives, or by a regression of rates.
 
     The file's derivatives are usually nearer. Where a sign or a unit in the file is wrong, no step leads away
     from them. All starts are tried where the regression differs strongly, or the fit leaves a large residual.

@@ -123,8 +123,7 @@ def _passed(out: complex, before: complex, here: complex, steps: complex, decay:
 
 @kernel(error_model="numpy")
 def filtered(packs: FloatArray, h: float, flown: np.ndarray, filters: FloatArray) -> FloatArray:
-    """Return simulations with a filter 1/(1 + T p + c T² p²) in one output of each, as one pack for
-    ``read_rows``.
+    """Return simulations with a filter 1/(1 + T p + c T² p²) in one output each, as a pack for ``read_rows``.
 
     Parameters
     ----------

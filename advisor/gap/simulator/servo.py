@@ -14,8 +14,7 @@ _PARTS = 8
 def through_servo(
     servo: float, link: float, begin: float, end: float, dt: float, tau: float, most: float, play: float
 ) -> tuple[float, float, float]:
-    """Return servo and linkage at the end of a linear piece of the command, and the integral of the
-    deflection.
+    """Return servo and linkage at the end of a linear piece of the command, and the deflection's integral.
 
     The servo moves by (command − servo)/τ, but no faster than ``most`` rad/s. A piece therefore consists of a
     few exponential and linear parts. The linkage rests until the servo has crossed its play.

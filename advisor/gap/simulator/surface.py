@@ -161,8 +161,7 @@ def _piece(
 ) -> tuple[float, float, float]:
     """Return where the piece of the command ends that begins at time ``at``, and its values at both ends.
 
-    ``k`` is the index of the last stamp up to ``at``, ``until`` the end of the step. Values are relative to
-    trim, rad.
+    ``k`` is the index of the last stamp up to ``at``, ``until`` the end of the step. Values in rad from trim.
     """
     if at < t_u[0]:
         return min(until, t_u[0]), u[0] - trim, u[0] - trim

@@ -112,8 +112,7 @@ def _scale(name: str, block: str, channel: str) -> Variant:
 
 
 def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
-    """Return a reading with linear, quadratic and cubic errors (IEEE Std 1293); ``unit`` is a typical
-    change."""
+    """Return a reading with linear, quadratic and cubic errors (IEEE Std 1293); ``unit``: typical change."""
     return Variant(
         name, block, ("scale", "square", "cube"), ((0.0, 0.0, 0.0),),
         (0.002, 0.002 / unit, 0.002 / unit**2),

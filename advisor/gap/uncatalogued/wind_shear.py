@@ -61,8 +61,7 @@ class Shear:
         return abs(self.gradient_per_s) > _MOST_PER_S
 
     def is_agreed(self, tried: int = 1) -> bool:
-        """Return whether the manoeuvres agree on the gradient, the likeliest of ``tried``, and whether it
-        matters."""
+        """Return whether the manoeuvres agree on the gradient, the likeliest of ``tried``, and it matters."""
         scatter = float(stdtrit(self.maneuvers - 1, 1.0 - 0.5 * CHANCE / tried)) * self.std
         return self.share >= _LEAST_SHARE and abs(self.gradient_per_s) >= max(_LEAST_PER_S, scatter)
 

@@ -65,8 +65,7 @@ def _epoch_s(timed: Mapping[str, RecordTable]) -> int:
 
 
 def _renamed(name: str, table: RecordTable) -> RecordTable:
-    """Return the fields under today's names, with TimeUS where the record states its time since boot in any
-    unit."""
+    """Return the fields under today's names, with TimeUS where the record states its time since boot."""
     fields = dict(table.fields)
     if "TimeUS" in fields:
         fields["TimeUS"] = fields["TimeUS"].astype(np.int64)

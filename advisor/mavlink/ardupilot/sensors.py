@@ -25,8 +25,7 @@ sound sensor repeats its values at most once, when records come faster than samp
 
 
 def stated_health(table: RecordTable) -> set[str]:
-    """Return the fields that ever state a healthy sensor. A field that never does cannot distinguish sensors
-    or times."""
+    """Return the fields that ever state a healthy sensor. A field that never does distinguishes nothing."""
     return {name for name in _stated(table) if np.any(table.fields[name] != 0)}
 
 

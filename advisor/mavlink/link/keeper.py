@@ -260,8 +260,7 @@ def _talkers(keeping: Keeping, announcer: Announcer | None) -> list[Talker]:
 
 
 def main() -> None:
-    """Keep the link that standard input describes; the first answer on standard output names its
-    recording."""
+    """Keep the link that standard input describes; the first answer on standard output names the file."""
     interrupt.ignore()  # a signal is for the screens, which stop this process in order
     keeping: Keeping = pickle.load(sys.stdin.buffer)
     with contextlib.suppress(OSError):  # left by a process of this link that was killed

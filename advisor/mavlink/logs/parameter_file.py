@@ -105,8 +105,7 @@ def _contiguous(pieces: dict[int, bytes]) -> bytes:
 
 
 def unpacked(data: bytes) -> Iterator[tuple[str, float]]:
-    """Yield name and value of each parameter in a packed file, up to the first break. Another file yields
-    nothing."""
+    """Yield name and value of each parameter in a packed file up to a break. Another file yields nothing."""
     if len(data) < 6 or struct.unpack_from("<H", data)[0] not in (_PLAIN, _WITH_DEFAULTS):
         return
     at, before = 6, b""

@@ -116,8 +116,7 @@ def _varies(values: FloatArray) -> bool:
 
 
 def _assigned(instances: Sequence[Topic], parameters: Mapping[str, float]) -> dict[int, Topic]:
-    """Return instances by the number of the group, from 0, whose functions agree best with the moving
-    outputs."""
+    """Return instances by the group's number, from 0, whose functions agree best with the moving outputs."""
     agreements = []
     for bank, group in enumerate(banks(parameters) or ["PWM_MAIN"]):
         used = {k for k in OUTPUTS if parameters.get(f"{group}_FUNC{k}")}

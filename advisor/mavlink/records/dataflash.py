@@ -94,8 +94,7 @@ def gps_time_base_s(gps: RecordTable | None) -> float:
 
 
 def layout_of(definition: Any) -> tuple["np.dtype[np.void] | None", list[float | None]]:
-    """Return the dtype of a type's records, and the divisors of their fields; None for an unreadable
-    definition."""
+    """Return the dtype of a type's records, and their fields' divisors; None for an unreadable one."""
     characters = definition["format"].decode("ascii", "replace")
     names = definition["columns"].decode("ascii", "replace").split(",")
     if (

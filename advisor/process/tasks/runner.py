@@ -9,8 +9,7 @@ R = TypeVar("R")
 
 
 class Runner(Protocol):
-    """Does all tasks, and yields each with its result, or with the error that ended it, in the order of
-    completion."""
+    """Does all tasks, and yields each with its result, or with the error that ended it, as completed."""
 
     def __call__(self, work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R | Exception]]:
         """Do all tasks. The work, the tasks and the results can be pickled."""

@@ -23,8 +23,7 @@ Rows = Mapping[str, ParameterRow]
 
 
 def estimates(content: Content) -> Section:
-    """Return the joint estimate as a table, a forest plot for each parameter, then the table of
-    manoeuvres."""
+    """Return the joint estimate as a table, a forest plot a parameter, then the table of manoeuvres."""
     return Section("estimates", "Estimates", tuple(_blocks(content)))
 
 

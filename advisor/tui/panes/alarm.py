@@ -5,8 +5,7 @@ from advisor.tui.panes.lines import Lines, Part
 
 
 class Alarm(Part, Lines):
-    """One line that is visible only while data are being lost, for example while the disk accepts no
-    recording."""
+    """One line that is visible only while data are being lost, such as while the disk accepts none."""
 
     def show(self, view: View) -> None:
         """Write the line, and show it."""

@@ -53,8 +53,7 @@ drifts shows an aircraft that changes.
             self._draw()
 
     def on_resize(self, event: Resize) -> None:
-        """Number the manoeuvres only under the lowest plots on a small terminal, where the others have no
-        room."""
+        """Number the manoeuvres under the lowest plots of a small terminal, where the others have no room."""
         self._draw()
 
     def _draw(self) -> None:

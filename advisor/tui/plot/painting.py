@@ -174,8 +174,7 @@ def down_the_side(axis: Axis | LogAxis, rows: int, gutter: int) -> list[str]:
 
 
 def along_the_foot(axis: Axis, name: str, gutter: int, width: int) -> str:
-    """Return the labels of the x axis on one line with the axis's name at its end. Crowded labels are left
-    out."""
+    """Return the labels of the x axis on one line with the axis's name at its end. Crowded ones are out."""
     line = [" "] * width
     columns = width - gutter
     room_until = width - len(name) - 1

@@ -27,12 +27,7 @@ from advisor.exports.models.ardupilot.servos import calibrated, parameters_text,
 from advisor.exports.models.exported import Exported, commented, effects_beside
 from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.formats import AxisAsked, ModelFormat, refuse_lacking
-from advisor.exports.models.improvement import (
-    REFERENCE_KEYS,
-    Improvement,
-    air_note,
-    missing_reference,
-)
+from advisor.exports.models.improvement import REFERENCE_KEYS, Improvement, air_note, missing_reference
 from advisor.words.problems import ConfigurationError
 
 MASS_KG = 2.0
