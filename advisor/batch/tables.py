@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from advisor import __version__
-from advisor.aircraft.reference import PARAMETERS
 from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.trend import ChangeOverFlights, change_over_flights, lying_apart
@@ -17,6 +16,8 @@ from advisor.exports.flights.found import PARAMETER_UNITS
 from advisor.exports.flights.table import Column, Dataset, FlightTable, numbers, texts
 from advisor.oem.estimate import Estimate
 from advisor.words.quantities import SIDE_PARAMETERS
+
+_SIDE_UNITS = {name: quantity.unit.replace("²", "^2") for name, quantity in SIDE_PARAMETERS.items()}
 
 
 def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
@@ -160,7 +161,7 @@ def _flights(flights: Sequence[Analyzed]) -> FlightTable:
             "how many of them count",
         ),
         Column("lateral_decision", texts(list(map(decided, sides))), "", "complete or not complete"),
-        *_lateral_parameters([f.lateral.get("model") for f in flights], "of the joint estimate"),
+        *_parameters([f.lateral.get("model") for f in flights], "of the joint estimate", _SIDE_UNITS),
     ]
     return FlightTable("flights", "A row is a flight: one log.", tuple(columns))
 
@@ -189,7 +190,7 @@ def _maneuvers(flights: Sequence[Analyzed]) -> FlightTable:
         Column("cost", numbers([m["cost"] for m in found]), "", "J of Eq. (7)"),
         Column("axis", texts(["lateral" if _is_lateral(m) else "pitch" for m in found]), "", "axis tested"),
         *_parameters(pitch, "of the manoeuvre"),
-        *_lateral_parameters(lateral, "of the manoeuvre"),
+        *_parameters(lateral, "of the manoeuvre", _SIDE_UNITS),
     ]
     return FlightTable("maneuvers", "A row is a manoeuvre.", tuple(columns))
 
@@ -215,23 +216,15 @@ def _changes(changes: dict[str, ChangeOverFlights]) -> FlightTable:
     return FlightTable("changes", "A row is a derivative that moved from one flight to the next.", columns)
 
 
-def _parameters(estimates: Sequence[dict[str, Any] | None], of: str) -> list[Column]:
-    """Return the value and standard deviation of each parameter; NaN where there is none."""
+def _parameters(
+    estimates: Sequence[dict[str, Any] | None], of: str, units: Mapping[str, str] = PARAMETER_UNITS
+) -> list[Column]:
+    """Return the value and standard deviation of each parameter with a unit; NaN where there is none."""
     columns = []
-    for name in PARAMETERS:
-        for key, suffix in (("value", ""), ("std", "_std")):
-            values = numbers([e[name][key] if e else None for e in estimates])
-            columns.append(Column(f"{name}{suffix}", values, PARAMETER_UNITS[name], f"{key} {of}"))
-    return columns
-
-
-def _lateral_parameters(estimates: Sequence[dict[str, Any] | None], of: str) -> list[Column]:
-    """Return the value and standard deviation of each lateral derivative; NaN where there is none."""
-    columns = []
-    for name, quantity in SIDE_PARAMETERS.items():
+    for name, unit in units.items():
         for key, suffix in (("value", ""), ("std", "_std")):
             values = numbers([e[name][key] if e and name in e else None for e in estimates])
-            columns.append(Column(f"{name}{suffix}", values, quantity.unit.replace("²", "^2"), f"{key} {of}"))
+            columns.append(Column(f"{name}{suffix}", values, unit, f"{key} {of}"))
     return columns
 
 

@@ -8,9 +8,9 @@ from the data alone.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import is_
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.course import same
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import Fit, fit_jointly
@@ -86,16 +86,12 @@ class Together:
         return self.of_lag(accepted[-NEWEST:])
 
     def _group_tells_lag(self, group: Sequence[Maneuver]) -> bool:
-        if not _same(self._group[0], group):
+        if not same(self._group[0], group):
             self._group = tuple(group), self._of(group).tells_lag
         return self._group[1]
 
     def _of(self, maneuvers: Sequence[Maneuver]) -> _Joint:
-        if self._kept is None or not _same(self._kept.maneuvers, maneuvers):
+        if self._kept is None or not same(self._kept.maneuvers, maneuvers):
             self._kept = None  # of hundreds of manoeuvres a fit is a hundred megabytes
             self._kept = _Joint.of(maneuvers, self._aircraft)
         return self._kept
-
-
-def _same(some: Sequence[Maneuver], others: Sequence[Maneuver]) -> bool:
-    return len(some) == len(others) and all(map(is_, some, others))

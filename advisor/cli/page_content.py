@@ -1,6 +1,5 @@
 """Content of the page of ``advisor report``: logs as one campaign, telemetry examined, gap diagnosed."""
 
-import hashlib
 import platform
 import shlex
 import sys
@@ -17,6 +16,7 @@ from advisor.analysis.whole_flights import WholeFlights, holds_no_test, read_who
 from advisor.cli.doctor import examine_log
 from advisor.cli.log_options import LogsAsked
 from advisor.doctor.document import doctor_document
+from advisor.exports.flights.reading import sha256
 from advisor.gap.inference.engine import Progress
 from advisor.report.document import analysis_document
 from advisor.report.page.content import Content, Document, Origin
@@ -106,12 +106,7 @@ def _hashes(flights: WholeFlights, aircraft_file: Path | None) -> Mapping[str, s
     """Return the SHA-256 of every input file, by the file's name."""
     named = [*zip(flights.names, flights.logs, strict=True)]
     named += [(aircraft_file.name, aircraft_file)] if aircraft_file else []
-    return {printable(name): _sha256(path) for name, path in named if path.is_file()}
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+    return {printable(name): sha256(path) for name, path in named if path.is_file()}
 
 
 def _versions() -> Iterator[tuple[str, str]]:

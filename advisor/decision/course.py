@@ -44,13 +44,13 @@ class CriterionCourse:
     def standing(self, usable: Sequence[CandidateManeuver]) -> Standing:
         """Return the rule's result after at least one usable manoeuvre, in the order flown."""
         n = len(usable)
-        if n > len(self._standings) or not _same(self._flown[:n], usable):
+        if n > len(self._standings) or not same(self._flown[:n], usable):
             self._follow(usable)
         return self._standings[n - 1]
 
     def known(self, usable: Sequence[CandidateManeuver]) -> Knowledge:
         """Return the knowledge after at least one usable manoeuvre. The newest result is kept."""
-        if self._known is None or not _same(self._known[0], usable):
+        if self._known is None or not same(self._known[0], usable):
             self._known = list(usable), knowledge(usable, self.plan)
         return self._known[1]
 
@@ -64,5 +64,6 @@ class CriterionCourse:
             self._standings.append(Standing(known.percent, known.sufficient, known.predicted))
 
 
-def _same(mine: Sequence[CandidateManeuver], theirs: Sequence[CandidateManeuver]) -> bool:
+def same(mine: Sequence[object], theirs: Sequence[object]) -> bool:
+    """Return whether two sequences hold the same objects."""
     return len(mine) == len(theirs) and all(map(is_, mine, theirs))

@@ -174,10 +174,14 @@ def is_broken_off(span: Span) -> bool:
 def banked(maneuver: Maneuver, limit: float, mend: str = "fly it wings level") -> list[Reason]:
     """Return a reason where the bank exceeds its limit, deg."""
     bank = float(np.degrees(np.max(np.abs(flown(maneuver, "bank")), initial=0.0)))
-    if bank <= limit:
+    return above("bank", bank, limit, "bank reached {} deg (limit {}); " + mend)
+
+
+def above(code: str, value: float, limit: float, text: str, digits: int = 0) -> list[Reason]:
+    """Return a reason where a value exceeds its limit. Both stand in the ``{}`` of its text."""
+    if value <= limit:
         return []
-    shown, most = distinct_texts(bank, limit)
-    return [Reason("bank", f"bank reached {shown} deg (limit {most}); {mend}", bank, limit)]
+    return [Reason(code, text.format(*distinct_texts(value, limit, digits)), value, limit)]
 
 
 def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
@@ -190,21 +194,15 @@ def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     trim = speed_before(channel, maneuver.span)
     # The second largest deviation: one wild reading of the air speed is no change of speed.
     change = 100.0 * float(np.sort(np.abs(speed / trim - 1.0))[-2:][0])
-    if change <= limit:
-        return []
-    shown, most = distinct_texts(change, limit)
-    text = f"air speed changed by {shown} % (limit {most}); smaller steps, from steady speed"
-    return [Reason("airspeed", text, change, limit)]
+    text = "air speed changed by {} % (limit {}); smaller steps, from steady speed"
+    return above("airspeed", change, limit, text)
 
 
 def steep(maneuver: Maneuver, limit: float | None) -> list[Reason]:
     """Return a reason where the angle of attack exceeds its limit, deg."""
     alpha = float(np.degrees(np.max(np.abs(flown(maneuver, "alpha")), initial=0.0)))
-    if limit is None or alpha <= limit:
-        return []
-    shown, most = distinct_texts(alpha, limit, 1)
-    text = f"angle of attack reached {shown} deg (limit {most}); use less stick"
-    return [Reason("alpha", text, alpha, limit)]
+    text = "angle of attack reached {} deg (limit {}); use less stick"
+    return [] if limit is None else above("alpha", alpha, limit, text, 1)
 
 
 def saturated(maneuver: Maneuver, control: str, ends_deg: tuple[float, float] | None) -> list[Reason]:
@@ -225,10 +223,7 @@ def other_controls(maneuver: Maneuver, names: Sequence[str], mend: str) -> list[
     reasons = []
     for name in names:
         moved = float(np.degrees(np.ptp(flown(maneuver, name)))) / 2.0 if len(flown(maneuver, name)) else 0.0
-        if moved > OTHER_CONTROLS_DEG:
-            shown, most = distinct_texts(moved, OTHER_CONTROLS_DEG)
-            text = f"{name} moved by {shown} deg (limit {most}); {mend}"
-            reasons.append(Reason(name, text, moved, OTHER_CONTROLS_DEG))
+        reasons += above(name, moved, OTHER_CONTROLS_DEG, name + " moved by {} deg (limit {}); " + mend)
     return reasons
 
 
@@ -236,8 +231,5 @@ def throttled(maneuver: Maneuver) -> list[Reason]:
     """Return a reason where the throttle moved."""
     throttle = flown(maneuver, "throttle")
     change = 100.0 * float(np.ptp(throttle)) if len(throttle) else 0.0
-    if change <= THROTTLE_PERCENT:
-        return []
-    shown, most = distinct_texts(change, THROTTLE_PERCENT)
-    text = f"throttle moved by {shown} % (limit {most}); leave it where it is"
-    return [Reason("throttle", text, change, THROTTLE_PERCENT)]
+    text = "throttle moved by {} % (limit {}); leave it where it is"
+    return above("throttle", change, THROTTLE_PERCENT, text)

@@ -10,6 +10,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.envelope import (
+    above,
     banked,
     changed_speed,
     flown,
@@ -130,11 +131,8 @@ def _period_s(estimate: LateralEstimate | NoEstimate) -> float:
 def _unsteady_alpha(maneuver: Maneuver) -> list[Reason]:
     alpha = flown(maneuver, "alpha")
     change = 0.5 * float(np.degrees(np.ptp(alpha))) if len(alpha) else 0.0
-    if change <= ALPHA_CHANGE_DEG:
-        return []
-    shown, most = distinct_texts(change, ALPHA_CHANGE_DEG, 1)
-    text = f"angle of attack moved by {shown} deg (limit {most}); keep the nose where it is"
-    return [Reason("alpha", text, change, ALPHA_CHANGE_DEG)]
+    text = "angle of attack moved by {} deg (limit {}); keep the nose where it is"
+    return above("alpha", change, ALPHA_CHANGE_DEG, text, 1)
 
 
 def _pitching(maneuver: Maneuver) -> list[Reason]:

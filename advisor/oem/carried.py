@@ -16,7 +16,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.motion import bank_at
+from advisor.flight.signals.motion import channel_at
 from advisor.model.response import LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, Grid, respond
 from advisor.oem.covariance import REPORTED
 from advisor.oem.estimate import ChannelFit, Estimate
@@ -144,7 +144,7 @@ class UpdatableSolution:
         theta = maneuver.channels.get("theta")
         if problem.records[0].gravity_z is not None and theta is not None:
             attitude = np.interp(t, theta.t, theta.y)
-            gravity = GRAVITY_M_S2 * np.cos(attitude) * np.cos(bank_at(t, maneuver.channels))
+            gravity = GRAVITY_M_S2 * np.cos(attitude) * np.cos(channel_at("bank", t, maneuver.channels))
         moved = problem.servo.course(*flown, t, problem.records[0].held)
         fields: dict[str, Any] = dict(zip(("elevator", "start", "slope"), moved, strict=True))
         for name in ("known", "vane", "airspeed", "acceleration"):

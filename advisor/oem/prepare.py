@@ -8,7 +8,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.motion import bank_at, gravity_in_plane, integrated
+from advisor.flight.signals.motion import channel_at, gravity_in_plane, integrated
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
 from advisor.flight.signals.true_airspeed import true_over_read
@@ -197,7 +197,7 @@ def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Seq
         outputs["theta"] = _level(channels)
     if _has(channels, "theta"):
         theta = signal_of(channels["theta"])
-        bank = bank_at(theta.t, channels)
+        bank = channel_at("bank", theta.t, channels)
         up, size = gravity_in_plane(theta.y, bank)
         normal = Signal(theta.t, size / GRAVITY_M_S2 * np.cos(up - alpha.at(theta.t)))
         gravity = Signal(theta.t, GRAVITY_M_S2 * np.cos(theta.y) * np.cos(bank))

@@ -30,7 +30,7 @@ def dataset(flights: WholeFlights) -> Dataset:
     )
     about = {
         "advisor": __version__,
-        "logs": [{"file": str(log), "sha256": _sha256(log)} for log in flights.logs],
+        "logs": [{"file": str(log), "sha256": sha256(log)} for log in flights.logs],
         "grid": GRID,
         "decision": state.flight_test.sentence,
         "notes": flights.notes,
@@ -80,7 +80,8 @@ def _channels(flights: WholeFlights) -> FlightTable:
     return FlightTable("channels", "A row is a channel of one record.", columns)
 
 
-def _sha256(path: Path) -> str:
+def sha256(path: Path) -> str:
+    """Return the SHA-256 of a file, in hexadecimal digits."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 

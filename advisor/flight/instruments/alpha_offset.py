@@ -8,7 +8,7 @@ import numpy as np
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.motion import bank_at, gravity_in_plane
+from advisor.flight.signals.motion import channel_at, gravity_in_plane
 
 _BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
 """Length of a record's beginning, s. Largest difference between the offsets of beginning and whole, as a
@@ -56,7 +56,7 @@ def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
     speed = speed_at(climb.t, maneuver, airspeed_m_s)
     assert speed is not None
     speed = np.maximum(speed, 1.0)
-    up, size = gravity_in_plane(at("theta"), bank_at(climb.t, found))
+    up, size = gravity_in_plane(at("theta"), channel_at("bank", climb.t, found))
     apart = at("alpha") - (up - np.arcsin(np.clip(climb.y / speed * GRAVITY_M_S2 / size, -0.9, 0.9)))
     # The climb rate is slow and smoothed, so that one reading a second counts as independent.
     independent = max(2.0, climb.t[-1] - climb.t[0])

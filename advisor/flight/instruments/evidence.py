@@ -15,7 +15,7 @@ from advisor.flight.instruments.delayed_fit import Summand, fit_delays
 from advisor.flight.instruments.measured import Evidence, Measured
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.motion import bank_at, path_turning, speed_rate
+from advisor.flight.signals.motion import channel_at, path_turning, speed_rate
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
 
@@ -61,7 +61,7 @@ def rate_against_attitude(channels: Channels) -> Evidence:
     if not usable(channels, "q", "theta"):
         return {}
     q, theta = channels["q"], channels["theta"]
-    bank = bank_at(q.t, channels)
+    bank = channel_at("bank", q.t, channels)
     pitching, yawing = q.y * np.cos(bank), channel_at("r", q.t, channels) * np.sin(bank)
     if np.ptp(theta.y) < MOVED_RAD and np.ptp(np.cumsum(pitching)) / q.rate_hz < MOVED_RAD:
         return {}
@@ -85,7 +85,7 @@ def force_against_climb(channels: Channels) -> Evidence:
     if not usable(channels, "a_x", "a_z", "theta", "climb_rate"):
         return {}
     force, climb = channels["a_z"], channels["climb_rate"]
-    theta, bank = channel_at("theta", force.t, channels), bank_at(force.t, channels)
+    theta, bank = channel_at("theta", force.t, channels), channel_at("bank", force.t, channels)
     along = channel_at("a_x", force.t, channels)
     rising = along * np.sin(theta) - force.y * np.cos(theta) * np.cos(bank) - GRAVITY_M_S2
     fit = fit_delays(climb.t, climb.y, [Summand(force.t, rising)])
@@ -102,7 +102,7 @@ def force_against_gravity(channels: Channels) -> Evidence:
     length_s = float(t[-1] - t[0])
     if length_s < _SHORTEST_S:
         return {}
-    theta, bank = channel_at("theta", t, channels), bank_at(t, channels)
+    theta, bank = channel_at("theta", t, channels), channel_at("bank", t, channels)
     down = force.y * np.cos(theta) * np.cos(bank) - channel_at("a_x", t, channels) * np.sin(theta)
     climb = channels.get("climb_rate")
     gained, unsure = 0.0, _CLIMB_M_S
@@ -131,7 +131,7 @@ def speed_against_force(channels: Channels) -> Evidence:
         np.clip(channel_at("alpha", force.t, channels), -_LARGEST_ALPHA_RAD, _LARGEST_ALPHA_RAD),
     )
     theta = channel_at("theta", t, channels)
-    rate = speed_rate(channel_at("a_x", t, channels), force.y, theta, alpha, bank_at(t, channels))
+    rate = speed_rate(channel_at("a_x", t, channels), force.y, theta, alpha, channel_at("bank", t, channels))
     fit = fit_delays(speed.t, speed.y, [Summand(t, rate)], drift=1)
     if fit is None:
         return {}
@@ -230,7 +230,7 @@ def _parts(
     if np.min(speed) < SLOWEST_FLIGHT_M_S or np.ptp(channels["theta"].y) < MOVED_RAD:
         return None
     t_alpha, alpha = renewed(source.t, source.y)
-    theta, bank = channel_at("theta", t, channels), bank_at(t, channels)
+    theta, bank = channel_at("theta", t, channels), channel_at("bank", t, channels)
     along = channel_at("a_x", t, channels) if "a_x" in channels else GRAVITY_M_S2 * np.sin(theta)
     # A reading in another unit may give any angle; the force's direction takes a possible one.
     angle = np.clip(np.interp(t, t_alpha, alpha), -_LARGEST_ALPHA_RAD, _LARGEST_ALPHA_RAD)
@@ -246,12 +246,6 @@ def usable(channels: Channels, *names: str) -> bool:
         and channels[name].largest_gap_s <= _LONGEST_GAP_S
         for name in names
     )
-
-
-def channel_at(name: str, t: FloatArray, channels: Channels) -> FloatArray:
-    """Return a channel at times ``t`` in s, shape (n,); zero where the log has none."""
-    channel = channels.get(name)
-    return np.zeros(len(t)) if channel is None or len(channel) == 0 else np.interp(t, channel.t, channel.y)
 
 
 def _lower(one: Measured, other: Measured) -> Measured:

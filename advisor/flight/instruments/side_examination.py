@@ -15,7 +15,7 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.delayed_fit import DelayedFit, Summand, fit_delays
-from advisor.flight.instruments.evidence import MOVED_RAD, Channels, channel_at, usable
+from advisor.flight.instruments.evidence import MOVED_RAD, Channels, usable
 from advisor.flight.instruments.examination import (
     FORCE_UNITS_M_S2,
     hold_force_unit,
@@ -25,6 +25,7 @@ from advisor.flight.instruments.examination import (
 from advisor.flight.instruments.measured import ANY, AS_STATED, EXCLUDED, Evidence, Measured, weigh
 from advisor.flight.instruments.work import PLAIN, SIGMAS, Examined, Work, hold_clocks, with_error
 from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import channel_at
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.motion import bank_at, integrated, path_turning
+from advisor.flight.signals.motion import channel_at, integrated, path_turning
 from advisor.flight.signals.record import Channel
 
 NEEDED = ("q", "theta", "a_z")
@@ -46,7 +46,7 @@ def alpha_rate(
         a_z = a_z + arm_m * np.gradient(q, t)
     has_a_x = "a_x" in channels and len(channels["a_x"]) > 1
     a_x = at("a_x") if has_a_x else GRAVITY_M_S2 * np.sin(theta)
-    return np.asarray(q + path_turning(a_x, a_z, theta, alpha, bank_at(t, channels)) / speed)
+    return np.asarray(q + path_turning(a_x, a_z, theta, alpha, channel_at("bank", t, channels)) / speed)
 
 
 def inferred_alpha(channels: Mapping[str, Channel], speed: FloatArray) -> Channel | None:

@@ -9,10 +9,10 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 
 
-def bank_at(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
-    """Return the bank angle at times ``t`` in s, shape (n,), rad; zero where the log has none."""
-    bank = channels.get("bank")
-    return np.zeros(len(t)) if bank is None or len(bank) == 0 else np.interp(t, bank.t, bank.y)
+def channel_at(name: str, t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
+    """Return a channel at times ``t`` in s, shape (n,); zero where the log has none."""
+    channel = channels.get(name)
+    return np.zeros(len(t)) if channel is None or len(channel) == 0 else np.interp(t, channel.t, channel.y)
 
 
 def gravity_in_plane(theta: FloatArray, bank: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -72,7 +72,7 @@ def speed_rate_at(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
     a_x, a_z, theta, alpha = (
         np.interp(t, channels[name].t, channels[name].y) for name in ("a_x", "a_z", "theta", "alpha")
     )
-    return speed_rate(a_x, a_z, theta, alpha, bank_at(t, channels))
+    return speed_rate(a_x, a_z, theta, alpha, channel_at("bank", t, channels))
 
 
 def integrated(t: FloatArray, rate: FloatArray) -> FloatArray:

@@ -11,7 +11,7 @@ import numpy as np
 
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.motion import bank_at, integrated, path_turning, speed_rate_at
+from advisor.flight.signals.motion import channel_at, integrated, path_turning, speed_rate_at
 from advisor.gap.decision import SIGMAS
 
 _BLOCK_S = 1.0
@@ -124,7 +124,7 @@ def _turned_and_pushed(
     t, alpha = found["alpha"].t, found["alpha"].y
     q, a_z, theta = (np.interp(t, found[name].t, found[name].y) for name in ("q", "a_z", "theta"))
     a_x = np.interp(t, found["a_x"].t, found["a_x"].y) if "a_x" in found else np.zeros(len(t))
-    force = path_turning(a_x, a_z, theta, alpha, bank_at(t, found))
+    force = path_turning(a_x, a_z, theta, alpha, channel_at("bank", t, found))
     if level_m_s is not None:
         force = force * level_m_s / speed_without_instrument(t - t[0], maneuver, float(t[0]), level_m_s)
     line = np.linalg.qr(np.vander(t - t[0], 2))[0]

@@ -15,7 +15,7 @@ from scipy.special import stdtrit
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.motion import bank_at, gravity_in_plane, integrated, speed_rate
+from advisor.flight.signals.motion import channel_at, gravity_in_plane, integrated, speed_rate
 from advisor.gap.decision import CHANCE
 
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
@@ -166,7 +166,7 @@ def _path_of(
     a_x, theta, alpha, speed = (
         np.interp(t, found[c].t, found[c].y) for c in ("a_x", "theta", "alpha", "airspeed")
     )
-    bank = bank_at(t, found)
+    bank = channel_at("bank", t, found)
     rate = speed_rate(a_x, found["a_z"].y, theta, alpha, bank) / true_over_read
     up, size = gravity_in_plane(theta, bank)
     climbed = integrated(t, speed * size / GRAVITY_M_S2 * np.sin(up - alpha))
