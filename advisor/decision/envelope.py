@@ -134,11 +134,8 @@ def with_gap(channels: Sequence[Channel], maneuver: Maneuver, period_s: float) -
         limit = max(float(np.clip(share * period_s, least, most)), 3.5 / c.rate_hz if c.rate_hz > 0 else 0.0)
         edges = (maneuver.span.record_from_s, *c.t.tolist(), maneuver.span.end_s)
         gap = float(np.max(np.diff(edges)))
-        if gap > limit:
-            missing, most_missing = distinct_texts(gap, limit, 1)
-            lost = f"{missing} s of {c.name} are missing (limit {most_missing})"
-            text = f"{lost}; check the recording, fly it again"
-            reasons.append(Reason("gap", text, gap, limit))
+        text = "{} s of " + c.name + " are missing (limit {}); check the recording, fly it again"
+        reasons += above("gap", gap, limit, text, 1)
     return sorted(reasons, key=lambda reason: (-reason.value, reason.text))[:1]
 
 

@@ -195,11 +195,8 @@ def _unknown_modes(estimate: LateralEstimate) -> list[Reason]:
     """Return a reason where the frequency of the Dutch roll is known too poorly."""
     omega = estimate.modes.dutch_roll_omega
     width = 100.0 * NORMAL_95 * omega.std / omega.value if omega is not None else math.inf
-    if width <= WIDEST_PREDICTION_PERCENT:
-        return []
-    shown, most = distinct_texts(width, WIDEST_PREDICTION_PERCENT)
-    text = f"the Dutch roll's frequency is known to {shown} % only (limit {most}); use more rudder"
-    return [Reason("information", text, width, WIDEST_PREDICTION_PERCENT)]
+    text = "the Dutch roll's frequency is known to {} % only (limit {}); use more rudder"
+    return above("information", width, WIDEST_PREDICTION_PERCENT, text)
 
 
 def _poor(maneuver: Maneuver, estimate: LateralEstimate) -> list[Reason]:
@@ -212,8 +209,5 @@ def _poor(maneuver: Maneuver, estimate: LateralEstimate) -> list[Reason]:
         return [_TRIMMING] if maneuver.span.kind == "other" else _unknown_modes(estimate)
     bands = {name: 100.0 * estimate.estimate.prediction[_RATE_OF[name]] for name in estimate.flown}
     widest = max(bands, key=lambda name: bands[name], default="")
-    if not widest or bands[widest] <= WIDEST_PREDICTION_PERCENT:
-        return []
-    shown, most = distinct_texts(bands[widest], WIDEST_PREDICTION_PERCENT)
-    text = f"the {widest}'s response is known to {shown} % only (limit {most}); use more {widest}"
-    return [Reason("information", text, bands[widest], WIDEST_PREDICTION_PERCENT)]
+    text = f"the {widest}'s response is known to {{}} % only (limit {{}}); use more {widest}"
+    return above("information", bands[widest], WIDEST_PREDICTION_PERCENT, text) if widest else []

@@ -18,6 +18,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.envelope import (
+    above,
     changed_speed,
     flown,
     incomplete,
@@ -190,17 +191,14 @@ def _badly_explained(estimate: Estimate) -> list[Reason]:
 def _poor(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
     """Return a reason where an estimate predicts too little of its own response."""
     value = 100.0 * estimate.prediction.get("q", math.inf)
-    if value <= WIDEST_PREDICTION_PERCENT:
-        return []
     more = _times(value / WIDEST_PREDICTION_PERCENT) if math.isfinite(value) else "more of"
     code, cure = "information", f"use about {more} the stick"
     if estimate.gust_rad is not None:
         code, cure = "turbulence", f"fly it in calmer air, or with about {more} the stick"
     elif maneuver.span.kind == "pulse":
         cure = "fly a 3-2-1-1: this input tells too little of the response"
-    shown, most = distinct_texts(value, WIDEST_PREDICTION_PERCENT)
-    text = f"the pitch rate is predicted to {shown} % of its peak only (limit {most}); {cure}"
-    return [Reason(code, text, value, WIDEST_PREDICTION_PERCENT)]
+    text = "the pitch rate is predicted to {} % of its peak only (limit {}); " + cure
+    return above(code, value, WIDEST_PREDICTION_PERCENT, text)
 
 
 def _mended(maneuver: Maneuver, reasons: list[Reason]) -> list[Reason]:
