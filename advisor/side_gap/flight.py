@@ -95,9 +95,12 @@ class SideFlight:
         ]
 
     def at_the_files(self, one: SideModel, plain: SideModel, heat: float) -> SideModel | None:
-        """Return an explanation fitted again where the file's derivatives are right; None without a fit."""
-        share = heat**-0.5
-        made = refitted(self.case, one.fit, ERROR_IF_RIGHT, share)
+        """Return an explanation fitted again where the file's derivatives are right; None without a fit.
+
+        Where they are the likelier ones already, the fit is near enough for the quadratic expansion.
+        """
+        share, near = heat**-0.5, one.evidence.right > one.evidence.wrong
+        made = None if near else refitted(self.case, one.fit, ERROR_IF_RIGHT, share)
         if made is None:
             return None
         return replace(self._model(one.effect, made, plain.fit, share), starts=one.starts)
@@ -111,13 +114,16 @@ class SideFlight:
         return residual_of(one.fit, self.case.flown, heat**-0.5)
 
     def pairs(self, plain: SideModel, leads: Sequence[SideModel]) -> Iterator[tuple[float, str, str]]:
-        """Yield the price of each lead with each other effect, and both names."""
+        """Yield the price of each lead with each other effect, and both names, where that may be a cause too.
+
+        The effect's share of the prior must be made up for.
+        """
         assert plain.starts is not None
         starts = {start.name: start for start in plain.starts.of_each}
         for lead in leads:
-            for other in self._beside(lead):
-                if other.name in starts:
-                    price = plain.starts.together(starts[lead.name], starts[other.name])
+            for other in (starts[e.name] for e in self._beside(lead) if e.name in starts):
+                price = plain.starts.together(starts[lead.name], other)
+                if price < starts[lead.name].price - 2.0 * np.log(len(self.table)):
                     yield price, lead.name, other.name
 
     def _beside(self, base: SideModel | None) -> list[SideEffect]:
@@ -132,7 +138,8 @@ class SideFlight:
         instruments against gusts.
         """
         plain = stage.plain
-        told = [plain.evidence.right, *(one.evidence.either for one in stage.effects)]
+        each = float(np.log(max(len(self.table), 1)))
+        told = [plain.evidence.right, *(one.evidence.either - each for one in stage.effects)]
         likely = [one for one, p in zip(stage.effects, probabilities(told)[1:], strict=True) if p > LIKELY]
         courses = courses_of(plain.fit, self.case.flown)
         blown = [

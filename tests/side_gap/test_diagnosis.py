@@ -12,6 +12,7 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.aircraft.sensors import Beta
 from advisor.cli.side_gap import side_gap_document, side_gap_lines
 from advisor.gap.alternative import Alternative, AlternativeEvidence, together
+from advisor.gap.inference.explanation import Evidence
 from advisor.gap.result import Cause, Value
 from advisor.side_gap import flight as flight_of_side
 from advisor.side_gap.comparison import SideGap
@@ -177,3 +178,28 @@ def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_a
     )
     SideFlight(None, fit, []).explained(SimpleNamespace(fit=fit, effect=None), 3)
     assert [free.column for one in again for free in one.free] == [None]
+
+
+@pytest.mark.parametrize(("right", "wrong", "fitted"), [(5.0, 0.0, False), (0.0, 5.0, True)])
+def test_a_model_is_fitted_at_the_files_derivatives_only_where_others_are_likelier(
+    right, wrong, fitted, monkeypatch
+):
+    one = SimpleNamespace(evidence=Evidence(right, wrong), fit=None, effect=None, starts=None)
+    again = []
+    monkeypatch.setattr(flight_of_side, "refitted", lambda *given: again.append(given))
+    assert SideFlight(None, None, []).at_the_files(one, None, 1.0) is None
+    assert bool(again) is fitted
+
+
+@pytest.mark.parametrize(("saved", "named"), [(1.0, []), (9.0, [("r", "p")])])
+def test_a_pair_counts_where_it_makes_up_for_the_second_effects_share_of_the_prior(saved, named):
+    """One of four effects has a share of 1.4 nats, 2.8 of the cost."""
+    p, r, *others = (SimpleNamespace(name=name, places=((name, "scale"),)) for name in "prab")
+    starts = SimpleNamespace(
+        of_each=[SimpleNamespace(name=one.name, price=100.0) for one in (p, r)],
+        together=lambda one, other: 100.0 - saved,
+    )
+    pairs = SideFlight(None, None, [p, r, *others]).pairs(
+        SimpleNamespace(starts=starts), [SimpleNamespace(name="r", effect=r)]
+    )
+    assert [names for _, *names in pairs] == [list(pair) for pair in named]
