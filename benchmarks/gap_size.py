@@ -32,7 +32,7 @@ EFFECTS = (
 """Folders that describe effects, by their table and their equations."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
-    "lines of code": 7080,
+    "lines of code": 7082,
     "constants": 224,
     "constants that decide": 54,
     "names compared": 11,

@@ -1,6 +1,6 @@
 """Roll and yaw, as the engine asks for it: fits with an effect, their evidence, and what they leave."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +10,7 @@ from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.inference.explanation import Evidence, Explanation
 from advisor.gap.inference.residual import Residual
 from advisor.gap.inference.sizes import natural_share
-from advisor.gap.inference.stage import Stage, likeliest, within_model_error
+from advisor.gap.inference.stage import Pairs, Stage, likeliest, within_model_error
 from advisor.side_gap.disturbance import courses_of
 from advisor.side_gap.effects import SideEffect
 from advisor.side_gap.evidence import (
@@ -113,17 +113,18 @@ class SideFlight:
         """Return the disturbance that explains what a model leaves."""
         return residual_of(one.fit, self.case.flown, heat**-0.5)
 
-    def pairs(self, plain: SideModel, leads: Sequence[SideModel]) -> Iterator[tuple[float, str, str]]:
+    def pairs(self, stage: Stage[SideModel], leads: Sequence[SideModel]) -> Pairs:
         """Yield the price of each lead with each other effect, and both names, where that may be a cause too.
 
         The effect's share of the prior must be made up for.
         """
-        assert plain.starts is not None
-        starts = {start.name: start for start in plain.starts.of_each}
+        looked = stage.plain.starts
+        assert looked is not None
+        starts = {start.name: start for start in looked.of_each}
         for lead in leads:
             for other in (starts[e.name] for e in self._beside(lead) if e.name in starts):
-                price = plain.starts.together(starts[lead.name], other)
-                if price < starts[lead.name].price - 2.0 * np.log(len(self.table)):
+                price = looked.together(starts[lead.name], other)
+                if price < starts[lead.name].price - 2.0 * stage.heat * np.log(len(self.table)):
                     yield price, lead.name, other.name
 
     def _beside(self, base: SideModel | None) -> list[SideEffect]:

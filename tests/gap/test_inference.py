@@ -173,7 +173,7 @@ class Flight:
             return None
         return Stage(explanation(None, self.moving), (), (), stage.heat)
 
-    def pairs(self, plain, leads):
+    def pairs(self, stage, leads):
         yield from ((-gain, *names) for names, gain in self.together.items())
 
 

@@ -191,15 +191,18 @@ def test_a_model_is_fitted_at_the_files_derivatives_only_where_others_are_likeli
     assert bool(again) is fitted
 
 
-@pytest.mark.parametrize(("saved", "named"), [(1.0, []), (9.0, [("r", "p")])])
-def test_a_pair_counts_where_it_makes_up_for_the_second_effects_share_of_the_prior(saved, named):
-    """One of four effects has a share of 1.4 nats, 2.8 of the cost."""
+@pytest.mark.parametrize(
+    ("saved", "heat", "named"), [(1.0, 1.0, []), (9.0, 1.0, [("r", "p")]), (9.0, 5.0, [])]
+)
+def test_a_pair_counts_where_it_makes_up_for_the_second_effects_share_of_the_prior(saved, heat, named):
+    """One of four effects has a share of 1.4 nats, 2.8 of the cost; coloured residuals count less."""
     p, r, *others = (SimpleNamespace(name=name, places=((name, "scale"),)) for name in "prab")
     starts = SimpleNamespace(
         of_each=[SimpleNamespace(name=one.name, price=100.0) for one in (p, r)],
         together=lambda one, other: 100.0 - saved,
     )
     pairs = SideFlight(None, None, [p, r, *others]).pairs(
-        SimpleNamespace(starts=starts), [SimpleNamespace(name="r", effect=r)]
+        SimpleNamespace(plain=SimpleNamespace(starts=starts), heat=heat),
+        [SimpleNamespace(name="r", effect=r)],
     )
     assert [names for _, *names in pairs] == [list(pair) for pair in named]

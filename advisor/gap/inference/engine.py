@@ -72,5 +72,5 @@ def _lead(flight: Flight[E], stage: Stage[E]) -> E | None:
     for one in sorted(stage.effects, key=lambda one: -one.evidence.either):
         likely.setdefault(one.name, one)
     leads = list(likely.values())[:_LEADS]
-    _, *best = min(flight.pairs(stage.plain, leads), default=(0.0, "", ""))
+    _, *best = min(flight.pairs(stage, leads), default=(0.0, "", ""))
     return next((lead for lead in leads if lead.name in best), None)

@@ -1,6 +1,6 @@
 """Pitch, as the engine asks for it: fits with an effect, their evidence, and what they leave."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,7 @@ from advisor.gap.inference.explanation import Explanation
 from advisor.gap.inference.posterior import stated_as
 from advisor.gap.inference.residual import Residual, residual_of
 from advisor.gap.inference.sizes import natural_share
-from advisor.gap.inference.stage import Stage, likeliest
+from advisor.gap.inference.stage import Pairs, Stage, likeliest
 from advisor.gap.kit.variant import Variant
 from advisor.gap.search.screen import Screen
 
@@ -105,7 +105,7 @@ class PitchFlight:
     def in_moving_air(self, stage: Stage[PitchModel]) -> None:
         """Return nothing: the air is compared with the answer afterwards."""
 
-    def pairs(self, plain: PitchModel, leads: Sequence[PitchModel]) -> Iterator[tuple[float, str, str]]:
+    def pairs(self, stage: Stage[PitchModel], leads: Sequence[PitchModel]) -> Pairs:
         """Yield the price of each lead with each other effect, and both names."""
         for lead in leads:
             for quick in Screen(lead.problem, lead.fitted).quick_fits(self._beside(lead)):

@@ -32,6 +32,10 @@ class Stage(Generic[E]):
         return max((self.plain, *self.effects, *self.laws), key=lambda one: one.evidence.either)
 
 
+Pairs = Iterator[tuple[float, str, str]]
+"""Price and names of two effects."""
+
+
 class Quick(Protocol):
     """An effect or law after a quick look."""
 
@@ -77,7 +81,7 @@ class Flight(Protocol[E]):
     def in_moving_air(self, stage: Stage[E]) -> Stage[E] | None:
         """Return the explanations again in moving air; None where the air is no part of the models."""
 
-    def pairs(self, plain: E, leads: Sequence[E]) -> Iterator[tuple[float, str, str]]:
+    def pairs(self, stage: Stage[E], leads: Sequence[E]) -> Pairs:
         """Yield the price of each lead with each other effect, by a quick look, and both names."""
 
 
