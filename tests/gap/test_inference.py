@@ -1,5 +1,6 @@
 """Every explanation is a row with its parts in nats; their posterior is the answer."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -188,6 +189,28 @@ def test_a_flight_in_moving_air_is_a_rival_of_one_in_still_air(moving, likeliest
     flight = Flight({"actuator_lag": 8.0}, moving=moving)
     told = posterior_of(rows_of(flight, stage_of(flight, None, 6), SPREAD))
     assert told.rows[0].in_moving_air is likeliest
+
+
+def test_moving_air_is_as_likely_before_the_flight_as_any_one_of_three_effects():
+    flight = Flight({}, moving=0.0)
+    told = rows_of(flight, stage_of(flight, None, 6), SPREAD)
+    still, moving = (
+        max(r.weight for r in told if r.alternative == NONE and r.in_moving_air is moves)
+        for moves in (False, True)
+    )
+    assert moving - still == pytest.approx(np.log(0.1 / 0.3))
+
+
+@pytest.mark.parametrize(("behind", "fitted"), [(100.0, True), (140.0, False)])
+def test_an_effect_that_a_wrong_derivative_hides_is_fitted_at_the_files_derivatives_within_reach(
+    behind, fitted
+):
+    """The reach is 120 nats behind the best explanation."""
+    flight = Flight({"transport_delay": 0.0, "actuator_lag": -behind})
+    flight.apart = lambda one, other: 1e9
+    flight.at_the_files = lambda one, plain, heat: replace(one, evidence=Evidence(5.0, -behind))
+    told = {one.name: one.evidence.right for one in stage_of(flight, None, 6).effects}
+    assert told["actuator_lag"] == (5.0 if fitted else -behind)
 
 
 def test_what_moving_air_explains_is_no_law_without_a_name_where_the_air_moves():

@@ -12,8 +12,10 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.aircraft.sensors import Beta
 from advisor.cli.side_gap import side_gap_document, side_gap_lines
 from advisor.gap.alternative import Alternative, AlternativeEvidence, together
-from advisor.gap.inference.explanation import Evidence
+from advisor.gap.inference.explanation import Evidence, Row
+from advisor.gap.inference.posterior import NONE
 from advisor.gap.result import Cause, Value
+from advisor.side_gap import diagnosis
 from advisor.side_gap import flight as flight_of_side
 from advisor.side_gap.comparison import SideGap
 from advisor.side_gap.diagnosis import SideCause, SideDiagnosis, diagnose_side
@@ -206,3 +208,19 @@ def test_a_pair_counts_where_it_makes_up_for_the_second_effects_share_of_the_pri
         [SimpleNamespace(name="r", effect=r)],
     )
     assert [names for _, *names in pairs] == [list(pair) for pair in named]
+
+
+@pytest.mark.parametrize(("angle", "kind"), [(1e-4, "none"), (0.05, "air")])
+def test_gusts_far_above_the_natural_ones_are_the_answer_of_a_flight_with_nothing_else(angle, kind):
+    row = Row(NONE, SimpleNamespace(gusts=SimpleNamespace(angle=angle)), {})
+    assert diagnosis._named_air(row).alternative.kind == kind
+
+
+def test_a_second_cause_is_as_probable_as_both_together(monkeypatch):
+    stages = [SimpleNamespace(of=lambda _, p=p: p, by_alternative={}) for p in (0.9, 0.5)]
+    model = SimpleNamespace(alternative="an effect", fit=None, tolerance=0.03)
+    found = SimpleNamespace(posteriors=stages, chosen=(None, model, model), heat=1.0)
+    monkeypatch.setattr(diagnosis, "share_of", lambda _: 1.0)
+    monkeypatch.setattr(diagnosis, "refitted", lambda *_: None)
+    monkeypatch.setattr(diagnosis, "_cause", lambda case, one, fit, tolerance, p, share, present: p)
+    assert list(diagnosis._causes(None, found, None)) == [pytest.approx(0.9), pytest.approx(0.45)]
