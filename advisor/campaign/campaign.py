@@ -13,6 +13,7 @@ from advisor.campaign.late_limits import recount
 from advisor.campaign.lateral import LateralCampaign
 from advisor.campaign.running_estimate import Settled, Settling
 from advisor.campaign.state import OF_ELEVATOR, CampaignState, JudgedLateral, JudgedManeuver, WholeFlights
+from advisor.decision.crew_plan import CrewPlan, crew_plan
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import (
     READER_NOTICE,
@@ -45,6 +46,8 @@ class ManeuverJudged:
 
     judged: JudgedManeuver
     flight_test: FlightTestVerdict
+    plan: CrewPlan | None = None
+    """Plan of both axes; None where only one of them has been flown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +56,8 @@ class LateralJudged:
 
     judged: JudgedLateral
     flight_test: FlightTestVerdict
+    plan: CrewPlan | None = None
+    """Plan of both axes; None where only one of them has been flown."""
 
 
 CampaignEvent = FlightEvent | ManeuverJudged | LateralJudged
@@ -310,7 +315,14 @@ class Campaign:
         verdict = f"manoeuvre {maneuver.number} ({clock(span.start_s)}): {judged.verdict.sentence}"
         self._journal.write_of_past(verdict, span.end_s)
         self._journal.write_of_past(self._elevator.flight_test.sentence, span.end_s)
-        return ManeuverJudged(judged, self._elevator.flight_test)
+        return ManeuverJudged(judged, self._elevator.flight_test, self._plan)
+
+    @property
+    def _plan(self) -> CrewPlan | None:
+        """Plan of both axes; None where only one of them has been flown."""
+        if self._lateral is None or not self._lateral.maneuvers or not self._elevator.judged:
+            return None
+        return crew_plan(self._elevator.flight_test, self._lateral.flight_test)
 
     @property
     def _side_maneuvers(self) -> tuple[Maneuver, ...]:
@@ -321,7 +333,7 @@ class Campaign:
         """Estimate and judge a lateral manoeuvre that has just been flown, where that was asked for."""
         if self._lateral is None:
             return []
-        told = LateralJudged(self._lateral.take(maneuver), self._lateral.flight_test)
+        told = LateralJudged(self._lateral.take(maneuver), self._lateral.flight_test, self._plan)
         span = maneuver.span
         called = f"roll and yaw, manoeuvre {maneuver.number} ({clock(span.start_s)}, {span.kind})"
         self._journal.write_of_past(f"{called}: {told.judged.verdict.sentence}", span.end_s)
@@ -352,7 +364,7 @@ class Campaign:
                 self._elevator.exclude(maneuver.number, because)
             return []
         self._elevator.take_better(maneuver, because)
-        return [ManeuverJudged(self._judged(maneuver.number), self._elevator.flight_test)]
+        return [ManeuverJudged(self._judged(maneuver.number), self._elevator.flight_test, self._plan)]
 
     def _count_anew(self, event: ElevatorRescaled) -> list[CampaignEvent]:
         """Count earlier manoeuvres by a limit that is heard late, so that no two scales are pooled."""

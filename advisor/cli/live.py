@@ -187,7 +187,8 @@ def _announce(link: "KeptLink", event: object) -> None:
     from advisor.campaign.campaign import LateralJudged, ManeuverJudged
 
     if isinstance(event, ManeuverJudged | LateralJudged):
-        verdict = event.flight_test
-        stop = verdict.sentence if verdict.decision == "stop" else None
+        verdict, plan = event.flight_test, event.plan
         axis = "roll and yaw" if isinstance(event, LateralJudged) else ""
-        link.judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop, axis)
+        stop = verdict.sentence if verdict.decision == "stop" else ""
+        stop, about = (stop, axis) if plan is None else (plan.announced, plan.announced)
+        link.judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop, axis, about)

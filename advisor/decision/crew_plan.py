@@ -34,6 +34,13 @@ class CrewPlan:
         return self.next.advice if self.next is not None else ""
 
     @property
+    def announced(self) -> str:
+        """The plan as a ground station hears it; empty while no axis is complete."""
+        if not self.done:
+            return ""
+        return f"TEST COMPLETE: {self.sentence}" if self.is_complete else self.sentence
+
+    @property
     def is_complete(self) -> bool:
         """Whether no axis is open."""
         return not self.open

@@ -45,6 +45,23 @@ def test_a_plan_without_an_open_axis_is_complete_and_advises_no_input():
     assert plan.advice == "no further manoeuvre needed"
 
 
+@pytest.mark.parametrize(
+    ("pitch", "side", "heard"),
+    [
+        (verdict(120.0, REVERSE), verdict(297.0, DOUBLET), ""),
+        (verdict(20.0, ENOUGH), verdict(297.0, DOUBLET), "Pitch is complete, roll and yaw are open."),
+        (verdict(120.0, REVERSE), verdict(40.0, ENOUGH), "Roll and yaw are complete, pitch is open."),
+        (
+            verdict(20.0, ENOUGH),
+            verdict(40.0, ENOUGH),
+            "TEST COMPLETE: Pitch is complete, roll and yaw are complete.",
+        ),
+    ],
+)
+def test_a_ground_station_hears_test_complete_only_where_no_axis_is_open(pitch, side, heard):
+    assert crew_plan(pitch, side).announced == heard
+
+
 def test_an_open_axis_that_lacks_more_comes_first():
     plan = crew_plan(verdict(120.0, REVERSE), verdict(297.0, replace(DOUBLET)))
     assert plan.open == ("roll and yaw", "pitch")

@@ -56,7 +56,7 @@ class Announcer(Talker):
         self._number = 0
         self._stops_told: set[str] = set()
 
-    def judged(self, maneuver: int, sentence: str, stop: str | None = None, axis: str = "") -> None:
+    def judged(self, maneuver: int, sentence: str, stop: str = "", axis: str = "", about: str = "") -> None:
         """Take the verdict on a manoeuvre.
 
         Parameters
@@ -66,16 +66,18 @@ class Announcer(Talker):
         sentence
             Sentence of the verdict.
         stop
-            Sentence of the flight-test verdict when it says stop. It is sent the first time only.
+            Sentence on the axes whose test is complete; empty where none is.
         axis
             Words before the number, where each axis counts its own manoeuvres; empty for the elevator's.
+        about
+            Axis or plan of ``stop``, which is sent the first time only.
         """
         if (axis, maneuver) in self._announced:
             return
         self._announced.add((axis, maneuver))
         sentence = f"{axis} {maneuver} {sentence}".lstrip()
-        if stop is not None and axis not in self._stops_told:
-            self._stops_told.add(axis)
+        if stop and about not in self._stops_told:
+            self._stops_told.add(about)
             sentence = f"{stop} ({sentence})"
         self.say(sentence)
 

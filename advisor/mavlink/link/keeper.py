@@ -219,8 +219,8 @@ class Keeper:
                     case Alive():
                         at_work_s = min(self._looked_s, self._link.looked_s)
                         connection.send(time.monotonic() - at_work_s)
-                    case AnnounceVerdict(maneuver, sentence, stop, axis) if self._announcer:
-                        self._announcer.judged(maneuver, sentence, stop, axis)
+                    case AnnounceVerdict(maneuver, sentence, stop, axis, about) if self._announcer:
+                        self._announcer.judged(maneuver, sentence, stop, axis, about)
                     case Announce(sentence) if self._announcer:
                         self._announcer.say(sentence)
                     case CallOrder(method, arguments):

@@ -106,9 +106,12 @@ class AnnounceVerdict:
 
     maneuver: int
     sentence: str
-    stop: str | None
+    stop: str
+    """Sentence on the axes whose test is complete; empty where none is."""
     axis: str = ""
     """Words before the number; empty for the elevator's axis."""
+    about: str = ""
+    """Axis or plan of the sentence ``stop``, which is sent once for each."""
 
 
 @dataclass(frozen=True, slots=True)

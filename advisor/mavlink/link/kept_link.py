@@ -92,10 +92,10 @@ class KeptLink:
         notices, self._notices = self._notices, []
         return notices
 
-    def judged(self, maneuver: int, sentence: str, stop: str | None, axis: str = "") -> None:
+    def judged(self, maneuver: int, sentence: str, stop: str, axis: str = "", about: str = "") -> None:
         """Request the announcement of a verdict, unless the manoeuvre belongs to a continued recording."""
         if self._connection is not None and self._position > self._before:
-            self._send(AnnounceVerdict(maneuver, sentence, stop, axis))
+            self._send(AnnounceVerdict(maneuver, sentence, stop, axis, about))
 
     def follow(self, system: int) -> None:
         """Follow another vehicle. The stream records the choice, and nothing is sent to a vehicle."""

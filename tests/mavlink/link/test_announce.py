@@ -56,7 +56,9 @@ def test_roll_and_yaw_count_their_own_manoeuvres_and_stop_for_themselves() -> No
     announcer = Announcer()
     announcer.judged(1, "ACCEPTED", stop="TEST COMPLETE")
     announcer.judged(1, "accepted", axis="roll and yaw")
-    announcer.judged(2, "accepted", stop="TEST COMPLETE: roll and yaw", axis="roll and yaw")
+    announcer.judged(
+        2, "accepted", stop="TEST COMPLETE: roll and yaw", axis="roll and yaw", about="roll and yaw"
+    )
     assert joined(announcer) == [
         "@TEST COMPLETE (1 ACCEPTED)",
         "@roll and yaw 1 accepted",
