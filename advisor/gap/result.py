@@ -262,8 +262,6 @@ class Diagnosis(Weighed):
     taken_back: tuple[str, ...] = ()
     """Sentences on corrections that raise the gap of manoeuvres kept apart, and that the improved simulator
     therefore lacks. The sentence ends with them."""
-    is_left_as_given: bool = False
-    """Whether no correction lowers that gap, so that there is no improved simulator."""
     trims: tuple[TrimDifference, ...] = ()
     """Trimmed flight of the user's own simulator and of the aircraft."""
     in_simulator: InSimulator | None = None
@@ -279,7 +277,7 @@ class Diagnosis(Weighed):
     @property
     def improves(self) -> bool:
         """Whether there is an improved simulator: by an effect, or by other numbers."""
-        return self.verdict in IMPROVING and not self.is_left_as_given
+        return self.verdict in IMPROVING
 
 
 def spelled(effect: str) -> str:

@@ -141,6 +141,8 @@ def compare(
     unseen = unseen_of(examined, beside, as_file, holdout, prior) if changes else None
     fly = partial(in_simulator, examined, flying=again, surrogate=surrogate, as_flown=as_flown)
     stays, flown = (examined, fly(None)) if unseen is None else without_worse(examined, unseen, fly)
+    if unseen is not None and not changes_something(stays.diagnosis):
+        unseen, flown = None, fly(None)
     found = _measured(stays, unseen, as_file, flown, as_flown)
     if replays:
         progress("looking for what only the simulator has", _FOUND)

@@ -13,7 +13,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
-from advisor.gap.alternative import Alternative, AlternativeEvidence
+from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
 from advisor.gap.diagnose import Examined, examine
@@ -24,6 +24,7 @@ from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES
 from advisor.gap.verdict.statements import what
 from advisor.gap.verdict.text import answers_of
 from advisor.simulators.around import skewed
+from advisor.simulators.contradicted import answered_by, with_share
 from advisor.simulators.flying import AsGiven, Flying, without_difference
 from advisor.simulators.inputs import on_grid
 from advisor.simulators.protocol import Replay
@@ -60,13 +61,13 @@ class Mirrored:
         if simulated is not None:
             names = tuple(cause.effect for cause in self.causes)
             simulated = replace(simulated, after=simulated.before, percent=0.0, on_paper=names)
-        evidence = _with(diagnosis.evidence, first)
+        mine = Alternative("effect", first.effect, first.block)
+        known = diagnosis.evidence
+        evidence = with_share(known, mine, first.probability) if known else ()
         return replace(
-            diagnosis, verdict="effect", sentence=as_sure(sentence, answers_of(evidence)), where=where,
-            causes=self.causes, effects={}, waterfall=((first.effect, self.after),), shrink=None,
-            in_simulator=simulated, evidence=evidence,
-            answer=evidence[0].alternative if evidence else None,
-            why=(), rival="",
+            answered_by(diagnosis, evidence, mine), sentence=as_sure(sentence, answers_of(evidence)),
+            where=where, causes=self.causes, effects={}, waterfall=((first.effect, self.after),), shrink=None,
+            in_simulator=simulated,
         )  # fmt: skip
 
 
@@ -170,19 +171,6 @@ def _beyond(
         linear = skewed(problem.fly(there, trimmed_at(numbers, there)), there.h, numbers)
         found[there.number] = AsGiven(there, on_grid(replay, there) - linear)
     return found
-
-
-def _with(known: Sequence[AlternativeEvidence], first: Cause) -> tuple[AlternativeEvidence, ...]:
-    """Return the evidence with one effect more; the probabilities of the others share what is left."""
-    if not known:
-        return ()
-    rest = 1.0 - first.probability
-    others = [replace(one, probability=rest * one.probability) for one in known]
-    mine = Alternative("effect", first.effect, first.block)
-    already = sum(one.probability for one in others if one.alternative == mine)
-    others = [one for one in others if one.alternative != mine]
-    others.append(AlternativeEvidence(mine, (), first.probability + already))
-    return tuple(sorted(others, key=lambda one: -one.probability))
 
 
 def _said(cause: Cause) -> str:

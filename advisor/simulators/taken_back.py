@@ -9,7 +9,8 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.result import VISIBLE, spelled
-from advisor.simulators.unseen import UnseenManeuvers, by_the_file, floor_of, resaid, shrink_on
+from advisor.simulators.contradicted import contradicted
+from advisor.simulators.unseen import UnseenManeuvers, by_the_file, floor_of, percent_of, resaid, shrink_on
 
 
 class _Gap(Protocol):
@@ -57,12 +58,14 @@ def without_worse(
     kept = [numbers[i] for i in unseen.kept]
     if best.gap_after > best.gap_before + VISIBLE:
         said = taken_back_said(["every correction"], unused(kept), every.gap_after, best.gap_before)
-        told = replace(whole.diagnosis, effects={}, taken_back=(said,), is_left_as_given=True)
-        return replace(whole, diagnosis=told), best
+        none = whole.with_most(0)
+        told = (*whole.diagnosis.taken_back, said)
+        return replace(none, diagnosis=replace(contradicted(none.diagnosis, 0.0), taken_back=told)), best
     taken = [k for k, name in enumerate(whole.named) if name in found.named[stay:]]
     if not taken:
         return whole, every
-    return _without(whole, taken[0], unused(kept), every.gap_after, best.gap_after), best
+    removed = 0.01 * percent_of(best.gap_before, best.gap_after)
+    return _without(whole, taken[0], unused(kept), every.gap_after, best.gap_after, removed), best
 
 
 def _shortened(found: Examined, most: int) -> Examined:
@@ -88,15 +91,21 @@ def without_raised(whole: Examined) -> Examined:
             stay = most
     if stay == len(whole.named):
         return whole
-    return _without(whole, stay, "manoeuvres held out in turn", gaps[-1], gaps[stay])
+    removed = 0.01 * percent_of(whole.diagnosis.gap.before, gaps[stay])
+    return _without(whole, stay, "manoeuvres held out in turn", gaps[-1], gaps[stay], removed)
 
 
-def _without(whole: Examined, most: int, flown: str, worse: float, better: float) -> Examined:
-    """Return a diagnosis with the first effects, at most so many, which names the others and their gap."""
+def _without(whole: Examined, most: int, flown: str, worse: float, better: float, removed: float) -> Examined:
+    """Return a diagnosis with the first effects, at most so many, which names the others and their gap.
+
+    Without any effect the answer is contradicted; ``removed`` is the share of the gap that the numbers
+    remove.
+    """
     effects = [spelled(effect) for effect in whole.named[most:]]
     said = (*whole.diagnosis.taken_back, taken_back_said(effects, flown, worse, better))
     stays = whole.with_most(most)
-    return replace(stays, diagnosis=replace(stays.diagnosis, taken_back=said), fewer=whole.fewer)
+    told = stays.diagnosis if most else contradicted(stays.diagnosis, removed)
+    return replace(stays, diagnosis=replace(told, taken_back=said), fewer=whole.fewer)
 
 
 def with_unseen_shrink(whole: Examined, unseen: UnseenManeuvers, aircraft: Aircraft) -> Examined:

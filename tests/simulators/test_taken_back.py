@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
@@ -21,6 +22,9 @@ from tests.simulators.nonlinear import flown
 NUMBERED = SimpleNamespace(
     flights=SimpleNamespace(flights=[SimpleNamespace(number=n) for n in (1, 2, 3)]), channels=("q",)
 )
+
+
+LAG = Alternative("effect", "actuator_lag", "input")
 
 
 @dataclass(frozen=True)
@@ -52,7 +56,8 @@ def answer(*named: str, in_turn: tuple[float, ...] = ()) -> Examined:
         for gap, name in zip(gaps, (*named, None), strict=False)
     )
     findings, found = Found(models, NUMBERED), improvable()
-    found = replace(found, gap=replace(found.gap, floor={"q": 1.0}))
+    causes = tuple(replace(cause, present=bool(named)) for cause in found.causes)
+    found = replace(found, gap=replace(found.gap, floor={"q": 1.0}), causes=causes, answer=LAG)
     return Examined(found, findings, lambda most: answer(*named[:most], in_turn=gaps))
 
 
@@ -86,6 +91,13 @@ def test_an_effect_that_raises_the_gap_held_out_in_turn_leaves_first():
     assert without_raised(answer("actuator_lag", in_turn=(0.2, 0.24))).named == ("actuator_lag",)
 
 
+@pytest.mark.parametrize(("numbers_alone", "verdict"), [(4.0, "parameters"), (400.0, "unknown")])
+def test_an_answer_whose_first_effect_raises_the_gap_is_another_answer(numbers_alone, verdict):
+    stays, measured = taken({0: numbers_alone, 1: 620.0}, "actuator_lag")
+    assert (stays.diagnosis.verdict, measured.gap_after) == (verdict, numbers_alone)
+    assert stays.diagnosis.taken_back[0].startswith("Taken back: actuator lag, with which the gap is 620")
+
+
 def test_an_answer_that_lowers_the_gap_stays_whole():
     stays, measured = taken({0: 40.0, 1: 0.2, 2: 0.19}, "actuator_lag", "mass_change")
     assert stays.named == ("actuator_lag", "mass_change")
@@ -100,6 +112,7 @@ def test_a_difference_that_nobody_sees_takes_nothing_back():
 
 def test_a_simulator_that_every_correction_makes_worse_stays_as_it_is():
     stays, _ = taken({0: 3.0, 1: 2.5}, "actuator_lag", given=2.0)
+    assert stays.diagnosis.verdict == "unknown"
     assert not stays.diagnosis.improves
     assert not stays.diagnosis.effects
     assert stays.diagnosis.taken_back[0].startswith("Taken back: every correction, with which the gap")

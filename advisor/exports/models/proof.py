@@ -22,8 +22,10 @@ from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis, spelled
 from advisor.simulators.compare import Compared
+from advisor.simulators.contradicted import contradicted
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.taken_back import taken_back_said, unused
+from advisor.simulators.unseen import percent_of
 from advisor.words.problems import UnusableInputError
 
 Progress = Callable[[str, float], None]
@@ -78,8 +80,12 @@ class Proof:
             return found
         words = [one if one == NUMBERS else spelled(one) for one in self.taken_back]
         said = taken_back_said(words, unused(self.maneuvers), self.gap_with_them, self.after)
+        lead = next(iter(named(found)), NUMBERS)
         for part in self.taken_back:
             found = without(found, part, given)
+        if lead in self.taken_back:
+            found = contradicted(found, 0.01 * percent_of(self.before, self.after))
+            found = replace(found, sentence=" ".join([*found.static, found.sentence, *found.taken_back]))
         return replace(found, taken_back=(*found.taken_back, said), sentence=f"{found.sentence} {said}")
 
 

@@ -43,7 +43,7 @@ def without(found: Diagnosis, part: str, given: Mapping[str, float]) -> Diagnosi
     """Return a finding without one of its effects, or with the numbers of the simulator as given."""
     if part == NUMBERS:
         own = {name: replace(one, value=given.get(name, one.value)) for name, one in found.model.items()}
-        return replace(found, model=own, derivatives=(), is_left_as_given=not found.effects)
+        return replace(found, model=own, derivatives=())
     return replace(
         found,
         effects={effect: sizes for effect, sizes in found.effects.items() if effect != part},
