@@ -69,37 +69,6 @@ class AxisGrid(NamedTuple):
     """State that the cosine multiplies."""
 
 
-class _Scratch(NamedTuple):
-    """Arrays of one step, allocated once: the kernel spends its time on numbers, not on memory."""
-
-    before: FloatArray
-    """(n + u + 1,) states, inputs and 1 at the beginning of the step."""
-    middle: FloatArray
-    """(n + u + 1,) in the middle of the step."""
-    after: FloatArray
-    """(n + u + 1,) at the end of the step."""
-    matrix: FloatArray
-    """(n, n + u + 1) parameters at the air speed ratio of the step."""
-    power: FloatArray
-    """(d,) factor of each derivative and constant by the air speed ratio."""
-    rate: FloatArray
-    """(n,) rates of the states."""
-    total: FloatArray
-    """(n,) weighted sum of the rates in the step."""
-    trial: FloatArray
-    """(n,) states at which the rates are taken."""
-    jacobian: FloatArray
-    """(n, n) derivatives of the rates by the states."""
-    whole: FloatArray
-    """(n, n) exponential of the matrix over the step."""
-    half: FloatArray
-    """(n, n) exponential over half the step."""
-    term: FloatArray
-    """(2, n, n) terms of the series of an exponential."""
-    moved: FloatArray
-    """(n, w) new sensitivities."""
-
-
 @kernel()
 def respond_axis(
     grid: AxisGrid, shared: FloatArray, local: FloatArray, y: FloatArray, g: FloatArray, motion: FloatArray
@@ -132,103 +101,227 @@ def respond_axis(
 def _respond_in(
     grid: AxisGrid, m: int, theta: FloatArray, y: FloatArray, g: FloatArray, motion: FloatArray
 ) -> bool:
-    """Solve the model over manoeuvre ``m`` with ``theta``, all parameters; return False if it overflows."""
-    n, known, inputs = grid.linear.shape[1], len(grid.place), grid.inputs.shape[1]
-    width = known + n + grid.changed.shape[1] if g.shape[0] > 0 else 0
-    x = theta[known : known + n].copy()
-    by = np.zeros((n, width))
-    for i in range(n if width else 0):
-        by[i, known + i] = 1.0
-    size = n + inputs + 1
-    scratch = _Scratch(
-        np.empty(size), np.empty(size), np.empty(size), np.zeros((n, size)), np.empty(known),
-        np.empty(n), np.empty(n), np.empty(n),
-        np.empty((n, n)), np.empty((n, n)), np.empty((n, n)), np.empty((2, n, n)), np.empty((n, width)),
-    )  # fmt: skip
+    """Solve the model over manoeuvre ``m`` with ``theta``, all parameters; return False if it overflows.
+
+    Each function goes through the whole manoeuvre: to hand the grid over costs as much as a step.
+    """
     begin, end = grid.first[m], grid.first[m + 1]
-    for e in range(begin, end):
-        if e == begin or grid.ratio[e] != grid.ratio[e - 1]:
-            _fill(grid, grid.ratio[e], theta, scratch)
-        _read(grid, e, theta, x, by, scratch, y, g)
-        if motion.shape[0] > 0:
-            _feature(grid, e, x, 0.0, scratch.before)
-            _rates(grid, e, scratch.before, scratch)
-            motion[e, 0], motion[e, 1] = x, scratch.rate
-        if e + 1 == end:
-            break
-        parts = _parts(grid.linear[e], scratch.matrix, grid.step_s[e])
-        if parts == 0:
-            return False
-        h = grid.step_s[e] / parts
-        for part in range(parts):
-            _advance(grid, e, part * h, h, x, scratch, width > 0)
-            if width:
-                _carry(grid, e, part * h, h, by, scratch)
-        size_of_states = 0.0
-        for i in range(n):
-            size_of_states += abs(x[i])
-        if not size_of_states < LARGEST:
-            return False
+    parts = _parts(grid, begin, end, theta)
+    if np.min(parts) == 0:
+        return False
+    course = np.empty((np.sum(parts), 3, grid.linear.shape[1] + grid.inputs.shape[1] + 1))
+    if not _advance(grid, begin, end, theta, parts, course, motion):
+        return False
+    _read(grid, begin, end, theta, parts, course, y)
+    if g.shape[0] > 0:
+        _carry(grid, begin, end, theta, parts, course, g)
     return True
 
 
 @kernel()
-def _advance(
-    grid: AxisGrid, e: int, since_s: float, h: float, x: FloatArray, scratch: _Scratch, carries: bool
-) -> None:
-    """Advance the states ``x`` (n,) by a step of length ``h`` that begins ``since_s`` after event ``e``.
+def _parts(grid: AxisGrid, begin: int, end: int, theta: FloatArray) -> Index:
+    """Return into how many equal parts each step is divided; 0 where the matrix is too large.
 
-    ``scratch`` receives the states and inputs at three times of the step. Where sensitivities are carried,
-    it receives the exponentials of the matrix in the middle, too.
+    The last event has a part of no length.
     """
-    n = len(x)
-    rate, total, trial = scratch.rate, scratch.total, scratch.trial
-    _feature(grid, e, x, since_s, scratch.before)
-    _rates(grid, e, scratch.before, scratch)
-    total[:] = rate
-    for _ in range(2):
+    place, ratio, linear, step_s = grid.place, grid.ratio, grid.linear, grid.step_s
+    n = linear.shape[1]
+    matrix = np.empty((n, n + grid.inputs.shape[1] + 1))
+    parts = np.ones(end - begin, np.int64)
+    for e in range(begin, end - 1):
+        _fill(place, ratio[e], theta, matrix)
+        largest = 0.0
         for i in range(n):
-            trial[i] = x[i] + 0.5 * h * rate[i]
-        _feature(grid, e, trial, since_s + 0.5 * h, scratch.middle)
-        _rates(grid, e, scratch.middle, scratch)
-        for i in range(n):
-            total[i] += 2.0 * rate[i]
-    if carries:
-        _exponential(h, scratch.jacobian, scratch.whole, scratch.term)
-        _exponential(0.5 * h, scratch.jacobian, scratch.half, scratch.term)
-    for i in range(n):
-        trial[i] = x[i] + h * rate[i]
-    _feature(grid, e, trial, since_s + h, scratch.after)
-    _rates(grid, e, scratch.after, scratch)
-    for i in range(n):
-        x[i] += h / 6.0 * (total[i] + rate[i])
-        scratch.after[i] = x[i]
+            size = 0.0
+            for j in range(n):
+                size += abs(linear[e, i, j] + matrix[i, j])
+            largest = max(largest, size)
+        if not largest * step_s[e] < REACH * MOST_PARTS:
+            parts[e - begin] = 0
+        else:
+            parts[e - begin] = max(1, math.ceil(largest * step_s[e] / REACH))
+    return parts
 
 
 @kernel()
-def _carry(grid: AxisGrid, e: int, since_s: float, h: float, by: FloatArray, scratch: _Scratch) -> None:
-    """Advance the sensitivities ``by`` (n, w) over a step, by Simpson's rule for the forcing.
+def _fill(place: Index, ratio: float, theta: FloatArray, matrix: FloatArray) -> None:
+    """Write the parameters at an air speed ratio into a matrix (n, n + u + 1)."""
+    matrix[:] = 0.0
+    for k in range(len(place)):
+        matrix[place[k, 0], place[k, 1]] += theta[k] * _power(ratio, place[k, 2])
 
-    The derivatives of the rates are those in the middle.
+
+@kernel()
+def _power(ratio: float, power: int) -> float:
+    """Return the factor of a parameter at an air speed ratio."""
+    factor = 1.0
+    for _ in range(power):
+        factor *= ratio
+    return factor
+
+
+@kernel()
+def _advance(
+    grid: AxisGrid, begin: int, end: int, theta: FloatArray, parts: Index, course: FloatArray,
+    motion: FloatArray,
+) -> bool:  # fmt: skip
+    """Solve for the states.
+
+    ``course`` (parts, 3, n + u + 1) receives states, inputs and 1. The three points of a part are its
+    beginning, its middle and its end.
     """
+    place, ratio, step_s = grid.place, grid.ratio, grid.step_s
+    start, slope = grid.start, grid.slope
+    linear, sine, turn, bank, yaw = grid.linear, grid.sine, grid.turn, grid.bank, grid.yaw
+    n, inputs = linear.shape[1], start.shape[1]
+    x, rate, total = theta[len(place) : len(place) + n].copy(), np.zeros(n), np.empty(n)
+    matrix = np.empty((n, course.shape[2]))
+    k = 0
+    for e in range(begin, end):
+        _fill(place, ratio[e], theta, matrix)
+        h = step_s[e] / parts[e - begin] if e + 1 < end else 0.0
+        for part in range(parts[e - begin]):
+            total[:] = 0.0
+            for stage in range(4):
+                row = (stage + 1) // 2
+                since = 0.5 * row * h
+                for i in range(n):
+                    course[k, row, i] = x[i] + since * rate[i]
+                for j in range(inputs):
+                    course[k, row, n + j] = start[e, j] + (part * h + since) * slope[e, j]
+                course[k, row, n + inputs] = 1.0
+                _rates(linear, sine, turn, bank, yaw, e, matrix, course, k, row, rate)
+                if stage == 0 and part == 0 and motion.shape[0] > 0:
+                    motion[e, 0], motion[e, 1] = x, rate
+                for i in range(n):
+                    total[i] += (2.0 if row == 1 else 1.0) * rate[i]
+            size = 0.0
+            for i in range(n):
+                x[i] += h / 6.0 * total[i]
+                course[k, 2, i] = x[i]
+                size += abs(x[i])
+            if not size < LARGEST:
+                return False
+            k += 1
+    return True
+
+
+@kernel()
+def _rates(
+    linear: FloatArray, sine: FloatArray, turn: FloatArray, bank: int, yaw: int, e: int, matrix: FloatArray,
+    course: FloatArray, k: int, row: int, rate: FloatArray,
+) -> None:  # fmt: skip
+    """Write the rates of the states (n,) at one point of part ``k``."""
+    n, size = matrix.shape
+    up, along = 0.0, 0.0
+    if bank >= 0:
+        up, along = math.sin(course[k, row, bank]), math.cos(course[k, row, bank]) * course[k, row, yaw]
+    for i in range(n):
+        value = 0.0
+        for j in range(size):
+            value += matrix[i, j] * course[k, row, j]
+        for j in range(n):
+            value += linear[e, i, j] * course[k, row, j]
+        if bank >= 0:
+            value += sine[e, i] * up + turn[e, i] * along
+        rate[i] = value
+
+
+@kernel()
+def _read(
+    grid: AxisGrid, begin: int, end: int, theta: FloatArray, parts: Index, course: FloatArray, y: FloatArray
+) -> None:
+    """Write the outputs at all events."""
+    place, ratio, inputs, bias = grid.place, grid.ratio, grid.inputs, grid.bias
+    row, seen, felt = grid.row, grid.seen, grid.felt
+    n, moved = seen.shape[2], inputs.shape[1]
+    matrix = np.empty((n, n + moved + 1))
+    k = 0
+    for e in range(begin, end):
+        _fill(place, ratio[e], theta, matrix)
+        for c in range(len(row)):
+            if row[c, e] < 0:
+                continue
+            value = theta[bias[c]] if bias[c] >= 0 else 0.0
+            for i in range(n):
+                rate = matrix[i, n + moved]
+                for j in range(n):
+                    rate += matrix[i, j] * course[k, 0, j]
+                for j in range(moved):
+                    rate += matrix[i, n + j] * inputs[e, j]
+                value += seen[e, c, i] * course[k, 0, i] + felt[e, c, i] * rate
+            y[row[c, e]] = value
+        k += parts[e - begin]
+
+
+@kernel()
+def _carry(
+    grid: AxisGrid, begin: int, end: int, theta: FloatArray, parts: Index, course: FloatArray, g: FloatArray
+) -> None:
+    """Write the sensitivities of the outputs.
+
+    Those of the states are advanced by Simpson's rule for the forcing. The derivatives of the rates are those
+    in the middle of each part.
+    """
+    place, ratio, step_s = grid.place, grid.ratio, grid.step_s
+    linear, sine, turn, bank, yaw = grid.linear, grid.sine, grid.turn, grid.bank, grid.yaw
+    start, slope, inputs, changed = grid.changed_start, grid.changed_slope, grid.inputs, grid.changed
+    row, seen, felt, bias = grid.row, grid.seen, grid.felt, grid.bias
+    n = linear.shape[1]
+    by = np.zeros((n, len(place) + n + changed.shape[1]))
+    for i in range(n):
+        by[i, len(place) + i] = 1.0
+    moved = np.empty(by.shape)
+    matrix = np.empty((n, course.shape[2]))
+    a, whole, half, term = np.empty((n, n)), np.empty((n, n)), np.empty((n, n)), np.empty((2, n, n))
+    k = 0
+    for e in range(begin, end):
+        _fill(place, ratio[e], theta, matrix)
+        for c in range(len(row)):
+            if row[c, e] >= 0:
+                _feel(
+                    place, ratio[e], inputs, changed, seen, felt, bias, e, c, matrix, course, k, by, g,
+                    row[c, e],
+                )  # fmt: skip
+        h = step_s[e] / parts[e - begin] if e + 1 < end else 0.0
+        for part in range(parts[e - begin] if e + 1 < end else 0):
+            for i in range(n):
+                for j in range(n):
+                    a[i, j] = matrix[i, j] + linear[e, i, j]
+                if bank >= 0:
+                    up, along = math.sin(course[k, 1, bank]), math.cos(course[k, 1, bank])
+                    a[i, bank] += sine[e, i] * along - turn[e, i] * course[k, 1, yaw] * up
+                    a[i, yaw] += turn[e, i] * along
+            _exponential(h, a, whole, term)
+            _exponential(0.5 * h, a, half, term)
+            _force(place, ratio[e], start, slope, e, part * h, h, matrix, course, k, whole, half, by, moved)
+            k += 1
+
+
+@kernel()
+def _force(
+    place: Index, ratio: float, changed_start: FloatArray, changed_slope: FloatArray, e: int,
+    since_s: float, h: float, matrix: FloatArray, course: FloatArray, part: int, whole: FloatArray,
+    half: FloatArray, by: FloatArray, moved: FloatArray,
+) -> None:  # fmt: skip
+    """Advance the sensitivities ``by`` (n, w) over one part of a step."""
     n, width = by.shape
-    whole, half, matrix, moved = scratch.whole, scratch.half, scratch.matrix, scratch.moved
     moved[:] = 0.0
     for i in range(n):
         for j in range(n):
             for k in range(width):
                 moved[i, k] += whole[i, j] * by[j, k]
-    for k in range(len(grid.place)):
-        row, column = grid.place[k, 0], grid.place[k, 1]
-        size = h / 6.0 * scratch.power[k]
-        first, second = size * scratch.before[column], 4.0 * size * scratch.middle[column]
+    for k in range(len(place)):
+        row, column = place[k, 0], place[k, 1]
+        size = h / 6.0 * _power(ratio, place[k, 2])
+        first, second = size * course[part, 0, column], 4.0 * size * course[part, 1, column]
         for i in range(n):
             moved[i, k] += whole[i, row] * first + half[i, row] * second
-        moved[row, k] += size * scratch.after[column]
-    for c in range(grid.changed.shape[1]):
-        k = len(grid.place) + n + c
-        for j in range(grid.inputs.shape[1]):
-            start, slope = grid.changed_start[e, c, j], grid.changed_slope[e, c, j]
+        moved[row, k] += size * course[part, 2, column]
+    for c in range(changed_start.shape[1]):
+        k = len(place) + n + c
+        for j in range(changed_start.shape[2]):
+            start, slope = changed_start[e, c, j], changed_slope[e, c, j]
             first, last = start + since_s * slope, start + (since_s + h) * slope
             for row in range(n):
                 size = h / 6.0 * matrix[row, n + j]
@@ -248,144 +341,46 @@ def _exponential(h: float, a: FloatArray, total: FloatArray, term: FloatArray) -
             term[0, i, k] = h * a[i, k]
             total[i, k] = term[0, i, k] + (1.0 if i == k else 0.0)
     for order in range(2, 5):
-        old, new = term[order % 2], term[1 - order % 2]
+        now = order % 2
         for i in range(n):
             for k in range(n):
                 product = 0.0
                 for j in range(n):
-                    product += old[i, j] * a[j, k]
-                new[i, k] = h / order * product
-                total[i, k] += new[i, k]
-
-
-@kernel()
-def _fill(grid: AxisGrid, s: float, theta: FloatArray, scratch: _Scratch) -> None:
-    """Write the parameters at an air speed ratio, and their factors by the ratio."""
-    scratch.matrix[:] = 0.0
-    for k in range(len(grid.place)):
-        scratch.power[k] = s ** grid.place[k, 2]
-        scratch.matrix[grid.place[k, 0], grid.place[k, 1]] += theta[k] * scratch.power[k]
-
-
-@kernel()
-def _parts(linear: FloatArray, matrix: FloatArray, step_s: float) -> int:
-    """Return into how many equal parts a step is divided; 0 where the matrix is too large."""
-    largest = 0.0
-    for i in range(len(linear)):
-        size = 0.0
-        for j in range(len(linear)):
-            size += abs(linear[i, j] + matrix[i, j])
-        largest = max(largest, size)
-    if not largest * step_s < REACH * MOST_PARTS:
-        return 0
-    return max(1, math.ceil(largest * step_s / REACH))
-
-
-@kernel()
-def _feature(grid: AxisGrid, e: int, x: FloatArray, since_s: float, z: FloatArray) -> None:
-    """Write states, inputs and 1 into ``z``, at a time after event ``e``."""
-    n = len(x)
-    for i in range(n):
-        z[i] = x[i]
-    for j in range(grid.inputs.shape[1]):
-        z[n + j] = grid.start[e, j] + since_s * grid.slope[e, j]
-    z[len(z) - 1] = 1.0
-
-
-@kernel()
-def _rates(grid: AxisGrid, e: int, z: FloatArray, scratch: _Scratch) -> None:
-    """Write the rates of the states at ``z`` (n + u + 1,), and their derivatives by the states."""
-    rate, jacobian, matrix = scratch.rate, scratch.jacobian, scratch.matrix
-    n = len(rate)
-    sine, cosine = 0.0, 0.0
-    if grid.bank >= 0:
-        sine, cosine = math.sin(z[grid.bank]), math.cos(z[grid.bank])
-    for i in range(n):
-        value = 0.0
-        for j in range(len(z)):
-            value += matrix[i, j] * z[j]
-        for j in range(n):
-            value += grid.linear[e, i, j] * z[j]
-            jacobian[i, j] = matrix[i, j] + grid.linear[e, i, j]
-        if grid.bank >= 0:
-            yaw = z[grid.yaw]
-            value += grid.sine[e, i] * sine + grid.turn[e, i] * yaw * cosine
-            jacobian[i, grid.bank] += grid.sine[e, i] * cosine - grid.turn[e, i] * yaw * sine
-            jacobian[i, grid.yaw] += grid.turn[e, i] * cosine
-        rate[i] = value
-
-
-@kernel()
-def _read(
-    grid: AxisGrid,
-    e: int,
-    theta: FloatArray,
-    x: FloatArray,
-    by: FloatArray,
-    scratch: _Scratch,
-    y: FloatArray,
-    g: FloatArray,
-) -> None:
-    """Write the outputs at event ``e``, and their derivatives, from states ``x``, sensitivities ``by``."""
-    n, width = by.shape
-    z, own = scratch.before, len(grid.place) + len(x)
-    _feature(grid, e, x, 0.0, z)
-    for j in range(grid.inputs.shape[1]):
-        z[n + j] = grid.inputs[e, j]
-    for c in range(len(grid.row)):
-        row = grid.row[c, e]
-        if row < 0:
-            continue
-        bias = grid.bias[c]
-        y[row] = theta[bias] if bias >= 0 else 0.0
-        if width:
-            g[row, :] = 0.0
-            if bias >= 0:
-                g[row, bias] = 1.0
-        for i in range(n):
-            factor = grid.seen[e, c, i]
-            y[row] += factor * x[i]
-            if factor != 0.0 and width:
-                _add(factor, by[i], own, g[row])
-            if grid.felt[e, c, i] != 0.0:
-                _feel(grid, e, i, grid.felt[e, c, i], by, scratch, y[row : row + 1], g[row] if width else z)
-
-
-@kernel()
-def _add(factor: float, by: FloatArray, own: int, g: FloatArray) -> None:
-    """Add sensitivities ``by`` (w,) of a state to those of an output ``g`` (p,), whose biases have columns
-    after the first ``own``."""
-    for k in range(own):
-        g[k] += factor * by[k]
-    for k in range(own, len(by)):
-        g[len(g) - len(by) + k] += factor * by[k]
+                    product += term[now, i, j] * a[j, k]
+                term[1 - now, i, k] = h / order * product
+                total[i, k] += term[1 - now, i, k]
 
 
 @kernel()
 def _feel(
-    grid: AxisGrid,
-    e: int,
-    i: int,
-    factor: float,
-    by: FloatArray,
-    scratch: _Scratch,
-    y: FloatArray,
-    g: FloatArray,
-) -> None:
-    """Add the parameters' part of the rate of state ``i`` to an output ``y`` (1,), derivatives ``g`` (p,)."""
-    n, width = by.shape
-    matrix, z = scratch.matrix, scratch.before
-    for j in range(len(z)):
-        y[0] += factor * matrix[i, j] * z[j]
-    if width == 0:
-        return
-    for j in range(n):
-        if matrix[i, j] != 0.0:
-            _add(factor * matrix[i, j], by[j], len(grid.place) + n, g)
-    for k in range(len(grid.place)):
-        if grid.place[k, 0] == i:
-            g[k] += factor * scratch.power[k] * z[grid.place[k, 1]]
-    causes = grid.changed.shape[1]
-    for c in range(causes):
-        for j in range(grid.inputs.shape[1]):
-            g[len(g) - causes + c] += factor * matrix[i, n + j] * grid.changed[e, c, j]
+    place: Index, ratio: float, inputs: FloatArray, changed: FloatArray, seen: FloatArray, felt: FloatArray,
+    bias: Index, e: int, c: int, matrix: FloatArray, course: FloatArray, part: int, by: FloatArray,
+    g: FloatArray, row: int,
+) -> None:  # fmt: skip
+    """Write the derivatives of output ``c`` at event ``e``, at the beginning of a part.
+
+    Biases have columns after those of the initial states; causes come last.
+    """
+    n, causes, last = len(by), changed.shape[1], g.shape[1]
+    own = len(place) + n
+    g[row, :] = 0.0
+    if bias[c] >= 0:
+        g[row, bias[c]] = 1.0
+    for i in range(n):
+        for j in range(n):
+            factor = felt[e, c, i] * matrix[i, j] + (seen[e, c, i] if i == j else 0.0)
+            if factor != 0.0:
+                for k in range(own):
+                    g[row, k] += factor * by[j, k]
+                for k in range(causes):
+                    g[row, last - causes + k] += factor * by[j, own + k]
+        if felt[e, c, i] == 0.0:
+            continue
+        for k in range(len(place)):
+            if place[k, 0] == i:
+                column = place[k, 1]
+                z = inputs[e, column - n] if n <= column < n + inputs.shape[1] else course[part, 0, column]
+                g[row, k] += felt[e, c, i] * _power(ratio, place[k, 2]) * z
+        for k in range(causes):
+            for j in range(inputs.shape[1]):
+                g[row, last - causes + k] += felt[e, c, i] * matrix[i, n + j] * changed[e, k, j]
