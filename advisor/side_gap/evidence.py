@@ -1,11 +1,8 @@
-"""Evidence on explanations: marginal likelihoods, and the gain on manoeuvres that a fit has not seen.
+"""Information of a fit in roll and yaw, and its gain on manoeuvres that it has not seen.
 
-About its optimum the likelihood is a Gaussian of derivatives and numbers. With a Gaussian prior its integral
-has a closed form (Laplace's method; MacKay, *Neural Computation* 4, 1992). Residuals are coloured, so a nat
-of white noise counts as ``share``² nats.
+Residuals are coloured, so a nat of white noise counts as ``share``² nats.
 """
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -53,25 +50,6 @@ def share_of(fit: Fit) -> float:
     return float(np.clip(np.median(ratio), 0.0, 1.0)) if len(ratio) else 1.0
 
 
-def log_evidence(fit: Fit, told: Information, known: Known, share: float) -> float:
-    """Return the log of the marginal likelihood under a prior, up to a constant that all models share."""
-    matrix, gradient = np.sum(told.matrix, axis=0), np.sum(told.gradient, axis=0)
-    return log_marginal(share**2 * fit.likelihood, matrix, gradient, fit.values, known)
-
-
-def log_marginal(
-    likelihood: float, matrix: FloatArray, gradient: FloatArray, values: FloatArray, known: Known
-) -> float:
-    """Return the log of the marginal likelihood from the log likelihood at ``values`` (k,), its gradient (k,)
-    and its information (k, k)."""
-    off = values - known.mean
-    pull = gradient - known.precision * off
-    posterior = matrix + np.diag(known.precision)
-    volume = 0.5 * (np.sum(np.log(known.precision)) - np.linalg.slogdet(posterior)[1])
-    height = 0.5 * pull @ np.linalg.solve(posterior, pull) - 0.5 * off @ (known.precision * off)
-    return float(likelihood + volume + height)
-
-
 def posterior_of(fit: Fit, told: Information, known: Known) -> tuple[FloatArray, FloatArray]:
     """Return mean (15 + k,) and covariance of derivatives and numbers under a prior."""
     posterior = np.sum(told.matrix, axis=0) + np.diag(known.precision)
@@ -91,17 +69,16 @@ class Squares(NamedTuple):
 
 def squares_of(fit: Fit, told: Information, known: Known) -> Squares:
     """Return the squares of a model in the fit, and on manoeuvres held out one by one."""
-    nothing = Information(np.zeros_like(told.matrix), np.zeros_like(told.gradient))
-    return Squares(_squares(fit, told, nothing, known), _squares(fit, told, told, known))
+    return Squares(*(_squares(fit, told, known, without) for without in (0.0, 1.0)))
 
 
-def _squares(fit: Fit, told: Information, without: Information, known: Known) -> FloatArray:
-    """Return the sums of squares of each manoeuvre by a fit to the information ``told`` minus ``without``."""
+def _squares(fit: Fit, told: Information, known: Known, without: float) -> FloatArray:
+    """Return the sums of squares of each manoeuvre by a fit to all, less a share of its own information."""
     matrix, gradient = np.sum(told.matrix, axis=0), np.sum(told.gradient, axis=0)
     squares = np.zeros((fit.assembly.maneuvers, len(fit.noise)))
     for m in range(len(squares)):
-        posterior = matrix - without.matrix[m] + np.diag(known.precision)
-        pull = gradient - without.gradient[m] - known.precision * (fit.values - known.mean)
+        posterior = matrix - without * told.matrix[m] + np.diag(known.precision)
+        pull = gradient - without * told.gradient[m] - known.precision * (fit.values - known.mean)
         rows = fit.assembly.owner == m
         left = fit.residual[rows] - fit.columns[rows] @ np.linalg.solve(posterior, pull)
         squares[m] = np.bincount(fit.assembly.channel[rows], left**2, len(fit.noise))
@@ -124,9 +101,3 @@ def gain_of(before: FloatArray, after: FloatArray, counts: FloatArray, share: fl
     scale = counts[told] / sums[1]
     each = 0.5 * share**2 * np.sum((before - after)[:, told] * scale, axis=1)
     return Gain(total, float(np.sqrt(len(each)) * np.std(each, ddof=1)) if len(each) > 1 else np.inf)
-
-
-def probabilities(told: Sequence[float] | FloatArray) -> FloatArray:
-    """Return the probability of every explanation, shape (n,), from its log weight, nats."""
-    weights = np.exp(np.asarray(told) - np.max(told))
-    return np.asarray(weights / np.sum(weights))

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.inference.marginal import Prior
 from advisor.model.axis_response import respond_axis
 from advisor.model.lateral import LATERAL
 from advisor.oem.arrow import unabsorbed
@@ -49,6 +50,10 @@ class Known:
     mean: FloatArray
     precision: FloatArray
     """(15 + k,) inverse variances."""
+
+    def prior(self, values: FloatArray) -> Prior:
+        """Return the prior about the values (15 + k,) of a fit."""
+        return Prior(self.precision, self.mean - values)
 
 
 class Point(NamedTuple):

@@ -5,9 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.inference.explanation import Evidence, Explanation
+from advisor.gap.inference.marginal import marginal
 from advisor.gap.inference.residual import Residual
 from advisor.gap.inference.sizes import natural_share
 from advisor.gap.inference.stage import Pairs, Stage, likeliest, within_model_error
@@ -17,8 +19,6 @@ from advisor.side_gap.evidence import (
     Gain,
     gain_of,
     information_of,
-    log_evidence,
-    probabilities,
     share_of,
     squares_of,
 )
@@ -40,7 +40,7 @@ class SideModel(Explanation):
     effect: SideEffect | None
     """Effect that is added; None for derivatives alone."""
     fit: Fit
-    beyond: Evidence
+    beyond: float
     """Nats of the evidence beyond the marginal likelihood: sides of a prior, loss on unseen manoeuvres."""
     gain: Gain
     """Gain on unseen manoeuvres over fitted derivatives alone, nats."""
@@ -141,7 +141,8 @@ class SideFlight:
         plain = stage.plain
         each = float(np.log(max(len(self.table), 1)))
         told = [plain.evidence.right, *(one.evidence.either - each for one in stage.effects)]
-        likely = [one for one, p in zip(stage.effects, probabilities(told)[1:], strict=True) if p > LIKELY]
+        least = np.logaddexp.reduce(told) + np.log(LIKELY)
+        likely = [one for one, nats in zip(stage.effects, told[1:], strict=True) if nats > least]
         courses = courses_of(plain.fit, self.case.flown)
         blown = [
             self._blown(one, side_gusts(one.fit, courses, self._wide(one.fit))) for one in (plain, *likely)
@@ -166,32 +167,33 @@ class SideFlight:
 
     def _blown(self, one: SideModel, gusts: Gusts) -> SideModel:
         """Return an explanation in side gusts."""
-
-        def told(free: Sequence[Free]) -> Evidence:
-            right, wrong = (gusts.evidence(one.fit, self.case.known(each, free)) for each in _TOLERANCES)
-            return Evidence(right + one.beyond.right, wrong + one.beyond.wrong)
-
-        return replace(
-            one,
-            gusts=gusts,
-            evidence=told(one.fit.free),
-            natural=told(_narrowed(one.fit.free, one.effect)),
-            likelihood=gusts.highest(self._wide(one.fit)),
-            model_error=0.0,
+        evidence, natural = (
+            self._evidence(one.fit, gusts.likelihood, gusts.matrix, gusts.gradient, free).more(one.beyond)
+            for free in (one.fit.free, _narrowed(one.fit.free, one.effect))
         )
+        highest = gusts.highest(self._wide(one.fit))
+        return replace(
+            one, gusts=gusts, evidence=evidence, natural=natural, likelihood=highest, model_error=0.0
+        )
+
+    def _evidence(
+        self, fit: Fit, likelihood: float, matrix: FloatArray, gradient: FloatArray, free: Sequence[Free]
+    ) -> Evidence:
+        priors = (self.case.known(tolerance, free).prior(fit.values) for tolerance in _TOLERANCES)
+        return marginal(likelihood, matrix, gradient, *priors)
 
     def _model(self, effect: SideEffect | None, fit: Fit, plain: Fit, share: float) -> SideModel:
         """Return a model with its evidence, which unseen manoeuvres may cut."""
         told, likelihood = information_of(fit, share), share**2 * fit.likelihood
-        free = fit.free, _narrowed(fit.free, effect)
-        right, wrong = (
-            [log_evidence(fit, told, self.case.known(t, f), share) for f in free] for t in _TOLERANCES
+        matrix, gradient = (np.sum(part, axis=0) for part in told)
+        evidence, natural = (
+            self._evidence(fit, likelihood, matrix, gradient, free)
+            for free in (fit.free, _narrowed(fit.free, effect))
         )
         if effect is None:
-            evidence = Evidence(right[0], wrong[0])
             return SideModel(
                 alternative=None, effect=None, fit=fit, evidence=evidence, natural=evidence,
-                likelihood=likelihood, beyond=Evidence(0.0, 0.0), gain=Gain(0.0, 0.0),
+                likelihood=likelihood, beyond=0.0, gain=Gain(0.0, 0.0),
                 change=change_of(plain, fit),
             )  # fmt: skip
         was = squares_of(plain, information_of(plain, share), self._wide(plain))
@@ -200,21 +202,16 @@ class SideFlight:
         extra = np.log(2.0) if effect.is_one_sided else 0.0
         if effect.sides is not None:
             extra -= len(self.case.flown) * np.log(len(effect.sides[1]))
-        gains, unseen = [], []
-        for tolerance in _TOLERANCES:
-            now = squares_of(fit, told, self.case.known(tolerance, fit.free))
-            gains.append(gain_of(was.held_out, now.held_out, counts, share))
-            unseen.append(min(gains[-1].total - gain_of(was.in_fit, now.in_fit, counts, share).total, 0.0))
-        beyond = Evidence(*(float(extra + lost) for lost in unseen))
-        evidence, natural = (
-            Evidence(r + beyond.right, w + beyond.wrong) for r, w in zip(right, wrong, strict=True)
-        )
-        likelier = int(evidence.wrong > evidence.right)
+        likelier = ERROR_IF_RIGHT if evidence.right > evidence.wrong else ERROR_IF_WRONG
+        now = squares_of(fit, told, self.case.known(likelier, fit.free))
+        gain = gain_of(was.held_out, now.held_out, counts, share)
+        unseen = min(gain.total - gain_of(was.in_fit, now.in_fit, counts, share).total, 0.0)
         return SideModel(
             alternative=Alternative("effect", effect.name, effect.block),
             name=effect.name, numbers=effect.variant.names, effect=effect, fit=fit,
-            evidence=evidence, natural=natural, likelihood=likelihood,
-            beyond=beyond, unseen=unseen[likelier], gain=gains[likelier], change=change_of(plain, fit),
+            evidence=evidence.more(extra + unseen), natural=natural.more(extra + unseen),
+            likelihood=likelihood, beyond=extra + unseen, unseen=unseen, gain=gain,
+            change=change_of(plain, fit),
         )  # fmt: skip
 
 

@@ -14,12 +14,12 @@ import numpy as np
 from scipy.optimize import minimize
 
 from advisor.flight.signals.messages import FloatArray
+from advisor.gap.inference.marginal import marginal
 from advisor.gap.noise.probes import KNOTS_S
 from advisor.model.lateral import LATERAL
 from advisor.oem.colour import Stretch, find_colour
 from advisor.oem.whitening import schedule, whiten
 from advisor.side_gap.disturbance import Course
-from advisor.side_gap.evidence import log_marginal
 from advisor.side_gap.fit import Fit, Known
 
 _MEMORY_S = 1.0
@@ -49,10 +49,6 @@ class Gusts:
     gradient: FloatArray
     """(k,) gradient of the log likelihood at the fit."""
 
-    def evidence(self, fit: Fit, known: Known) -> float:
-        """Return the log marginal likelihood of a fit's model, with derivatives estimated in the gusts."""
-        return log_marginal(self.likelihood, self.matrix, self.gradient, fit.values, known)
-
     def highest(self, known: Known) -> float:
         """Return the log likelihood at the optimum in the gusts, where a prior keeps what is not seen."""
         whole = self.matrix + np.diag(known.precision)
@@ -69,6 +65,7 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known) -> Gusts:
     known
         Prior of derivatives and numbers.
     """
+    prior = known.prior(fit.values)
     sums = [_Sums.of(fit, m, course) for m, course in enumerate(courses)]
     there = np.unique(fit.assembly.channel)
     reach = np.mean(
@@ -92,7 +89,7 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known) -> Gusts:
     def cost(x: FloatArray) -> float:
         volume, inner = told(x)
         likelihood = -0.5 * (volume + float(inner[0, 0]))
-        return -2.0 * log_marginal(likelihood, inner[1:, 1:], inner[1:, 0], fit.values, known)
+        return -2.0 * marginal(likelihood, inner[1:, 1:], inner[1:, 0], prior, prior).right
 
     sizes = np.append(fit.noise[there], angle)
     bounds = [*((np.log(_RANGE[0] * s), np.log(_RANGE[1] * s)) for s in sizes),

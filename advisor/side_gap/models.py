@@ -15,6 +15,7 @@ from advisor.model.lateral import LATERAL, natural_size
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_instruments import beta_arm_m, nuisances_of
 from advisor.oem.lateral_prepare import prepare_lateral
+from advisor.oem.lateral_problem import assemble_lateral
 from advisor.oem.lateral_start import lateral_start
 from advisor.oem.prepare import signal_of
 from advisor.side_gap.effects import SideEffect
@@ -39,7 +40,7 @@ class Case:
     theta: FloatArray
     """(15,) derivatives of the simulator; those of the flight where the file states none."""
     stated: tuple[str, ...]
-    """Derivatives that the file states."""
+    """Derivatives that the file states and the flight tells."""
     natural: tuple[Free, ...]
     """Lateness of commands and outputs, and errors of stated lags: part of every model."""
     begin: Point
@@ -87,7 +88,8 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
     forces = [record.outputs["a_y"].t for record in problem.records if "a_y" in record.outputs]
     if forces:
         natural.append(Free(("a_y", "skew_s"), lateness_std(forces), NATURAL_STEP))
-    stated = tuple(name for name in SIDE_PARAMETERS if name in aircraft.model)
+    told = assemble_lateral(problem).free
+    stated = tuple(name for k, name in enumerate(SIDE_PARAMETERS) if name in aircraft.model and k in told)
     given = np.array([aircraft.model.get(n, v) for n, v in zip(SIDE_PARAMETERS, theta, strict=True)])
     begin = Point(theta, lateral_start(problem)[1], setting)
     flown = Flown(problem, throttle, beta_arm_m(aircraft) is not None)

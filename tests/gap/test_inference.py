@@ -1,6 +1,7 @@
 """Every explanation is a row with its parts in nats; their posterior is the answer."""
 
 from dataclasses import replace
+from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,6 +16,7 @@ from advisor.gap.diagnose import diagnose
 from advisor.gap.inference.diagnose import _with_air
 from advisor.gap.inference.engine import _lead, decided, first_stage
 from advisor.gap.inference.explanation import Evidence, Explanation, Row
+from advisor.gap.inference.marginal import Prior, marginal
 from advisor.gap.inference.posterior import (
     NONE,
     PARAMETERS,
@@ -83,6 +85,33 @@ def test_every_decision_on_an_answer_has_a_sentence(answer):
     odds = "3.05" if answer.kind == "unknown" else "2.31"
     assert lines[0].endswith(f"its log odds against the next answer are {odds} nats (at least 0)")
     assert "its probability is" in lines[1]
+
+
+def gaussian(information, gradient, prior):
+    """Return the log of the integral of a Gaussian likelihood times a Gaussian prior, up to a constant."""
+    whole = information + np.diag(prior.precision)
+    slope = gradient + prior.precision * prior.pull
+    volume = np.sum(np.log(prior.precision)) - np.linalg.slogdet(whole)[1]
+    return 0.5 * (volume + slope @ np.linalg.solve(whole, slope) - prior.precision @ prior.pull**2)
+
+
+def test_the_evidence_of_wrong_derivatives_is_the_mean_over_all_sets_of_them():
+    rng = np.random.default_rng(3)
+    root, gradient, pull = rng.normal(size=(9, 4)), 3.0 * rng.normal(size=4), rng.normal(size=4)
+    tight, loose, stated = np.array([30.0, 20.0, 5.0, 40.0]), np.array([0.3, 0.2, 5.0, 0.4]), [0, 1, 3]
+    told = marginal(2.0, root.T @ root, gradient, Prior(tight, pull), Prior(loose, pull))
+    each, weights = [], []
+    for wrong in product((False, True), repeat=3):
+        precision = tight.copy()
+        precision[[k for k, off in zip(stated, wrong, strict=True) if off]] = [
+            loose[k] for k, off in zip(stated, wrong, strict=True) if off
+        ]
+        each.append(2.0 + gaussian(root.T @ root, gradient, Prior(precision, pull)))
+        one_right = 0.5 ** (1.0 / 3.0)
+        weights.append(np.prod(np.where(wrong, 1.0 - one_right, one_right)))
+    assert weights[0] == pytest.approx(0.5)
+    assert told.right == pytest.approx(each[0])
+    assert told.wrong == pytest.approx(np.log(np.dot(weights[1:], np.exp(each[1:])) / 0.5))
 
 
 class Model(SimpleNamespace):

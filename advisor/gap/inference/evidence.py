@@ -6,7 +6,6 @@ manoeuvres. A nat of white noise therefore counts as 1/``temperature`` nats.
 """
 
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
 
@@ -15,19 +14,13 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG, derivative_scale, small_without_alpha
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts
 from advisor.gap.inference.explanation import Evidence
+from advisor.gap.inference.marginal import Prior, marginal
 from advisor.gap.records.floor import effective_sample_size
-from advisor.gap.simulator.layout import DERIVATIVES
 
 _UNSTATED = 1.0
 """Prior: relative standard deviation of derivatives that no file states."""
 _FLAT = 1e6
 """Numerical: prior standard deviation of a nuisance parameter without a stated one."""
-_WRONG = np.array(list(product((False, True), repeat=len(DERIVATIVES))))
-"""Shape (64, 6): every set of wrong derivatives; the first has none."""
-_EACH = 1.0 - 0.5 ** (1.0 / len(DERIVATIVES))
-"""Prior probability that a derivative is wrong: all of the file's are right in half of the flights."""
-_LOG_SHARE = np.where(_WRONG, np.log(_EACH), np.log(1.0 - _EACH)).sum(axis=1)
-"""Shape (64,): log prior probability of every set."""
 
 
 @dataclass(frozen=True)
@@ -64,12 +57,11 @@ class FlightProblem(EffectProblem):
     def prior_of(self, point: SearchPoint) -> tuple[FloatArray, FloatArray]:
         """Return inverse prior variances of the shared parameters, and prior mean minus values, shapes
         (k,)."""
-        width = self.tolerance if self.is_stated else _UNSTATED
-        return self.prior_with(point, np.full(len(DERIVATIVES), width))
+        return self.prior_with(point, self.tolerance if self.is_stated else _UNSTATED)
 
-    def prior_with(self, point: SearchPoint, widths: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the same for relative errors ``widths`` of the derivatives, shape (6,)."""
-        inverse = [1.0 / (widths * derivative_scale(self.mean)) ** 2]
+    def prior_with(self, point: SearchPoint, width: float) -> tuple[FloatArray, FloatArray]:
+        """Return the same for a relative error ``width`` of the derivatives."""
+        inverse = [1.0 / (width * derivative_scale(self.mean)) ** 2]
         expected = [self.mean]
         if "alpha" not in self.channels:
             # No instrument shows Z_q and Z_δe: the prior of the estimate keeps both small.
@@ -118,36 +110,18 @@ def evidence_of(problem: FlightProblem, fitted: EffectFit, heat: float, narrower
     narrower
         Factor on the prior widths of the effect that was added last.
     """
-    if not problem.is_stated:
-        unstated = np.full((1, len(DERIVATIVES)), _UNSTATED)
-        told = float(_log_marginals(problem, fitted, heat, unstated, narrower)[0])
-        return Evidence(told, told)
-    widths = np.where(_WRONG, ERROR_IF_WRONG, ERROR_IF_RIGHT)
-    each = _log_marginals(problem, fitted, heat, widths, narrower)
-    wrong = _LOG_SHARE[1:] - np.log(1.0 - np.exp(_LOG_SHARE[0]))
-    return Evidence(float(each[0]), float(np.logaddexp.reduce(each[1:] + wrong)))
-
-
-def _log_marginals(
-    problem: FlightProblem, fitted: EffectFit, heat: float, widths: FloatArray, narrower: float
-) -> FloatArray:
-    """Return the log marginal likelihood for each row of relative errors, shape (sets, 6), as (sets,)."""
-    own_precision, own_pull = problem.prior_of(fitted.point)
-    data = (fitted.information - np.diag(own_precision)) / heat
-    gradient = -own_precision * own_pull / heat
-    priors = [problem.prior_with(fitted.point, row) for row in widths]
-    precision, pull = (np.array([prior[k] for prior in priors]) for k in (0, 1))
+    precision, pull = problem.prior_of(fitted.point)
+    widths = (ERROR_IF_RIGHT, ERROR_IF_WRONG) if problem.is_stated else (_UNSTATED, _UNSTATED)
+    priors = [Prior(*problem.prior_with(fitted.point, width)) for width in widths]
     if narrower != 1.0:
-        precision[:, fitted.point.place(len(fitted.point.effects) - 1)] /= narrower**2
-    slope = gradient + precision * pull
-    whole = data + precision[:, :, None] * np.eye(len(data))
-    scale = 1.0 / np.sqrt(np.diagonal(whole, axis1=1, axis2=2))
-    scaled = whole * scale[:, :, None] * scale[:, None, :]
-    volume = 0.5 * (np.sum(np.log(precision), axis=1) - np.linalg.slogdet(scaled)[1])
-    volume += np.sum(np.log(scale), axis=1)
-    reached = np.linalg.solve(scaled, (scale * slope)[..., None])[..., 0]
-    gained = 0.5 * np.sum(scale * slope * reached, axis=1) - 0.5 * np.sum(precision * pull**2, axis=1)
-    return np.asarray(log_likelihood(problem, fitted) / heat + volume + gained)
+        for prior in priors:
+            prior.precision[fitted.point.place(len(fitted.point.effects) - 1)] /= narrower**2
+    return marginal(
+        log_likelihood(problem, fitted) / heat,
+        (fitted.information - np.diag(precision)) / heat,
+        -precision * pull / heat,
+        *priors,
+    )
 
 
 def covariance_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> FloatArray:

@@ -1,0 +1,60 @@
+"""The closed integral over derivatives and numbers, with each derivative of the file right or wrong by
+itself."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.inference.explanation import Evidence
+
+
+class Prior(NamedTuple):
+    """Gaussian knowledge of derivatives and numbers before the flight."""
+
+    precision: FloatArray
+    """(k,) inverse variances."""
+    pull: FloatArray
+    """(k,) means minus the values of a fit."""
+
+
+def marginal(
+    likelihood: float, information: FloatArray, gradient: FloatArray, right: Prior, wrong: Prior
+) -> Evidence:
+    """Return the log marginal likelihood with all derivatives right, and with some of them wrong.
+
+    Numbers are integrated out one by one. Where the two priors differ, the file states a derivative, which
+    goes both ways. All of them are right in half of the flights.
+
+    Parameters
+    ----------
+    likelihood
+        Log likelihood of the fit.
+    information, gradient
+        Shapes (k, k) and (k,): curvature and slope of the log likelihood at the fit, without a prior.
+    """
+    stated = right.precision != wrong.precision
+    order = np.argsort(stated, kind="stable")
+    one_right = -np.log(2.0) / max(np.count_nonzero(stated), 1)
+    shares = one_right, np.log(-np.expm1(one_right))
+    matrix, slope = information[np.ix_(order, order)][None], gradient[order][None]
+    total = np.full(1, likelihood)
+    for at in order:
+        ways = zip((right, wrong), shares, strict=True) if stated[at] else [(right, 0.0)]
+        parts = []
+        for prior, share in ways:
+            precision, pull = prior.precision[at], prior.pull[at]
+            pivot, end = matrix[:, 0, 0] + precision, slope[:, 0] + precision * pull
+            gained = share + 0.5 * (np.log(precision / pivot) + end**2 / pivot - precision * pull**2)
+            column = matrix[:, 1:, 0]
+            carried = column / pivot[:, None]
+            parts.append((
+                total + gained,
+                slope[:, 1:] - carried * end[:, None],
+                matrix[:, 1:, 1:] - column[:, :, None] * carried[:, None, :],
+            ))  # fmt: skip
+        total, slope, matrix = (np.concatenate(part) for part in zip(*parts, strict=True))
+    if len(total) == 1:
+        return Evidence(float(total[0]), float(total[0]))
+    # The first way has no wrong derivative.
+    return Evidence(float(total[0]), float(np.logaddexp.reduce(total[1:]))).more(float(np.log(2.0)))
