@@ -43,6 +43,8 @@ class Reported:
     analysis: dict[str, Any]
     gap: dict[str, Any]
     doctor: dict[str, Any]
+    printed: dict[str, str]
+    """What the commands print of the flight, by the command's name."""
 
 
 def _caller(patch: pytest.MonkeyPatch) -> Callable[..., str]:
@@ -58,19 +60,25 @@ def _caller(patch: pytest.MonkeyPatch) -> Callable[..., str]:
 
 @pytest.fixture(scope="session")
 def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
-    folder = tmp_path_factory.mktemp("report")
-    log, short_log = recorded("linear", 1.0, maneuvers=FOUR[:3]), recorded("linear", 1.0, maneuvers=TWO)
-    path, out = folder / "twin.yaml", folder / "page.html"
+    path = tmp_path_factory.mktemp("report") / "twin.yaml"
     path.write_text(AIRCRAFT, encoding="utf-8")
-    aircraft = load_aircraft(path)
+    return said_of(recorded("linear", 1.0, maneuvers=FOUR[:3]), path)
+
+
+def said_of(log: Path, path: Path) -> Reported:
+    """Return what the commands say of a log with an aircraft file; the page is written next to the file."""
+    out = path.with_name("page.html")
     with pytest.MonkeyPatch.context() as patch:
         use_recorded(patch)
+        patch.setenv("COLUMNS", "200")
         call = _caller(patch)
-        analysis = json.loads(call("analyze", log, "--aircraft", path, "--json"))
-        gap = json.loads(call("gap", log, "--aircraft", path, "--json"))
-        doctor = json.loads(call("doctor", log, "--aircraft", path, "--json"))
+        asked = {name: (name, log, "--aircraft", path) for name in ("analyze", "gap", "doctor")}
+        found = {name: json.loads(call(*words, "--json")) for name, words in asked.items()}
+        printed = {name: call(*words) for name, words in asked.items()}
         call("report", log, "--aircraft", path, "--gap", "-o", out)
-        content, _ = gather(LogsAsked((log,), path), aircraft, False)
+        content, _ = gather(LogsAsked((log,), path), load_aircraft(path), False)
     written = out.read_text(encoding="utf-8")
-    content = replace(content, gap=gap)
-    return Reported(log, short_log, path, written, content, Page.read(written), analysis, gap, doctor)
+    return Reported(
+        log, recorded("linear", 1.0, maneuvers=TWO), path, written, replace(content, gap=found["gap"]),
+        Page.read(written), found["analyze"], found["gap"], found["doctor"], printed,
+    )  # fmt: skip

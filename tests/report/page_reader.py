@@ -14,11 +14,14 @@ class Page(HTMLParser):
     attributes: list[tuple[str, str, str]] = field(default_factory=list)
     """Tag, attribute, value."""
     text: str = ""
+    paragraphs: list[str] = field(default_factory=list)
+    """Text of each paragraph."""
 
     def __post_init__(self) -> None:
         super().__init__()
         self._table = ""
         self._cell: list[str] | None = None
+        self._in_paragraph = False
 
     @classmethod
     def read(cls, html: str) -> "Page":
@@ -37,14 +40,21 @@ class Page(HTMLParser):
             self.tables[self._table].append([])
         elif tag in ("td", "th"):
             self._cell = []
+        elif tag == "p":
+            self.paragraphs.append("")
+            self._in_paragraph = True
 
     def handle_endtag(self, tag: str) -> None:
         if tag in ("td", "th") and self._cell is not None:
             self.tables[self._table][-1].append("".join(self._cell))
             self._cell = None
+        elif tag == "p":
+            self._in_paragraph = False
 
     def handle_data(self, data: str) -> None:
         self.text += data
+        if self._in_paragraph:
+            self.paragraphs[-1] += data
         if self._cell is not None:
             self._cell.append(data)
 

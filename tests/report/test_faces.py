@@ -1,11 +1,14 @@
 """One number for one thing: every face of a flight states the same value under the same name."""
 
+import json
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from io import StringIO
 from math import degrees
+from pathlib import Path
+from typing import Any
 
 import pytest
 from rich.console import Console
@@ -13,12 +16,18 @@ from textual.widgets import DataTable
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
+from advisor.assistant.fitting import written
+from advisor.campaign.campaign import ManeuverJudged
+from advisor.cli.live import _announce
 from advisor.gap.document import gap_document
+from advisor.mavlink.link.announce import Announcer
 from advisor.report.document import analysis_document
 from advisor.report.gap_screen import GapScreen
 from advisor.report.page.blocks import Paragraph
 from advisor.report.page.gap import answer
 from advisor.report.text import AnalysisText
+from advisor.tui.advice import advise
+from advisor.tui.panes.criterion import _rows as criterion_rows
 from advisor.tui.panes.gap import answer_rows
 from advisor.tui.settings import Settings
 from advisor.words.digits import with_half
@@ -26,89 +35,212 @@ from advisor.words.quantities import PARAMETERS as QUANTITIES
 from tests.campaign.side_builders import judged as side_judged
 from tests.campaign.side_builders import state as side_state
 from tests.gap.test_report_screen import EVIDENCE, diagnosis
-from tests.report.conftest import Reported
+from tests.report.conftest import Reported, said_of
 from tests.schemas import breaches
 from tests.tui import flights
 from tests.tui.stage import stage
 
 HALF = 1.959963984540054
 """Half of a 95 % interval, in standard deviations."""
+Document = dict[str, Any]
+BUNDLED = (
+    b"model: {Z_alpha: -0.483, Z_q: 0.104, Z_delta_e: 0.676, M_alpha: -6.0, M_q: -2.01, M_delta_e: -7.21}"
+)
+LOGS = Path(__file__).parents[2] / "logs"
 pytestmark = pytest.mark.xdist_group("report")
 
 Named = Iterator[tuple[str, str]]
 """Names of things, each with its value as a face writes it."""
 
 
-def terminal(reported: Reported) -> str:
-    """Return the text of ``advisor analyze``."""
-    content = reported.content
-    out = StringIO()
-    console = Console(file=out, width=100, color_system=None, highlight=False)
-    console.print(AnalysisText(content.state, content.names, content.aircraft), soft_wrap=True)
-    return out.getvalue()
-
-
-def of_the_document(reported: Reported) -> Named:
+def of_the_documents(analysis: Document, gap: Document, doctor: Document) -> Named:
     for name in PARAMETERS:
-        entry = reported.analysis["model"][name]
-        factor = degrees(1.0) if name in ("Z_0", "M_0") else 1.0
-        yield QUANTITIES[name].symbol, with_half(factor * entry["value"], factor * HALF * entry["std"])
-    speed = reported.analysis["model"]["reference_airspeed_m_s"]
-    yield "air speed of the derivatives", f"{speed:.1f}"
-    yield "decision", reported.analysis["flight_test"]["sentence"]
-    yield "advice", reported.analysis["flight_test"]["next"]["advice"].removeprefix("next: ")
+        symbol, factor = QUANTITIES[name].symbol, degrees(1.0) if name in ("Z_0", "M_0") else 1.0
+        entry = analysis["model"][name]
+        yield symbol, with_half(factor * entry["value"], factor * HALF * entry["std"])
+        yield f"expected error of {symbol}", f"{factor * HALF * doctor['expected_std'][name]:.2g}"
+    if (lag := analysis["model"]["instruments"].get("servo_lag_s")) is not None:
+        yield "servo lag, ms", with_half(1e3 * lag["value"], 1e3 * HALF * lag["std"])
+    for name, channel in analysis["log"]["channels"].items():
+        yield f"rate of {name}", f"{channel['rate_hz']:.1f}"
+    yield "air speed of the derivatives", f"{analysis['model']['reference_airspeed_m_s']:.1f}"
+    yield "decision", analysis["flight_test"]["sentence"]
+    yield "advice", analysis["flight_test"]["next"]["advice"].removeprefix("next: ")
+    yield "criterion", f"{analysis['flight_test']['criterion_percent']:.1f}"
+    yield "verdict", f"{gap['title']}: {gap['sentence']}"
+    yield "gap before", digits(gap["gap"]["before"])
+    yield "gap after", digits(gap["gap"]["after"])
+    yield "probability", f"{100.0 * max(p['probability'] for p in gap['evidence']):.0f}"
+    if gap["shrink"] is not None:
+        yield "shrink", f"{gap['shrink']['percent']:.1f}"
+    if entered := re.search(LAG, " ".join(analysis["model"]["notes"])):
+        yield "lag to enter, s", entered[1]
+
+
+def digits(gap: float) -> str:
+    return f"{gap:.3g}"
+
+
+def of_an_assistant(reported: Reported) -> Named:
+    """What a tool of the Model Context Protocol hands over, part by part where the whole is too long."""
+    analysis, doctor = json.loads(written(reported.analysis)), json.loads(written(reported.doctor))
+    gap = json.loads(written(reported.gap, without=("traces", "evidence", "decisions")))
+    gap["evidence"] = json.loads(written(reported.gap, "evidence"))
+    return of_the_documents(analysis, gap, doctor)
 
 
 def of_the_terminal(reported: Reported) -> Named:
-    text = terminal(reported)
+    text, gap, doctor = (reported.printed[name] for name in ("analyze", "gap", "doctor"))
     for quantity in QUANTITIES.values():
         found = re.search(rf"^{quantity.symbol} +(\S+) +(\S+) ", text, re.MULTILINE)
         assert found is not None
         yield quantity.symbol, f"{found[1]} ± {found[2]}"
-    for speed in re.findall(r"(?:Joint estimate.*|Flying qualities) at ([\d.]+) m/s", text):
-        yield "air speed of the derivatives", speed
+        expected = re.search(rf"^  {quantity.symbol} +± (\S+)", doctor, re.MULTILINE)
+        assert expected is not None
+        yield f"expected error of {quantity.symbol}", expected[1]
+    yield from (("air speed of the derivatives", one) for one in re.findall(SPEED, text))
+    for name, rate in re.findall(r"^(\w+) +\S+ +\w+ +([\d.]+) +[\d.]+$", text, re.MULTILINE):
+        yield f"rate of {name}", rate
     decision, advice, *_ = text.splitlines()
     yield "decision", decision[2:]
     yield "advice", advice.strip().removeprefix("next: ").partition("; ")[0]
+    rule = reported.analysis["flight_test"]["rule"]
+    yield "criterion", re.findall(rf"^rule {rule} .*criterion %: .*?([\d.]+)$", text, re.MULTILINE)[0]
+    yield from (("lag to enter, s", one) for one in re.findall(LAG, text))
+    yield from of_the_box(gap)
+
+
+LAG = r"elevator: \{lag_s: ([\d.]+)\}"
+SPEED = r"(?:Joint estimate.*|Flying qualities) at ([\d.]+) m/s"
+
+
+def of_the_box(text: str) -> Named:
+    lines = [line.strip("│ ") for line in text.splitlines()]
+    title = lines[0].strip("╭╮─ ")
+    sure = next(k for k, line in enumerate(lines) if line.startswith("Probability"))
+    yield "verdict", f"{title}: {' '.join(lines[1:sure])}"
+    yield "probability", re.findall(r"(\d+) %", lines[sure])[0]
+    if found := re.search(r"^gap (\S+) → (\S+)(?: ▲)? times", text, re.MULTILINE):
+        yield "gap before", found[1].replace(",", "")
+        yield "gap after", found[2]
+    yield from (("shrink", one) for one in re.findall(r"^([\d.−-]+) % less \(95", text, re.MULTILINE))
 
 
 def of_the_page(reported: Reported) -> Named:
-    for row in reported.page.tables["joint"][1:]:
+    page = reported.page
+    for row in page.tables["joint"][1:]:
         yield row[0], row[1]
-    for speed in re.findall(r"Joint estimate from[^;]* at ([\d.]+) m/s", reported.page.text):
-        yield "air speed of the derivatives", speed
-    for mark in re.findall(r"[■▶] ([^\n<]+)", reported.page.text):
-        yield "decision", mark
+    yield from (("air speed of the derivatives", one) for one in re.findall(SPEED, page.text))
+    yield from (("decision", mark) for mark in re.findall(r"[■▶] ([^\n<]+)", page.text))
+    for name, cell, *_ in page.tables.get("instruments", ()):
+        if name == "servo lag":
+            yield "servo lag, ms", cell
+    for name, _, _, rate, _ in page.tables["channels-0"][1:]:
+        yield f"rate of {name}", rate
+    yield from (("criterion", one) for one in re.findall(r"its criterion is ([\d.]+) %", page.text))
+    for advice in re.findall(r"Next: ([^\n]+)\.\n", page.text):
+        yield "advice", advice
+    yield from (("verdict", one) for one in page.paragraphs if one.startswith(f"{reported.gap['title']}: "))
+    yield from (
+        ("probability", one) for one in re.findall(r"Probability by the evidence: \D+(\d+) %", page.text)
+    )
+    for before, after in re.findall(r"minus 1\): before (\S+), after (\S+?)\.", page.text):
+        yield "gap before", before.replace(",", "")
+        yield "gap after", after
+    yield from (("shrink", one) for one in re.findall(r" ([\d.]+) % less \(95 %: ", page.text))
 
 
 async def of_the_screen(reported: Reported) -> list[tuple[str, str]]:
-    engineer = Settings(screen="engineer")
+    """Table of the parameters, channels, criterion, and answer of a gap; the pilot's word and voice."""
     found: list[tuple[str, str]] = []
-    async with stage(reported.content.state, settings=engineer, size=(140, 45)) as here:
+    state = reported.content.state
+    async with stage(state, settings=Settings(screen="engineer"), size=(140, 45)) as here:
         await here.press("3")
         table = here.app.screen.query_one("ParametersPane DataTable", DataTable)
         await here.until(lambda: table.row_count == len(PARAMETERS))
         for n in range(table.row_count):
             name, estimate = (str(cell).strip() for cell in table.get_row_at(n)[:2])
             found.append((name.split()[0], estimate))
+        advised = advise(here.app.view)
+        found.append(("decision", advised.sentence))
+    for line in (" ".join(row) for row in criterion_rows(state.flight_test)):
+        if now := re.search(r"► .* ([\d.]+) % of its limit", line):
+            percent = float(now[1]) * state.flight_test.limit_percent / 100.0
+            found.append(("criterion", f"{percent:.{len(now[1].partition('.')[2])}f}"))
+    rows = [text for _, text in answer_rows(reported.gap)]
+    found += [("verdict", rows[0]), ("probability", re.findall(r"(\d+) %", rows[1])[0])]
+    found += [("shrink", one) for row in rows for one in re.findall(r"^gap ([\d.]+) % less", row)]
     return found
 
 
-async def test_every_number_and_sentence_of_a_flight_has_one_value_on_every_face(reported: Reported) -> None:
+def of_the_link(reported: Reported) -> Named:
+    """What a ground station hears after the last manoeuvre."""
+    state, announcer = reported.content.state, Announcer()
+    _announce(announcer, ManeuverJudged(state.maneuvers[-1], state.flight_test, state.plan))
+    heard = []
+    while messages := announcer.speak((1, 1), 0.0):
+        heard.append("".join(message.text for message in messages))
+    if state.flight_test.decision == "stop":
+        yield "decision", heard[0].removeprefix("@").partition(" (")[0]
+
+
+def told(faces: Mapping[str, Iterable[tuple[str, str]]]) -> dict[str, dict[str, set[str]]]:
+    """Return each name with its values, and the faces that say each. A value of fewer digits is the same."""
     values: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
-    faces: Mapping[str, list[tuple[str, str]]] = {
-        "document": list(of_the_document(reported)),
-        "terminal": list(of_the_terminal(reported)),
-        "page": list(of_the_page(reported)),
-        "screen": await of_the_screen(reported),
-    }
     for face, named in faces.items():
         for name, value in named:
-            values[name][" ".join(value.split())].add(face)
-    assert {name: dict(said) for name, said in values.items() if len(said) > 1} == {}
-    told = {name: set.union(*said.values()) for name, said in values.items()}
-    assert all(told[QUANTITIES[name].symbol] == set(faces) for name in PARAMETERS)
-    assert told["decision"] == told["air speed of the derivatives"] == {"document", "terminal", "page"}
+            one = " ".join(value.split())
+            same = next((known for known in values[name] if is_rounded(known, one)), one)
+            values[name][same].add(face)
+    return {name: dict(said) for name, said in values.items()}
+
+
+def is_rounded(one: str, other: str) -> bool:
+    """Return whether two texts are one number, of which one may have fewer decimals."""
+    if one == other or not (is_number(one) and is_number(other)):
+        return one == other
+    decimals = min(len(text.partition(".")[2]) for text in (one, other))
+    return abs(float(one) - float(other)) <= 0.5000001 * 10.0**-decimals
+
+
+def is_number(text: str) -> bool:
+    return re.fullmatch(r"\d+(\.\d+)?", text) is not None
+
+
+async def of_all_faces(reported: Reported) -> dict[str, dict[str, set[str]]]:
+    return told(
+        {
+            "document": of_the_documents(reported.analysis, reported.gap, reported.doctor),
+            "assistant": of_an_assistant(reported),
+            "terminal": of_the_terminal(reported),
+            "page": of_the_page(reported),
+            "screen": await of_the_screen(reported),
+            "link": of_the_link(reported),
+        }
+    )
+
+
+async def test_every_number_and_sentence_of_a_flight_has_one_value_on_every_face(reported: Reported) -> None:
+    values = await of_all_faces(reported)
+    assert {name: said for name, said in values.items() if len(said) > 1} == {}
+    faces = {name: set.union(*said.values()) for name, said in values.items()}
+    everywhere = {"document", "assistant", "terminal", "page", "screen"}
+    assert all(faces[QUANTITIES[name].symbol] == everywhere for name in PARAMETERS)
+    for name in ("decision", "criterion", "verdict", "probability"):
+        assert faces[name] >= everywhere, name
+    for name in ("gap before", "gap after", "air speed of the derivatives", "advice", "rate of q"):
+        assert faces[name] == everywhere - {"screen"}, name
+    assert faces["expected error of M_α"] == {"document", "assistant", "terminal"}
+
+
+@pytest.mark.study
+@pytest.mark.parametrize("log", ["bundled-demo", "arduplane-calm", "arduplane-turbulent"])
+async def test_a_sample_log_has_one_value_for_each_number_on_every_face(log: str, tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_bytes((LOGS / "arduplane-calm.yaml").read_bytes() if "arduplane" in log else BUNDLED)
+    values = await of_all_faces(said_of(LOGS / f"{log}.tlog", path))
+    assert {name: said for name, said in values.items() if len(said) > 1} == {}
+    assert len(values) > 40
 
 
 def test_the_answer_of_a_gap_has_one_title_one_sentence_and_one_probability_on_every_face() -> None:
