@@ -113,6 +113,8 @@ def with_unseen_shrink(whole: Examined, unseen: UnseenManeuvers, aircraft: Aircr
     if whole.findings.problem.prior_derivatives is None:
         return whole
     stays, flown = without_worse(whole, unseen, partial(by_the_file, whole))
+    if not stays.diagnosis.improves:
+        return stays
     shrink = shrink_on(stays, unseen, flown.before, flown.after)
     return replace(stays, diagnosis=resaid(stays.diagnosis, shrink, aircraft))
 
