@@ -150,7 +150,8 @@ def so_far(state: "CampaignState", aircraft: Aircraft) -> Iterator[str]:
     """Yield each verdict of a flight test that was left, and stop or continue; nothing before the first
     verdict of an axis."""
     from advisor.report.lateral import lateral_decision, lateral_lines
-    from advisor.report.text import maneuver_line, next_line, stop_line
+    from advisor.report.result_rows import maneuver_line
+    from advisor.report.text import next_line, stop_line
 
     if state.maneuvers:
         yield from map(maneuver_line, state.maneuvers)

@@ -8,7 +8,6 @@ from advisor.gap.decision import Decision
 
 Kind = Literal["none", "parameters", "effect", "air", "unknown"]
 """Kind of an alternative. ``air`` is an effect of the air, ``effect`` one of aircraft or telemetry."""
-KINDS: tuple[Kind, ...] = ("none", "parameters", "effect", "air", "unknown")
 
 
 @dataclass(frozen=True, slots=True)

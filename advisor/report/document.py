@@ -5,18 +5,17 @@ from types import MappingProxyType
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.crew_plan import CrewPlan
 from advisor.decision.verdict import FlightTestVerdict, Remaining
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.stream.flights import FlightHeard
-from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.estimate import Estimate
+from advisor.report.axis_document import fitted, flown, parameters, with_intervals
 from advisor.report.lateral import lateral_document
 from advisor.report.qualities import coefficients_of, qualities_document, qualities_of
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
-from advisor.words.quantiles import NORMAL_95
 
 SCHEMA = "advisor.analyze/1"
 
@@ -121,23 +120,13 @@ def _log(heard: FlightHeard | None, file: str) -> dict[str, Any]:
 
 
 def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
-    maneuver, span, verdict = judged.maneuver, judged.maneuver.span, judged.verdict
     estimate = judged.estimate if isinstance(judged.estimate, Estimate) else None
-    fits = estimate.fits[0].items() if estimate else ()
     prediction = estimate.prediction.items() if estimate else ()
     return {
-        **picked(maneuver, "number boot mode"),
-        "start_boot_s": plain(span.start_s),
-        "end_boot_s": plain(span.end_s),
-        "record_from_boot_s": plain(span.record_from_s),
-        "last_step_boot_s": plain(span.last_step_s),
-        "input": span.kind,
-        "closed_by": span.closed_by,
-        "verdict": "accepted" if verdict.accepted else "rejected",
-        **picked(verdict, "sentence reasons cautions rules"),
+        **picked(judged.maneuver, "number boot mode"),
+        **flown(judged),
         **picked(judged, "excluded_because notes"),
-        "cost": plain(estimate.cost) if estimate else None,
-        "fit": {name: picked(fit, "rms tic r2") for name, fit in fits},
+        **fitted(estimate),
         "estimates": parameters(judged.estimate),
         "outputs": list(estimate.outputs) if estimate else [],
         "filter_error": estimate.filtered if estimate else False,
@@ -145,20 +134,6 @@ def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
         "prediction_percent": {name: plain(100.0 * share) for name, share in prediction},
         "not_identifiable": dict(estimate.not_identifiable) if estimate else {},
         "identifiability": identifiability(estimate),
-    }
-
-
-def parameters(estimate: Estimate | NoEstimate | None) -> dict[str, Any] | None:
-    """Return every parameter as ``{value, std, std_cr}``. An unidentifiable one has None and the reason."""
-    if not isinstance(estimate, Estimate):
-        return None
-    return {
-        name: {"value": None, "std": None, "std_cr": None, "reason": estimate.not_identifiable[name]}
-        if name in estimate.not_identifiable
-        else {"value": plain(value), "std": plain(std), "std_cr": plain(std_cr)}
-        for name, value, std, std_cr in zip(
-            PARAMETERS, estimate.theta, estimate.std, estimate.std_cr, strict=True
-        )
     }
 
 
@@ -211,17 +186,9 @@ def _flight_test(verdict: FlightTestVerdict) -> dict[str, Any]:
 
 
 def _model(model: Estimate | None) -> dict[str, Any] | None:
-    values: Mapping[str, Any] | None = parameters(model)
-    if model is None or values is None:
+    if model is None:
         return None
-    document: dict[str, Any] = {}
-    for name, entry in values.items():
-        ci95 = None
-        if entry["value"] is not None and entry["std"] is not None:
-            half = NORMAL_95 * entry["std"]
-            ci95 = [entry["value"] - half, entry["value"] + half]
-        document[name] = {**entry, "ci95": ci95}
-    return document | {
+    return with_intervals(model) | {
         "reference_airspeed_m_s": plain(model.airspeed_m_s),
         "identifiability": identifiability(model),
         "instruments": instruments(model),

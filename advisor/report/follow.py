@@ -14,8 +14,9 @@ from advisor.flight.maneuvers.events import (
     VehicleFound,
 )
 from advisor.flight.signals.messages import Columns
-from advisor.report.lateral import lateral_maneuver_line
-from advisor.report.text import maneuver_line, next_line, stop_line
+from advisor.report.lateral import ROOM
+from advisor.report.result_rows import maneuver_line
+from advisor.report.text import next_line, stop_line
 from advisor.words.vehicle_time import CLOCK, clock
 
 
@@ -77,6 +78,6 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
             say(f"    {stop_line(verdict)}")
             say(f"    {next_line(verdict)}")
         case LateralJudged(judged, verdict):
-            say(f"{lateral_maneuver_line(judged)}  (roll and yaw)")
+            say(f"{maneuver_line(judged, ROOM)}  (roll and yaw)")
             say(f"    {stop_line(verdict)}")
             say(f"    {next_line(verdict)}")

@@ -1,6 +1,7 @@
 """The lateral half of the analysis: its JSON block, and its text."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
@@ -8,22 +9,15 @@ from advisor.campaign.state import JudgedLateral, LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.estimate import Estimate
-from advisor.oem.flying_qualities import Quality
 from advisor.oem.lateral_estimate import LateralEstimate, LateralModes
-from advisor.report.lateral_qualities import (
-    MODES,
-    levels_document,
-    levels_of,
-    modes_told,
-    tests_document,
-    tests_of,
-)
-from advisor.report.result_rows import parameter_row
+from advisor.report.axis_document import fitted, flown, with_intervals
+from advisor.report.qualities import MODES, levels_document, levels_of, modes_told, tests_document, tests_of
+from advisor.report.result_rows import maneuver_line, parameter_row, untold
 from advisor.words.digits import with_half
 from advisor.words.plain import picked, plain
 from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import symbol
-from advisor.words.vehicle_time import clock
+
+_quality = partial(picked, names="value std ci95")
 
 
 def lateral_document(state: LateralState, aircraft: Aircraft) -> dict[str, Any]:
@@ -52,20 +46,13 @@ def lateral_document(state: LateralState, aircraft: Aircraft) -> dict[str, Any]:
 
 
 def _maneuver(judged: JudgedLateral) -> dict[str, Any]:
-    maneuver, span, verdict = judged.maneuver, judged.maneuver.span, judged.verdict
     found = judged.estimate if isinstance(judged.estimate, LateralEstimate) else None
-    fits = found.estimate.fits[0].items() if found else ()
+    told = flown(judged)
+    del told["record_from_boot_s"]
     return {
-        **picked(maneuver, "number flight boot mode"),
-        "start_boot_s": plain(span.start_s),
-        "end_boot_s": plain(span.end_s),
-        "last_step_boot_s": plain(span.last_step_s),
-        "input": span.kind,
-        "closed_by": span.closed_by,
-        "verdict": "accepted" if verdict.accepted else "rejected",
-        **picked(verdict, "sentence reasons cautions rules"),
-        "cost": plain(found.estimate.cost) if found else None,
-        "fit": {name: picked(fit, "rms tic r2") for name, fit in fits},
+        **picked(judged.maneuver, "number flight boot mode"),
+        **told,
+        **fitted(found.estimate if found else None),
         "estimates": _told(found.estimate) if found else None,
         "modes": _modes(found.modes) if found else None,
         "not_identifiable": dict(found.estimate.not_identifiable) if found else {},
@@ -73,19 +60,8 @@ def _maneuver(judged: JudgedLateral) -> dict[str, Any]:
 
 
 def _told(estimate: Estimate) -> dict[str, Any]:
-    """Return every identifiable derivative as ``{value, std, std_cr, ci95}``."""
-    return {
-        name: {
-            "value": plain(float(value)),
-            "std": plain(float(std)),
-            "std_cr": plain(float(bound)),
-            "ci95": [plain(float(value + side * NORMAL_95 * std)) for side in (-1.0, 1.0)],
-        }
-        for name, value, std, bound in zip(
-            estimate.names, estimate.theta, estimate.std, estimate.std_cr, strict=True
-        )
-        if name not in estimate.not_identifiable
-    }
+    """Return every identifiable derivative with its 95 % interval."""
+    return {name: one for name, one in with_intervals(estimate).items() if "reason" not in one}
 
 
 def _model(model: LateralEstimate | None) -> dict[str, Any] | None:
@@ -102,35 +78,21 @@ def _model(model: LateralEstimate | None) -> dict[str, Any] | None:
 
 def _modes(modes: LateralModes) -> dict[str, Any]:
     return {
-        "dutch_roll": {"omega": _one(modes.dutch_roll_omega), "zeta": _one(modes.dutch_roll_zeta)},
-        "roll": {"time_constant": _one(modes.roll_time_constant)},
-        "spiral": {"pole": _one(modes.spiral_pole)},
+        "dutch_roll": {"omega": _quality(modes.dutch_roll_omega), "zeta": _quality(modes.dutch_roll_zeta)},
+        "roll": {"time_constant": _quality(modes.roll_time_constant)},
+        "spiral": {"pole": _quality(modes.spiral_pole)},
         "left_out": dict(modes.left_out),
     }
 
 
-def _one(quality: Quality | None) -> dict[str, Any] | None:
-    if quality is None:
-        return None
-    return {
-        "value": plain(quality.value),
-        "std": plain(quality.std),
-        "ci95": [plain(end) for end in quality.ci95],
-    }
-
-
-def lateral_maneuver_line(judged: JudgedLateral) -> str:
-    """Return one line on a manoeuvre of aileron or rudder: number, start, input, verdict."""
-    span, verdict = judged.maneuver.span, judged.verdict
-    mark = "✓" if verdict.accepted else "✗"
-    at = clock(span.start_s)
-    return f"{judged.maneuver.number:2d}  {at:>7}  {span.kind:<18}  {mark} {verdict.sentence}"
+ROOM = 18
+"""Columns of an input of aileron or rudder."""
 
 
 def lateral_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
     """Yield the lines of the lateral half: verdicts, derivatives, modes, levels; none without manoeuvres."""
     if state.maneuvers:
-        yield from map(lateral_maneuver_line, state.maneuvers)
+        yield from (maneuver_line(one, ROOM) for one in state.maneuvers)
         yield ""
         yield from lateral_results(state, aircraft)
 
@@ -154,8 +116,8 @@ def _model_lines(model: LateralEstimate) -> Iterator[str]:
     for row in (parameter_row(name, estimate, {}) for name in estimate.names):
         if not row.reason:
             yield f"  {row.quantity.symbol:<6} {row.cell:>20} {row.quantity.unit}"
-    for text, names in _by_reason(estimate.not_identifiable).items():
-        yield f"  not identifiable: {', '.join(map(symbol, names))} ({text})"
+    for text, names in untold(estimate).items():
+        yield f"  not identifiable: {', '.join(names)} ({text})"
     for name, quality in modes_told(model.modes).items():
         words, unit = MODES[name]
         half = NORMAL_95 * quality.std
@@ -177,10 +139,3 @@ def _quality_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
             f"  {mark} {one.name}: flown {one.flown:.3g}, simulator {one.simulated:.3g} {one.unit}".rstrip()
             + f" (14 CFR Part 60 {one.entry}: ± {one.limit:.2g})"
         )
-
-
-def _by_reason(reasons: Mapping[str, str]) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
-    for name, text in reasons.items():
-        found.setdefault(text, []).append(name)
-    return found

@@ -1,14 +1,24 @@
-"""Flying qualities and coefficients of a campaign: for the documents, and as lines for people."""
+"""Flying qualities of both axes, and coefficients: for the documents, and as lines and rows for people."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
-from advisor.aircraft.reference import Reference
-from advisor.campaign.state import CampaignState
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import SIDE_PARAMETERS, Reference
+from advisor.campaign.state import CampaignState, JudgedLateral, LateralState
+from advisor.decision.lateral_levels import GROUPS, LateralLevels, lateral_levels
+from advisor.decision.lateral_levels import SOURCE as LATERAL_SOURCE
+from advisor.decision.lateral_qualification import LateralTest, lateral_qualification
 from advisor.flight.instruments.atmosphere import AirData, air_flown
-from advisor.model.mil_f_8785c import CATEGORIES, MANNED, SOURCE
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.model.lateral import Trim
+from advisor.model.mil_f_8785c import CATEGORIES, MANNED, SOURCE, LevelFound
 from advisor.oem.coefficients import CONVENTION, Coefficient, coefficients
-from advisor.oem.flying_qualities import UNITS, FlyingQualities, flying_qualities
+from advisor.oem.flying_qualities import UNITS, FlyingQualities, Quality, flying_qualities
+from advisor.oem.lateral_estimate import LateralModes
 from advisor.words.digits import with_half
 from advisor.words.plain import picked
 from advisor.words.quantiles import NORMAL_95
@@ -62,8 +72,7 @@ def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
         "left_out": dict(found.left_out),
         "levels": {
             one.category: {
-                "level": one.level,
-                "levels_within_ci95": [one.best_level, one.worst_level],
+                **level_document(one),
                 "phases": CATEGORIES[one.category],
                 "text": one.sentence,
             }
@@ -81,6 +90,11 @@ def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
         },
         "convention": CONVENTION,
     }
+
+
+def level_document(found: LevelFound) -> dict[str, Any]:
+    """Return a level, and the range of levels within the 95 % interval."""
+    return {"level": found.level, "levels_within_ci95": [found.best_level, found.worst_level]}
 
 
 def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient]) -> Iterator[str]:
@@ -110,3 +124,88 @@ def _speeds(found: FlyingQualities) -> str:
     if found.air.speed_kind == "true":
         return f"{found.true_airspeed_m_s:.1f} m/s true"
     return f"{found.airspeed_m_s:.1f} m/s as logged"
+
+
+MODES: Mapping[str, tuple[str, str]] = {
+    "dutch_roll_omega": ("Dutch roll ω", "rad/s"),
+    "dutch_roll_zeta": ("Dutch roll ζ", ""),
+    "roll_time_constant": ("roll time constant", "s"),
+    "spiral_pole": ("spiral pole", "1/s"),
+}
+"""Field of `LateralModes` to its name for people and its unit."""
+MODE_NAMES = {"dutch_roll": "Dutch roll", "roll": "roll", "spiral": "spiral"}
+OPTIONAL = frozenset({"Y_p", "Y_r", "Y_delta_a"})
+"""Derivatives that count as zero where the aircraft file states the others: a few per cent everywhere."""
+
+
+def modes_told(modes: LateralModes) -> dict[str, Quality]:
+    """Return the modes that the estimate tells, by the names of ``MODES``."""
+    return {name: one for name in MODES if (one := getattr(modes, name)) is not None}
+
+
+def levels_of(state: LateralState) -> tuple[LateralLevels, ...]:
+    """Return the levels of the joint estimate; empty without one."""
+    return lateral_levels(state.model.modes) if state.model is not None else ()
+
+
+def levels_document(found: tuple[LateralLevels, ...]) -> dict[str, Any] | None:
+    """Return the part ``levels`` of the block ``lateral``; None without a level."""
+    if not found:
+        return None
+    by_class: dict[str, dict[str, Any]] = {group: {} for group in GROUPS}
+    for one in found:
+        by_class[one.group][one.category] = {
+            **level_document(one.governing),
+            "phases": CATEGORIES[one.category],
+            "by_mode": {mode: level_document(level) for mode, level in one.by_mode.items()},
+            "text": one.governing.sentence,
+        }
+    return {"by_class": by_class, "source": LATERAL_SOURCE, "caution": MANNED}
+
+
+def tests_of(state: LateralState, aircraft: Aircraft) -> tuple[LateralTest, ...]:
+    """Return the tests of the aircraft file's model against the joint estimate; empty without either.
+
+    The file must state every derivative but those of ``OPTIONAL``.
+    """
+    model = state.model
+    stated = {name: aircraft.model[name] for name in SIDE_PARAMETERS if name in aircraft.model}
+    if model is None or not {*stated, *OPTIONAL} >= set(SIDE_PARAMETERS):
+        return ()
+    joined = [one for one in state.maneuvers if one.maneuver.number in state.estimate_from]
+    rolled = [one for one in joined if one.maneuver.span.kind.startswith(("aileron", "bank"))]
+    tests = lateral_qualification(
+        model.estimate.theta,
+        np.array([stated.get(name, 0.0) for name in SIDE_PARAMETERS]),
+        trim_of([one.maneuver for one in joined], model.estimate.airspeed_m_s or np.nan),
+        *_step(rolled),
+    )
+    if rolled and "L_delta_a" not in model.estimate.not_identifiable:
+        return tests
+    return tuple(one for one in tests if one.entry != "2.d.2")
+
+
+def tests_document(tests: tuple[LateralTest, ...]) -> list[dict[str, Any]]:
+    """Return the list ``qualification`` of the block ``lateral``."""
+    return [picked(one, "entry name unit flown simulated limit holds") for one in tests]
+
+
+def trim_of(joined: Sequence[Maneuver], airspeed_m_s: float) -> Trim:
+    """Return the mean attitude of the manoeuvres; level flight where no angle of attack was recorded."""
+    theta = _mean(joined, "theta", 0.0)
+    return Trim(airspeed_m_s, _mean(joined, "alpha", theta), theta)
+
+
+def _mean(joined: Sequence[Maneuver], name: str, otherwise: float) -> float:
+    found = [one.channels[name].y for one in joined if name in one.channels]
+    return float(np.mean([np.mean(y) for y in found])) if found else otherwise
+
+
+def _step(rolled: list[JudgedLateral]) -> tuple[float, float]:
+    """Return size and length of the largest step of the aileron that was flown, rad and s."""
+    steps = [
+        (abs(level), after - onset)
+        for one in rolled
+        for (onset, level), (after, _) in pairwise(one.maneuver.span.steps)
+    ]
+    return max(steps, default=(0.0, 1.0))

@@ -5,14 +5,16 @@ from dataclasses import dataclass
 from math import isfinite, nan
 from typing import Any
 
+from advisor.campaign.state import JudgedLateral, JudgedManeuver
 from advisor.flight.signals.track import ChannelStatus
 from advisor.oem.estimate import Estimate
 from advisor.report.table import Table, digits
 from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import DEG, Quantity
+from advisor.words.quantities import DEG, Quantity, symbol
 from advisor.words.quantities import PARAMETERS as PITCH
 from advisor.words.quantities import SIDE_PARAMETERS as SIDE
+from advisor.words.vehicle_time import clock
 
 _QUANTITIES = {**PITCH, **SIDE}
 
@@ -69,6 +71,21 @@ def parameter_row(name: str, estimate: object, prior: Mapping[str, float]) -> Pa
     return ParameterRow(
         quantity, value, half * float(estimate.std[k]), half * float(estimate.std_cr[k]), known
     )
+
+
+def untold(estimate: Estimate) -> dict[str, list[str]]:
+    """Return each reason for which derivatives are not told, with their symbols."""
+    found: dict[str, list[str]] = {}
+    for name, reason in estimate.not_identifiable.items():
+        found.setdefault(reason, []).append(symbol(name))
+    return found
+
+
+def maneuver_line(judged: JudgedManeuver | JudgedLateral, room: int = 15) -> str:
+    """Return one line for a verdict: number, time, input in ``room`` columns, verdict and reason."""
+    span, verdict = judged.maneuver.span, judged.verdict
+    at, mark = clock(span.start_s), "✓" if verdict.accepted else "✗"
+    return f"{judged.maneuver.number:2d}  {at:>7}  {span.kind:<{room}}  {mark} {verdict.sentence}"
 
 
 @dataclass(frozen=True, slots=True)

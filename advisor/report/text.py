@@ -17,18 +17,9 @@ from advisor.oem.estimate import Estimate
 from advisor.report import table as report_table
 from advisor.report.lateral import lateral_decision, lateral_lines
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines, reference_speed
-from advisor.report.result_rows import ParameterRow, channel_table, parameter_row
+from advisor.report.result_rows import ParameterRow, channel_table, maneuver_line, parameter_row
 from advisor.words.digits import decimals_for, signed
 from advisor.words.vehicle_time import CLOCK, clock
-
-
-def maneuver_line(judged: JudgedManeuver) -> str:
-    """Return one line for a verdict: number, time, input, verdict and reason."""
-    span, verdict = judged.maneuver.span, judged.verdict
-    mark = "✓" if verdict.accepted else "✗"
-    return (
-        f"{judged.maneuver.number:2d}  {clock(span.start_s):>7}  {span.kind:<15}  {mark} {verdict.sentence}"
-    )
 
 
 def activity_line(activity: Activity) -> str:

@@ -51,10 +51,3 @@ def with_half(value: float, half: float) -> str:
     """Return a number with half its 95 % interval: ``−48.3 ± 2.1``."""
     decimals = decimals_for(half)
     return f"{signed(value, decimals)} ± {signed(half, decimals)}"
-
-
-def percent(value: float | None) -> str:
-    """Return a percentage for a glance, without decimals above 10."""
-    if value is None or not isfinite(value):
-        return "-"
-    return f"{value:.1f} %" if abs(value) < 10.0 else f"{value:.0f} %"

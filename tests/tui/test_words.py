@@ -9,7 +9,7 @@ from advisor.aircraft.reference import PARAMETERS as NAMES
 from advisor.tui.advice import Word
 from advisor.tui.block_letters import block_letters
 from advisor.tui.panes.gauge import bar
-from advisor.words.digits import percent, with_half
+from advisor.words.digits import with_half
 from advisor.words.quantities import PARAMETERS, channel
 
 
@@ -29,13 +29,6 @@ def test_people_read_degrees():
 
 def test_a_channel_nobody_named_keeps_its_name():
     assert channel("flap").symbol == "flap"
-
-
-@pytest.mark.parametrize(
-    ("value", "text"), [(None, "-"), (float("inf"), "-"), (3.14, "3.1 %"), (131.2, "131 %")]
-)
-def test_percentages_are_short(value: float | None, text: str):
-    assert percent(value) == text
 
 
 @pytest.mark.parametrize("word", get_args(Word))

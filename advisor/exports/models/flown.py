@@ -28,7 +28,7 @@ from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_solution import WITHOUT_FORCE
 from advisor.process.atomic_file import write_atomically
 from advisor.report.improved import file_content, improved_file, text_of
-from advisor.report.lateral_qualities import trim_of
+from advisor.report.qualities import trim_of
 from advisor.words.problems import ConfigurationError
 from advisor.words.quantiles import NORMAL_95
 

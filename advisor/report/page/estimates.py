@@ -1,6 +1,6 @@
 """The estimates with their intervals: joint estimate against the file's model, and each manoeuvre."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from matplotlib.figure import Figure as Drawing
 
@@ -18,8 +18,6 @@ _MOST_LABELS = 16
 """Most labels of a forest plot. With more manoeuvres every second one is named, or fewer."""
 _TALLEST_IN = 3.2
 """Greatest height of a forest plot, inches, so that thirty manoeuvres fill no page."""
-Rows = Mapping[str, ParameterRow]
-"""Parameter to its row."""
 
 
 def estimates(content: Content) -> Section:
@@ -61,20 +59,31 @@ def joint_table(content: Content) -> Table | None:
     model = content.state.model
     if model is None:
         return None
-    numbers = ", ".join(map(str, content.state.estimate_from))
     at = reference_speed(content.state)
-    rows = (parameter_row(name, model, content.aircraft.model) for name in PARAMETERS)
+    rows = [parameter_row(name, model, content.aircraft.model) for name in PARAMETERS]
+    told = f"{at}; ± is half the 95 % interval."
+    return joint_of("joint", content.state.estimate_from, told, rows, with_reasons=True)
+
+
+def joint_of(
+    name: str, numbers: Iterable[int], told: str, rows: Iterable[ParameterRow], *, with_reasons: bool = False
+) -> Table:
+    """Return the table ``name`` of a joint estimate from manoeuvres; ``told`` ends the sentence above it."""
     return Table(
-        "joint", f"Joint estimate from manoeuvres {numbers}{at}; ± is half the 95 % interval.",
+        name, f"Joint estimate from manoeuvres {', '.join(map(str, numbers))}{told}",
         ("parameter", "estimate ± 95 %", "± 95 % if white", "simulator", "unit"),
-        tuple(map(_joint, rows)), frozenset({1, 2, 3}),
+        tuple(
+            (
+                row.quantity.symbol,
+                f"– ({row.reason})" if row.reason and with_reasons else row.cell,
+                "–" if row.reason else f"{row.half_if_white:.2g}",
+                row.prior_cell,
+                row.quantity.unit,
+            )
+            for row in rows
+        ),
+        frozenset({1, 2, 3}),
     )  # fmt: skip
-
-
-def _joint(row: ParameterRow) -> tuple[str, ...]:
-    value = f"– ({row.reason})" if row.reason else row.cell
-    white = "–" if row.reason else f"{row.half_if_white:.2g}"
-    return row.quantity.symbol, value, white, row.prior_cell, row.quantity.unit
 
 
 def _narrow(cell: str) -> str:

@@ -1,13 +1,13 @@
 """Measured and fitted response of each accepted manoeuvre: input and outputs over one time axis."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from statistics import fmean
-from typing import Literal
+from typing import Literal, TypeVar
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from advisor.campaign.state import JudgedManeuver
+from advisor.campaign.state import JudgedLateral, JudgedManeuver
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
@@ -29,6 +29,7 @@ _FEW = 8
 """Most small pictures that stand four across. More stand six across, so that thirty fill one page."""
 Size = Literal["quarter", "sixth"]
 Fitted = tuple[JudgedManeuver, Estimate]
+Judged = TypeVar("Judged", JudgedManeuver, JudgedLateral)
 
 
 def fits(content: Content) -> Section:
@@ -46,7 +47,7 @@ def _blocks(content: Content) -> Iterator[Block]:
         yield Paragraph("No manoeuvre is accepted.")
         return
     yield Paragraph(_EXPLAINED)
-    in_order = sorted(accepted, key=_explained)
+    in_order = by_fit(accepted)
     large = [("worst", in_order[0]), ("best", in_order[-1])] if len(in_order) > 1 else [("only", in_order[0])]
     yield Gallery(tuple(_large(rank, *one) for rank, one in large))
     shown = {one.maneuver.number for _, (one, _) in large}
@@ -55,9 +56,15 @@ def _blocks(content: Content) -> Iterator[Block]:
         yield Gallery(tuple(_small(size, *one) for one in small))
 
 
-def _explained(fitted: Fitted) -> float:
-    """Return the mean share of the motion that the fit explains."""
-    return fmean(fit.r2 for fit in fitted[1].fits[0].values())
+def by_fit(fitted: Iterable[tuple[Judged, Estimate]]) -> list[tuple[Judged, Estimate]]:
+    """Return manoeuvres in the order of the mean share of the motion that their fit explains."""
+    return sorted(fitted, key=lambda one: fmean(fit.r2 for fit in one[1].fits[0].values()))
+
+
+def caption_of(judged: JudgedManeuver | JudgedLateral, estimate: Estimate) -> str:
+    """Return a manoeuvre's number and input, and the share of each output that its fit explains."""
+    told = ", ".join(f"{CHANNELS[fit.name].symbol} R² {fit.r2:.3f}" for fit in estimate.fits[0].values())
+    return f"Manoeuvre {judged.maneuver.number}, {judged.maneuver.span.kind}: {told}."
 
 
 def _large(rank: str, judged: JudgedManeuver, estimate: Estimate) -> Figure:
@@ -73,11 +80,10 @@ def _small(size: Size, judged: JudgedManeuver, estimate: Estimate) -> Figure:
     number, all_of_them = judged.maneuver.number, estimate.fits[0]
     outputs = tuple(all_of_them[name] for name in _SMALL if name in all_of_them)
     svg = picture(
-        f"fit-{number}", 2.0, 0.75 + 0.65 * len(outputs), _paint_small, _elevator(judged), outputs,
-        _start(judged),
+        f"fit-{number}", 2.0, 0.75 + 0.65 * len(outputs), _paint_small, {"elevator": _elevator(judged)},
+        outputs, _start(judged),
     )  # fmt: skip
-    told = ", ".join(f"{CHANNELS[fit.name].symbol} R² {fit.r2:.3f}" for fit in all_of_them.values())
-    return Figure(svg, f"Manoeuvre {number}, {judged.maneuver.span.kind}: {told}.", size)
+    return Figure(svg, caption_of(judged, estimate), size)
 
 
 def _measures(fit: ChannelFit, estimate: Estimate) -> str:
@@ -98,10 +104,10 @@ def _start(judged: JudgedManeuver) -> float:
 def _paint_large(drawing: Drawing, elevator: Channel, outputs: Sequence[ChannelFit], start_s: float) -> None:
     heights = [1.0, *(h for _ in outputs for h in (1.5, 0.8))]
     rows = drawing.subplots(len(heights), 1, sharex=True, height_ratios=heights)
-    paint_input(rows[0], "elevator", elevator, start_s)
+    _paint_input(rows[0], "elevator", elevator, start_s)
     for k, fit in enumerate(outputs):
         curves, below = rows[1 + 2 * k], rows[2 + 2 * k]
-        paint_output(curves, fit, start_s)
+        _paint_output(curves, fit, start_s)
         quantity = CHANNELS[fit.name]
         half = NORMAL_95 * fit.noise * quantity.factor
         below.axhspan(-half, half, facecolor="#cfe0ef", edgecolor=BLUE, linewidth=0.5, linestyle=":")
@@ -113,26 +119,43 @@ def _paint_large(drawing: Drawing, elevator: Channel, outputs: Sequence[ChannelF
     drawing.align_ylabels(list(rows))
 
 
-def _paint_small(drawing: Drawing, elevator: Channel, outputs: Sequence[ChannelFit], start_s: float) -> None:
-    rows = drawing.subplots(1 + len(outputs), 1, sharex=True, squeeze=False)[:, 0]
-    paint_input(rows[0], "elevator", elevator, start_s)
-    for axes, fit in zip(rows[1:], outputs, strict=True):
-        paint_output(axes, fit, start_s)
-    for axes in rows:
+Inputs = Mapping[str, Channel]
+
+
+def _paint_small(drawing: Drawing, inputs: Inputs, outputs: Sequence[ChannelFit], start_s: float) -> None:
+    for axes in _rows(drawing, inputs, outputs, start_s, ticks=3):
         axes.tick_params(labelsize=6)
-        axes.yaxis.label.set_size(6)
-        axes.locator_params(axis="y", nbins=3)
-    drawing.align_ylabels(list(rows))
+        axes.yaxis.label.set_fontsize(6)
 
 
-def paint_input(axes: Axes, name: str, moved: Channel, start_s: float) -> None:
+def paint_rows(drawing: Drawing, inputs: Inputs, outputs: Sequence[ChannelFit], start_s: float) -> None:
+    """Draw controls and outputs, measured and fitted, over the time since the first step."""
+    *_, last = _rows(drawing, inputs, outputs, start_s, ticks=4)
+    last.set_xlabel("time since the first step [s]")
+
+
+def _rows(
+    drawing: Drawing, inputs: Inputs, outputs: Sequence[ChannelFit], start_s: float, ticks: int
+) -> list[Axes]:
+    rows = list(drawing.subplots(len(inputs) + len(outputs), 1, sharex=True, squeeze=False)[:, 0])
+    for axes, (name, channel) in zip(rows, inputs.items(), strict=False):
+        _paint_input(axes, name, channel, start_s)
+    for axes, fit in zip(rows[len(inputs) :], outputs, strict=True):
+        _paint_output(axes, fit, start_s)
+    for axes in rows:
+        axes.locator_params(axis="y", nbins=ticks)
+    drawing.align_ylabels(rows)
+    return rows
+
+
+def _paint_input(axes: Axes, name: str, moved: Channel, start_s: float) -> None:
     """Draw a control over the time since the first step."""
     quantity = CHANNELS[name]
     axes.plot(moved.t - start_s, moved.y * quantity.factor, color=BLACK, linewidth=0.9)
     axes.set_ylabel(quantity.label)
 
 
-def paint_output(axes: Axes, fit: ChannelFit, start_s: float) -> None:
+def _paint_output(axes: Axes, fit: ChannelFit, start_s: float) -> None:
     """Draw an output, measured and fitted, over the time since the first step."""
     quantity, t = CHANNELS[fit.name], fit.t - start_s
     axes.plot(t, fit.measured * quantity.factor, color=GREY, linewidth=1.8, label="measured")

@@ -1,30 +1,26 @@
 """Roll and yaw: verdict, derivatives, modes, levels, tests of the simulator, and fits."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from statistics import fmean
-
-from matplotlib.figure import Figure as Drawing
+from collections.abc import Iterator, Mapping
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.campaign.state import JudgedLateral, LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE
 from advisor.decision.lateral_qualification import LateralTest
-from advisor.flight.signals.record import Channel
 from advisor.model.lateral import LATERAL
 from advisor.model.mil_f_8785c import MANNED
-from advisor.oem.estimate import ChannelFit
+from advisor.oem.estimate import Estimate
 from advisor.oem.lateral_estimate import LateralEstimate
-from advisor.report.lateral_qualities import MODES, NAMES, levels_of, modes_told, tests_of
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import picture
-from advisor.report.page.fits import paint_input, paint_output
+from advisor.report.page.estimates import joint_of
+from advisor.report.page.fits import by_fit, caption_of, paint_rows
 from advisor.report.page.maneuvers import HEAD, maneuver_row
-from advisor.report.result_rows import parameter_row
+from advisor.report.qualities import MODE_NAMES, MODES, levels_of, modes_told, tests_of
+from advisor.report.result_rows import parameter_row, untold
 from advisor.report.table import Table
 from advisor.words.digits import with_half
 from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import CHANNELS
 from advisor.words.vehicle_time import CLOCK
 
 
@@ -65,34 +61,19 @@ def lateral_verdict(state: LateralState) -> Iterator[Block]:
 
 def derivatives(state: LateralState, model: LateralEstimate, prior: Mapping[str, float], name: str) -> Table:
     """Return the table of the joint estimate under this name, which is unique on a page."""
-    rows = [parameter_row(name, model.estimate, prior) for name in SIDE_PARAMETERS]
-    numbers = ", ".join(map(str, state.estimate_from))
-    return Table(
-        name,
-        f"Joint estimate from manoeuvres {numbers} at {model.estimate.airspeed_m_s:.1f} m/s; ± is half the "
-        "95 % interval. L and N hold the products of inertia.",
-        ("parameter", "estimate ± 95 %", "± 95 % if white", "simulator", "unit"),
-        tuple(
-            (
-                row.quantity.symbol,
-                row.cell,
-                "–" if row.reason else f"{row.half_if_white:.2g}",
-                row.prior_cell,
-                row.quantity.unit,
-            )
-            for row in rows
-        ),
-        frozenset({1, 2, 3}),
-    )
+    return joint_of(
+        name, state.estimate_from,
+        f" at {model.estimate.airspeed_m_s:.1f} m/s; ± is half the 95 % interval. L and N hold the products "
+        "of inertia.",
+        [parameter_row(one, model.estimate, prior) for one in SIDE_PARAMETERS],
+    )  # fmt: skip
 
 
 def _untold(model: LateralEstimate) -> list[str]:
     """Return one sentence for each reason why derivatives and modes are not told."""
-    by_reason: dict[str, list[str]] = {}
-    for name, reason in model.estimate.not_identifiable.items():
-        by_reason.setdefault(reason, []).append(parameter_row(name, model.estimate, {}).quantity.symbol)
-    told = [f"Not identifiable: {', '.join(names)}; {reason}." for reason, names in by_reason.items()]
-    return told + [f"No {NAMES[mode]} mode: {why}." for mode, why in model.modes.left_out.items()]
+    reasons = untold(model.estimate).items()
+    told = [f"Not identifiable: {', '.join(names)}; {reason}." for reason, names in reasons]
+    return told + [f"No {MODE_NAMES[mode]} mode: {why}." for mode, why in model.modes.left_out.items()]
 
 
 def _modes(content: Content, state: LateralState) -> Iterator[Block]:
@@ -112,7 +93,7 @@ def _modes(content: Content, state: LateralState) -> Iterator[Block]:
     if levels:
         yield Table(
             "lateral-levels", f"Levels by {SOURCE}; the worst mode governs.",
-            ("classes", "category", "all modes", *(NAMES[mode] for mode in levels[0].by_mode)),
+            ("classes", "category", "all modes", *(MODE_NAMES[mode] for mode in levels[0].by_mode)),
             tuple(
                 (
                     f"{one.group} ({GROUPS[one.group]})",
@@ -147,49 +128,21 @@ _EXPLAINED = (
 )
 _MOST = 6
 """Most pictures: the manoeuvres that are explained worst and best are among them."""
-Inputs = Sequence[tuple[str, Channel]]
 
 
 def lateral_fits(state: LateralState) -> Iterator[Block]:
     """Return the fits of the accepted manoeuvres: the worst and the best one, then others as room allows."""
-    accepted = [
-        (one, one.estimate)
-        for one in state.maneuvers
-        if one.verdict.accepted and isinstance(one.estimate, LateralEstimate)
-    ]
-    if not accepted:
-        return
-    yield Paragraph(_EXPLAINED)
-    by_fit = sorted(accepted, key=lambda one: _explained(one[1]))
-    kept = [*by_fit[:1], *reversed(by_fit[1:])][:_MOST]
-    shown = sorted(kept, key=lambda one: one[0].maneuver.number)
-    yield Gallery(tuple(_figure(judged, estimate) for judged, estimate in shown))
+    found = ((one, one.estimate) for one in state.maneuvers if one.verdict.accepted)
+    in_order = by_fit((one, e.estimate) for one, e in found if isinstance(e, LateralEstimate))
+    if in_order:
+        yield Paragraph(_EXPLAINED)
+        kept = [*in_order[:1], *reversed(in_order[1:])][:_MOST]
+        yield Gallery(tuple(_figure(*one) for one in sorted(kept, key=lambda one: one[0].maneuver.number)))
 
 
-def _explained(found: LateralEstimate) -> float:
-    """Return the mean share of the motion that the fit explains."""
-    return fmean(fit.r2 for fit in found.estimate.fits[0].values())
-
-
-def _figure(judged: JudgedLateral, found: LateralEstimate) -> Figure:
-    maneuver = judged.maneuver
-    inputs = [(name, maneuver.channels[name]) for name in LATERAL.inputs if name in maneuver.channels]
-    outputs = tuple(found.estimate.fits[0].values())
-    svg = picture(
-        f"lateral-fit-{maneuver.number}", 3.6, 0.7 + 0.85 * (len(inputs) + len(outputs)), _paint,
-        inputs, outputs, maneuver.span.start_s,
-    )  # fmt: skip
-    told = ", ".join(f"{CHANNELS[fit.name].symbol} R² {fit.r2:.3f}" for fit in outputs)
-    return Figure(svg, f"Manoeuvre {maneuver.number}, {maneuver.span.kind}: {told}.", "half")
-
-
-def _paint(drawing: Drawing, inputs: Inputs, outputs: Sequence[ChannelFit], start_s: float) -> None:
-    rows = drawing.subplots(len(inputs) + len(outputs), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, (name, channel) in zip(rows, inputs, strict=False):
-        paint_input(axes, name, channel, start_s)
-    for axes, fit in zip(rows[len(inputs) :], outputs, strict=True):
-        paint_output(axes, fit, start_s)
-    for axes in rows:
-        axes.locator_params(axis="y", nbins=4)
-    rows[-1].set_xlabel("time since the first step [s]")
-    drawing.align_ylabels(list(rows))
+def _figure(judged: JudgedLateral, estimate: Estimate) -> Figure:
+    maneuver, outputs = judged.maneuver, tuple(estimate.fits[0].values())
+    inputs = {name: maneuver.channels[name] for name in LATERAL.inputs if name in maneuver.channels}
+    size = 3.6, 0.7 + 0.85 * (len(inputs) + len(outputs))
+    svg = picture(f"lateral-fit-{maneuver.number}", *size, paint_rows, inputs, outputs, maneuver.span.start_s)
+    return Figure(svg, caption_of(judged, estimate), "half")

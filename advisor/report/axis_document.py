@@ -1,0 +1,58 @@
+"""Parts of ``advisor.analyze/1`` that manoeuvres and estimates of every axis have, in SI units."""
+
+from typing import Any
+
+from advisor.campaign.state import JudgedLateral, JudgedManeuver
+from advisor.oem.estimate import Estimate
+from advisor.words.plain import picked, plain
+from advisor.words.quantiles import NORMAL_95
+
+
+def flown(judged: JudgedManeuver | JudgedLateral) -> dict[str, Any]:
+    """Return the times of a manoeuvre, its input, and its verdict."""
+    span, verdict = judged.maneuver.span, judged.verdict
+    return {
+        "start_boot_s": plain(span.start_s),
+        "end_boot_s": plain(span.end_s),
+        "record_from_boot_s": plain(span.record_from_s),
+        "last_step_boot_s": plain(span.last_step_s),
+        "input": span.kind,
+        "closed_by": span.closed_by,
+        "verdict": "accepted" if verdict.accepted else "rejected",
+        **picked(verdict, "sentence reasons cautions rules"),
+    }
+
+
+def fitted(estimate: Estimate | None) -> dict[str, Any]:
+    """Return the cost of an estimate, and measures of its fit by output."""
+    fits = estimate.fits[0].items() if estimate else ()
+    return {
+        "cost": plain(estimate.cost) if estimate else None,
+        "fit": {name: picked(fit, "rms tic r2") for name, fit in fits},
+    }
+
+
+def parameters(estimate: object) -> dict[str, Any] | None:
+    """Return every parameter as ``{value, std, std_cr}``. An unidentifiable one has None and the reason."""
+    if not isinstance(estimate, Estimate):
+        return None
+    return {
+        name: {"value": None, "std": None, "std_cr": None, "reason": estimate.not_identifiable[name]}
+        if name in estimate.not_identifiable
+        else {"value": plain(value), "std": plain(std), "std_cr": plain(std_cr)}
+        for name, value, std, std_cr in zip(
+            estimate.names, estimate.theta, estimate.std, estimate.std_cr, strict=True
+        )
+    }
+
+
+def with_intervals(estimate: Estimate) -> dict[str, Any]:
+    """Return every parameter with its 95 % interval, ``ci95``: None where it has none."""
+    document: dict[str, Any] = {}
+    for name, entry in (parameters(estimate) or {}).items():
+        ci95 = None
+        if entry["value"] is not None and entry["std"] is not None:
+            half = NORMAL_95 * entry["std"]
+            ci95 = [entry["value"] - half, entry["value"] + half]
+        document[name] = {**entry, "ci95": ci95}
+    return document
