@@ -190,7 +190,7 @@ examples: .venv/.developed ## run the worked examples of the documentation, and 
 	$(BIN)/python -m benchmarks.pages --examples
 
 pictures: .venv/.developed ## the screens in the README, drawn by the running program
-	$(BIN)/python -m advisor.tui.picture logs/bundled-demo.tlog --after 3 --out docs/assets
+	$(BIN)/python -m benchmarks.pages.screens logs/bundled-demo.tlog --after 3 --out docs/assets
 	$(BIN)/advisor gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml --figure docs/assets/gap.svg
 
 .PHONY: wheel install-check lowest release audit container coverage

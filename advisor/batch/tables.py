@@ -13,7 +13,7 @@ from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.trend import ChangeOverFlights, change_over_flights, lying_apart
 from advisor.exports.flights.found import PARAMETER_UNITS
-from advisor.exports.flights.table import Column, Dataset, FlightTable, numbers, texts
+from advisor.exports.flights.table import Column, Dataset, FlightTable, counts, numbers, texts, truths
 from advisor.oem.estimate import Estimate
 from advisor.words.quantities import SIDE_PARAMETERS
 
@@ -134,12 +134,10 @@ def _flights(flights: Sequence[Analyzed]) -> FlightTable:
         Column("aircraft", texts([aircraft_of(f) for f in flights]), "", "aircraft file, autopilot, id"),
         Column("began_s", numbers([f.began_s for f in flights]), "s", "begin of the log since 1970"),
         Column("duration_s", numbers([d["log"]["duration_s"] for d in documents]), "s", "vehicle time heard"),
-        Column("usable", np.array([f.usable for f in flights], np.bool_), "", "whether the log counts"),
+        Column("usable", truths([f.usable for f in flights]), "", "whether the log counts"),
         Column("problems", texts([" ".join(f.reasons) for f in flights]), "", "why it does not count"),
-        Column("maneuvers", np.array([len(v) for v in verdicts], np.int64), "1", "number of manoeuvres"),
-        Column(
-            "accepted", np.array([v.count("accepted") for v in verdicts], np.int64), "1", "how many count"
-        ),
+        Column("maneuvers", counts([len(v) for v in verdicts]), "1", "number of manoeuvres"),
+        Column("accepted", counts([v.count("accepted") for v in verdicts]), "1", "how many count"),
         Column("decision", texts(list(map(decided, tests))), "", "complete or not complete"),
         Column(
             "criterion_percent", numbers([t.get("criterion_percent") for t in tests]), "%", "stop criterion"
@@ -151,14 +149,9 @@ def _flights(flights: Sequence[Analyzed]) -> FlightTable:
             "air speed at which the derivatives are given",
         ),
         *_parameters([d["model"] for d in documents], "of the joint estimate"),
+        Column("lateral_maneuvers", counts([len(v) for v in lateral]), "1", "those of roll and yaw"),
         Column(
-            "lateral_maneuvers", np.array([len(v) for v in lateral], np.int64), "1", "those of roll and yaw"
-        ),
-        Column(
-            "lateral_accepted",
-            np.array([v.count("accepted") for v in lateral], np.int64),
-            "1",
-            "how many of them count",
+            "lateral_accepted", counts([v.count("accepted") for v in lateral]), "1", "how many of them count"
         ),
         Column("lateral_decision", texts(list(map(decided, sides))), "", "complete or not complete"),
         *_parameters([f.lateral.get("model") for f in flights], "of the joint estimate", _SIDE_UNITS),
@@ -177,14 +170,14 @@ def _maneuvers(flights: Sequence[Analyzed]) -> FlightTable:
     pitch = [None if _is_lateral(m) else m["estimates"] for m in found]
     lateral = [m["estimates"] if _is_lateral(m) else None for m in found]
     columns = [
-        Column("flight", np.array([k for k, _ in rows], np.int64), "", "number of the flight"),
-        Column("maneuver", np.array([m["number"] for m in found], np.int64), "", "number in the flight"),
-        Column("boot", np.array([m["boot"] for m in found], np.int64), "", "power-on in the log, from 0"),
+        Column("flight", counts([k for k, _ in rows]), "", "number of the flight"),
+        Column("maneuver", counts([m["number"] for m in found]), "", "number in the flight"),
+        Column("boot", counts([m["boot"] for m in found]), "", "power-on in the log, from 0"),
         Column("start_boot_s", numbers([m["start_boot_s"] for m in found]), "s", "onset of the first step"),
         Column("end_boot_s", numbers([m["end_boot_s"] for m in found]), "s", "end of the free response"),
         Column("input", texts([m["input"] for m in found]), "", "kind of input"),
         Column("mode", texts([m["mode"] for m in found]), "", "flight mode"),
-        Column("accepted", np.array([m["verdict"] == "accepted" for m in found], np.bool_), "", "verdict"),
+        Column("accepted", truths([m["verdict"] == "accepted" for m in found]), "", "verdict"),
         Column("sentence", texts([m["sentence"] for m in found]), "", "verdict as the pilot reads it"),
         Column("reason_codes", texts([_codes(m) for m in found]), "", "stable codes of the reasons"),
         Column("cost", numbers([m["cost"] for m in found]), "", "J of Eq. (7)"),
@@ -199,18 +192,11 @@ def _changes(changes: dict[str, ChangeOverFlights]) -> FlightTable:
     rows = [(name, c, moved) for name, c in changes.items() for moved in c.change.moved]
     columns = (
         Column("aircraft", texts([name for name, _, _ in rows]), "", "aircraft file, autopilot, id"),
-        Column(
-            "since_flight",
-            np.array([c.since for _, c, _ in rows], np.int64),
-            "",
-            "first flight after the change",
-        ),
+        Column("since_flight", counts([c.since for _, c, _ in rows]), "", "first flight after the change"),
         Column("parameter", texts([moved.parameter for *_, moved in rows]), "", "derivative that moved"),
         Column("percent", numbers([moved.percent for *_, moved in rows]), "%", "growth of its size"),
         Column("sigma", numbers([moved.sigma for *_, moved in rows]), "1", "difference over its std"),
-        Column(
-            "confirmed", np.array([c.change.confirmed for _, c, _ in rows], np.bool_), "", "two flights agree"
-        ),
+        Column("confirmed", truths([c.change.confirmed for _, c, _ in rows]), "", "two flights agree"),
         Column("sentence", texts([c.sentence for _, c, _ in rows]), "", "change in words"),
     )
     return FlightTable("changes", "A row is a derivative that moved from one flight to the next.", columns)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from advisor.aircraft.aircraft import Aircraft
     from advisor.campaign.hand_decisions import ByHand
     from advisor.exports.models.flown import FlownModel, SideModel
+    from advisor.exports.models.formats import AxisAsked
     from advisor.exports.models.proof import Proof
     from advisor.exports.models.write import ExportOutcome
     from advisor.gap.inference.prior import FieldPrior
@@ -113,7 +114,7 @@ def command(
     out: Path | None,
     figure: Path | None,
     exports: tuple[str, ...],
-    axis: str,
+    axis: "AxisAsked",
     everything: bool,
     proving: tuple[str, ...],
     why: bool,
@@ -157,19 +158,16 @@ def command(
         raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
     if specification is not None:
         aircraft = replace(aircraft, simulator=specification)
-    if axis == "lateral":
-        from advisor.cli.side_gap import compare_lateral
-
-        if out is not None:
-            _refuse_out(out, asked.aircraft_file)
-        orders = orders_of(exports, aircraft, [*asked.inputs, out], "lateral")
-        return compare_lateral(asked, aircraft, as_json, prior, out, orders, proving, why)
-    decided = [decided_on(log, asked.no_marks) for log in asked.logs]
-    by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     if out is not None:
         _refuse_out(out, asked.aircraft_file)
     refuse_figure(figure, [*asked.inputs, out])
-    orders = orders_of(exports, aircraft, [*asked.inputs, out], "pitch")
+    orders = orders_of(exports, aircraft, [*asked.inputs, out], axis)
+    if axis == "lateral":
+        from advisor.cli.side_gap import compare_lateral
+
+        return compare_lateral(asked, aircraft, as_json, prior, out, orders, proving, why)
+    decided = [decided_on(log, asked.no_marks) for log in asked.logs]
+    by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.exports.models.flown import FlownModel
     from advisor.gap.document import gap_document

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 import numpy as np
@@ -21,14 +21,19 @@ from advisor.cli.options import USAGE
 from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of
 from advisor.cli.stages import Stages
+from advisor.exports.models.proof import Proof
+from advisor.exports.models.roll_and_yaw import improved_side, prove_side
+from advisor.exports.models.write import ExportOrder
 from advisor.gap.alternative import Weighed
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.document import changed_document, gap_document, weighed_document
 from advisor.gap.inference.prior import FIELD, FieldPrior, field_prior
 from advisor.gap.result import IMPROVING, Value
 from advisor.gap.verdict.text import title_of_verdict
+from advisor.report.console import PlainConsole
+from advisor.report.gap_causes import why_of
 from advisor.report.gap_reasons import how_sure, in_percent
-from advisor.report.gap_sizes import sizes_of
+from advisor.report.gap_sizes import named, sizes_of, with_error
 from advisor.report.gap_steps import GapStep, to_decide
 from advisor.side_gap.comparison import SideGap
 from advisor.side_gap.diagnosis import SideDiagnosis
@@ -40,11 +45,6 @@ from advisor.words.printable import printable
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 
-if TYPE_CHECKING:
-    from advisor.exports.models.flown import FlownModel
-    from advisor.exports.models.proof import Proof
-    from advisor.exports.models.write import ExportOrder
-
 
 def compare_lateral(
     asked: LogsAsked,
@@ -52,7 +52,7 @@ def compare_lateral(
     as_json: bool,
     prior: str | None,
     out: Path | None,
-    orders: "list[ExportOrder]",
+    orders: list[ExportOrder],
     proving: Sequence[str] = (),
     why: bool = False,
 ) -> int:
@@ -77,8 +77,8 @@ def compare_lateral(
         return compared
     found = compared.gap
     improves = found.verdict in IMPROVING
-    written = write_improved(out, improves, lambda: replace(_improved(compared), pitch=None))
-    outcomes = write_exports(orders, partial(_improved, compared))
+    written = write_improved(out, improves, lambda: replace(improved_side(compared), pitch=None))
+    outcomes = write_exports(orders, partial(improved_side, compared))
     proof = proof_of(proving, partial(_prove, asked, compared, shares))
     if as_json:
         lateral = side_gap_document(found) | {"improved_model": str(out) if written else None}
@@ -88,20 +88,11 @@ def compare_lateral(
     else:
         click.echo("\n".join(side_gap_lines(found)))
         if why and found.diagnosis is not None:
-            from advisor.report.console import PlainConsole
-            from advisor.report.gap_causes import why_of
-
             PlainConsole().print(*why_of(found.diagnosis))
         print_proof(proof)
         if written:
             click.echo(f"The improved simulator is in {printable(str(out))}.")
     return USAGE if any(one.problem for one in outcomes) else 0
-
-
-def _improved(compared: SideCompared) -> "FlownModel":
-    from advisor.exports.models.roll_and_yaw import improved_side
-
-    return improved_side(compared)
 
 
 def _prove(
@@ -110,10 +101,8 @@ def _prove(
     prior: FieldPrior,
     named: Sequence[Path],
     tell: Callable[[str, float], None],
-) -> "Proof":
+) -> Proof:
     """Fly the improved roll and yaw on the manoeuvres of logs; without any, on the last third."""
-    from advisor.exports.models.roll_and_yaw import prove_side
-
     tell("flying for the proof", 0.0)
     fresh = None
     if named:
@@ -167,12 +156,8 @@ def _to_decide(found: SideDiagnosis | None) -> GapStep | None:
 
 def _in_units(name: str, told: Value) -> str:
     """Return a nuisance parameter with its 95 % interval, in its unit: ``rudder lag 60 ± 6 ms``."""
-    for ending, factor, unit in (("_s", 1e3, "ms"), ("_m", 1.0, "m")):
-        if name.endswith(ending):
-            half = NORMAL_95 * told.std * factor
-            return (
-                f"{name.removesuffix(ending).replace('_', ' ')} {with_half(told.value * factor, half)} {unit}"
-            )
+    if name.endswith(("_s", "_m")):
+        return f"{named(name)} {with_error(name, told)}"
     return f"{name.replace('_', ' ')} {with_half(100.0 * told.value, 100.0 * NORMAL_95 * told.std)} %"
 
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver
-from advisor.exports.flights.table import Column, FlightTable, numbers, texts
+from advisor.exports.flights.table import Column, FlightTable, counts, numbers, texts, truths
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import UNITS
 from advisor.model.response import OUTPUTS
@@ -39,7 +39,7 @@ def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) ->
     spans = [one.maneuver.span for one in judged]
     verdicts = [one.verdict for one in judged]
     columns = [
-        Column("maneuver", np.array([m.maneuver.number for m in judged], np.int64), "", "number"),
+        Column("maneuver", counts([m.maneuver.number for m in judged]), "", "number"),
         Column(
             "record", _records([m.maneuver.power_on for m in judged], record_of), "", "number of the record"
         ),
@@ -51,9 +51,7 @@ def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) ->
         Column("end_boot_s", numbers([s.end_s for s in spans]), "s", "end of the free response"),
         Column("input", texts([s.kind for s in spans]), "", "kind of input"),
         Column("mode", texts([m.maneuver.mode for m in judged]), "", "flight mode"),
-        Column(
-            "accepted", np.array([v.accepted for v in verdicts], np.bool_), "", "whether the verdict accepts"
-        ),
+        Column("accepted", truths([v.accepted for v in verdicts]), "", "whether the verdict accepts"),
         Column("sentence", texts([v.sentence for v in verdicts]), "", "verdict as the pilot reads it"),
         Column(
             "reason_codes", texts([" ".join(r.code for r in v.reasons) for v in verdicts]), "", "stable codes"
@@ -101,7 +99,7 @@ def estimates(state: CampaignState) -> FlightTable:
     speeds = numbers([e.airspeed_m_s for _, e, _ in rows])
     which = f"number; {JOINT} is the joint estimate over the accepted manoeuvres"
     columns = [
-        Column("maneuver", np.array([number for number, _, _ in rows], np.int64), "", which),
+        Column("maneuver", counts([number for number, _, _ in rows]), "", which),
         Column("parameter", texts([name for _, _, name in rows]), "", "name in Eqs. (1)-(3)"),
         Column("unit", units, "", "SI unit of the value"),
         Column("value", told("theta"), _BY_ROW, "estimate"),
@@ -173,7 +171,7 @@ def _estimate(judged: JudgedManeuver) -> Estimate | None:
 def _records(
     power_ons: Sequence[tuple[int, int]], record_of: Mapping[tuple[int, int], int]
 ) -> NDArray[np.int64]:
-    return np.array([record_of[power_on] for power_on in power_ons], dtype=np.int64)
+    return counts([record_of[power_on] for power_on in power_ons])
 
 
 def _measures(output: str, fits: Sequence[ChannelFit | None]) -> list[Column]:

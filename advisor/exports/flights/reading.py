@@ -9,7 +9,7 @@ import numpy as np
 from advisor import __version__
 from advisor.analysis.whole_flights import WholeFlights
 from advisor.exports.flights.found import estimates, maneuvers, residuals
-from advisor.exports.flights.table import Column, Dataset, FlightTable, Recording, numbers, texts
+from advisor.exports.flights.table import Column, Dataset, FlightTable, Recording, counts, numbers, texts
 from advisor.flight.maneuvers.segmentation import GAP_S, MANY_INTERVALS
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.power_on import PowerOn
@@ -64,14 +64,14 @@ def _channels(flights: WholeFlights) -> FlightTable:
     ]
     found = [channel for *_, channel in rows]
     columns = (
-        Column("record", np.array([number for number, *_ in rows], np.int64), "", "number of the record"),
+        Column("record", counts([number for number, *_ in rows]), "", "number of the record"),
         Column("log", texts([str(log) for _, log, _, _ in rows]), "", "file of the log"),
-        Column("boot", np.array([boot for *_, boot, _ in rows], np.int64), "", "power-on in the log, from 0"),
+        Column("boot", counts([boot for *_, boot, _ in rows]), "", "power-on in the log, from 0"),
         Column("channel", texts([c.name for c in found]), "", "name of the channel"),
         Column("unit", texts([ALL_UNITS[c.name] for c in found]), "", "SI unit of the channel"),
         Column("source", texts([c.source for c in found]), "", "message and field"),
         Column("provenance", texts([c.provenance for c in found]), "", "how the quantity is known"),
-        Column("samples", np.array([len(c) for c in found], np.int64), "1", "number of samples"),
+        Column("samples", counts([len(c) for c in found]), "1", "number of samples"),
         Column("rate_hz", numbers([c.rate_hz for c in found]), "Hz", "median sampling rate"),
         Column(
             "largest_gap_s", numbers([c.largest_gap_s for c in found]), "s", "longest time between stamps"

@@ -72,6 +72,16 @@ def texts(values: Sequence[str]) -> NDArray[np.str_]:
     return np.array(list(values), dtype=np.str_)
 
 
+def counts(values: Sequence[int]) -> NDArray[np.int64]:
+    """Return whole numbers as a column's values, shape (n,)."""
+    return np.array(list(values), dtype=np.int64)
+
+
+def truths(values: Sequence[bool]) -> NDArray[np.bool_]:
+    """Return truths as a column's values, shape (n,)."""
+    return np.array(list(values), dtype=np.bool_)
+
+
 def numbers(values: Sequence[float | None]) -> NDArray[np.float64]:
     """Return numbers as a column's values, shape (n,), with NaN for None."""
     return np.array([np.nan if value is None else value for value in values], dtype=np.float64)

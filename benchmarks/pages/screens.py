@@ -1,6 +1,6 @@
 """Pictures of both screens, taken from the running application.
 
-    python -m advisor.tui.picture logs/arduplane-calm.tlog --after 5 --out docs
+    python -m benchmarks.pages.screens logs/arduplane-calm.tlog --after 5 --out docs
 
 The command plays the log until the given number of manoeuvres are judged and the next is in the air. The
 command then writes ``pilot.svg`` and ``engineer.svg``.
