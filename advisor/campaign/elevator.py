@@ -10,7 +10,7 @@ from advisor.campaign.instruments import as_known_by
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.late_limits import Recount
 from advisor.campaign.learning import learnt as learnt_from
-from advisor.campaign.learning import may_learn, of_another_power_on, reserved, told
+from advisor.campaign.learning import may_learn, of_another_power_on, told
 from advisor.campaign.single_maneuver import assess, failed, objection
 from advisor.campaign.state import JudgedManeuver
 from advisor.decision.course import CriterionCourse
@@ -21,7 +21,6 @@ from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.solution import Method
 from advisor.process.parts import FailedPart, Parts
 
@@ -205,12 +204,6 @@ class ElevatorCampaign:
         excluded = any(one.excluded_because is not None for one in history)
         heard = () if excluded else self._heard
         self.flight_test = flight_test(history, plan, self._aircraft, self._course, heard)
-        if lag_is_unknown(self.learnt):
-            model = self._of_lag
-            self.judged = tuple(
-                replace(judged, verdict=reserved(judged.verdict, judged.estimate, model))
-                for judged in self.judged
-            )
 
     @property
     def _accepted(self) -> Sequence[JudgedManeuver]:

@@ -4,16 +4,12 @@ They are estimated from all accepted manoeuvres together. Single estimates, verd
 given, with their errors (``oem.found``). A servo's lag that the crew leaves open must be known to a tenth.
 """
 
-from dataclasses import replace
-
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
-from advisor.decision.verdict import ManeuverVerdict
-from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.estimate import Estimate
 from advisor.oem.found import FoundInstruments, found_of, with_found
-from advisor.oem.instruments import KNOWN_TO
+from advisor.oem.instruments import knows_the_lag
 
 CONTRADICTS = 3.0
 """Difference between two estimates of a derivative, in standard deviations, that counts as contradiction."""
@@ -55,7 +51,7 @@ def learnt(
     if model is None or model.found is None:
         return aircraft
     found = model.found if one_power_on else model.found.without("command_delay_s")
-    if aircraft.elevator.lag_s is None and not _knows_the_lag(model):
+    if aircraft.elevator.lag_s is None and not knows_the_lag(model.instrument("servo_lag_s")):
         return aircraft
     used = found_of(aircraft)
     return (
@@ -63,11 +59,6 @@ def learnt(
         if used is not None and not exactly and _is_no_news(used, found)
         else with_found(aircraft, found)
     )
-
-
-def _knows_the_lag(model: Estimate) -> bool:
-    lag = model.instrument("servo_lag_s")
-    return lag is not None and lag.std < KNOWN_TO * lag.value
 
 
 def _is_no_news(used: FoundInstruments, found: FoundInstruments) -> bool:
@@ -98,30 +89,3 @@ def told(aircraft: Aircraft) -> str:
         f"the servo's lag is {lag_s:.3f} s{against} by all manoeuvres together; every estimate uses it now;"
         f" for the aircraft file: elevator: {{lag_s: {lag_s:.3f}}}"
     )
-
-
-def reserved(
-    verdict: ManeuverVerdict, estimate: Estimate | NoEstimate, model: Estimate | None
-) -> ManeuverVerdict:
-    """Return the verdict, with a caution where the joint estimate contradicts the control derivative.
-
-    A record that does not determine the servo's lag alone has M_δe wrong by up to a factor of two. The fit of
-    such a record is as good as any, and the stated error is small.
-    """
-    if model is None or isinstance(estimate, NoEstimate) or not verdict.accepted:
-        return verdict
-    if model.instrument("servo_lag_s") is None or estimate.servo_lag_s > 0.0:
-        return verdict
-    scale = 1.0
-    if model.airspeed_m_s and estimate.airspeed_m_s:
-        scale = (model.airspeed_m_s / estimate.airspeed_m_s) ** SPEED_EXPONENTS["M_delta_e"]
-    j = PARAMETERS.index("M_delta_e")
-    here, std = scale * float(estimate.theta[j]), scale * float(estimate.std[j])
-    together, error = float(model.theta[j]), float(model.std[j])
-    if abs(here - together) <= CONTRADICTS * np.hypot(std, error):
-        return verdict
-    sentence = (
-        f"ACCEPTED, but not its M_δe of {here:.3g}: with the servo's lag that all manoeuvres tell"
-        f" it is {together:.3g}"
-    )
-    return replace(verdict, sentence=sentence)

@@ -17,7 +17,7 @@ from advisor.decision.foresight import foresee, local_at_trim, response_from_tri
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import OUTPUTS
 from advisor.model.short_period import ShortPeriod
-from advisor.oem.instruments import extra_of, unknown_instruments
+from advisor.oem.instruments import USUAL_LAG, extra_of, unknown_instruments
 from advisor.oem.prepare import OUTPUTS as COUNTED
 from advisor.oem.prior import precision_without_alpha
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
@@ -35,8 +35,6 @@ _LEAD_IN_S = 1.0
 _EDGES_S = (0.04, 0.05, 0.06, 0.07, 0.08)
 """Times that a hand takes for a step of the stick, s."""
 _SHIFT_S = 2e-3
-_OPEN_LAG_S = 0.05
-"""Lag of a servo about which an open lag is estimated, s: that of small servos."""
 
 TYPICAL = ShortPeriod.from_mapping(
     {"Z_alpha": -4.0, "Z_delta_e": -0.3, "M_alpha": -40.0, "M_q": -4.0, "M_delta_e": -45.0}
@@ -125,18 +123,14 @@ def _errors(
 ) -> FloatArray:
     theta = _about_trim(assumed.model)
     stated_s = assumed.aircraft.elevator.lag_s
-    servo = Servo(_OPEN_LAG_S if stated_s is None else stated_s)
+    servo = Servo(USUAL_LAG.mean if stated_s is None else stated_s)
 
     def problem(at: FloatArray) -> OutputErrorProblem:
         return _problem(at, amplitude, end_s, rates_hz, outputs, airspeed_m_s, servo)
 
     laid = assemble(problem(edges))
     local = local_at_trim(theta, laid)
-    names = [
-        x
-        for x in unknown_instruments(problem(edges), assumed.aircraft)
-        if x.prior is not None or (x.name == "servo_lag_s" and x.stated is None)
-    ]
+    names = [x for x in unknown_instruments(problem(edges), assumed.aircraft) if x.prior is not None]
     shifts = _SHIFT_S * np.eye(len(edges))
     ends = [response_from_trim(theta, assemble(problem(edges + s))) for s in (*shifts, *-shifts)]
     if local is None or any(end is None for end in ends):

@@ -69,8 +69,6 @@ class InstrumentEstimate:
     """Standard deviation of ``told``, corrected for coloured residuals."""
     contradicts: bool = False
     """Whether the data exclude the stated value; ``value`` is then theirs."""
-    clear: bool = True
-    """Whether the data tell the value alone, instead of a prior together with them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

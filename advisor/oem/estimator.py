@@ -8,23 +8,21 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
 from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
 from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.found import FoundInstruments, found_of
 from advisor.oem.gauss_newton import CONVERGED, Optimum
-from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated, not_identifiable
+from advisor.oem.identifiability import correlated, not_identifiable
 from advisor.oem.instrument_fit import Identified, InstrumentFit, fit_instruments, refreshed
-from advisor.oem.instruments import COMMAND_DELAY, unknown_instruments
+from advisor.oem.instruments import COMMAND_DELAY, knows_the_lag, unknown_instruments
 from advisor.oem.notes import notes
 from advisor.oem.prediction import prediction_band
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.problem import OutputErrorProblem
 from advisor.oem.rows import Laid
-from advisor.oem.solution import Method, Solution, evaluate, reported, search, solve
-from advisor.oem.surface import Servo
+from advisor.oem.solution import Method, Solution, evaluate, search, solve
 from advisor.oem.turbulence import Turbulence
 from advisor.oem.weighing import Weighing
 
@@ -53,7 +51,7 @@ def estimate(
     if isinstance(begun, NoEstimate):
         return begun
     prepared, plain = begun
-    return report(plain, prepared, aircraft, lagged=_supposing_a_lag(plain, aircraft))
+    return report(plain, prepared, aircraft)
 
 
 def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estimate | NoEstimate:
@@ -86,14 +84,13 @@ class Fit:
 
     @property
     def tells_lag(self) -> bool:
-        """Whether the servo's lag is a parameter of the fit, and so of the estimate."""
-        return any(x.instrument.name == "servo_lag_s" for x in self.fitted.identified)
+        """Whether the manoeuvres tell the servo's lag well enough for every other estimate."""
+        return any(knows_the_lag(x.found) for x in self.fitted.identified)
 
     def estimate(self) -> Estimate:
         """Return the estimate with the times of steps, and by filter error where the air moves."""
         solution = with_edges(self.fitted.solution)
         identified = refreshed(self.fitted.identified, solution)
-        lagged = None if self.tells_lag else _supposing_a_lag(solution, self.aircraft)
         air = _air(solution, self.maneuvers, self.prepared)
         filtered = None
         if air is not None:
@@ -107,7 +104,6 @@ class Fit:
             self.prepared,
             self.aircraft,
             identified=identified,
-            lagged=lagged,
             air=air,
             filtered=filtered,
         )
@@ -211,7 +207,6 @@ def report(
     aircraft: Aircraft,
     *,
     identified: Sequence[Identified] = (),
-    lagged: FloatArray | None = None,
     air: Turbulence | None = None,
     filtered: Solution | None = None,
     quick: bool = False,
@@ -221,7 +216,6 @@ def report(
     Parameters
     ----------
     identified : instrument parameters of the fit.
-    lagged : (8,) the estimate under a servo lag of ``SUPPOSED_LAG_S``, for an unknown servo.
     air : moving air, where output error is not valid.
     filtered : solution of filter error, where moving air was allowed for.
     quick : leave out what takes milliseconds: the cost of missing channels, and the efficient estimate.
@@ -241,11 +235,11 @@ def report(
         cost=solution.cost,
         fits=channel_fits(solution.assembly, solution.optimum),
         iterations=solution.optimum.iterations,
-        not_identifiable=not_identifiable(best if filtered else solution, lagged),
+        not_identifiable=not_identifiable(best if filtered else solution),
         correlated=correlated(best.covariance_cr[:N, :N]),
         condition=solution.influence.condition,
         airspeed_m_s=airspeed_m_s,
-        notes=notes(solution, prepared, aircraft, identified, lagged, best=best, priced=not quick),
+        notes=notes(solution, prepared, aircraft, identified, best=best, priced=not quick),
         theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
         instruments=(*_given(given), *(x.reported for x in identified if x.reported is not None)),
         found=FoundInstruments.of(
@@ -268,17 +262,7 @@ def _given(found: FoundInstruments | None) -> Iterator[InstrumentEstimate]:
     """Yield the instruments that other manoeuvres have told, for the rest of the program."""
     for name, value, std in zip(found.names, found.values, found.std, strict=True) if found else ():
         if name != "steady_moment_rad":
-            yield InstrumentEstimate(name, float(value), float(std), clear=False)
-
-
-def _supposing_a_lag(solution: Solution, aircraft: Aircraft) -> FloatArray | None:
-    """Return the estimate under a servo lag of ``SUPPOSED_LAG_S``, shape (8,); None for a known servo."""
-    if not lag_is_unknown(aircraft):
-        return None
-    servo = Servo(SUPPOSED_LAG_S, solution.problem.servo.delay_s)
-    begin = (solution.optimum.shared, solution.optimum.local)
-    _, moved = search(replace(solution.problem, servo=servo), begin=begin)
-    return reported(moved.shared, moved.local) if moved.status == CONVERGED else None
+            yield InstrumentEstimate(name, float(value), float(std))
 
 
 def channel_fits(assembly: Laid, optimum: Optimum) -> tuple[dict[str, ChannelFit], ...]:

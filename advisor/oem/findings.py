@@ -43,7 +43,7 @@ def _finding(x: InstrumentEstimate, aircraft: Aircraft) -> InstrumentFinding:
     channel, quantity, _ = _PLACES[x.name]
     stated = aircraft.elevator.delay_s if x.name == "command_delay_s" else x.stated
     value, std = (x.value, x.std) if x.stated is None else (x.told, x.told_std)
-    worth = x.contradicts or (x.stated is None and x.clear and std < KNOWN_TO * abs(value))
+    worth = x.contradicts or (x.stated is None and std < KNOWN_TO * abs(value))
     return InstrumentFinding(
         channel,
         quantity,

@@ -1,14 +1,12 @@
 """Identifiability: the parameters that an input determines. A good fit proves none of them.
 
-A parameter is lost in four ways, each with its own sentence:
+A parameter is lost in three ways, each with its own sentence:
 
 - The data say nothing about the parameter at all (a singular direction of the information matrix).
 - The elevator followed angle of attack and pitch rate in a closed loop: δe = k₀ + k₁·α + k₂·q satisfies
   (1)-(2) for a whole plane of derivatives. The command between its stamps then decides which of them fits
   best.
 - The corrected error is as large as the typical size of such a derivative on this aircraft.
-- The servo is unknown, and a lag too small to be seen in the fit would change the value beyond use. An
-  over-damped aircraft, where α, q and δe move together, fails in this way.
 """
 
 import math
@@ -25,14 +23,9 @@ from advisor.words.quantiles import NORMAL_95
 
 LARGEST_ERROR = 0.5
 """Largest corrected standard deviation over the natural size of the parameter."""
-LARGEST_SHIFT = 0.5
-"""Largest change of a parameter under the supposed servo lag, over the new value or the natural size,
-whichever is larger."""
 LEAST_OWN_MOTION = 0.02
 """Least motion of the elevator that no feedback explains, RMS, as a share of the whole motion."""
 LEVEL_UNKNOWN = "not identifiable without a measured angle of attack, whose level it goes with"
-SUPPOSED_LAG_S = 0.05
-"""Servo lag, s, that would not be noticed in the fit."""
 
 
 def natural_size(theta: FloatArray) -> Mapping[str, float]:
@@ -54,13 +47,8 @@ def natural_size(theta: FloatArray) -> Mapping[str, float]:
     }
 
 
-def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str, str]:
-    """Return by parameter name the reason why the parameter has no usable value.
-
-    Parameters
-    ----------
-    lagged : (8,) the estimate under ``SUPPOSED_LAG_S`` of servo lag, when the servo is unknown.
-    """
+def not_identifiable(solution: Solution) -> dict[str, str]:
+    """Return by parameter name the reason why the parameter has no usable value."""
     reasons = dict.fromkeys(
         solution.influence.unresolved, "not identifiable from this input: the record does not depend on it"
     )
@@ -82,21 +70,6 @@ def not_identifiable(solution: Solution, lagged: FloatArray | None) -> dict[str,
                 f"not identifiable from this input: its error ±{NORMAL_95 * std[j]:.3g} is as large"
                 f" as such a derivative can be here ({size:.3g})"
             )
-    if lagged is not None:
-        moment = {name: PARAMETERS.index(name) for name in ("M_alpha", "M_delta_e", "M_q")}
-        shifted = [
-            name
-            for name, j in moment.items()
-            if not abs(lagged[j] - solution.theta[j]) <= LARGEST_SHIFT * max(abs(lagged[j]), sizes[name])
-        ]
-        # M_q is correlated with a lag on every aircraft; it is lost only where stiffness or control are too.
-        for name in shifted if shifted != ["M_q"] else []:
-            value, moved = solution.theta[moment[name]], lagged[moment[name]]
-            if name not in reasons:
-                reasons[name] = (
-                    "not identifiable from this input while the servo is unknown: a lag of"
-                    f" {SUPPOSED_LAG_S:g} s would turn {value:.3g} into {moved:.3g}; set elevator.lag_s"
-                )
     return reasons
 
 

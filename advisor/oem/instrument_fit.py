@@ -6,10 +6,9 @@ differ by what is known before the flight:
 - *The delays of the command and of the angle of attack* are nuisances of every log. A prior holds each, and
   every interval contains both. A late angle of attack and a vane's arm look nearly alike, and are off by
   Z_α² times the delay in Z_α. So both are in the fit.
-- *An open parameter* is kept where the record is clearly likelier with the parameter, for noise of the
-  residuals' colour. The likelihood ratio holds where an error from the curvature does not. On a well damped
-  aircraft a servo's lag is correlated with M_q and M_δe over a long range. A vane's arm that is not clear
-  keeps the arms of sound instruments as its prior.
+- *An open parameter*, such as a servo's lag, has the prior of instruments that nobody has measured. On a
+  well damped aircraft a lag is correlated with M_q and M_δe over a long range, and every interval contains
+  that.
 - *A stated parameter* is estimated next to the statement. Where both agree, the statement is a prior with a
   width. Where they exclude each other, the data decide alone, and the contradiction is told.
 """
@@ -42,8 +41,6 @@ CLOSE_ENOUGH = 1e-7
 ROUGHLY = 1e-4
 """Promised change of log J per sample at which a search ends whose end is only a start of the next one. The
 starts of a lag differ by hundreds of times as much."""
-CLEARLY = 9.0
-"""Least gain in twice the log likelihood for a parameter: three standard deviations."""
 LEAST_SHARE = 0.01
 """Least share by which white noise weighs a prior; data without noise have no colour."""
 CONTRADICTS = 3.0
@@ -60,8 +57,7 @@ class Identified(NamedTuple):
     @property
     def reported(self) -> InstrumentEstimate | None:
         """The parameter for the rest of the program; None for a moment of the aircraft."""
-        is_moment = self.instrument.name == "steady_moment_rad"
-        return None if is_moment else replace(self.found, clear=self.instrument.prior is None)
+        return None if self.instrument.name == "steady_moment_rad" else self.found
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,61 +97,26 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
     """
     if not unknown:
         return InstrumentFit(plain)
-    begin = _Fit(plain.problem, plain.assembly, plain.optimum)
-    names = tuple(weighed(x, share_of(plain)) for x in unknown)
-    kept = _clear_ones(names, _descend(_looked_about(begin, names), names), plain)
-    if kept is None:
-        return InstrumentFit(plain)
-    return _with_statements(*kept, plain)
+    fit, solution = _Fit(plain.problem, plain.assembly, plain.optimum), plain
+    for look in (_looked_about, _stayed):
+        names = tuple(weighed(x, share_of(solution)) for x in unknown)
+        fit = _descend(look(fit, names), names)
+        found = _solution(fit, names)
+        if found is None:
+            return InstrumentFit(plain)
+        solution = found
+    return _with_statements(names, fit, solution, plain)
 
 
 def share_of(plain: Solution) -> float:
     """Return the errors by white noise over those by the residuals' colour, the median of the parameters."""
-    ratio = np.sqrt(np.diag(plain.covariance_cr) / np.diag(plain.covariance))
+    ratio = np.sqrt(np.diag(plain.covariance_cr)[:N] / np.diag(plain.covariance)[:N])
     return float(np.clip(np.nanmedian(ratio), LEAST_SHARE, 1.0))
 
 
 def weighed(x: Instrument, share: float) -> Instrument:
     """Return the instrument with the share by which white noise weighs its prior."""
     return x if x.prior is None else replace(x, prior=replace(x.prior, share=share))
-
-
-def _clear_ones(
-    names: tuple[Instrument, ...], best: _Fit, plain: Solution
-) -> tuple[tuple[Instrument, ...], _Fit, Solution] | None:
-    """Return the instruments without those open ones that the data do not clearly tell."""
-    known: dict[str, _Fit] = {}
-    while True:
-        solution = _solution(best, names)
-        if solution is None:
-            return None
-        weighing = Weighing.by(solution.noise, solution.assembly)
-        opens = [x for x in names if x.prior is None and x.stated is None]
-        rivals = [
-            (
-                x,
-                _descend(
-                    known.get(x.name) or _reset(x, best, plain), [other for other in names if other is not x]
-                ),
-            )
-            for x in opens
-        ]
-        # What the model lacks on the way to an instrument says nothing against the instrument.
-        errors = np.sqrt(np.diag(solution.scattered)[N : N + len(names)]).tolist()
-        std = dict(zip((x.name for x in names), errors, strict=True))
-        gains = [
-            0.0 if x.at_end(best.problem, std[x.name]) else _gain(weighing, x, best, rival, names)
-            for x, rival in rivals
-        ]
-        if not gains or min(gains) >= CLEARLY:
-            return names, best, solution
-        weakest, rival = rivals[int(np.argmin(gains))]
-        innocent = weakest.innocent(plain.problem)
-        others = tuple(x for x in names if x is not weakest)
-        names = others if innocent is None else (*others, weighed(innocent, share_of(plain)))
-        best = _descend(rival, names)
-        # A rival of all but the newest prior is near the next one, unless that instrument has left the fit.
-        known = {} if innocent is None else {x.name: fit for x, fit in rivals}
 
 
 def _with_statements(
@@ -197,27 +158,6 @@ def refreshed(identified: Sequence[Identified], solution: Solution) -> tuple[Ide
     )
 
 
-def _reset(x: Instrument, best: _Fit, plain: Solution) -> _Fit:
-    """Return the fit with one instrument set back to the aircraft file's value."""
-    reset = x.write(best.problem, x.read(plain.problem))
-    return _at(reset, best, ROUGHLY) or _Fit(plain.problem, plain.assembly, plain.optimum)
-
-
-def _gain(weighing: Weighing, x: Instrument, fit: _Fit, rival: _Fit, names: Sequence[Instrument]) -> float:
-    """Return twice the log ratio of the posteriors of a fit and of a rival, under one noise model.
-
-    A value that the record cannot show gains nothing.
-    """
-    if abs(x.read(fit.problem)) < x.smallest(fit.problem):
-        return 0.0
-
-    def misfit(of: _Fit) -> float:
-        data = weighing.misfit(of.assembly.z - of.optimum.fitted, of.optimum.sensitivities)
-        return data + penalty(of.problem, names)
-
-    return misfit(rival) - misfit(fit)
-
-
 def _looked_about(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
     """Return the best of the starts of each instrument, one instrument after the other.
 
@@ -226,10 +166,14 @@ def _looked_about(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
     best = begin
     for x in names:
         near, here = best, best.problem
-        for start in x.starts if x.stated != 0.0 and x.prior is None else ():
+        for start in x.starts if x.stated != 0.0 else ():
             near = _at(x.write(here, start), near, ROUGHLY) or near
-            best = min(best, near, key=lambda fit: fit.cost(()))
+            best = min(best, near, key=lambda fit: fit.cost(names))
     return best
+
+
+def _stayed(fit: _Fit, _: Sequence[Instrument]) -> _Fit:
+    return fit
 
 
 def _descend(best: _Fit, names: Sequence[Instrument]) -> _Fit:
@@ -295,7 +239,7 @@ def _identified(x: Instrument, problem: OutputErrorProblem, std: float) -> Ident
     elif x.stated is not None:
         apart = abs(value - x.stated)
         excluded = apart > CONTRADICTS * float(np.hypot(std, x.known_to * x.stated))
-        off = excluded and apart > x.smallest(problem) and not x.at_end(problem, std)
+        off = excluded and not x.at_end(problem, std)
     return Identified(x, InstrumentEstimate(x.name, value, std, x.stated, value, std, off))
 
 

@@ -22,6 +22,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.messages import FloatArray
+from advisor.oem.estimate import InstrumentEstimate
 from advisor.oem.extra import Extra, Prior
 from advisor.oem.found import FoundInstruments, InstrumentName, found_of
 from advisor.oem.instrument_columns import instrument_columns
@@ -32,19 +33,16 @@ KNOWN_TO = 0.1
 """Standard deviation over the value for which the value represents the aircraft, and that of a servo's lag in
 an aircraft file. An error of a tenth of a usual servo lag moves M_δe by some 5 %, the default tolerance of a
 campaign."""
-SMALLEST_DELAY_S = 0.004
-"""Smallest delay of the angle of attack that matters, s: a fifth of a sample at 50 Hz."""
-SMALLEST_ARM_M = 0.02
-"""Smallest distance of an accelerometer from the centre of gravity that matters, m."""
+USUAL_LAG = Prior(0.05, 0.05)
+"""Lag of a servo that the aircraft file leaves open, s. Servos of small aircraft have 0.03 to 0.15 s, and a
+measured surface has none."""
 STEADY_MOMENT_RAD = 0.02
 """Standard deviation of the elevator deflection that balances the moments which do not scale with V², rad. A
 change of power asks for a degree or so of trim. From 0.005 to 0.08 rad no derivative of a business
 jet's held step moves by a fiftieth of its interval. No derivative of the autopilots' tests leaves it."""
-
-
-VANE_PLACE_S = 0.1
-"""Standard deviation of a vane's arm, as the time in which the aircraft flies that distance, s. Vanes on
-record have 0.01 to 0.11; the longest is a nose boom of 13 m at 130 m/s."""
+PLACE_S = 0.1
+"""Standard deviation of an unknown arm of a vane or an accelerometer, as the time in which the aircraft flies
+that distance, s. Vanes on record have 0.01 to 0.11; the longest is a nose boom of 13 m at 130 m/s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,12 +54,10 @@ class Instrument:
     """Distance from an end of the range below which the search has reached it, in the parameter's unit."""
     lowest: float
     highest: float
-    smallest: Callable[[OutputErrorProblem], float]
-    """Smallest value that the sampling of the record can show, in the parameter's unit."""
+    usual: Callable[[OutputErrorProblem], Prior]
+    """Knowledge of the parameter where nobody has stated it."""
     starts: tuple[float, ...] = ()
     """Values at which the search starts, in addition to the present one."""
-    usual: Callable[[OutputErrorProblem], float] | None = None
-    """Standard deviation of the parameter over sound instruments. None: not without evidence."""
     known_to: float = 0.0
     """Standard deviation of a stated value over the value."""
     prior: Prior | None = None
@@ -87,11 +83,9 @@ class Instrument:
             changed = {"servo": replace(problem.servo, delay_s=value - _held_for(problem))}
         return replace(problem, **changed)
 
-    def innocent(self, problem: OutputErrorProblem) -> "Instrument | None":
-        """Return the instrument with the prior of sound instruments about the problem's value."""
-        if self.usual is None:
-            return None
-        return replace(self, prior=Prior(self.read(problem), self.usual(problem)))
+    def open(self, problem: OutputErrorProblem) -> "Instrument":
+        """Return the instrument with its usual prior."""
+        return replace(self, prior=self.usual(problem))
 
     def at_end(self, problem: OutputErrorProblem, std: float) -> bool:
         """Return whether the value, with its standard deviation, reaches an end of the range of the search.
@@ -104,20 +98,9 @@ class Instrument:
 
 def _held_for(problem: OutputErrorProblem) -> float:
     """Return the mean age of a held command, s."""
-    return _half_interval(problem) if problem.records[0].held else 0.0
-
-
-def _half_interval(problem: OutputErrorProblem) -> float:
-    """Return half the interval of the command. A shorter lag looks like an unknown time between stamps."""
+    if not problem.records[0].held:
+        return 0.0
     return 0.5 * float(np.median(np.concatenate([np.diff(r.elevator.t) for r in problem.records])))
-
-
-def _command_lateness(problem: OutputErrorProblem) -> float:
-    return lateness_std([record.elevator.t for record in problem.records])
-
-
-def _alpha_lateness(problem: OutputErrorProblem) -> float:
-    return lateness_std([record.outputs["alpha"].t for record in problem.records])
 
 
 def _speed(problem: OutputErrorProblem) -> float:
@@ -126,30 +109,43 @@ def _speed(problem: OutputErrorProblem) -> float:
     return float(np.mean(speeds)) if speeds else 0.0
 
 
+def _command(problem: OutputErrorProblem) -> Prior:
+    return Prior(COMMAND_DELAY.read(problem), lateness_std([record.elevator.t for record in problem.records]))
+
+
+def _alpha(problem: OutputErrorProblem) -> Prior:
+    stamps = [record.outputs["alpha"].t for record in problem.records]
+    return Prior(problem.alpha_delay_s, lateness_std(stamps))
+
+
+def _place(arm: str) -> Callable[[OutputErrorProblem], Prior]:
+    return lambda problem: Prior(float(getattr(problem, arm)), PLACE_S * _speed(problem))
+
+
 SERVO_LAG = Instrument(
-    "servo_lag_s", 1e-4, 0.0, 0.4, _half_interval, (0.03, 0.06, 0.1, 0.15, 0.22, 0.3), known_to=KNOWN_TO
+    "servo_lag_s", 1e-4, 0.0, 0.4, lambda _: USUAL_LAG, (0.03, 0.06, 0.1, 0.15, 0.22, 0.3), KNOWN_TO
 )
-COMMAND_DELAY = Instrument(
-    "command_delay_s", 1e-4, -0.5, 1.0, lambda _: SMALLEST_DELAY_S, usual=_command_lateness
-)
-VANE_ARM = Instrument(
-    "vane_arm_m",
-    1e-3,
-    -100.0,
-    100.0,
-    lambda problem: SMALLEST_DELAY_S * _speed(problem),
-    usual=lambda problem: _alpha_lateness(problem) * _speed(problem),
-)
-ALPHA_DELAY = Instrument("alpha_delay_s", 1e-4, -0.3, 0.5, lambda _: SMALLEST_DELAY_S, usual=_alpha_lateness)
-ACCELEROMETER_ARM = Instrument("accelerometer_arm_m", 1e-3, -100.0, 100.0, lambda _: SMALLEST_ARM_M)
+COMMAND_DELAY = Instrument("command_delay_s", 1e-4, -0.5, 1.0, _command)
+VANE_ARM = Instrument("vane_arm_m", 1e-3, -100.0, 100.0, _place("vane_arm_m"))
+ALPHA_DELAY = Instrument("alpha_delay_s", 1e-4, -0.3, 0.5, _alpha)
+ACCELEROMETER_ARM = Instrument("accelerometer_arm_m", 1e-3, -100.0, 100.0, _place("accelerometer_arm_m"))
 STEADY_MOMENT = Instrument(
-    "steady_moment_rad", 1e-4, -0.5, 0.5, lambda _: 0.0, usual=lambda _: STEADY_MOMENT_RAD
+    "steady_moment_rad",
+    1e-4,
+    -0.5,
+    0.5,
+    lambda problem: Prior(problem.steady_moment_rad, STEADY_MOMENT_RAD),
 )
 OF_ALPHA = ("vane_arm_m", "alpha_delay_s")
 """Instruments of the angle of attack. They change Z_α, Z_q and Z_δe."""
 BY_NAME: Mapping[InstrumentName, Instrument] = {
     x.name: x for x in (SERVO_LAG, COMMAND_DELAY, VANE_ARM, ALPHA_DELAY, ACCELEROMETER_ARM, STEADY_MOMENT)
 }
+
+
+def knows_the_lag(lag: InstrumentEstimate | None) -> bool:
+    """Return whether an estimate of the servo's lag represents the aircraft."""
+    return lag is not None and lag.name == SERVO_LAG.name and lag.std < KNOWN_TO * lag.value
 
 
 def extra_of(
@@ -182,34 +178,28 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
     gravity describe the aircraft's equally well. One of the two places must be known to determine the other.
     Without a specific force the priors alone tell where and when the angle of attack is measured.
     """
-    command = COMMAND_DELAY.innocent(problem)
-    commanded = [command] if command is not None else []
     found = found_of(aircraft)
+    command = COMMAND_DELAY.open(problem)
     if found is not None:
-        return tuple(x for x in commanded if x.name not in found.names)
-    unknown = [replace(SERVO_LAG, stated=aircraft.elevator.lag_s), *commanded]
-    steady = STEADY_MOMENT.innocent(problem)
-    if steady is not None and problem.reference_airspeed_m_s is not None:
-        unknown.append(steady)
+        return () if command.name in found.names else (command,)
+    unknown = [_stated_or_open(SERVO_LAG, aircraft.elevator.lag_s, problem), command]
+    if problem.reference_airspeed_m_s is not None:
+        unknown.append(STEADY_MOMENT.open(problem))
     measured = {name for record in problem.records for name in record.outputs}
+    if "alpha" not in measured or _speed(problem) <= 0.0:
+        return tuple(unknown)
+    unknown.append(ALPHA_DELAY.open(problem))
     vane_m, imu_m = aircraft.alpha.vane_arm_m, aircraft.accelerometer.arm_m
-    if {"alpha", "a_z"} <= measured:
-        late = ALPHA_DELAY.innocent(problem)
-        unknown += [late] if late is not None else []
-        if vane_m is None:
-            unknown.append(VANE_ARM)
-        elif imu_m is None:
-            unknown.append(ACCELEROMETER_ARM)
-        else:
-            unknown.append(replace(VANE_ARM, stated=vane_m))
-    elif "alpha" in measured and _speed(problem) > 0.0:
-        # Without a specific force pitch rate and angle of attack fit as well for any place and delay.
-        late = ALPHA_DELAY.innocent(problem)
-        unknown += [late] if late is not None else []
-        if vane_m is None and not problem.alpha_is_computed:
-            prior = Prior(VANE_ARM.read(problem), VANE_PLACE_S * _speed(problem))
-            unknown.append(replace(VANE_ARM, prior=prior))
+    if vane_m is None and ("a_z" in measured or not problem.alpha_is_computed):
+        unknown.append(VANE_ARM.open(problem))
+    elif vane_m is not None and "a_z" in measured:
+        place = ACCELEROMETER_ARM.open(problem) if imu_m is None else replace(VANE_ARM, stated=vane_m)
+        unknown.append(place)
     return tuple(unknown)
+
+
+def _stated_or_open(x: Instrument, stated: float | None, problem: OutputErrorProblem) -> Instrument:
+    return x.open(problem) if stated is None else replace(x, stated=stated)
 
 
 def as_found(problem: OutputErrorProblem, found: FoundInstruments | None) -> OutputErrorProblem:

@@ -19,16 +19,9 @@ from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import LATERAL
 from advisor.oem.extra import Prior
+from advisor.oem.instruments import KNOWN_TO, PLACE_S, USUAL_LAG
 from advisor.oem.lateral_problem import CAUSES, LateralAssembly, LateralProblem
 
-USUAL_LAG = Prior(0.05, 0.05)
-"""Lag of a servo that the aircraft file leaves open, s. Servos of small aircraft have 0.03 to 0.15 s, and a
-measured surface has none."""
-KNOWN_TO = 0.1
-"""Standard deviation of a stated lag, over the lag: as for the elevator's servo."""
-FARTHEST_S = 0.1
-"""Standard deviation of an unknown arm of the sideslip vane, over the air speed, s. A boom on record has
-0.1 s (13 m at 130 m/s)."""
 AIR_SPEED = Prior(0.0, 0.02)
 """Relative excess of the true over the read air speed. The read speed may be an indicated one, and a static
 port reads a pressure that the wing changes."""
@@ -95,7 +88,7 @@ def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance,
             found.append(Nuisance("delay", name, Prior(0.0, lateness_std(measured))))
             if name == "beta" and beta_arm_m(aircraft) is None:
                 speed = float(np.mean([np.mean(record.airspeed.y) for record in problem.records]))
-                found.append(Nuisance("arm", name, Prior(0.0, FARTHEST_S * speed), speed))
+                found.append(Nuisance("arm", name, Prior(0.0, PLACE_S * speed), speed))
     for name in moving:
         stated = getattr(aircraft, name).lag_s
         if stated is None:

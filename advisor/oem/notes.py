@@ -4,12 +4,11 @@ from collections.abc import Sequence
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import HIGH_CORRELATION
 from advisor.oem.findings import line_of, value_in_words
 from advisor.oem.found import found_of
-from advisor.oem.identifiability import SUPPOSED_LAG_S, correlated
-from advisor.oem.instrument_fit import Identified
+from advisor.oem.identifiability import correlated
+from advisor.oem.instrument_fit import CONTRADICTS, Identified
 from advisor.oem.instruments import KNOWN_TO
 from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
@@ -26,7 +25,6 @@ def notes(
     prepared: Prepared,
     aircraft: Aircraft,
     identified: Sequence[Identified],
-    lagged: FloatArray | None,
     *,
     best: Solution,
     priced: bool,
@@ -36,14 +34,12 @@ def notes(
     Parameters
     ----------
     identified : instrument parameters that the data determine.
-    lagged : (8,) the estimate under a servo lag of ``SUPPOSED_LAG_S``, for an unknown servo.
     best : the solution of the values: ``solution``, the efficient one or filter error's.
     priced : state the cost of missing channels in numbers.
     """
     sentences = [
         _outputs(solution, prepared),
         *(_instrument(x) for x in identified if _is_worth_saying(x)),
-        _servo(solution, lagged),
         _found_lag(aircraft),
         _airspeed(prepared),
         _scale(solution),
@@ -68,19 +64,18 @@ def _outputs(solution: Solution, prepared: Prepared) -> str:
 
 def _is_worth_saying(identified: Identified) -> bool:
     """Return whether the data tell a value that neither the file nor a sound instrument explains."""
-    x = identified.instrument
-    if x.prior is None:
-        return x.stated is None or identified.found.contradicts
-    told = x.name in ("command_delay_s", "steady_moment_rad")
-    return told and abs(identified.found.value - x.prior.mean) > 3.0 * identified.found.std
+    x, found = identified.instrument, identified.found
+    if x.stated is not None:
+        return found.contradicts
+    usual = 0.0 if x.name == "servo_lag_s" or x.prior is None else x.prior.mean
+    return x.name != "alpha_delay_s" and abs(found.value - usual) > CONTRADICTS * found.std
 
 
 def _instrument(identified: Identified) -> str:
     """Return a sentence about one instrument, with the line that puts its value into the aircraft file."""
     x = identified.found
     text = value_in_words(x.name, x.value, x.std)
-    known = identified.instrument.prior is None and x.std < KNOWN_TO * abs(x.value)
-    line = line_of(x.name, x.value) if known else ""
+    line = line_of(x.name, x.value) if x.std < KNOWN_TO * abs(x.value) else ""
     advice = f" For the aircraft file: {line}" if line else ""
     used = (
         ", by which the estimate lags the command"
@@ -88,20 +83,6 @@ def _instrument(identified: Identified) -> str:
         else "; the estimate allows for that"
     )
     return f"{text[0].upper()}{text[1:]}{used}.{advice}"
-
-
-def _servo(solution: Solution, lagged: FloatArray | None) -> str:
-    if lagged is None:
-        return ""
-    changes = []
-    for name in ("M_alpha", "M_delta_e"):
-        j = PARAMETERS.index(name)
-        if solution.theta[j] != 0.0:
-            changes.append(f"{symbol(name)} by {100.0 * (lagged[j] / solution.theta[j] - 1.0):+.0f} %")
-    return (
-        f"Servo dynamics unknown (elevator.lag_s is not set): a lag of {SUPPOSED_LAG_S:g} s would"
-        f" change {' and '.join(changes)}."
-    )
 
 
 def _found_lag(aircraft: Aircraft) -> str:

@@ -7,13 +7,10 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.campaign.learning import learnt, of_another_power_on, reserved, told
-from advisor.decision.verdict import ManeuverVerdict
+from advisor.campaign.learning import learnt, of_another_power_on, told
 from advisor.oem.estimate import InstrumentEstimate
 from advisor.oem.found import FoundInstruments, found_of, with_found
 from tests.decision.campaigns import estimate
-
-GOOD = ManeuverVerdict(True, "ACCEPTED: good manoeuvre", (), {})
 
 
 def found(lag_s, std_s, delay_s=0.0, delay_std_s=0.002):
@@ -85,17 +82,3 @@ def test_a_lag_within_its_own_error_of_the_one_used_changes_nothing_but_at_the_e
     used = learnt(Aircraft(), with_lag(0.14, 0.01))
     assert learnt(used, with_lag(0.145, 0.01)) is used
     assert lag_of(learnt(used, with_lag(0.145, 0.01), exactly=True)) == 0.145
-
-
-def test_no_verdict_praises_a_control_derivative_that_the_joint_estimate_contradicts():
-    alone = estimate()
-    twice = np.array(alone.theta)
-    twice[7] *= 2.3
-    judged = reserved(GOOD, alone, with_lag(0.14, 0.01, theta=twice))
-    assert judged.accepted
-    assert "good manoeuvre" not in judged.sentence
-    assert "M_δe" in judged.sentence
-
-
-def test_a_verdict_that_the_joint_estimate_confirms_stays():
-    assert reserved(GOOD, estimate(), with_lag(0.14, 0.01)) is GOOD

@@ -28,7 +28,7 @@ def test_an_excluded_lag_is_said_with_its_size_and_the_line_for_the_file():
 
 
 def test_a_confirmed_lag_is_said_with_what_the_data_tell_alone_and_needs_no_line():
-    told = InstrumentEstimate("servo_lag_s", 0.1395, 0.003, 0.14, 0.136, 0.005, clear=False)
+    told = InstrumentEstimate("servo_lag_s", 0.1395, 0.003, 0.14, 0.136, 0.005)
     found = only(told, Aircraft(elevator=Elevator(lag_s=0.14)))
     assert found.value == 0.136
     assert "as elevator.lag_s says" in found.text
