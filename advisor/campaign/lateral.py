@@ -5,9 +5,9 @@ from dataclasses import replace
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.single_maneuver import objection, untold
 from advisor.campaign.state import JudgedLateral, LateralState
+from advisor.decision.axes.lateral import judge_lateral
 from advisor.decision.heard import Heard
 from advisor.decision.lateral_advice import FlownInput
-from advisor.decision.lateral_quality import judge_lateral
 from advisor.decision.lateral_test import lateral_flight_test
 from advisor.decision.paper_rules import MANEUVER_RULES
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict, Reason

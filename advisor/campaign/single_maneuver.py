@@ -3,8 +3,8 @@
 import math
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.axes.pitch import judge_pitch
 from advisor.decision.history import CandidateManeuver
-from advisor.decision.quality import judge_quality
 from advisor.decision.verdict import Reason
 from advisor.flight.instruments.kinematics import check_alpha
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -22,7 +22,7 @@ def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newto
     estimated = estimate(maneuver, aircraft, method=method)
     return CandidateManeuver(
         estimated,
-        judge_quality(maneuver, estimated, aircraft),
+        judge_pitch(maneuver, estimated, aircraft),
         tuple(cautions_of(maneuver, estimated, aircraft)),
         maneuver=maneuver,
         air_moved=isinstance(estimated, Estimate) and estimated.gust_rad is not None,

@@ -18,7 +18,6 @@ from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import distrusted
 from advisor.words.digits import distinct_texts
 
-NEEDED = ("elevator", "q")
 SAMPLES_PER_PERIOD = 8.0
 """Fewest samples of elevator and pitch rate in one natural period. An aircraft of 2 rad/s needs 2.6 Hz, one
 of 9 rad/s needs 11 Hz. Between slower samples the input is unknown, and no interval shows it."""
@@ -38,28 +37,34 @@ _ASSUMED_STROKE_DEG = 25.0
 """Full travel of the elevator where the aircraft file has no calibration, deg."""
 
 
-def incomplete(maneuver: Maneuver, period_s: float, counted: Collection[str]) -> list[Reason]:
+def incomplete(
+    maneuver: Maneuver, needed: Sequence[str], period_s: float, counted: Collection[str]
+) -> list[Reason]:
     """Return reasons for incomplete data: missing or faulty channels, slow ones, gaps.
 
     Parameters
     ----------
     maneuver
         Manoeuvre as cut from the stream.
+    needed
+        Channels without which nothing can be said.
     period_s
-        Natural period of the short-period motion, estimated or assumed, s.
+        Natural period of the motion, estimated or assumed, s.
     counted
         Outputs that the estimate used. Gaps in other channels do no harm.
     """
-    missing = [name for name in NEEDED if name not in maneuver.channels]
+    missing = [name for name in needed if name not in maneuver.channels]
     if missing:
         text = f"no {' and no '.join(missing)} during the manoeuvre; check the recording and fly it again"
         return [Reason("missing", text, float(len(missing)), 0.0)]
     wrong = [d for d in distrusted(maneuver.channels) if d.stops]
     if wrong:
         return [Reason(d.code, f"{d.text}; {d.fix}", d.value, 0.0) for d in wrong]
-    needed = [maneuver.channels[name] for name in NEEDED]
-    used = [maneuver.channels[name] for name in {*NEEDED, *counted} if name in maneuver.channels]
-    return [*too_slow(needed, period_s), *with_gap(used, maneuver, period_s)]
+    used = [maneuver.channels[name] for name in {*needed, *counted} if name in maneuver.channels]
+    return [
+        *too_slow([maneuver.channels[name] for name in needed], period_s),
+        *with_gap(used, maneuver, period_s),
+    ]
 
 
 def not_heard(maneuver: Maneuver) -> Reason:
@@ -72,17 +77,6 @@ def leapt(maneuver: Maneuver) -> Reason:
     """Return the reason of a record in which the vehicle's stamps leap."""
     text = f"the stamps leap by {maneuver.leapt_s / 3600.0:.1f} h; check the vehicle's clock, fly it again"
     return Reason("clock", text, maneuver.leapt_s, 0.0)
-
-
-def outside(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
-    """Return reasons for leaving the limits: bank, saturation, angle of attack, throttle, other controls."""
-    return [
-        *banked(maneuver, aircraft.limits.bank_deg),
-        *saturated(maneuver, "elevator", aircraft.elevator.ends_deg),
-        *steep(maneuver, aircraft.limits.alpha_deg),
-        *throttled(maneuver),
-        *other_controls(maneuver, ("aileron", "rudder"), "use the elevator alone"),
-    ]
 
 
 def too_quick(maneuver: Maneuver, period_s: float) -> list[Reason]:

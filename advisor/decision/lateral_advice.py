@@ -12,9 +12,9 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.advice import GENTLE
+from advisor.decision.axes.lateral import BANK_DEG
 from advisor.decision.conditions import ALPHA_MARGIN, BOLDER, FULL_TRAVEL_RAD
 from advisor.decision.inputs import SHORTEST_UNIT_S, StepInput
-from advisor.decision.lateral_quality import BANK_DEG
 from advisor.decision.verdict import INFORMATION_LIMIT_PERCENT, NextInput, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.lateral_estimate import LateralEstimate

@@ -20,6 +20,7 @@ from advisor.oem.carried import UpdatableSolution
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import report
 from advisor.oem.extra import Prior
+from advisor.oem.identifiability import too_wide
 from advisor.oem.instrument_fit import share_of, weighed
 from advisor.oem.instruments import OF_ALPHA, Instrument, extra_of, unknown_instruments
 from advisor.oem.prepare import prepare
@@ -59,12 +60,14 @@ class Doubt:
 
     def on(self, estimate: Estimate) -> Estimate:
         """Return an estimate with the doubt, of the solution or of one that follows it closely."""
-        return replace(
+        moved = replace(
             estimate,
             theta=estimate.theta + self.step,
             covariance=estimate.covariance + self.covariance,
             covariance_cr=estimate.covariance_cr + self.covariance_cr,
         )
+        wide = {**too_wide(moved.theta, moved.std), **estimate.not_identifiable}
+        return replace(moved, not_identifiable=wide)
 
 
 def _with_priors(solution: Solution, aircraft: Aircraft) -> Iterator[Instrument]:

@@ -54,20 +54,24 @@ def not_identifiable(solution: Solution) -> dict[str, str]:
     )
     if not all("alpha" in record.outputs for record in solution.problem.records):
         reasons |= dict.fromkeys(("Z_0", "M_0"), LEVEL_UNKNOWN)
-    std = np.sqrt(np.diag(solution.covariance))
-    sizes = natural_size(solution.theta)
     own = own_motion(solution)
     if own < LEAST_OWN_MOTION:
         text = (
             "not identifiable from this input: a closed loop moved the elevator with angle of attack and"
             f" pitch rate; only {100.0 * own:.1f} % of its motion is independent of them"
         )
-        reasons = dict.fromkeys(sizes, text) | reasons
-    for name, size in sizes.items():
-        j = PARAMETERS.index(name)
-        if name not in reasons and not std[j] <= LARGEST_ERROR * size:
+        reasons = dict.fromkeys(natural_size(solution.theta), text) | reasons
+    return too_wide(solution.theta, np.sqrt(np.diag(solution.covariance))) | reasons
+
+
+def too_wide(theta: FloatArray, std: FloatArray) -> dict[str, str]:
+    """Return by name the reason for each of the parameters ``theta`` (8,) whose error ``std`` is too large."""
+    reasons = {}
+    for name, size in natural_size(theta).items():
+        error = float(std[PARAMETERS.index(name)])
+        if not error <= LARGEST_ERROR * size:
             reasons[name] = (
-                f"not identifiable from this input: its error ±{NORMAL_95 * std[j]:.3g} is as large"
+                f"not identifiable from this input: its error ±{NORMAL_95 * error:.3g} is as large"
                 f" as such a derivative can be here ({size:.3g})"
             )
     return reasons

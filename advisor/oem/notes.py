@@ -65,10 +65,10 @@ def _outputs(solution: Solution, prepared: Prepared) -> str:
 def _is_worth_saying(identified: Identified) -> bool:
     """Return whether the data tell a value that neither the file nor a sound instrument explains."""
     x, found = identified.instrument, identified.found
-    if x.stated is not None:
+    if x.stated is not None or x.prior is None:
         return found.contradicts
-    usual = 0.0 if x.name == "servo_lag_s" or x.prior is None else x.prior.mean
-    return x.name != "alpha_delay_s" and abs(found.value - usual) > CONTRADICTS * found.std
+    odd = x.name != "alpha_delay_s" and abs(found.value - x.prior.mean) > CONTRADICTS * found.std
+    return odd or x.name == "servo_lag_s"
 
 
 def _instrument(identified: Identified) -> str:

@@ -79,16 +79,17 @@ def test_a_joint_estimate_that_was_asked_for_is_kept(states: tuple[CampaignState
     assert together.estimate([replace(maneuvers[0]), maneuvers[1]]) is not first
 
 
-def test_the_estimate_for_the_lag_is_the_joint_one_and_comes_only_where_the_manoeuvres_tell_a_lag(
+def test_the_estimate_for_the_lag_comes_only_where_the_manoeuvres_tell_a_lag_to_a_tenth(
     states: tuple[CampaignState, CampaignState],
 ) -> None:
     maneuvers = [judged.maneuver for judged in states[1].maneuvers[:2]]
-    stated, open_ = Together(Aircraft(elevator=Elevator(lag_s=0.05))), Together(Aircraft())
-    assert stated.of_lag(maneuvers) is stated.estimate(maneuvers)
+    open_ = Together(Aircraft())
     assert open_.of_lag(maneuvers) is None
     found = open_.estimate(maneuvers)
     assert found is not None
-    assert found.instrument("servo_lag_s") is None
+    lag = found.instrument("servo_lag_s")
+    assert lag is not None
+    assert lag.std > 0.1 * lag.value
 
 
 def test_without_manoeuvres_there_is_no_joint_estimate() -> None:

@@ -10,7 +10,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft, Limits
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.quality import judge_quality, natural_period
+from advisor.decision.axes.pitch import judge_pitch, natural_period
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.signals.trust import Distrust
 from advisor.flight.stream.stream import FlightStream
@@ -43,7 +43,7 @@ def flown(scenario, aircraft=AIRCRAFT):
     events = stream.feed(FrameScanner().feed(log.getvalue())) + stream.finish()
     found = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
     estimates = [estimate(maneuver, aircraft) for maneuver in found]
-    return [(m, e, judge_quality(m, e, aircraft)) for m, e in zip(found, estimates, strict=True)]
+    return [(m, e, judge_pitch(m, e, aircraft)) for m, e in zip(found, estimates, strict=True)]
 
 
 BAD_MANOEUVRES = {
@@ -111,7 +111,7 @@ def test_a_record_that_ends_with_the_last_step_is_good_where_it_tells_enough():
     maneuver, whole, _ = bad_flight()[0]
     cut = cut_short(maneuver, 0.1)
     estimated = estimate(cut, AIRCRAFT)
-    assert judge_quality(cut, estimated, AIRCRAFT) == ()
+    assert judge_pitch(cut, estimated, AIRCRAFT) == ()
     for name in ("M_alpha", "M_q", "M_delta_e", "Z_alpha"):
         wide = estimated.std[PARAMETERS.index(name)]
         assert abs(estimated.value(name) - whole.value(name)) < 3.0 * wide
@@ -125,15 +125,15 @@ def test_a_record_that_breaks_off_in_its_last_step_is_good_where_it_tells_enough
     span = replace(maneuver.span, last_step_s=steps[-1][0], end_s=end_s, closed_by="end of log", steps=steps)
     cut = replace(maneuver, span=span, channels=channels)
     estimated = estimate(cut, AIRCRAFT)
-    assert judge_quality(cut, estimated, AIRCRAFT) == ()
-    assert judge_quality(cut, uncertain(estimated), AIRCRAFT)[0].code == "aborted"
+    assert judge_pitch(cut, estimated, AIRCRAFT) == ()
+    assert judge_pitch(cut, uncertain(estimated), AIRCRAFT)[0].code == "aborted"
 
 
 def test_a_record_that_the_advisor_itself_has_cut_is_not_laid_to_the_pilots_hands():
     maneuver, estimated, _ = bad_flight()[0]
     cut = cut_short(maneuver, 0.3, "gap")
-    assert judge_quality(cut, uncertain(estimated), AIRCRAFT)[0].code != "advisor_down"
-    (reason,) = judge_quality(replace(cut, missed_s=5.2), uncertain(estimated), AIRCRAFT)
+    assert judge_pitch(cut, uncertain(estimated), AIRCRAFT)[0].code != "advisor_down"
+    (reason,) = judge_pitch(replace(cut, missed_s=5.2), uncertain(estimated), AIRCRAFT)
     assert reason.code == "advisor_down"
     assert reason.text == "5.2 s are missing: the advisor was down; fly it again"
 
@@ -142,7 +142,7 @@ def test_an_estimate_whose_damping_may_be_zero_needs_a_free_response():
     maneuver, estimated, _ = bad_flight()[0]
     covariance = estimated.covariance.copy()
     covariance[PARAMETERS.index("M_q"), PARAMETERS.index("M_q")] = estimated.value("M_q") ** 2
-    (reason,) = judge_quality(cut_short(maneuver, 0.1), replace(estimated, covariance=covariance), AIRCRAFT)
+    (reason,) = judge_pitch(cut_short(maneuver, 0.1), replace(estimated, covariance=covariance), AIRCRAFT)
     assert reason.code == "free_response"
 
 
@@ -155,7 +155,7 @@ def test_an_estimate_whose_damping_may_be_zero_needs_a_free_response():
 )  # fmt: skip
 def test_a_free_response_cut_short_is_laid_to_what_ended_it(closed_by, mend):
     maneuver, estimated, _ = bad_flight()[0]
-    reason, *_ = judge_quality(cut_short(maneuver, 0.3, closed_by), uncertain(estimated), AIRCRAFT)
+    reason, *_ = judge_pitch(cut_short(maneuver, 0.3, closed_by), uncertain(estimated), AIRCRAFT)
     assert reason.code == "free_response"
     assert mend in reason.text
 
@@ -164,7 +164,7 @@ def test_a_free_response_cut_short_is_laid_to_what_ended_it(closed_by, mend):
 def test_a_manoeuvre_that_predicts_its_own_response_badly_is_told_the_cure_for_its_input(kind, cure):
     maneuver, estimated, _ = bad_flight()[0]
     flown_as = replace(maneuver, span=replace(maneuver.span, kind=kind))
-    (reason,) = judge_quality(flown_as, replace(estimated, prediction={"q": 0.425}), AIRCRAFT)
+    (reason,) = judge_pitch(flown_as, replace(estimated, prediction={"q": 0.425}), AIRCRAFT)
     assert reason.code == "information"
     assert (reason.value, reason.limit) == (pytest.approx(42.5), 25.0)
     assert cure in reason.text
@@ -215,7 +215,7 @@ def test_following_the_advice_on_amplitude_makes_the_manoeuvre_good():
 
 def test_without_an_estimate_the_data_are_judged_all_the_same():
     maneuver, _, _ = bad_flight()[1 + list(BAD_MANOEUVRES).index("bank")]
-    reasons = judge_quality(maneuver, NoEstimate("not_converged", "the fit did not converge"), AIRCRAFT)
+    reasons = judge_pitch(maneuver, NoEstimate("not_converged", "the fit did not converge"), AIRCRAFT)
     assert reasons[0].code == "bank"
 
 
@@ -235,7 +235,7 @@ def test_an_aircraft_without_an_angle_of_attack_is_lived_with():
 def test_a_manoeuvre_without_pitch_rate_says_so_and_nothing_else():
     maneuver, estimated, _ = bad_flight()[0]
     without = {name: channel for name, channel in maneuver.channels.items() if name != "q"}
-    (reason,) = judge_quality(replace(maneuver, channels=without), estimated, AIRCRAFT)
+    (reason,) = judge_pitch(replace(maneuver, channels=without), estimated, AIRCRAFT)
     assert reason.code == "missing"
 
 
@@ -243,7 +243,7 @@ def test_a_pitch_rate_that_stands_still_is_a_broken_gyro_and_no_gentle_input():
     maneuver, estimated, _ = bad_flight()[0]
     rate = maneuver.channels["q"]
     frozen = {**maneuver.channels, "q": replace(rate, y=np.zeros_like(rate.y))}
-    (reason,) = judge_quality(replace(maneuver, channels=frozen), estimated, AIRCRAFT)
+    (reason,) = judge_pitch(replace(maneuver, channels=frozen), estimated, AIRCRAFT)
     assert reason.code == "frozen"
     assert "check the gyro" in reason.text
 
@@ -252,7 +252,7 @@ def test_no_larger_input_is_asked_for_while_the_pitch_rate_is_too_slow():
     maneuver, _, _ = bad_flight()[0]
     rate = maneuver.channels["q"]
     slow = {**maneuver.channels, "q": replace(rate, t=rate.t[::40], y=1e-4 * rate.y[::40])}
-    reasons = judge_quality(
+    reasons = judge_pitch(
         replace(maneuver, channels=slow), NoEstimate("not_converged", "the fit did not converge"), AIRCRAFT
     )
     assert "rate" in {reason.code for reason in reasons}
@@ -285,9 +285,9 @@ def test_no_larger_input_is_asked_for_while_a_channel_stands_still():
     dead = Distrust(
         "frozen", "a_z", "normal acceleration stands still at 0 m/s^2", "check the accelerometer", 0.0
     )
-    told = judge_quality(maneuver, estimated, AIRCRAFT)
+    told = judge_pitch(maneuver, estimated, AIRCRAFT)
     assert any("times the stick" in reason.text for reason in told)
-    mended = judge_quality(replace(maneuver, distrusts=(dead,)), estimated, AIRCRAFT)
+    mended = judge_pitch(replace(maneuver, distrusts=(dead,)), estimated, AIRCRAFT)
     assert [reason.code for reason in mended] == [reason.code for reason in told]
     assert not any("times the stick" in reason.text for reason in mended)
     assert any("check the accelerometer" in reason.text for reason in mended)
@@ -295,9 +295,7 @@ def test_no_larger_input_is_asked_for_while_a_channel_stands_still():
 
 def test_the_limits_of_the_flight_come_before_the_hands_of_the_pilot():
     maneuver, estimated, _ = bad_flight()[1 + list(BAD_MANOEUVRES).index("airspeed")]
-    codes = [
-        reason.code for reason in judge_quality(cut_short(maneuver, 0.1), uncertain(estimated), AIRCRAFT)
-    ]
+    codes = [reason.code for reason in judge_pitch(cut_short(maneuver, 0.1), uncertain(estimated), AIRCRAFT)]
     assert codes.index("airspeed") < codes.index("free_response")
 
 
@@ -308,4 +306,4 @@ def test_two_steps_of_one_onset_give_no_period_of_zero():
     untold = NoEstimate("x", "x")
     assert natural_period(twice, untold) == natural_period(maneuver, untold)
     assert natural_period(replace(twice, span=replace(twice.span, steps=(first, first))), untold) == 1.0
-    assert "steps" in {reason.code for reason in judge_quality(twice, untold, AIRCRAFT)}
+    assert "steps" in {reason.code for reason in judge_pitch(twice, untold, AIRCRAFT)}

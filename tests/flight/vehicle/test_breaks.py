@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.quality import judge_quality
+from advisor.decision.axes.pitch import judge_pitch
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.messages import Columns
@@ -106,5 +106,5 @@ def test_stamps_that_leap_by_hours_inside_a_manoeuvre_reject_both_parts() -> Non
     found = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
     assert [round(maneuver.leapt_s / 3600.0, 2) for maneuver in found] == [3.0, 3.0, 0.0]
     for maneuver in found[:2]:
-        (reason,) = judge_quality(maneuver, NoEstimate("singular", "no fit"), Aircraft())
+        (reason,) = judge_pitch(maneuver, NoEstimate("singular", "no fit"), Aircraft())
         assert reason.text == "the stamps leap by 3.0 h; check the vehicle's clock, fly it again"

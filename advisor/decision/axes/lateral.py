@@ -1,0 +1,145 @@
+"""What roll and yaw ask of a manoeuvre: records of aileron and rudder, their limits, and the Dutch roll.
+
+A bank of up to 45 deg is the response, because the model keeps sin φ. The derivatives hold for one angle of
+attack and one air speed. The moments p·q and q·r are no part of the model.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.envelope import (
+    above,
+    banked,
+    flown,
+    is_broken_off,
+    other_controls,
+    saturated,
+    steep,
+    throttled,
+)
+from advisor.decision.quality import WIDEST_PREDICTION_PERCENT, Examined, Response, objections
+from advisor.decision.verdict import Reason
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.lateral_estimate import LateralEstimate
+from advisor.words.digits import distinct_texts
+from advisor.words.quantiles import NORMAL_95
+
+BANK_DEG = 45.0
+"""Largest bank in a lateral manoeuvre, deg, where the aircraft file allows no more."""
+ALPHA_CHANGE_DEG = 5.0
+"""Largest change of the angle of attack, half of its range, deg: as far as the lift is taken as linear."""
+COUPLING = 0.2
+"""Largest root mean square of the moments p·q and q·r, over that of the angular accelerations."""
+_USUAL_PERIOD_S = 2.0
+"""Period of the Dutch roll where no estimate gives one, s. Small aircraft have 1.8 s, jets 3.5 s."""
+_RESPONSES = {
+    "aileron": Response("p", "roll rate", "deg/s", "aileron"),
+    "rudder": Response("r", "yaw rate", "deg/s", "rudder"),
+}
+_DETERMINED = {"aileron": ("L_p", "L_delta_a"), "rudder": ("N_beta", "N_r", "N_delta_r")}
+"""Control to the derivatives that its test determines."""
+_TRIMMING = Reason(
+    "information",
+    "the movement determines no derivative, as a pilot's trimming; fly a doublet, from trim",
+    math.nan,
+    math.nan,
+)
+
+
+def judge_lateral(
+    maneuver: Maneuver, estimate: LateralEstimate | NoEstimate, aircraft: Aircraft
+) -> tuple[Reason, ...]:
+    """Return objections to a lateral manoeuvre, the most important first; empty for an accepted one.
+
+    Parameters
+    ----------
+    maneuver
+        Manoeuvre as cut from the stream.
+    estimate
+        Estimate from this manoeuvre alone, or the reason for its absence.
+    """
+    controls = [name for name in _RESPONSES if name in maneuver.channels]
+    outside = banked(maneuver, max(BANK_DEG, aircraft.limits.bank_deg), "less aileron, or shorter")
+    for name in controls:
+        outside += saturated(maneuver, name, getattr(aircraft, name).ends_deg)
+    outside += [*steep(maneuver, aircraft.limits.alpha_deg), *_unsteady_alpha(maneuver), *throttled(maneuver)]
+    outside += other_controls(maneuver, ("elevator",), "hold the nose with less elevator")
+    x = Examined(
+        maneuver,
+        aircraft,
+        estimate if isinstance(estimate, NoEstimate) else estimate.estimate,
+        _period_s(estimate),
+        needed=(*controls, "p", "r", "bank"),
+        responses=(),
+        determined=(),
+        bands=(),
+        outside=(*outside, *_pitching(maneuver)),
+    )
+    if isinstance(estimate, NoEstimate):
+        return objections(x) or (Reason(estimate.code, estimate.text, math.nan, math.nan),)
+    told = estimate.estimate
+    # A record that ends within its input tells no free motion, however narrow its intervals are.
+    informing = () if is_broken_off(maneuver.span) else estimate.flown
+    return objections(
+        replace(
+            x,
+            responses=tuple(_RESPONSES[name] for name in estimate.flown),
+            determined=tuple(k for name in estimate.flown for k in _DETERMINED[name]),
+            bands=tuple(_RESPONSES[name].output for name in informing),
+            modes_alone=_modes_alone(maneuver, estimate)
+            if set(told.not_identifiable) == set(told.names)
+            else None,
+        )
+    )
+
+
+def _period_s(estimate: LateralEstimate | NoEstimate) -> float:
+    omega = estimate.modes.dutch_roll_omega if isinstance(estimate, LateralEstimate) else None
+    return 2.0 * math.pi / omega.value if omega is not None and omega.value > 0.0 else _USUAL_PERIOD_S
+
+
+def _unsteady_alpha(maneuver: Maneuver) -> list[Reason]:
+    alpha = flown(maneuver, "alpha")
+    change = 0.5 * float(np.degrees(np.ptp(alpha))) if len(alpha) else 0.0
+    text = "angle of attack moved by {} deg (limit {}); keep the nose where it is"
+    return above("alpha", change, ALPHA_CHANGE_DEG, text, 1)
+
+
+def _pitching(maneuver: Maneuver) -> list[Reason]:
+    """Return a reason where the moments of pitching and rolling together are no longer small."""
+    q, p, r = (maneuver.channels.get(name) for name in ("q", "p", "r"))
+    if q is None or p is None or r is None:
+        return []
+    t = p.t
+    roll, yaw, pitch = p.y, np.interp(t, r.t, r.y), np.interp(t, q.t, q.y)
+    pitch = pitch - np.mean(pitch)
+    shares = [
+        _rms(pitch * rate) / max(_rms(np.gradient(other, t)), 1e-12)
+        for rate, other in ((roll, yaw), (yaw, roll))
+    ]
+    if max(shares) <= COUPLING:
+        return []
+    shown, most = distinct_texts(100.0 * max(shares), 100.0 * COUPLING)
+    text = f"pitching with rolling makes up to {shown} % of the moments (limit {most}); hold the nose still"
+    return [Reason("coupling", text, max(shares), COUPLING)]
+
+
+def _rms(x: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(x**2)))
+
+
+def _modes_alone(maneuver: Maneuver, estimate: LateralEstimate) -> tuple[Reason, ...]:
+    """Return a reason where the frequency of the Dutch roll, all that a record tells, is known too poorly.
+
+    A movement without the shape of a test that determines no derivative is a pilot's trimming.
+    """
+    if maneuver.span.kind == "other":
+        return (_TRIMMING,)
+    omega = estimate.modes.dutch_roll_omega
+    width = 100.0 * NORMAL_95 * omega.std / omega.value if omega is not None else math.inf
+    text = "the Dutch roll's frequency is known to {} % only (limit {}); use more rudder"
+    return tuple(above("information", width, WIDEST_PREDICTION_PERCENT, text))

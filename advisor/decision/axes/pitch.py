@@ -1,0 +1,100 @@
+"""What pitch asks of a manoeuvre: the elevator's record, its limits, and the period of its motion."""
+
+import math
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.envelope import banked, other_controls, saturated, steep, throttled, too_quick
+from advisor.decision.omitted import coupled
+from advisor.decision.quality import Examined, Response, objections
+from advisor.decision.verdict import Reason
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.findings import findings_of
+
+_RESPONSES = (
+    Response("q", "pitch rate", "deg/s", "stick"),
+    Response("alpha", "angle of attack", "deg", "stick", least_signal=8.0, least_r2=0.70),
+)
+_DETERMINED = ("M_alpha", "M_q", "M_delta_e")
+NEEDED = ("elevator", "q")
+"""Channels without which nothing can be said of pitch."""
+
+
+def judge_pitch(
+    maneuver: Maneuver, estimate: Estimate | NoEstimate, aircraft: Aircraft
+) -> tuple[Reason, ...]:
+    """Return objections to a manoeuvre of the elevator, the most important first.
+
+    Parameters
+    ----------
+    maneuver
+        Manoeuvre as cut from the stream.
+    estimate
+        Estimate from this manoeuvre alone, or the reason for its absence.
+    aircraft
+        Limits and calibration of the aircraft.
+    """
+    period_s = natural_period(maneuver, estimate)
+    x = Examined(
+        maneuver,
+        aircraft,
+        estimate,
+        period_s,
+        needed=NEEDED,
+        responses=_RESPONSES,
+        determined=_DETERMINED,
+        bands=("q",),
+        outside=outside(maneuver, aircraft),
+        quick=tuple(too_quick(maneuver, period_s)),
+    )
+    if isinstance(estimate, NoEstimate):
+        return objections(x)
+    return objections(
+        replace(
+            x,
+            bands=tuple(estimate.prediction),
+            findings=findings_of(estimate, aircraft),
+            lacks=partial(coupled, maneuver, estimate),
+        )
+    )
+
+
+def outside(maneuver: Maneuver, aircraft: Aircraft) -> tuple[Reason, ...]:
+    """Return reasons for leaving the limits: bank, saturation, angle of attack, throttle, other controls."""
+    return (
+        *banked(maneuver, aircraft.limits.bank_deg),
+        *saturated(maneuver, "elevator", aircraft.elevator.ends_deg),
+        *steep(maneuver, aircraft.limits.alpha_deg),
+        *throttled(maneuver),
+        *other_controls(maneuver, ("aileron", "rudder"), "use the elevator alone"),
+    )
+
+
+def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float:
+    """Return the natural period of the short-period motion in s, 2π/ω with ω² = Z_α M_q − (1 + Z_q) M_α.
+
+    Without an estimate that predicts its own response, the period follows from the input, which crews match
+    to the aircraft. It is 2.5 times the shortest step, or twice the median lobe of a multisine.
+    """
+    if isinstance(estimate, Estimate) and _knows_the_motion(estimate):
+        square = estimate.value("Z_alpha") * estimate.value("M_q")
+        square -= (1.0 + estimate.value("Z_q")) * estimate.value("M_alpha")
+        if square > 0.0:
+            return 2.0 * math.pi / math.sqrt(square)
+    held_s = np.diff([onset for onset, _ in maneuver.span.steps])
+    held_s = held_s[held_s > 0.0]  # two steps between two samples have one onset
+    if len(held_s) == 0:
+        return 1.0
+    swept = maneuver.span.kind == "multisine"
+    return 2.0 * float(np.median(held_s)) if swept else 2.5 * float(np.min(held_s))
+
+
+def _knows_the_motion(estimate: Estimate) -> bool:
+    """Return whether an estimate predicts its own response and has a significant stiffness."""
+    stiffness = estimate.names.index("M_alpha")
+    known = abs(float(estimate.theta[stiffness])) > float(estimate.std[stiffness])
+    return known and estimate.prediction.get("q", 0.0) < 1.0
