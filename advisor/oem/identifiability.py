@@ -65,7 +65,7 @@ def not_identifiable(solution: Solution) -> dict[str, str]:
 
 
 def too_wide(theta: FloatArray, std: FloatArray) -> dict[str, str]:
-    """Return by name why a parameter of ``theta`` (8,) has no usable value: its error ``std`` is too large."""
+    """Return by name why a parameter of ``theta`` (8,) with an error ``std`` (8,) has no usable value."""
     reasons = {}
     for name, size in natural_size(theta).items():
         error = float(std[PARAMETERS.index(name)])
