@@ -16,6 +16,7 @@ from advisor.flight.maneuvers.steady_speed import LEFT, speed_before
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import distrusted
+from advisor.oem.lateral_problem import LEAST_PART
 from advisor.words.digits import distinct_texts
 
 SAMPLES_PER_PERIOD = 8.0
@@ -213,9 +214,26 @@ def other_controls(maneuver: Maneuver, names: Sequence[str], mend: str) -> list[
     """Return a reason for each of these controls that moved much."""
     reasons = []
     for name in names:
-        moved = float(np.degrees(np.ptp(flown(maneuver, name)))) / 2.0 if len(flown(maneuver, name)) else 0.0
+        moved = _range_deg(maneuver, name) / 2.0
         reasons += above(name, moved, OTHER_CONTROLS_DEG, name + " moved by {} deg (limit {}); " + mend)
     return reasons
+
+
+def _range_deg(maneuver: Maneuver, name: str) -> float:
+    """Return the range of a control during the manoeuvre, deg; 0 for one that was not recorded."""
+    y = flown(maneuver, name)
+    return float(np.degrees(np.ptp(y))) if len(y) else 0.0
+
+
+def follows_motion(maneuver: Maneuver, control: str, others: Sequence[str]) -> list[Reason]:
+    """Return a reason where a control moved so little beside another one that it follows the motion."""
+    moved, *beside = (_range_deg(maneuver, name) for name in (control, *others))
+    larger = others[int(np.argmax(beside))]
+    if moved >= LEAST_PART * max(beside):
+        return []
+    shown, least = distinct_texts(moved, LEAST_PART * max(beside), 1)
+    text = f"{control} moved by {shown} deg beside the {larger} (at least {least}); move the {control} alone"
+    return [Reason("follows", text, moved, LEAST_PART * max(beside))]
 
 
 def throttled(maneuver: Maneuver) -> list[Reason]:

@@ -10,8 +10,11 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft, Limits
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.axes.pitch import judge_pitch, natural_period
+from advisor.decision.axes.pitch import judge_pitch, natural_period, outside
 from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.flight.maneuvers.maneuver import Maneuver as Record
+from advisor.flight.maneuvers.maneuver import Span
+from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.wire.frames import FrameScanner
@@ -307,3 +310,16 @@ def test_two_steps_of_one_onset_give_no_period_of_zero():
     assert natural_period(twice, untold) == natural_period(maneuver, untold)
     assert natural_period(replace(twice, span=replace(twice.span, steps=(first, first))), untold) == 1.0
     assert "steps" in {reason.code for reason in judge_pitch(twice, untold, AIRCRAFT)}
+
+
+@pytest.mark.parametrize(("elevator_deg", "codes"), [(1.9, ["follows"]), (2.1, [])])
+def test_an_elevator_that_moves_less_than_a_fifth_of_the_aileron_follows_the_motion(elevator_deg, codes):
+    t = np.arange(0.0, 10.0, 0.02)
+    moved = {"elevator": elevator_deg, "aileron": 10.0}
+    channels = {
+        name: Channel(name, t, np.radians(deg / 2.0) * np.sin(t), "SERVO_OUTPUT_RAW", "commanded")
+        for name, deg in moved.items()
+    }
+    span = Span(0.0, 1.0, 4.0, 10.0, "other", (), "quiet")
+    found = outside(Record(1, 0, span, channels), Aircraft())
+    assert [reason.code for reason in found if reason.code != "aileron"] == codes

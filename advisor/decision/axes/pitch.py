@@ -7,7 +7,15 @@ from functools import partial
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.envelope import banked, other_controls, saturated, steep, throttled, too_quick
+from advisor.decision.envelope import (
+    banked,
+    follows_motion,
+    other_controls,
+    saturated,
+    steep,
+    throttled,
+    too_quick,
+)
 from advisor.decision.omitted import coupled
 from advisor.decision.quality import Examined, Response, objections
 from advisor.decision.verdict import Reason
@@ -20,6 +28,7 @@ _RESPONSES = (
     Response("alpha", "angle of attack", "deg", "stick", least_signal=8.0, least_r2=0.70),
 )
 _DETERMINED = ("M_alpha", "M_q", "M_delta_e")
+_OTHERS = ("aileron", "rudder")
 NEEDED = ("elevator", "q")
 """Channels without which nothing can be said of pitch."""
 
@@ -70,7 +79,8 @@ def outside(maneuver: Maneuver, aircraft: Aircraft) -> tuple[Reason, ...]:
         *saturated(maneuver, "elevator", aircraft.elevator.ends_deg),
         *steep(maneuver, aircraft.limits.alpha_deg),
         *throttled(maneuver),
-        *other_controls(maneuver, ("aileron", "rudder"), "use the elevator alone"),
+        *other_controls(maneuver, _OTHERS, "use the elevator alone"),
+        *follows_motion(maneuver, "elevator", _OTHERS),
     )
 
 
