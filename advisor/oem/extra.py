@@ -35,6 +35,16 @@ class Parameter(Protocol):
     def read(self, problem: Any, /) -> float:
         """Return the value in a problem."""
 
+    def moved(self, problem: Any, change: float, /) -> Any:
+        """Return the problem with the value changed, within its range and by no more than one step may."""
+
+
+def moved_by(step: FloatArray, problem: Any, parameters: Sequence[Parameter]) -> Any:
+    """Return the problem with its parameters moved by ``step`` (k,), each in its unit."""
+    for x, change in zip(parameters, step.tolist(), strict=True):
+        problem = x.moved(problem, change)
+    return problem
+
 
 def penalty(problem: object, parameters: Iterable[Parameter]) -> float:
     """Return -2 log of the priors' density up to a constant, as white noise weighs the priors."""

@@ -15,8 +15,9 @@ import numpy as np
 from advisor.flight.signals.robust import robust_std
 from advisor.model.response import N_PARAMETERS, N_SHARED, OUTPUTS
 from advisor.oem.evaluation import errors_of
+from advisor.oem.extra import moved_by
 from advisor.oem.innovations import AirModel
-from advisor.oem.instruments import Instrument, moved_by
+from advisor.oem.instruments import Instrument
 from advisor.oem.prior import precision
 from advisor.oem.solution import Solution, reported
 from advisor.oem.turbulence import Rows, Turbulence, find_turbulence

@@ -21,23 +21,19 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
-from advisor.oem.arrow import solved_within
-from advisor.oem.covariance import influence
-from advisor.oem.estimate import InstrumentEstimate
+from advisor.model.response import N_PARAMETERS, respond
+from advisor.model.short_period import NAMES
+from advisor.oem.descent import Response, descended
+from advisor.oem.estimate import InstrumentEstimate, NoEstimate
 from advisor.oem.extra import Prior, penalty
-from advisor.oem.gauss_newton import CONVERGED, Optimum
-from advisor.oem.instruments import Instrument, extra_of, moved_by
-from advisor.oem.problem import Assembly, OutputErrorProblem
-from advisor.oem.solution import Solution, evaluate, search
+from advisor.oem.gauss_newton import CONVERGED
+from advisor.oem.instruments import Instrument, extra_of
+from advisor.oem.prior import about_zero, precision
+from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
+from advisor.oem.solution import Solution, evaluate, noise_floor, search
 from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
-ROUNDS = 12
-SETTLED = 1e-2
-"""Change of -2 log likelihood, promised or found in a round, below which the search for instrument parameters
-is done."""
-CLOSE_ENOUGH = 1e-7
-"""Promised change of log J per sample at which an intermediate search ends."""
 ROUGHLY = 1e-4
 """Promised change of log J per sample at which a search ends whose end is only a start of the next one. The
 starts of a lag differ by hundreds of times as much."""
@@ -75,16 +71,36 @@ class InstrumentFit:
         return weighing.misfit(found.residual, found.sensitivities) + prior
 
 
-class _Fit(NamedTuple):
-    """The optimum at one setting of the instruments."""
+class _Pitch:
+    """Response of the short period, with the derivatives by all parameters."""
 
-    problem: OutputErrorProblem
-    assembly: Assembly
-    optimum: Optimum
+    names = NAMES
+    laid = staticmethod(assemble)
+    floor = staticmethod(noise_floor)
 
-    def cost(self, names: Sequence[Instrument]) -> float:
-        """Return -2 log of the posterior up to a constant."""
-        return self.optimum.log_likelihood_cost + penalty(self.problem, names)
+    @staticmethod
+    def begins(laid: Assembly, /) -> FloatArray:
+        """Return zero for each record: initial states belong to the records' first samples."""
+        return np.zeros(laid.maneuvers)
+
+    @staticmethod
+    def respond(
+        problem: OutputErrorProblem,
+        laid: Assembly,
+        shared: FloatArray,
+        local: FloatArray,
+        names: Sequence[Instrument],
+        /,
+    ) -> Response | None:
+        """Return the response; None where the model runs away."""
+        y, g = np.empty(len(laid.z)), np.empty((len(laid.z), N_PARAMETERS))
+        if not respond(laid.grid, shared, local, y, g):
+            return None
+        columns = extra_of(problem, laid, shared, local, names).columns
+        return Response(y, g, columns, np.empty((laid.maneuvers, 0)))
+
+
+_PITCH = _Pitch()
 
 
 def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> InstrumentFit:
@@ -97,15 +113,26 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
     """
     if not unknown:
         return InstrumentFit(plain)
-    fit, solution = _Fit(plain.problem, plain.assembly, plain.optimum), plain
-    for look in (_looked_about, _stayed):
+    problem, place = _looked_about(plain, tuple(weighed(x, share_of(plain)) for x in unknown))
+    solution = plain
+    for _ in range(2):
         names = tuple(weighed(x, share_of(solution)) for x in unknown)
-        fit = _descend(look(fit, names), names)
-        found = _solution(fit, names)
+        found = _fitted(problem, names, place)
         if found is None:
             return InstrumentFit(plain)
-        solution = found
-    return _with_statements(names, fit, solution, plain)
+        solution, problem, place = found, found.problem, (found.optimum.shared, found.optimum.local)
+    return _with_statements(names, solution, plain)
+
+
+def _fitted(
+    problem: OutputErrorProblem, names: Sequence[Instrument], place: tuple[FloatArray, FloatArray]
+) -> Solution | None:
+    """Return the solution with instruments from a start; None where the search finds none."""
+    fit = descended(_PITCH, problem, names, about_zero(precision(problem, place[0])), place)
+    if isinstance(fit, NoEstimate) or fit.optimum.status != CONVERGED:
+        return None
+    found = evaluate(fit.problem, fit.assembly, fit.optimum, fit.extra)
+    return found if isinstance(found, Solution) else None
 
 
 def share_of(plain: Solution) -> float:
@@ -119,15 +146,13 @@ def weighed(x: Instrument, share: float) -> Instrument:
     return x if x.prior is None else replace(x, prior=replace(x.prior, share=share))
 
 
-def _with_statements(
-    names: tuple[Instrument, ...], best: _Fit, solution: Solution, plain: Solution
-) -> InstrumentFit:
+def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: Solution) -> InstrumentFit:
     """Return the fit in which every stated value that the data do not exclude is a prior."""
     alone = identified_at(solution, names)
     white = np.sqrt(np.diag(solution.covariance_cr)[N:])
     if all(x.instrument.stated is None or x.found.contradicts for x in alone):
         return InstrumentFit(solution, alone)
-    kept, reset = [], best
+    kept, problem = [], solution.problem
     for one, white_std in zip(alone, white, strict=True):
         x, found = one
         share = min(1.0, float(white_std) / found.std)
@@ -140,9 +165,9 @@ def _with_statements(
             width = max(x.known_to * abs(x.stated), abs(found.told - x.stated))
             kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, width, share))))
         else:
-            reset = _at(x.write(reset.problem, x.stated), reset) or reset
-    names = tuple(one.instrument for one in kept)
-    final = _solution(_descend(reset, names), names)
+            problem = x.write(problem, x.stated)
+    place = solution.optimum.shared, solution.optimum.local
+    final = _fitted(problem, tuple(one.instrument for one in kept), place)
     return InstrumentFit(plain) if final is None else InstrumentFit(final, refreshed(kept, final))
 
 
@@ -158,70 +183,27 @@ def refreshed(identified: Sequence[Identified], solution: Solution) -> tuple[Ide
     )
 
 
-def _looked_about(begin: _Fit, names: Sequence[Instrument]) -> _Fit:
-    """Return the best of the starts of each instrument, one instrument after the other.
+def _looked_about(
+    plain: Solution, names: Sequence[Instrument]
+) -> tuple[OutputErrorProblem, tuple[FloatArray, FloatArray]]:
+    """Return the best of the starts of each instrument, one instrument after the other, with the derivatives.
 
     The posterior of a lag may have a second, lower peak at a third of the lag. A measured surface, whose
-    stated lag is zero, has none."""
-    best = begin
+    stated lag is zero, has none.
+    """
+    optimum, problem = plain.optimum, plain.problem
+    place, lowest = (optimum.shared, optimum.local), optimum.log_likelihood_cost + penalty(problem, names)
     for x in names:
-        near, here = best, best.problem
+        near, here = place, problem
         for start in x.starts if x.stated != 0.0 else ():
-            near = _at(x.write(here, start), near, ROUGHLY) or near
-            best = min(best, near, key=lambda fit: fit.cost(names))
-    return best
-
-
-def _stayed(fit: _Fit, _: Sequence[Instrument]) -> _Fit:
-    return fit
-
-
-def _descend(best: _Fit, names: Sequence[Instrument]) -> _Fit:
-    """Minimise the cost over the instruments by Gauss-Newton, with everything else refitted at each step.
-
-    The start is not kept: of hundreds of manoeuvres it is tens of megabytes.
-    """
-    for _ in range(ROUNDS if names else 0):
-        step, promised = _step(best, names)
-        if promised < SETTLED:
-            break
-        found = None
-        for _ in range(5):
-            found = _at(moved_by(step, best.problem, names), best)
-            if found is not None and found.cost(names) < best.cost(names):
-                break
-            step, found = step / 4.0, None
-        if found is None:
-            break
-        gain, best = best.cost(names) - found.cost(names), found
-        if gain < SETTLED:
-            break
-    return best
-
-
-def _step(fit: _Fit, names: Sequence[Instrument]) -> tuple[FloatArray, float]:
-    """Return the Gauss-Newton step of the instruments with everything else free, shape (k,).
-
-    Instruments that the step would move out of their ranges go to the end of them, and the others follow. The
-    second value is the change of -2 log of the posterior that the quadratic model promises.
-    """
-    optimum = fit.optimum
-    extra = extra_of(fit.problem, fit.assembly, optimum.shared, optimum.local, names)
-    effect = influence(fit.assembly, optimum.sensitivities, optimum.noise, extra)
-    if effect is None:
-        return np.zeros(len(names)), 0.0
-    step = effect.step(fit.assembly.z - optimum.fitted, extra)[N:]
-    information = np.asarray(np.linalg.pinv(effect.extra_covariance, hermitian=True), np.float64)
-    slope, now = information @ step, np.array([x.read(fit.problem) for x in names])
-    least, most = np.array([(x.lowest, x.highest) for x in names]).T - now
-    allowed = solved_within(information, slope, least, most)
-    return allowed, float(allowed @ (2.0 * slope - information @ allowed))
-
-
-def _at(problem: OutputErrorProblem, near: _Fit, flat: float = CLOSE_ENOUGH) -> _Fit | None:
-    begin = (near.optimum.shared, near.optimum.local)
-    assembly, optimum = search(problem, begin=begin, flat=flat)
-    return _Fit(problem, assembly, optimum) if optimum.status == CONVERGED else None
+            there = x.write(here, start)
+            found = search(there, begin=near, flat=ROUGHLY)[1]
+            if found.status != CONVERGED:
+                continue
+            near, cost = (found.shared, found.local), found.log_likelihood_cost + penalty(there, names)
+            if cost < lowest:
+                problem, place, lowest = there, near, cost
+    return problem, place
 
 
 def identified_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Identified, ...]:
@@ -241,9 +223,3 @@ def _identified(x: Instrument, problem: OutputErrorProblem, std: float) -> Ident
         excluded = apart > CONTRADICTS * float(np.hypot(std, x.known_to * x.stated))
         off = excluded and not x.at_end(problem, std)
     return Identified(x, InstrumentEstimate(x.name, value, std, x.stated, value, std, off))
-
-
-def _solution(fit: _Fit, names: Sequence[Instrument]) -> Solution | None:
-    extra = extra_of(fit.problem, fit.assembly, fit.optimum.shared, fit.optimum.local, names)
-    found = evaluate(*fit, extra)
-    return found if isinstance(found, Solution) else None

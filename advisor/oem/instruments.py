@@ -83,6 +83,10 @@ class Instrument:
             changed = {"servo": replace(problem.servo, delay_s=value - _held_for(problem))}
         return replace(problem, **changed)
 
+    def moved(self, problem: OutputErrorProblem, change: float) -> OutputErrorProblem:
+        """Return the problem with the value changed, within its range."""
+        return self.write(problem, float(np.clip(self.read(problem) + change, self.lowest, self.highest)))
+
     def open(self, problem: OutputErrorProblem) -> "Instrument":
         """Return the instrument with its usual prior."""
         return replace(self, prior=self.usual(problem))
@@ -160,15 +164,6 @@ def extra_of(
         return Extra.none(len(assembly.z))
     columns = instrument_columns(problem, assembly, shared, local, [x.name for x in names])
     return Extra.of(columns, problem, names)
-
-
-def moved_by(
-    step: FloatArray, problem: OutputErrorProblem, names: Sequence[Instrument]
-) -> OutputErrorProblem:
-    """Return the problem with its instruments moved by ``step`` (k,), each within its range."""
-    for x, change in zip(names, step, strict=True):
-        problem = x.write(problem, float(np.clip(x.read(problem) + change, x.lowest, x.highest)))
-    return problem
 
 
 def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tuple[Instrument, ...]:

@@ -76,6 +76,11 @@ class Nuisance:
         servo = replace(problem.servos[self.of], lag_s=float(np.clip(value, 0.0, LONGEST_LAG_S)))
         return replace(problem, servos={**problem.servos, self.of: servo})
 
+    def moved(self, problem: LateralProblem, change: float) -> LateralProblem:
+        """Return the problem with the value changed by no more than ``LARGEST_MOVE_S``."""
+        most = LARGEST_MOVE_S * self.per_second
+        return self.write(problem, self.read(problem) + float(np.clip(change, -most, most)))
+
 
 def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance, ...]:
     """Return the nuisance parameters of a problem; a still input has none."""
@@ -154,11 +159,3 @@ def columns_of(
             speed = assembly.grid.felt[at, LATERAL.outputs.index("a_y"), LATERAL.states.index("beta")]
             columns[row, k] = motion[at, 0, LATERAL.states.index("r")] / speed
     return columns
-
-
-def moved_by(step: FloatArray, problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProblem:
-    """Return the problem with its nuisance parameters moved by ``step`` (k,), each in its unit."""
-    for x, change in zip(nuisances, step, strict=True):
-        most = LARGEST_MOVE_S * x.per_second
-        problem = x.write(problem, x.read(problem) + float(np.clip(change, -most, most)))
-    return problem

@@ -12,13 +12,14 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import CONTROLS, LATERAL, natural_size
+from advisor.oem.descent import Fit, descended
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import Evaluated, errors_of
 from advisor.oem.extra import Extra
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.lateral_instruments import Nuisance, begun
+from advisor.oem.lateral_motion import LEAST_NOISE, LateralMotion
 from advisor.oem.lateral_problem import LateralAssembly, LateralProblem
-from advisor.oem.lateral_search import LEAST_NOISE, LateralFit, fit_lateral
 from advisor.oem.lateral_start import lateral_start
 from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
 from advisor.oem.solution import RUNS_AWAY, refused
@@ -34,6 +35,7 @@ LEAST_SHARE = 0.01
 WITHOUT_FORCE = (
     "neither a lateral acceleration nor a sideslip was recorded, so that only the modes are told; record a_y"
 )
+_MOTION = LateralMotion()
 _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
 
 
@@ -67,7 +69,7 @@ def solve_lateral(
     problem = begun(problem, nuisances)
     start = lateral_start(problem)
     prior = priors_of(problem, start[0])
-    fit = fit_lateral(problem, (), prior, start, FIRST_LOOK)
+    fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
     if isinstance(fit, NoEstimate):
         return fit
     solution = RUNS_AWAY if _has_diverged(fit) else _evaluated(fit, prior, ())
@@ -77,17 +79,17 @@ def solve_lateral(
         share = _share(solution)
         prior = replace(prior, share=share)
         weighed = [replace(x, prior=replace(x.prior, share=share)) for x in nuisances]
-        fit = fit_lateral(problem, weighed, prior, start)
+        fit = descended(_MOTION, problem, weighed, prior, start)
         if isinstance(fit, NoEstimate):
             return fit
         if (why := refused(fit.optimum, NOTHING_TO_TELL)) is not None:
             return why
-        problem, start = fit.problem, (fit.optimum.shared, fit.optimum.local)
+        problem, start = fit.problem, fit.place
         solution = _evaluated(fit, prior, weighed)
     return solution
 
 
-def _has_diverged(fit: LateralFit) -> bool:
+def _has_diverged(fit: Fit) -> bool:
     """Return whether a fit explains the outputs worse than a constant value of each output does."""
     assembly, noise = fit.assembly, fit.optimum.noise
     gain = 0.0
@@ -105,8 +107,8 @@ def _share(solution: LateralSolution) -> float:
     return float(np.clip(np.sqrt(np.nanmedian(ratio)), LEAST_SHARE, 1.0))
 
 
-def _evaluated(fit: LateralFit, prior: Priors, nuisances: Sequence[Nuisance]) -> LateralSolution | NoEstimate:
-    problem, assembly, optimum, extra, _ = fit
+def _evaluated(fit: Fit, prior: Priors, nuisances: Sequence[Nuisance]) -> LateralSolution | NoEstimate:
+    problem, assembly, optimum, extra = fit.problem, fit.assembly, fit.optimum, fit.extra
     g, residual = optimum.sensitivities, assembly.z - optimum.fitted
     errors = errors_of(
         assembly,

@@ -91,6 +91,14 @@ class Priors:
         return np.asarray((self.std * self.share) ** -2)
 
 
+def about_zero(precision: FloatArray) -> Priors:
+    """Return the priors about zero with these inverse variances (k,)."""
+    std = np.full(len(precision), np.inf)
+    known = precision > 0.0
+    std[known] = precision[known] ** -0.5
+    return Priors(np.zeros(len(precision)), std)
+
+
 def guessed_y_beta(problem: LateralProblem) -> float:
     """Return the Y_β of an aircraft that flies as fast as the records, 1/s."""
     speed = float(np.mean([np.mean(record.airspeed.y) for record in problem.records]))

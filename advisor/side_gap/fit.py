@@ -16,8 +16,8 @@ from advisor.model.axis_response import respond_axis
 from advisor.model.lateral import LATERAL
 from advisor.oem.arrow import unabsorbed
 from advisor.oem.gauss_newton import weigh
+from advisor.oem.lateral_motion import LEAST_NOISE
 from advisor.oem.lateral_problem import CAUSES, LateralAssembly
-from advisor.oem.lateral_search import LEAST_NOISE
 from advisor.side_gap.setting import Flown, Place, Setting, laid_out, moved_to
 
 ROUNDS = 12

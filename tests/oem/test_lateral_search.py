@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from advisor.model.lateral import LATERAL, Trim, modes_of, state_matrix
-from advisor.oem.extra import Prior
+from advisor.oem.descent import descended
+from advisor.oem.extra import Prior, moved_by
 from advisor.oem.gauss_newton import CONVERGED
-from advisor.oem.lateral_instruments import Nuisance, moved_by
+from advisor.oem.lateral_instruments import Nuisance
+from advisor.oem.lateral_motion import LateralMotion
 from advisor.oem.lateral_problem import LateralProblem, assemble_lateral
-from advisor.oem.lateral_search import fit_lateral
 from advisor.oem.lateral_solution import solve_lateral
 from advisor.oem.lateral_start import lateral_start
 from advisor.oem.prior import Priors
@@ -34,7 +35,7 @@ CLOCKS = (
 
 def still(problem, nuisances, local):
     """Return the fit at the truth, before any step."""
-    return fit_lateral(problem, nuisances, KNOWN_NOTHING, (vector(JET), local), most=0)
+    return descended(LateralMotion(), problem, nuisances, KNOWN_NOTHING, (vector(JET), local), most=0)
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +89,7 @@ def lagged(doublets, lag_s, late_s):
 def test_one_search_finds_derivatives_lag_and_delay_within_a_few_trials(doublets):
     lag, late = Nuisance("lag", "aileron", WIDE), Nuisance("delay", "bank", WIDE)
     problem = lagged(doublets, 0.06, 0.02)
-    fit = fit_lateral(problem, (lag, late), KNOWN_NOTHING, lateral_start(problem))
+    fit = descended(LateralMotion(), problem, (lag, late), KNOWN_NOTHING, lateral_start(problem))
     assert fit.optimum.status == CONVERGED
     assert fit.optimum.iterations < 20
     assert lag.read(fit.problem) == pytest.approx(0.06, abs=0.01)
@@ -103,7 +104,7 @@ def test_without_noise_an_air_speed_that_reads_too_little_is_found_and_moves_no_
         records.append(replace(record, airspeed=Signal(true.t, true.y / 1.04)))
     excess = Nuisance("air", "", WIDE)
     problem = LateralProblem(tuple(records))
-    fit = fit_lateral(problem, (excess,), KNOWN_NOTHING, lateral_start(problem))
+    fit = descended(LateralMotion(), problem, (excess,), KNOWN_NOTHING, lateral_start(problem))
     assert excess.read(fit.problem) == pytest.approx(0.04, abs=0.004)
     assert fit.optimum.shared[LATERAL.names.reported.index("Y_beta")] == pytest.approx(-0.2, abs=0.002)
 
@@ -111,7 +112,7 @@ def test_without_noise_an_air_speed_that_reads_too_little_is_found_and_moves_no_
 def test_a_lag_stays_within_its_range_and_everything_else_follows(doublets):
     lag = Nuisance("lag", "aileron", WIDE)
     problem = lagged(doublets, -0.05, 0.0)
-    fit = fit_lateral(problem, (lag,), KNOWN_NOTHING, lateral_start(problem))
+    fit = descended(LateralMotion(), problem, (lag,), KNOWN_NOTHING, lateral_start(problem))
     assert fit.optimum.status == CONVERGED
     assert lag.read(fit.problem) == 0.0
     farther = moved_by(np.array([9.0]), lag.write(problem, 0.4), (lag,))
@@ -123,7 +124,7 @@ def test_a_prior_of_a_derivative_pulls_by_its_share(doublets):
     known = Priors(np.zeros(15), np.where(np.arange(15) == k, 0.01, np.inf))
     begin = lateral_start(doublets)
     free, told, weighed = (
-        fit_lateral(doublets, (), prior, begin).optimum.shared[k]
+        descended(LateralMotion(), doublets, (), prior, begin).optimum.shared[k]
         for prior in (KNOWN_NOTHING, known, replace(known, share=0.1))
     )
     assert abs(weighed) < abs(told) < abs(free)

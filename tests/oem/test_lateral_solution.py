@@ -5,10 +5,11 @@ import pytest
 
 from advisor.model.lateral import LATERAL
 from advisor.oem import lateral_solution
+from advisor.oem.descent import descended
 from advisor.oem.extra import Prior
 from advisor.oem.lateral_instruments import Nuisance
+from advisor.oem.lateral_motion import LateralMotion
 from advisor.oem.lateral_problem import LateralProblem
-from advisor.oem.lateral_search import fit_lateral
 from advisor.oem.lateral_solution import (
     LateralSolution,
     lateral_not_identifiable,
@@ -147,7 +148,9 @@ def test_a_start_from_which_the_model_runs_away_gives_no_fit():
     problem = both_inputs(JET, np.random.default_rng(1))
     unstable = vector({**JET, "L_p": 60.0})
     local = np.ones((len(problem.records), len(LATERAL.names.local)))
-    assert fit_lateral(problem, (), priors_of(problem, unstable), (unstable, local)) is RUNS_AWAY
+    assert (
+        descended(LateralMotion(), problem, (), priors_of(problem, unstable), (unstable, local)) is RUNS_AWAY
+    )
 
 
 def test_a_first_look_that_is_worse_than_no_motion_is_refused_before_it_is_evaluated(monkeypatch):

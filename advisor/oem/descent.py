@@ -1,22 +1,21 @@
-"""Gauss-Newton over the derivatives, servos and clocks of a lateral problem in one pass.
+"""Gauss-Newton over the derivatives, servos and clocks of a problem in one pass, for every axis.
 
 Every trial lays the records anew at its servos and clocks. All derivatives are analytic, and come from the
 pass over the motion that gives the outputs. The steps and the damping are those of ``gauss_newton``.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
-from typing import NamedTuple, Self
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.axis_response import respond_axis
-from advisor.model.lateral import LATERAL
+from advisor.model.axis import Names
 from advisor.model.response import Index
 from advisor.oem.arrow import arrow_step, normal_equations
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.extra import Extra, penalty
+from advisor.oem.extra import Extra, Parameter, moved_by, penalty
 from advisor.oem.gauss_newton import (
     CONVERGED,
     DAMPING_FACTOR,
@@ -28,82 +27,94 @@ from advisor.oem.gauss_newton import (
     Optimum,
     weigh,
 )
-from advisor.oem.lateral_instruments import Nuisance, columns_of, moved_by
-from advisor.oem.lateral_problem import CAUSES, LateralAssembly, LateralProblem, assemble_lateral
 from advisor.oem.prior import Priors
+from advisor.oem.rows import Laid
 from advisor.oem.solution import RUNS_AWAY
 
-LEAST_NOISE = {"p": 5e-4, "r": 5e-4, "bank": 5e-4, "a_y": 0.01, "beta": 5e-4}
-"""Least standard deviation of each output, SI. Gyros of 0.007 deg/s/√Hz have 5e-4 rad/s at 20 Hz, and the
-model itself is no truer: α, θ and V are constant between stamps."""
 SETTLED = 1e-3
 """Promised change of -2 log of the posterior at which a search ends. It moves no parameter by more than 0.03
 of its standard deviation."""
-_SPEED_STEP = 1e-3
-"""Numerical: step of the difference by which the outputs' derivative by the air speed is taken."""
-_SHARED, _OWN = len(LATERAL.names.shared), len(LATERAL.names.local)
-_INITIAL = [LATERAL.names.local.index(f"{state}_initial") for state in LATERAL.states]
 
 
-class LateralFit(NamedTuple):
-    """A lateral problem at one setting of all parameters."""
+class Response(NamedTuple):
+    """Outputs of the model with their derivatives, at one setting of all parameters."""
 
-    problem: LateralProblem
+    y: FloatArray
+    """(N,)."""
+    g: FloatArray
+    """(N, s + l) derivatives by the shared parameters, and by those that each manoeuvre has of its own."""
+    columns: FloatArray
+    """(N, k) derivatives by the nuisance parameters."""
+    begun: FloatArray
+    """(m, states) rates of the states at the first event of each record. A delay may move that event."""
+
+
+class Motion(Protocol):
+    """The motion of one axis, as the search needs it. A problem holds records, servos and clocks."""
+
+    names: Names
+
+    def laid(self, problem: Any, /) -> Laid:
+        """Return the measurements as rows."""
+
+    def floor(self, laid: Any, /) -> FloatArray:
+        """Return the least standard deviation of each output, (outputs,), SI."""
+
+    def respond(
+        self, problem: Any, laid: Any, shared: FloatArray, local: FloatArray, nuisances: Sequence[Any], /
+    ) -> Response | None:
+        """Return the response; None where the model runs away."""
+
+    def begins(self, laid: Any, /) -> FloatArray:
+        """Return the time of the first event of each record, (m,), s."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """A problem at one setting of all parameters."""
+
+    problem: Any
     """Records, with servos and clocks at their values."""
-    assembly: LateralAssembly
+    assembly: Any
     optimum: Optimum
     extra: Extra
     """Nuisance parameters at their values."""
     begun: FloatArray
-    """(m, 4) rates of the states at the first event of each record. A delay may move that event."""
+    """(m, states) as in ``Response``."""
 
     @property
     def cost(self) -> float:
         """-2 log of the posterior, up to a constant."""
         return self.optimum.log_likelihood_cost
 
-
-def outputs_at(problem: LateralProblem, shared: FloatArray, local: FloatArray) -> FloatArray:
-    """Return the outputs (N,) of a problem, without their derivatives."""
-    assembly = assemble_lateral(problem)
-    y = np.empty(len(assembly.z))
-    nothing = np.empty((0, _SHARED + _OWN + len(CAUSES)))
-    respond_axis(assembly.grid, shared, local, y, nothing, np.empty((0, 2, len(LATERAL.states))))
-    return y
+    @property
+    def place(self) -> tuple[FloatArray, FloatArray]:
+        """Derivatives and local parameters, from which another search begins."""
+        return self.optimum.shared, self.optimum.local
 
 
 class _Setting(NamedTuple):
-    """Nuisance parameters and priors of a search."""
+    """Motion, nuisance parameters and priors of a search."""
 
-    nuisances: Sequence[Nuisance]
+    motion: Motion
+    nuisances: Sequence[Parameter]
     prior: Priors
 
-    def at(
-        self, problem: LateralProblem, assembly: LateralAssembly, shared: FloatArray, local: FloatArray
-    ) -> LateralFit | None:
+    def at(self, problem: Any, assembly: Laid, shared: FloatArray, local: FloatArray) -> Fit | None:
         """Return the fit at one setting; None where the model runs away."""
-        y = np.empty(len(assembly.z))
-        g = np.empty((len(y), _SHARED + _OWN + len(CAUSES)))
-        motion = np.empty((len(assembly.grid.step_s), 2, len(LATERAL.states)))
-        if not respond_axis(assembly.grid, shared, local, y, g, motion):
+        found = self.motion.respond(problem, assembly, shared, local, self.nuisances)
+        if found is None:
             return None
-        least = np.array([LEAST_NOISE[name] for name in LATERAL.outputs])
-        noise, cost = weigh(assembly.z, y, assembly.channel, least)
+        y = found.y
+        noise, cost = weigh(assembly.z, y, assembly.channel, self.motion.floor(assembly))
         cost += float(np.sum(((assembly.z - y) / noise[assembly.channel]) ** 2))
-        cost += float(self.prior.precision @ (shared - self.prior.mean) ** 2) + penalty(
-            problem, self.nuisances
-        )
+        cost += float(self.prior.precision @ (shared - self.prior.mean) ** 2)
+        cost += penalty(problem, self.nuisances)
+        optimum = Optimum(EXHAUSTED, shared, local, noise, cost, 0, y, found.g)
+        extra = Extra.of(found.columns, problem, self.nuisances)
+        return Fit(problem, assembly, optimum, extra, found.begun)
 
-        def by_speed() -> FloatArray:
-            faster = replace(problem, airspeed_excess=problem.airspeed_excess + _SPEED_STEP)
-            return (outputs_at(faster, shared, local) - y) / _SPEED_STEP
-
-        columns = columns_of(assembly, g[:, _SHARED + _OWN :], motion, self.nuisances, by_speed)
-        optimum = Optimum(EXHAUSTED, shared, local, noise, cost, 0, y, g[:, : _SHARED + _OWN])
-        extra = Extra.of(columns, problem, self.nuisances)
-        return LateralFit(problem, assembly, optimum, extra, motion[assembly.grid.first[:-1], 1])
-
-    def step(self, fit: LateralFit, damping: float) -> "_Step | None":
+    def step(self, fit: Fit, damping: float) -> "_Step | None":
         """Return the damped step from a fit; None where the data do not determine it.
 
         A nuisance parameter that would leave its range goes to the end of the range, and all others follow.
@@ -114,7 +125,7 @@ class _Setting(NamedTuple):
             found = system.solved(damping, held)
             if found is None:
                 return None
-            wanted = found.shared[_SHARED:]
+            wanted = found.shared[len(fit.optimum.shared) :]
             moved = moved_by(wanted, fit.problem, self.nuisances)
             allowed = np.array([x.read(moved) - x.read(fit.problem) for x in self.nuisances])
             ends = np.flatnonzero(~np.isclose(allowed, wanted, rtol=1e-6, atol=1e-12))
@@ -123,23 +134,29 @@ class _Setting(NamedTuple):
             held = {int(j): float(allowed[j]) for j in ends}
         return found
 
-    def moved(self, fit: LateralFit, step: "_Step") -> LateralFit | None:
+    def moved(self, fit: Fit, step: "_Step") -> Fit | None:
         """Return the fit after a step; None where the model runs away."""
-        problem = moved_by(step.shared[_SHARED:], fit.problem, self.nuisances)
-        optimum = fit.optimum
-        assembly = assemble_lateral(problem)
+        optimum, count = fit.optimum, len(fit.optimum.shared)
+        problem = moved_by(step.shared[count:], fit.problem, self.nuisances)
+        assembly = self.motion.laid(problem)
         local = optimum.local + step.local
-        local[:, _INITIAL] += (assembly.begin - fit.assembly.begin)[:, None] * fit.begun
-        return self.at(problem, assembly, optimum.shared + step.shared[:_SHARED], local)
+        later = self.motion.begins(assembly) - self.motion.begins(fit.assembly)
+        local[:, _initial(self.motion.names, fit.begun.shape[1])] += later[:, None] * fit.begun
+        return self.at(problem, assembly, optimum.shared + step.shared[:count], local)
+
+
+def _initial(names: Names, states: int) -> list[int]:
+    """Return the places of the initial states among the local parameters."""
+    return [j for j, name in enumerate(names.local) if name.endswith("_initial")][:states]
 
 
 class _Step(NamedTuple):
     """A step of all parameters."""
 
     shared: FloatArray
-    """(15 + k,) derivatives, then nuisance parameters."""
+    """(s + k,) derivatives, then nuisance parameters."""
     local: FloatArray
-    """(m, 9)."""
+    """(m, l)."""
     promise: float
     """Decrease of -2 log of the posterior that the quadratic model promises."""
 
@@ -152,18 +169,20 @@ class _System(NamedTuple):
     gradient: FloatArray
     """(m, n)."""
     free: Index
-    """(n,) places of the parameters among 15 + k shared and 9 local ones."""
+    """(n,) places of the parameters among s + k shared and l local ones."""
+    shared: int
+    """s."""
+    own: int
+    """l."""
     nuisances: int
 
     @classmethod
-    def of(cls, prior: Priors, fit: LateralFit) -> Self:
+    def of(cls, prior: Priors, fit: Fit) -> Self:
         """Return the normal equations at a fit."""
         assembly, optimum, extra = fit.assembly, fit.optimum, fit.extra
-        k = len(extra)
-        g = np.column_stack(
-            [optimum.sensitivities[:, :_SHARED], extra.columns, optimum.sensitivities[:, _SHARED:]]
-        )
-        free = np.concatenate([assembly.common, _SHARED + np.arange(k), assembly.own + k])
+        k, s = len(extra), len(optimum.shared)
+        g = np.column_stack([optimum.sensitivities[:, :s], extra.columns, optimum.sensitivities[:, s:]])
+        free = np.concatenate([assembly.common, s + np.arange(k), assembly.own + k])
         information, gradient = normal_equations(
             assembly.maneuvers,
             assembly.z - optimum.fitted,
@@ -175,39 +194,41 @@ class _System(NamedTuple):
         )
         information = information + np.transpose(np.tril(information, -1), (0, 2, 1))
         weight = np.concatenate([prior.precision, (extra.weight / extra.share) ** 2])
-        off = np.concatenate([prior.mean - optimum.shared, extra.pull / extra.weight])
-        common = free[free < _SHARED + k]
+        known = np.where(extra.weight > 0.0, extra.weight, 1.0)
+        off = np.concatenate([prior.mean - optimum.shared, extra.pull / known])
+        common = free[free < s + k]
         places = np.arange(len(common))
         information[0, places, places] += weight[common]
         gradient[0, places] += (weight * off)[common]
-        return cls(information, gradient, free, k)
+        return cls(information, gradient, free, s, optimum.local.shape[1], k)
 
     def solved(self, damping: float, held: Mapping[int, float]) -> _Step | None:
         """Return the step with the nuisance parameters ``held`` moved by given amounts, or None."""
-        total = _SHARED + self.nuisances
-        fixed = np.isin(self.free, [_SHARED + j for j in held])
-        amount = np.array([held[int(j) - _SHARED] for j in self.free[fixed]])
+        total = self.shared + self.nuisances
+        fixed = np.isin(self.free, [self.shared + j for j in held])
+        amount = np.array([held[int(j) - self.shared] for j in self.free[fixed]])
         gradient = self.gradient[:, ~fixed] - self.information[:, ~fixed][:, :, fixed] @ amount
         information = np.ascontiguousarray(self.information[:, ~fixed][:, :, ~fixed])
         fine, shared, local, _ = arrow_step(
-            information, np.ascontiguousarray(gradient), self.free[~fixed], damping, total, _OWN
+            information, np.ascontiguousarray(gradient), self.free[~fixed], damping, total, self.own
         )
         if not fine:
             return None
         for j, move in held.items():
-            shared[_SHARED + j] = move
+            shared[self.shared + j] = move
         everything = np.column_stack([np.tile(shared, (len(local), 1)), local])[:, self.free]
         bent = np.einsum("mi,mij,mj->", everything, self.information, everything)
         return _Step(shared, local, float(2.0 * np.sum(everything * self.gradient) - bent))
 
 
-def fit_lateral(
-    problem: LateralProblem,
-    nuisances: Sequence[Nuisance],
+def descended(
+    motion: Motion,
+    problem: Any,
+    nuisances: Sequence[Parameter],
     prior: Priors,
     begin: tuple[FloatArray, FloatArray],
     most: int = MOST_ITERATIONS,
-) -> LateralFit | NoEstimate:
+) -> Fit | NoEstimate:
     """Return the fit with the least -2 log of the posterior near a start. Its status says how it was found.
 
     Parameters
@@ -219,12 +240,12 @@ def fit_lateral(
     prior
         Priors of the derivatives.
     begin
-        Derivatives (15,) and local parameters (m, 9).
+        Derivatives (s,) and local parameters (m, l).
     most
         Largest number of trials.
     """
-    setting = _Setting(nuisances, prior)
-    best = setting.at(problem, assemble_lateral(problem), *begin)
+    setting = _Setting(motion, nuisances, prior)
+    best = setting.at(problem, motion.laid(problem), *begin)
     if best is None:
         return RUNS_AWAY
     damping, status, iteration = 0.0, EXHAUSTED, 0
@@ -244,4 +265,4 @@ def fit_lateral(
             status = SINGULAR if step is None else CONVERGED
         else:
             damping = max(FIRST_DAMPING, DAMPING_FACTOR * damping)
-    return best._replace(optimum=best.optimum._replace(status=status, iterations=iteration))
+    return replace(best, optimum=best.optimum._replace(status=status, iterations=iteration))
