@@ -13,11 +13,16 @@ from advisor.flight.signals.record import Channel
 from advisor.oem.airspeed import airspeed
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
-from advisor.oem.instruments import SERVO_LAG
+from advisor.oem.extra import Prior
+from advisor.oem.instruments import SERVO_LAG, unknown_instruments
+from advisor.oem.lateral_instruments import nuisances_of
+from advisor.oem.lateral_problem import LateralProblem
 from advisor.oem.prepare import prepare
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 from tests.oem.builders import UAV, elevator_3211, flown, maneuver, simulate, trim_alpha, trim_elevator
+from tests.oem.lateral_builders import JET, aileron_doublet
+from tests.oem.lateral_builders import flown as flown_sideways
 
 SPEED = 25.0
 GRAVITY = 9.80665
@@ -335,3 +340,12 @@ def test_a_filtered_pitch_rate_and_specific_force_do_not_pass_for_other_derivati
     }
     there = estimate(replace(flight, channels=filtered), aircraft())
     np.testing.assert_allclose(there.theta, estimate(flight, aircraft()).theta, rtol=1e-6, atol=1e-6)
+
+
+def test_a_lag_that_the_file_leaves_open_has_one_prior_on_every_axis():
+    prepared = prepare([equipped(lag_s=0.1, noise=0.02)], Aircraft(airspeed_m_s=SPEED))
+    pitch = {x.name: x.prior for x in unknown_instruments(prepared.problem, Aircraft(airspeed_m_s=SPEED))}
+    doublet = flown_sideways(JET, aileron=aileron_doublet(np.arange(0.0, 15.0, 0.025)))
+    rolled = LateralProblem((doublet,), servos={"aileron": Servo()})
+    roll = {x.name: x.prior for x in nuisances_of(rolled, Aircraft())}
+    assert pitch["servo_lag_s"] == roll["aileron_lag_s"] == Prior(0.05, 0.05)
