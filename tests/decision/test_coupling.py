@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.omitted import bias_by, coupled
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
@@ -35,7 +36,7 @@ def flown(size=1.0, moment=None, **others):
     channels = {name: Channel(name, T, y) for name, y in values.items()}
     steps = tuple((onset, size * level * DEG) for onset, level in STEPS)
     maneuver = Maneuver(1, 0, Span(0.0, 2.0, 5.5, 13.98, "3-2-1-1", steps, "quiet"), channels, "MANUAL")
-    return maneuver, estimate(maneuver, Aircraft())
+    return maneuver, estimate(maneuver, Aircraft(elevator=Elevator(lag_s=0.0)))
 
 
 def dutch_roll(size):
