@@ -34,7 +34,6 @@ from advisor.flight.stream.flights import Flights
 from advisor.flight.stream.stream import FlightStream
 from advisor.oem.estimate import Estimate
 from advisor.oem.lateral_estimate import LateralEstimate
-from advisor.oem.solution import Method
 from advisor.process.parts import Parts
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock
@@ -78,8 +77,6 @@ class Campaign:
         Verdicts do not depend on it.
     tell
         Called with every event, for example to announce verdicts.
-    method
-        Search for each manoeuvre's optimum: Gauss-Newton, or the paper's simplex.
     by_hand
         Earlier decisions by hand on this flight.
     marks
@@ -96,7 +93,6 @@ class Campaign:
         target_system: int | None = None,
         settle: bool = False,
         tell: Callable[[CampaignEvent], object] | None = None,
-        method: Method = "gauss-newton",
         by_hand: ByHand = NOTHING,
         marks: Sequence[Mark] = (),
         names: Sequence[str] = (),
@@ -104,7 +100,7 @@ class Campaign:
     ) -> None:
         self._journal = Journal()
         self._parts = Parts(lambda failed: self._journal.write(str(failed.problem)))
-        self._elevator = ElevatorCampaign(aircraft, method, self._journal.write, self._parts)
+        self._elevator = ElevatorCampaign(aircraft, self._journal.write, self._parts)
         self._lateral = LateralCampaign(aircraft, self._parts) if lateral else None
         self._aircraft = aircraft
         self._tell = tell

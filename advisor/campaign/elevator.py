@@ -21,7 +21,6 @@ from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.oem.solution import Method
 from advisor.process.parts import FailedPart, Parts
 
 
@@ -45,23 +44,18 @@ class ElevatorCampaign:
     ----------
     aircraft
         The crew's aircraft file.
-    method
-        Search for each manoeuvre's optimum: Gauss-Newton, or the paper's simplex.
     say
         Called with a sentence where the manoeuvres have told more of the instruments.
     parts
         Makes manoeuvres, verdicts and the joint estimate, each of which may fail alone.
     """
 
-    def __init__(
-        self, aircraft: Aircraft, method: Method, say: Callable[[str], object], parts: Parts
-    ) -> None:
+    def __init__(self, aircraft: Aircraft, say: Callable[[str], object], parts: Parts) -> None:
         self._aircraft = aircraft
         self._parts = parts
         self.learnt = aircraft
         """The crew's aircraft with what the manoeuvres have told of the instruments."""
         self._told_by: set[tuple[int, int]] = set()
-        self._method: Method = method
         self._say = say
         self._flown: list[_Flown] = []
         self._together = Together(aircraft)
@@ -162,7 +156,7 @@ class ElevatorCampaign:
         known = self.learnt if maneuver.power_on in self._told_by else of_another_power_on(self.learnt)
         return self._parts.make(
             f"pitch, manoeuvre {maneuver.number}",
-            lambda: assess(maneuver, known, self._method),
+            lambda: assess(maneuver, known),
             partial(failed, maneuver),
         )
 

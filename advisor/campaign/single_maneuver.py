@@ -12,14 +12,13 @@ from advisor.flight.maneuvers.markers import MARKED
 from advisor.flight.vehicle.modes import closes_pitch_loop
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate
-from advisor.oem.solution import Method
 from advisor.oem.surface import Servo
 from advisor.process.parts import INTERNAL, FailedPart
 
 
-def assess(maneuver: Maneuver, aircraft: Aircraft, method: Method = "gauss-newton") -> CandidateManeuver:
+def assess(maneuver: Maneuver, aircraft: Aircraft) -> CandidateManeuver:
     """Estimate a manoeuvre and examine it, before any rule compares it with other manoeuvres."""
-    estimated = estimate(maneuver, aircraft, method=method)
+    estimated = estimate(maneuver, aircraft)
     return CandidateManeuver(
         estimated,
         judge_pitch(maneuver, estimated, aircraft),

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import click
 
@@ -28,13 +28,6 @@ if TYPE_CHECKING:
 @click.command
 @log_options("rule", "marks", "no_marks")
 @click.option(
-    "--method",
-    type=click.Choice(["gauss-newton", "nelder-mead"]),
-    default="gauss-newton",
-    show_default=True,
-    help="Search for each manoeuvre's optimum. nelder-mead is the paper's method, and far slower.",
-)
-@click.option(
     "--all", "every_movement", is_flag=True, help="List also the elevator movements that were no test inputs."
 )
 @click.option(
@@ -50,7 +43,6 @@ if TYPE_CHECKING:
 @json_option
 def command(
     asked: LogsAsked,
-    method: Literal["gauss-newton", "nelder-mead"],
     every_movement: bool,
     axis: "Axis",
     exports: tuple[str, ...],
@@ -82,7 +74,6 @@ def command(
         Campaign,
         aircraft,
         asked.target_system,
-        method=method,
         by_hand=by_hand,
         marks=asked.marks,
         names=series.names,

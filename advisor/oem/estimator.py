@@ -22,7 +22,7 @@ from advisor.oem.prediction import prediction_band
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.problem import OutputErrorProblem
 from advisor.oem.rows import Laid
-from advisor.oem.solution import Method, Solution, evaluate, search, solve
+from advisor.oem.solution import Solution, evaluate, search, solve
 from advisor.oem.turbulence import Turbulence
 from advisor.oem.weighing import Weighing
 
@@ -35,23 +35,9 @@ CLEARLY = 10.0
 """Least gain in twice the log likelihood by which another reading of the record must beat the usual one."""
 
 
-def estimate(
-    maneuver: Maneuver, aircraft: Aircraft, *, method: Method = "gauss-newton"
-) -> Estimate | NoEstimate:
-    """Return all eight parameters from one manoeuvre, or why there is no estimate.
-
-    Parameters
-    ----------
-    method : ``gauss-newton``, or ``nelder-mead`` for the paper's simplex, which finds the same optimum more
-        slowly and estimates neither instruments nor moving air.
-    """
-    if method == "gauss-newton":
-        return estimate_jointly([maneuver], aircraft)
-    begun = _begun([maneuver], aircraft, method)
-    if isinstance(begun, NoEstimate):
-        return begun
-    prepared, plain = begun
-    return report(plain, prepared, aircraft)
+def estimate(maneuver: Maneuver, aircraft: Aircraft) -> Estimate | NoEstimate:
+    """Return all eight parameters from one manoeuvre, or why there is no estimate."""
+    return estimate_jointly([maneuver], aircraft)
 
 
 def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estimate | NoEstimate:
@@ -64,7 +50,7 @@ def fit_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> "Fit | NoE
     """Return the fit from which the estimate over several manoeuvres follows."""
     if not maneuvers:
         return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")
-    begun = _begun(maneuvers, aircraft, "gauss-newton")
+    begun = _begun(maneuvers, aircraft)
     if isinstance(begun, NoEstimate):
         return begun
     prepared, plain = begun
@@ -109,14 +95,12 @@ class Fit:
         )
 
 
-def _begun(
-    maneuvers: Sequence[Maneuver], aircraft: Aircraft, method: Method
-) -> tuple[Prepared, Solution] | NoEstimate:
+def _begun(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> tuple[Prepared, Solution] | NoEstimate:
     """Return the prepared manoeuvres with the solution without instrument parameters."""
     prepared = prepare(maneuvers, aircraft)
     if isinstance(prepared, NoEstimate):
         return prepared
-    plain = _solved(prepared.problem, method)
+    plain = _solved(prepared.problem)
     return plain if isinstance(plain, NoEstimate) else (prepared, plain)
 
 
@@ -167,20 +151,20 @@ def lag_is_unknown(aircraft: Aircraft) -> bool:
     return aircraft.elevator.lag_s is None and not told
 
 
-def _solved(problem: OutputErrorProblem, method: Method) -> Solution | NoEstimate:
+def _solved(problem: OutputErrorProblem) -> Solution | NoEstimate:
     """Return the solution with the reading of the record that the data clearly prefer.
 
     Eqs. (1)-(2) take the flight path as constant. Gravity's part in α̇ as the path turns is about 1e-4 rad/s,
     and is left out where the data do not follow it.
     """
-    best = solve(problem, method=method)
+    best = solve(problem)
     if any(record.normal_gravity is not None and record.airspeed is not None for record in problem.records):
         straight = tuple(replace(record, normal_gravity=None) for record in problem.records)
-        best = _clearer(best, replace(problem, records=straight), method)
+        best = _clearer(best, replace(problem, records=straight))
     return best
 
 
-def _clearer(best: Solution | NoEstimate, other: OutputErrorProblem, method: Method) -> Solution | NoEstimate:
+def _clearer(best: Solution | NoEstimate, other: OutputErrorProblem) -> Solution | NoEstimate:
     """Return ``best``, unless the other reading of the same data explains them clearly better.
 
     The other reading must be better by output error's weights and by those of coloured noise. Where the model
@@ -188,8 +172,7 @@ def _clearer(best: Solution | NoEstimate, other: OutputErrorProblem, method: Met
     """
     if isinstance(best, NoEstimate):
         return best
-    begin = (best.optimum.shared, best.optimum.local) if method == "gauss-newton" else None
-    assembly, optimum = search(other, method=method, begin=begin)
+    assembly, optimum = search(other, begin=(best.optimum.shared, best.optimum.local))
     gain = best.optimum.log_likelihood_cost - optimum.log_likelihood_cost
     if optimum.status != CONVERGED or not gain > CLEARLY:
         return best

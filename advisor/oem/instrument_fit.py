@@ -30,7 +30,7 @@ from advisor.oem.gauss_newton import CONVERGED
 from advisor.oem.instruments import Instrument, extra_of
 from advisor.oem.prior import about_zero, precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
-from advisor.oem.solution import Solution, evaluate, noise_floor, search
+from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
@@ -76,7 +76,6 @@ class _Pitch:
 
     names = NAMES
     laid = staticmethod(assemble)
-    floor = staticmethod(noise_floor)
 
     @staticmethod
     def begins(laid: Assembly, /) -> FloatArray:

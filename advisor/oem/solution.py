@@ -1,7 +1,6 @@
 """The solution of a problem: start, descent, errors, and identifiability."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -15,10 +14,8 @@ from advisor.oem.gauss_newton import CONVERGED, FLAT, LEAST_NOISE, OVERFLOW, SIN
 from advisor.oem.prior import precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 from advisor.oem.rows import Laid
-from advisor.oem.simplex import descend_by_simplex
 from advisor.oem.start import start
 
-Method = Literal["gauss-newton", "nelder-mead"]
 NOTHING_TO_TELL = "The input does not excite the motion enough to distinguish the parameters."
 RUNS_AWAY = NoEstimate(
     "diverged", "The model runs away from its first guess: the record is too long or too noisy."
@@ -51,7 +48,6 @@ class Solution(Evaluated):
 def solve(
     problem: OutputErrorProblem,
     *,
-    method: Method = "gauss-newton",
     begin: tuple[FloatArray, FloatArray] | None = None,
     noise: Coloured | None = None,
     flat: float = FLAT,
@@ -65,7 +61,7 @@ def solve(
     noise : noise model of a recent solution, which is used instead of a new fit.
     flat : promised change of log J per sample at which Gauss-Newton stops.
     """
-    assembly, optimum = search(problem, method=method, begin=begin, flat=flat)
+    assembly, optimum = search(problem, begin=begin, flat=flat)
     return refused(optimum, NOTHING_TO_TELL) or evaluate(problem, assembly, optimum, noise=noise)
 
 
@@ -90,7 +86,6 @@ def refused(optimum: Optimum, nothing_to_tell: str) -> NoEstimate | None:
 def search(
     problem: OutputErrorProblem,
     *,
-    method: Method = "gauss-newton",
     begin: tuple[FloatArray, FloatArray] | None = None,
     flat: float = FLAT,
 ) -> tuple[Assembly, Optimum]:
@@ -100,8 +95,6 @@ def search(
     data = (assembly.grid, assembly.z, assembly.channel, assembly.owner, assembly.free, floor)
 
     def from_(shared: FloatArray, local: FloatArray) -> Optimum:
-        if method == "nelder-mead":
-            return descend_by_simplex(*data, shared, local)
         return descend(*data, precision(problem, shared), shared, local, flat)
 
     optimum = from_(*(start(problem) if begin is None else begin))
