@@ -36,18 +36,6 @@ SETTLED = 1e-3
 of its standard deviation."""
 
 
-LEAST_NOISE = {"a_y": 0.01, "a_z": 0.01}
-LEAST_ANGLE = 5e-4
-"""Least standard deviation of each output, SI: of a specific force, and of an angle or a rate. Gyros of 0.007
-deg/s/√Hz have 5e-4 rad/s at 20 Hz, and the model itself is no truer: its known signals are constant between
-stamps."""
-
-
-def least_noise(names: Names) -> FloatArray:
-    """Return the least standard deviation of each output, (outputs,), SI."""
-    return np.array([LEAST_NOISE.get(name, LEAST_ANGLE) for name in names.outputs])
-
-
 class Response(NamedTuple):
     """Outputs of the model with their derivatives, at one setting of all parameters."""
 
@@ -68,6 +56,9 @@ class Motion(Protocol):
 
     def laid(self, problem: Any, /) -> Laid:
         """Return the measurements as rows."""
+
+    def floor(self, laid: Any, /) -> FloatArray:
+        """Return the least standard deviation of each output, (outputs,), SI."""
 
     def respond(
         self, problem: Any, laid: Any, shared: FloatArray, local: FloatArray, nuisances: Sequence[Any], /
@@ -115,7 +106,7 @@ class _Setting(NamedTuple):
         if found is None:
             return None
         y = found.y
-        noise, cost = weigh(assembly.z, y, assembly.channel, least_noise(self.motion.names))
+        noise, cost = weigh(assembly.z, y, assembly.channel, self.motion.floor(assembly))
         cost += float(np.sum(((assembly.z - y) / noise[assembly.channel]) ** 2))
         cost += float(self.prior.precision @ (shared - self.prior.mean) ** 2)
         cost += penalty(problem, self.nuisances)

@@ -30,13 +30,16 @@ from advisor.oem.gauss_newton import CONVERGED
 from advisor.oem.instruments import Instrument, extra_of
 from advisor.oem.prior import about_zero, precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
-from advisor.oem.solution import Solution, evaluate, search
+from advisor.oem.solution import Solution, evaluate, search, spread_of
 from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
 ROUGHLY = 1e-4
 """Promised change of log J per sample at which a search ends whose end is only a start of the next one. The
 starts of a lag differ by hundreds of times as much."""
+MODEL_ERROR = 1e-3
+"""Numerical: error of the model's outputs over their spread. A surface behind a lag is linear between the
+stamps of the grid (``surface``)."""
 LEAST_SHARE = 0.01
 """Least share by which white noise weighs a prior; data without noise have no colour."""
 CONTRADICTS = 3.0
@@ -76,6 +79,11 @@ class _Pitch:
 
     names = NAMES
     laid = staticmethod(assemble)
+
+    @staticmethod
+    def floor(laid: Assembly, /) -> FloatArray:
+        """Return a thousandth of each output's spread, SI: between stamps the surface is linear."""
+        return MODEL_ERROR * spread_of(laid)
 
     @staticmethod
     def begins(laid: Assembly, /) -> FloatArray:

@@ -12,6 +12,10 @@ from advisor.oem.descent import Response
 from advisor.oem.lateral_instruments import Nuisance, columns_of
 from advisor.oem.lateral_problem import CAUSES, LateralAssembly, LateralProblem, assemble_lateral
 
+LEAST_NOISE = {"p": 5e-4, "r": 5e-4, "bank": 5e-4, "a_y": 0.01, "beta": 5e-4}
+"""Least standard deviation of each output, SI. Gyros of 0.007 deg/s/√Hz have 5e-4 rad/s at 20 Hz, and the
+model itself is no truer: α, θ and V are constant between stamps."""
+FLOOR = np.array([LEAST_NOISE[name] for name in LATERAL.outputs])
 _SPEED_STEP = 1e-3
 """Numerical: step of the difference by which the outputs' derivative by the air speed is taken."""
 _ALL = len(LATERAL.names.shared) + len(LATERAL.names.local)
@@ -26,6 +30,11 @@ class LateralMotion:
     def laid(problem: LateralProblem, /) -> LateralAssembly:
         """Return the measurements as rows."""
         return assemble_lateral(problem)
+
+    @staticmethod
+    def floor(_: LateralAssembly, /) -> FloatArray:
+        """Return the least standard deviation of each output, (5,), SI."""
+        return FLOOR
 
     @staticmethod
     def begins(laid: LateralAssembly, /) -> FloatArray:

@@ -12,13 +12,13 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import CONTROLS, LATERAL, natural_size
-from advisor.oem.descent import Fit, descended, least_noise
+from advisor.oem.descent import Fit, descended
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import Evaluated, errors_of
 from advisor.oem.extra import Extra
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.lateral_instruments import Nuisance, begun
-from advisor.oem.lateral_motion import LateralMotion
+from advisor.oem.lateral_motion import FLOOR, LateralMotion
 from advisor.oem.lateral_problem import LateralAssembly, LateralProblem
 from advisor.oem.lateral_start import lateral_start
 from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
@@ -92,10 +92,10 @@ def solve_lateral(
 def _has_diverged(fit: Fit) -> bool:
     """Return whether a fit explains the outputs worse than a constant value of each output does."""
     assembly, noise = fit.assembly, fit.optimum.noise
-    gain, least = 0.0, least_noise(LATERAL.names)
+    gain = 0.0
     for c in np.unique(assembly.channel):
         z = assembly.z[assembly.channel == c]
-        still = max(float(np.std(z)), least[c])
+        still = max(float(np.std(z)), FLOOR[c])
         gain += len(z) * float(np.log(still / noise[c]))
     return not gain >= 0.0
 
@@ -138,7 +138,7 @@ def _evaluated(fit: Fit, prior: Priors, nuisances: Sequence[Nuisance]) -> Latera
 
 
 def _at_least(bound: FloatArray, covariance: FloatArray) -> FloatArray:
-    """Return the covariance with no error below that of ``bound``: instruments have ``least_noise``."""
+    """Return the covariance with no error below that of ``bound``: instruments have ``FLOOR``."""
     stated = np.diag(covariance)
     ratio = np.divide(np.diag(bound), stated, out=np.ones_like(stated), where=stated > 0.0)
     factor = np.sqrt(np.maximum(ratio, 1.0))

@@ -145,9 +145,13 @@ def reported(shared: FloatArray, local: FloatArray) -> FloatArray:
 
 def noise_floor(assembly: Laid) -> FloatArray:
     """Return the smallest σ of each output, shape (outputs,), for data without noise."""
+    return np.maximum(LEAST_NOISE * spread_of(assembly), 1e-300)
+
+
+def spread_of(assembly: Laid) -> FloatArray:
+    """Return the standard deviation of each output's measurements, shape (outputs,)."""
     outputs = len(assembly.names.outputs)
     count = np.maximum(np.bincount(assembly.channel, minlength=outputs), 1)
     mean = np.bincount(assembly.channel, assembly.z, outputs) / count
     deviation = assembly.z - mean[assembly.channel]
-    variance = np.bincount(assembly.channel, deviation**2, outputs) / count
-    return np.maximum(LEAST_NOISE * np.sqrt(variance), 1e-300)
+    return np.asarray(np.sqrt(np.bincount(assembly.channel, deviation**2, outputs) / count))

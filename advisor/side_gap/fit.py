@@ -15,8 +15,8 @@ from advisor.gap.inference.marginal import Prior
 from advisor.model.axis_response import respond_axis
 from advisor.model.lateral import LATERAL
 from advisor.oem.arrow import unabsorbed
-from advisor.oem.descent import least_noise
 from advisor.oem.gauss_newton import weigh
+from advisor.oem.lateral_motion import FLOOR
 from advisor.oem.lateral_problem import CAUSES, LateralAssembly
 from advisor.side_gap.setting import Flown, Place, Setting, laid_out, moved_to
 
@@ -25,7 +25,6 @@ ROUNDS = 12
 SETTLED = 0.05
 """Decrease of the cost, -2 log likelihood, per step, below which a fit is done: far below one nat."""
 N = len(LATERAL.shared)
-FLOOR = least_noise(LATERAL.names)
 _NO_MOTION = np.empty((0, 2, len(LATERAL.states)))
 
 

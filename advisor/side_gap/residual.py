@@ -7,8 +7,9 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.inference.residual import NATURAL, Residual, shares_of
 from advisor.gap.noise.probes import Probe, at_its_size, coloured_between
+from advisor.oem.lateral_motion import FLOOR
 from advisor.side_gap.disturbance import AIR, Course, blocks_of, courses_of
-from advisor.side_gap.fit import FLOOR, Fit
+from advisor.side_gap.fit import Fit
 from advisor.side_gap.setting import Flown
 
 
