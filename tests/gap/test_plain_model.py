@@ -22,6 +22,7 @@ from advisor.gap.records.usable import outputs_of
 from advisor.gap.search.baseline import base_entries, fit_unfiltered
 from advisor.gap.simulator.layout import SPEED
 from advisor.oem.instruments import COMMAND_DELAY
+from advisor.oem.prepare import prepare as prepare_estimate
 from tests.gap.generator import Setup, fly
 
 FLOWN = fly(Setup(maneuvers=3, seed=71))
@@ -42,7 +43,8 @@ def test_the_delay_of_the_command_has_one_prior_in_estimate_and_diagnosis():
     flights = prepare(FLOWN, Aircraft())
     stamps = [flight.t_u for flight in flights.flights]
     assert latency(flights).prior_std == (lateness_std(stamps),)
-    assert COMMAND_DELAY.usual is not None
+    estimated = prepare_estimate(FLOWN, Aircraft()).problem
+    assert COMMAND_DELAY.usual(estimated).std == lateness_std([r.elevator.t for r in estimated.records])
 
 
 @pytest.mark.parametrize(
