@@ -226,13 +226,13 @@ def _range_deg(maneuver: Maneuver, name: str) -> float:
 
 
 def follows_motion(maneuver: Maneuver, control: str, others: Sequence[str]) -> list[Reason]:
-    """Return a reason where a control moved so little beside another one that it follows the motion."""
+    """Return a reason where a control moves so much less than another one that it follows the motion."""
     moved, *beside = (_range_deg(maneuver, name) for name in (control, *others))
     larger = others[int(np.argmax(beside))]
     if moved >= LEAST_PART * max(beside):
         return []
     shown, least = distinct_texts(moved, LEAST_PART * max(beside), 1)
-    text = f"{control} moved by {shown} deg beside the {larger} (at least {least}); move the {control} alone"
+    text = f"{control} moved by {shown} deg next to the {larger} (at least {least}); move the {control} alone"
     return [Reason("follows", text, moved, LEAST_PART * max(beside))]
 
 

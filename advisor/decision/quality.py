@@ -48,7 +48,7 @@ class Response:
     said: str
     unit: str
     handle: str
-    """What the pilot moves: the stick for the elevator, else the control."""
+    """Handle of the pilot: the stick for the elevator, else the control."""
     least_signal: float = 12.0
     """Least ratio of the response's peak to the white part of its noise."""
     least_r2: float = 0.85
@@ -88,7 +88,7 @@ class Examined:
     quick: tuple[Reason, ...] = ()
     """Reason for steps that the aircraft does not follow."""
     findings: tuple[InstrumentFinding, ...] = ()
-    """What the fit tells of the instruments."""
+    """Findings of the fit about the instruments."""
     lacks: Callable[[], Iterable[Reason]] = tuple
     """Returns the reasons by moments that the model leaves out."""
     modes_alone: tuple[Reason, ...] | None = None

@@ -1,1 +1,1 @@
-"""What each axis of the aircraft asks of a manoeuvre, as data and formulas of its own motion."""
+"""Demands of each axis of the aircraft on a manoeuvre, as data and formulas of its own motion."""

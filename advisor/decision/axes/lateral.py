@@ -1,4 +1,4 @@
-"""What roll and yaw ask of a manoeuvre: records of aileron and rudder, their limits, and the Dutch roll.
+"""Demands of roll and yaw on a manoeuvre: records of aileron and rudder, their limits, and the Dutch roll.
 
 A bank of up to 45 deg is the response, because the model keeps sin φ. The derivatives hold for one angle of
 attack and one air speed. The moments p·q and q·r are no part of the model.

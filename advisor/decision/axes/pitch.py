@@ -1,4 +1,4 @@
-"""What pitch asks of a manoeuvre: the elevator's record, its limits, and the period of its motion."""
+"""Demands of pitch on a manoeuvre: the elevator's record, its limits, and the period of its motion."""
 
 import math
 from dataclasses import replace
