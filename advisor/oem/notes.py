@@ -67,8 +67,8 @@ def _is_worth_saying(identified: Identified) -> bool:
     x, found = identified.instrument, identified.found
     if x.stated is not None or x.prior is None:
         return found.contradicts
-    odd = x.name != "alpha_delay_s" and abs(found.value - x.prior.mean) > CONTRADICTS * found.std
-    return odd or x.name == "servo_lag_s"
+    usual = 0.0 if x.name == "servo_lag_s" else x.prior.mean
+    return x.name != "alpha_delay_s" and abs(found.value - usual) > CONTRADICTS * found.std
 
 
 def _instrument(identified: Identified) -> str:
