@@ -1,5 +1,6 @@
 """The pilot's one word, from the campaign's verdicts."""
 
+import re
 from dataclasses import dataclass
 from typing import Literal
 
@@ -67,3 +68,8 @@ def _elevator(view: View) -> str:
         if guess
         else " Key a asks the vehicle for its elevator output."
     )
+
+
+def without_word(sentence: str) -> str:
+    """Return a verdict's sentence without its first word, which stands in large letters already."""
+    return re.sub(r"^[A-Z ]+: ", "", sentence)

@@ -19,10 +19,10 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.session.conducting import Conducting, SessionReport
 from advisor.session.source import Tempo
 from advisor.session.view import SideView, View, view_before_first
-from advisor.tui import keys, link_actions, replay_actions
+from advisor.tui import keys
+from advisor.tui.actions import LINK_ACTIONS, REPLAY_ACTIONS, HandActions, LinkActions, ReplayActions
 from advisor.tui.explaining import commands, explanation
 from advisor.tui.garbage_collection import Garbage
-from advisor.tui.hand_actions import HandActions
 from advisor.tui.panes.flight import WholeFlightPane
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.screens.engineer import EngineerScreen
@@ -44,7 +44,7 @@ _ANSWER_S = 0.03
 """Delay of reports behind a key, s, so that the key's answer is painted before the reports' changes."""
 
 
-class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandActions, App[None]):
+class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
     """Shows a campaign on a link, a log or a demonstration, until the user leaves.
 
     Parameters
@@ -238,7 +238,7 @@ class AdvisorApp(replay_actions.ReplayActions, link_actions.LinkActions, HandAct
         """Offer the replay's actions only in a replay, the link's only on a link."""
         if self._side is not None and action in ("jump", "jump_by"):
             return False
-        only_elsewhere = link_actions.ACTIONS if self.view.tempo is not None else replay_actions.ACTIONS
+        only_elsewhere = LINK_ACTIONS if self.view.tempo is not None else REPLAY_ACTIONS
         return action not in only_elsewhere
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:

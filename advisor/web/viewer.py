@@ -18,8 +18,8 @@ from textual.screen import Screen
 from advisor.mavlink.link.keeping import Door
 from advisor.process import interrupt
 from advisor.tui import app as app_module
+from advisor.tui.actions import LINK_ACTIONS
 from advisor.tui.app import AdvisorApp
-from advisor.tui.link_actions import ACTIONS as LINK_ACTIONS
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.web.attached import AttachedConductor

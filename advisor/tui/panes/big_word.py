@@ -3,10 +3,9 @@
 from textual.events import Resize
 
 from advisor.session.view import View
-from advisor.tui.advice import advise
+from advisor.tui.advice import advise, without_word
 from advisor.tui.block_letters import block_letters
 from advisor.tui.panes.lines import Lines, Part
-from advisor.tui.words import without_word
 
 TONES = ("good", "warn", "bad", "quiet")
 

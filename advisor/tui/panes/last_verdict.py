@@ -7,10 +7,10 @@ from advisor.campaign.state import JudgedManeuver
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.oem.estimate import Estimate
 from advisor.session.view import View
+from advisor.tui.advice import without_word
 from advisor.tui.block_letters import HEIGHT, block_letters
 from advisor.tui.panes.lines import Labelled, Lines, Part
 from advisor.tui.panes.pane import TextPane
-from advisor.tui.words import without_word
 from advisor.words.digits import distinct_texts, signed
 from advisor.words.quantities import channel
 from advisor.words.vehicle_time import between

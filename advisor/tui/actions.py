@@ -1,0 +1,162 @@
+"""Keys of the application: decisions by hand about the present moment, a live link, and a replay."""
+
+from abc import abstractmethod
+from dataclasses import replace
+from math import inf, isfinite
+from typing import TYPE_CHECKING
+
+from advisor.flight.maneuvers.marks import LONGEST_S
+from advisor.session.conducting import Conducting
+from advisor.session.hand import HandDecision
+from advisor.session.source import LinkRequest, Tempo
+from advisor.session.view import View
+from advisor.tui.screens.face import Face
+from advisor.words.vehicle_time import clock
+
+if TYPE_CHECKING:
+    from textual.app import App
+
+    Base = App[None]
+else:
+    Base = object
+
+LINK_ACTIONS = ("follow_another", "ask_for_outputs", "take_guess")
+REPLAY_ACTIONS = ("pause", "step", "faster", "slower", "jump", "jump_by", "seek_by")
+SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, inf)
+
+
+class _Actions(Base):
+    """Conductor, present moment and last line, which all actions use."""
+
+    conductor: Conducting
+    view: View
+
+    @abstractmethod
+    def say(self, text: str, seconds: float = 3.0) -> None:
+        """Show a text on the last line of the screen, for a while."""
+
+
+class HandActions(_Actions):
+    """Actions of the application that name a moment, or mark a manoeuvre from one moment to another."""
+
+    def action_mark(self) -> None:
+        """Mark this moment in the event log."""
+        if isinstance(self.screen, Face):
+            self.screen.ask("Mark this moment as:", self._mark)
+
+    def action_begin_maneuver(self) -> None:
+        """Begin a manoeuvre's mark at the present moment."""
+        if not isfinite(self.view.state.now_s):
+            self.say("nothing can be marked before the vehicle's clock is heard")
+            return
+        self.conductor.decide(HandDecision("begin"))
+        self.say("a manoeuvre is marked from here: finish it where it ends, or begin it anew")
+
+    def action_end_maneuver(self) -> None:
+        """End the mark of the open manoeuvre."""
+        since_s = self.view.state.marking_since_s
+        if since_s is None:
+            self.say("no manoeuvre is being marked: begin one first")
+            return
+        self.conductor.decide(HandDecision("end"))
+        if self.view.state.now_s - since_s > LONGEST_S:
+            self.say(f"the mark is dropped: it is longer than {LONGEST_S:.0f} s")
+        else:
+            self.say(f"a manoeuvre is marked from {clock(since_s)} to here; its verdict follows")
+
+    def _mark(self, text: str) -> None:
+        self.conductor.decide(HandDecision("mark", text))
+
+
+class LinkActions(_Actions):
+    """Actions of the application that exist only on a live link."""
+
+    def action_follow_another(self) -> None:
+        """Follow the next of the other vehicles, unless a manoeuvre of this one has been judged."""
+        state = self.view.state
+        others = state.other_vehicles
+        if not others:
+            self.say("no other vehicle is heard")
+            return
+        here = state.vehicle.system if state.vehicle is not None else 0
+        system = next((n for n in others if n > here), others[0])
+        if state.maneuvers:
+            self.say(f"manoeuvres of vehicle {here} are judged: start again with --target-system {system}")
+            return
+        self.conductor.order(LinkRequest("follow", system))
+        self.say(f"vehicle {system} is followed now")
+
+    def action_ask_for_outputs(self) -> None:
+        """Ask the vehicle which output is its elevator."""
+        self.conductor.order(LinkRequest("outputs"))
+        self.say("the vehicle is asked for SERVOn_* (the role of each output); nothing else is sent", 5.0)
+
+    def action_take_guess(self) -> None:
+        """Use the guessed output as the elevator."""
+        guess = self.view.state.elevator_guess
+        if guess is None:
+            self.say("there is no guess of the elevator's output to take")
+            return
+        self.conductor.order(LinkRequest("take", guess.output))
+        self.say(f"output {guess.output} is taken for the elevator, by a guess")
+
+
+class ReplayActions(_Actions):
+    """Actions of the application that exist only while a log is played."""
+
+    def action_pause(self) -> None:
+        """Pause the replay, or continue it."""
+        self._play(replace(self._tempo, paused=not self._tempo.paused))
+
+    def action_step(self) -> None:
+        """Pause the replay and play a tenth of a second."""
+        self._play(replace(self._tempo, paused=True))
+        self.conductor.step()
+
+    def action_faster(self) -> None:
+        """Choose the next higher speed."""
+        speed = next((s for s in SPEEDS if s > self._tempo.speed), inf)
+        self._play(replace(self._tempo, speed=speed))
+
+    def action_slower(self) -> None:
+        """Choose the next lower speed."""
+        speed = next((s for s in reversed(SPEEDS) if s < self._tempo.speed), SPEEDS[0])
+        self._play(replace(self._tempo, speed=speed))
+
+    def action_jump(self) -> None:
+        """Ask for a manoeuvre and go to its begin."""
+        if isinstance(self.screen, Face):
+            self.screen.ask("Jump to manoeuvre number:", lambda answer: self._jump(int(answer)), integer=True)
+
+    def action_jump_by(self, step: int) -> None:
+        """Go to the next manoeuvre, or back to the begin of the last one."""
+        flown = len(self.view.state.maneuvers)
+        self._jump(flown + step if step > 0 else flown)
+
+    def action_seek_by(self, seconds: int) -> None:
+        """Go some seconds on or back."""
+        playback = self.view.playback
+        if playback is not None:
+            self.seek(playback.position_s + seconds)
+
+    def seek(self, position_s: float) -> None:
+        """Go to a position of the replay, s. A position beyond an end is that end."""
+        duration_s = self.view.playback.duration_s if self.view.playback is not None else 0.0
+        self.conductor.seek(min(max(position_s, 0.0), duration_s))
+
+    @abstractmethod
+    def show(self, view: View) -> None:
+        """Show another moment on the screens."""
+
+    @property
+    def _tempo(self) -> Tempo:
+        return self.view.tempo or Tempo()
+
+    def _play(self, tempo: Tempo) -> None:
+        """Show the tempo at once, however busy the conductor is."""
+        self.conductor.play(tempo)
+        self.show(replace(self.view, tempo=tempo))
+
+    def _jump(self, number: int) -> None:
+        self.conductor.jump(max(1, number))
+        self.say(f"jumping to manoeuvre {max(1, number)}")
