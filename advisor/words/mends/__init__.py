@@ -4,7 +4,38 @@ A vehicle is heard over telemetry, live or from a ``.tlog``, or read from the lo
 Each of these has other names for the values, and other settings for their rates.
 """
 
-from advisor.words.mends.choice import Carrier, mends_of
+from typing import Literal
+
+from advisor.words.mends.dataflash import Dataflash
 from advisor.words.mends.mends import GOOD_HZ, Mends, sentence
+from advisor.words.mends.sdlog2 import Sdlog2
+from advisor.words.mends.telemetry import ArduPilotTelemetry, OtherTelemetry, Px4Telemetry
+from advisor.words.mends.ulog import Ulog
 
 __all__ = ["GOOD_HZ", "Carrier", "Mends", "mends_of", "sentence"]
+
+Carrier = Literal["telemetry", "dataflash", "ulog", "sdlog2"]
+"""Kind of record: a link or its ``.tlog``, ArduPilot's own log (``.bin``), PX4's own log (``.ulg``), or PX4's
+own log before 2017 (``.px4log``)."""
+
+
+def mends_of(autopilot: str, carrier: Carrier, log_profile: int | None = None) -> Mends:
+    """Return the remedies for a vehicle.
+
+    Parameters
+    ----------
+    autopilot
+        ``ardupilot``, ``px4``, or another name.
+    carrier
+        Kind of record with the vehicle's messages.
+    log_profile
+        SDLOG_PROFILE of a PX4 log; None where unknown.
+    """
+    if carrier == "dataflash":
+        return Dataflash()
+    if carrier == "ulog":
+        return Ulog(log_profile)
+    if carrier == "sdlog2":
+        return Sdlog2()
+    telemetry: dict[str, Mends] = {"ardupilot": ArduPilotTelemetry(), "px4": Px4Telemetry()}
+    return telemetry.get(autopilot, OtherTelemetry())

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from advisor.words.mends.mends import GOOD_HZ
+from advisor.words.mends.mends import GOOD_HZ, Mends
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,14 +28,13 @@ _RECORDS = {
 }
 """Message to ArduPlane's record, with the bit of LOG_BITMASK that logs it (ArduPlane/defines.h) and its rate
 (ArduPlane.cpp: update_logging10, update_logging25)."""
+_NAMES = {message: record.name for message, record in _RECORDS.items()}
 
 
-class Dataflash:
+class Dataflash(Mends):
     """Records of ArduPlane's log."""
 
-    def called(self, message: str) -> str:
-        """Return the name of the record."""
-        return _RECORDS[message].name if message in _RECORDS else message
+    names = _NAMES
 
     def faster(self, message: str) -> str:
         """Return the log's own rate, and the source of a higher one."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from advisor.words.mends.mends import GOOD_HZ
+from advisor.words.mends.mends import GOOD_HZ, Mends
 
 _RECORDS = {
     "ATTITUDE": "ATT",
@@ -14,12 +14,10 @@ _RECORDS = {
 }
 
 
-class Sdlog2:
+class Sdlog2(Mends):
     """Records of sdlog2."""
 
-    def called(self, message: str) -> str:
-        """Return the name of the record."""
-        return _RECORDS.get(message, message)
+    names = _RECORDS
 
     def faster(self, message: str) -> str:
         """Return the setting of the rate, which all records share."""

@@ -1,8 +1,6 @@
 """Telemetry: the streams of a link, live or recorded as a ``.tlog``."""
 
-from collections.abc import Sequence
-
-from advisor.words.mends.mends import GOOD_HZ
+from advisor.words.mends.mends import GOOD_HZ, Mends
 
 _STREAM_GROUPS = {
     "ATTITUDE": "EXTRA1",
@@ -29,6 +27,7 @@ _IDS = {
     "AOA_SSA": 11020,
 }
 
+_PX4_NAMES = {"RAW_IMU": "HIGHRES_IMU"}
 _PX4_STREAMS = {"SERVO_OUTPUT_RAW": "SERVO_OUTPUT_RAW_0", "RAW_IMU": "HIGHRES_IMU"}
 """Message to its PX4 stream, where the names differ (PX4's ``mavlink_messages.cpp``)."""
 
@@ -38,16 +37,8 @@ def _request(message: str) -> str:
     return f"run with --request-rates ({number}{1_000_000 // GOOD_HZ} us interval)"
 
 
-def _each(messages: Sequence[str], called: Sequence[str]) -> str:
-    return f"ask for {' and '.join(called)} (--request-rates)" if messages else ""
-
-
-class ArduPilotTelemetry:
+class ArduPilotTelemetry(Mends):
     """ArduPilot's streams: one parameter for each group of messages."""
-
-    def called(self, message: str) -> str:
-        """Return the name of the message."""
-        return message
 
     def faster(self, message: str) -> str:
         """Return the parameter of the stream group, in both spellings, or a request."""
@@ -59,17 +50,11 @@ class ArduPilotTelemetry:
             f"port, or {_request(message)}"
         )
 
-    def present(self, messages: Sequence[str]) -> str:
-        """Return a request for the messages."""
-        return _each(messages, messages)
 
-
-class Px4Telemetry:
+class Px4Telemetry(Mends):
     """PX4's streams: a rate for each, under the limit of its link."""
 
-    def called(self, message: str) -> str:
-        """Return the name of the message that PX4 sends. HIGHRES_IMU takes the place of RAW_IMU."""
-        return "HIGHRES_IMU" if message == "RAW_IMU" else message
+    names = _PX4_NAMES
 
     def faster(self, message: str) -> str:
         """Return the command of PX4's shell, or a request."""
@@ -80,22 +65,10 @@ class Px4Telemetry:
             f"or {_request(self.called(message))}"
         )
 
-    def present(self, messages: Sequence[str]) -> str:
-        """Return a request for the messages that PX4 has."""
-        return _each(messages, [self.called(message) for message in messages])
 
-
-class OtherTelemetry:
+class OtherTelemetry(Mends):
     """Streams of an autopilot with unknown parameters."""
-
-    def called(self, message: str) -> str:
-        """Return the name of the message."""
-        return message
 
     def faster(self, message: str) -> str:
         """Return a request for the rate."""
         return f"raise the rate of {message} on the vehicle to {GOOD_HZ} Hz, or {_request(message)}"
-
-    def present(self, messages: Sequence[str]) -> str:
-        """Return a request for the messages."""
-        return _each(messages, messages)

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+from advisor.words.mends.mends import Mends
+
 _TOPICS = {
     "ATTITUDE": "vehicle_angular_velocity",
     "VFR_HUD": "airspeed",
@@ -38,7 +40,7 @@ The set for system identification has ``vehicle_torque_setpoint`` at full rate.
 """
 
 
-class Ulog:
+class Ulog(Mends):
     """Topics of PX4's log.
 
     Parameters
@@ -47,12 +49,10 @@ class Ulog:
         SDLOG_PROFILE of the log; None where unknown. No advice names a bit that is set.
     """
 
+    names = _TOPICS
+
     def __init__(self, profile: int | None = None) -> None:
         self._profile = profile
-
-    def called(self, message: str) -> str:
-        """Return the name of the topic."""
-        return _TOPICS.get(message, message)
 
     def faster(self, message: str) -> str:
         """Return the bit that logs the topic at its full rate."""
