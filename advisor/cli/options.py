@@ -1,13 +1,13 @@
 """Options that commands share, so that they read and behave alike in every command."""
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import combinations
 from math import isfinite, nan
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING
 
 import click
 
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from advisor.campaign.hand_decisions import ByHand
     from advisor.flight.maneuvers.marks import Mark
 
-F = TypeVar("F", bound=Callable[..., Any])
-
 USAGE, UNUSABLE, INTERNAL = 2, 3, 70
 """Exit codes: wrong usage or configuration; unusable input; a fault of the advisor itself."""
 NEWEST = "the newest"
@@ -27,59 +25,43 @@ NEWEST = "the newest"
 RULES = ("continuous", "separate", "information")
 
 
-def aircraft_option(command: F) -> F:
-    """Add the option ``--aircraft FILE``, which the command receives as ``aircraft_file``."""
-    return click.option(
-        "--aircraft",
-        "aircraft_file",
-        type=click.Path(path_type=Path),
-        metavar="FILE",
-        help="Aircraft file (YAML): elevator calibration, servo lag, limits, prior model.",
-    )(command)
-
-
-def json_option(command: F) -> F:
-    """Add the option ``--json``, which the command receives as ``as_json``."""
-    return click.option(
-        "--json", "as_json", is_flag=True, help="Print one JSON document on stdout, and nothing else there."
-    )(command)
-
-
-def rule_option(command: F) -> F:
-    """Add the option ``--rule``, which overrides the aircraft file's rule."""
-    return click.option("--rule", type=click.Choice(RULES), help="Rule that decides; the others are shown.")(
-        command
-    )
-
-
-def target_system_option(command: F) -> F:
-    """Add the option ``--target-system N``, named as in MAVProxy."""
-    return click.option(
-        "--target-system",
-        type=click.IntRange(1, 255),
-        metavar="N",
-        help="System id of the vehicle, where several are on the link.",
-    )(command)
-
-
-def maneuver_option(command: F) -> F:
-    """Add the option ``--maneuver START:END``, which the command receives as ``marks``."""
-    return click.option(
-        "--maneuver",
-        "marks",
-        multiple=True,
-        metavar="START:END",
-        callback=lambda ctx, parameter, texts: parse_marks(texts),
-        help="Mark this stretch as a manoeuvre: seconds since power-on, or with + since the log's first "
-        "ATTITUDE (+12:+24). Minutes and seconds are understood too (1:20.4:1:33). Repeatable.",
-    )(command)
-
-
-def no_marks_option(command: F) -> F:
-    """Add the option ``--no-marks``, which the command receives as ``no_marks``."""
-    return click.option(
-        "--no-marks", is_flag=True, help="Ignore earlier decisions by hand (LOG.maneuvers.yaml)."
-    )(command)
+aircraft_option = click.option(
+    "--aircraft",
+    "aircraft_file",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Aircraft file (YAML): elevator calibration, servo lag, limits, prior model.",
+)
+"""Adds the option ``--aircraft FILE``, which the command receives as ``aircraft_file``."""
+json_option = click.option(
+    "--json", "as_json", is_flag=True, help="Print one JSON document on stdout, and nothing else there."
+)
+"""Adds the option ``--json``, which the command receives as ``as_json``."""
+rule_option = click.option(
+    "--rule", type=click.Choice(RULES), help="Rule that decides; the others are shown."
+)
+"""Adds the option ``--rule``, which overrides the aircraft file's rule."""
+target_system_option = click.option(
+    "--target-system",
+    type=click.IntRange(1, 255),
+    metavar="N",
+    help="System id of the vehicle, where several are on the link.",
+)
+"""Adds the option ``--target-system N``, named as in MAVProxy."""
+maneuver_option = click.option(
+    "--maneuver",
+    "marks",
+    multiple=True,
+    metavar="START:END",
+    callback=lambda ctx, parameter, texts: parse_marks(texts),
+    help="Mark this stretch as a manoeuvre: seconds since power-on, or with + since the log's first "
+    "ATTITUDE (+12:+24). Minutes and seconds are understood too (1:20.4:1:33). Repeatable.",
+)
+"""Adds the option ``--maneuver START:END``, which the command receives as ``marks``."""
+no_marks_option = click.option(
+    "--no-marks", is_flag=True, help="Ignore earlier decisions by hand (LOG.maneuvers.yaml)."
+)
+"""Adds the option ``--no-marks``, which the command receives as ``no_marks``."""
 
 
 def parse_marks(texts: Sequence[str]) -> "tuple[Mark, ...]":

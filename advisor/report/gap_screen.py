@@ -14,12 +14,11 @@ from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.verdict.text import answers_of, limits_of, place, title_of
 from advisor.process.installed import SIMULATOR
 from advisor.report.gap_causes import PRESENT, ranking, unseen, why_of
-from advisor.report.gap_fidelity import errors, peaks, worst_maneuver, yardsticks
+from advisor.report.gap_fidelity import errors, peaks, whereabouts, worst_maneuver, yardsticks
 from advisor.report.gap_reasons import how_sure
 from advisor.report.gap_simulator import simulated
 from advisor.report.gap_sizes import WORSE, before_after, changes, has_grown, short
 from advisor.report.gap_steps import GapStep
-from advisor.report.gap_where import whereabouts
 
 WIDEST = 120
 """Columns beyond which lines become harder to read."""

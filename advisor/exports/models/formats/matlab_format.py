@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
+from advisor.exports.flights.found import PARAMETER_UNITS
 from advisor.exports.models.exported import Exported, commented, effects_beside
 from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.formats import ModelFormat
@@ -85,12 +86,6 @@ def _side_text(name: str, side: SideModel) -> str:
     return head + "\n".join(lines) + "\n"
 
 
-UNITS = {
-    "Z_0": "rad/s", "Z_alpha": "1/s", "Z_q": "1", "Z_delta_e": "1/s",
-    "M_0": "rad/s^2", "M_alpha": "1/s^2", "M_q": "1/s", "M_delta_e": "1/s^2",
-}  # fmt: skip
-
-
 def script_text(improvement: Improvement) -> Exported:
     """Return the script. The script needs no toolbox, and leaves its variables in the workspace."""
     m = {name: improvement.number(name) for name in PARAMETERS}
@@ -114,7 +109,7 @@ def script_text(improvement: Improvement) -> Exported:
         "% Each parameter: value, and the ends of its 95 % interval.",
     ]
     for name in PARAMETERS:
-        matrices += _valued(f"parameters.{name}", improvement.model[name], UNITS[name])
+        matrices += _valued(f"parameters.{name}", improvement.model[name], PARAMETER_UNITS[name])
     rate = f"{servo.rate_rad_s:.6g}" if servo.rate_rad_s else "Inf"
     between = [
         "% Between command and surface: delay, then lag, then what limits the surface.",
