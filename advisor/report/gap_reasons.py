@@ -4,6 +4,8 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from advisor.gap.alternative import Alternative, together
+
 _SAYABLE_NATS = 12.0
 """Log odds, nats, above which odds are no longer written as a number: 160,000 to 1."""
 _NOTHING = 0.005
@@ -40,8 +42,15 @@ def how_sure(alternatives: Iterable[tuple[str, float]]) -> str:
 
 
 def alternatives_of(found: Mapping[str, Any]) -> list[tuple[str, float]]:
-    """Return the alternatives in words and their probabilities from ``advisor.gap/1``, likeliest first."""
-    return [(one["text"], one["probability"]) for one in found["evidence"]]
+    """Return the alternatives in words and their probabilities from ``advisor.gap/1``, likeliest first.
+
+    All blocks of the unknown are one, in the words of the likeliest block.
+    """
+    words = {one["name"]: one["text"] for one in reversed(found["evidence"])}
+    each = (
+        (Alternative(one["kind"], one["name"], one["block"]), one["probability"]) for one in found["evidence"]
+    )
+    return [(words[alternative.name], p) for alternative, p in together(each)]
 
 
 def heading_of(found: Mapping[str, Any]) -> str:

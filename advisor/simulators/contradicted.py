@@ -43,7 +43,7 @@ def contradicted(diagnosis: Diagnosis, removed: float) -> Diagnosis:
     d = answered_by(d, evidence, stays)
     unknown, flown = d.verdict == "unknown", d.in_simulator
     d = replace(
-        d, causes=causes, where=_where(d, stays),
+        d, causes=causes, where=_where(d, stays, removed),
         waterfall=tuple(step for step in d.waterfall if step[0] != given_up.name),
         effects={} if unknown else d.effects, shrink=None if unknown else d.shrink,
         in_simulator=flown and replace(flown, after=None, percent=None),
@@ -91,7 +91,7 @@ def answered_by(
     )  # fmt: skip
 
 
-def _where(d: Diagnosis, answer: Alternative) -> Where:
+def _where(d: Diagnosis, answer: Alternative, removed: float) -> Where:
     """Return the block of the answer: of numbers, the equation of the derivative that differs most."""
     if answer.kind == "unknown":
         known = d.probabilities
@@ -104,4 +104,4 @@ def _where(d: Diagnosis, answer: Alternative) -> Where:
         first = next((one.name for one in d.derivatives), "")
         block = {"Z": "force_equation", "M": "moment_equation"}.get(first[:1], d.where.block)
     others = tuple((other, score) for other, score in d.where.ranking if other != block and score < 1.0)
-    return Where(block, d.where.share, ((block, 1.0), *others))
+    return Where(block, removed, ((block, 1.0), *others))

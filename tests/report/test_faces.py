@@ -19,6 +19,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.assistant.fitting import written
 from advisor.campaign.campaign import ManeuverJudged
 from advisor.cli.live import _announce
+from advisor.gap.alternative import Alternative, AlternativeEvidence
 from advisor.gap.document import gap_document
 from advisor.mavlink.link.announce import Announcer
 from advisor.report.document import analysis_document
@@ -56,24 +57,34 @@ Named = Iterator[tuple[str, str]]
 def of_the_documents(analysis: Document, gap: Document, doctor: Document) -> Named:
     for name in PARAMETERS:
         symbol, factor = QUANTITIES[name].symbol, degrees(1.0) if name in ("Z_0", "M_0") else 1.0
-        entry = analysis["model"][name]
-        yield symbol, with_half(factor * entry["value"], factor * HALF * entry["std"])
         yield f"expected error of {symbol}", f"{factor * HALF * doctor['expected_std'][name]:.2g}"
-    if (lag := analysis["model"]["instruments"].get("servo_lag_s")) is not None:
-        yield "servo lag, ms", with_half(1e3 * lag["value"], 1e3 * HALF * lag["std"])
+        if analysis["model"] is not None:
+            entry = analysis["model"][name]
+            yield symbol, with_half(factor * entry["value"], factor * HALF * entry["std"])
     for name, channel in analysis["log"]["channels"].items():
         yield f"rate of {name}", f"{channel['rate_hz']:.1f}"
-    yield "air speed of the derivatives", f"{analysis['model']['reference_airspeed_m_s']:.1f}"
     yield "decision", analysis["flight_test"]["sentence"]
     yield "advice", analysis["flight_test"]["next"]["advice"].removeprefix("next: ")
-    yield "criterion", f"{analysis['flight_test']['criterion_percent']:.1f}"
+    if analysis["flight_test"]["criterion_percent"] is not None:
+        yield "criterion", f"{analysis['flight_test']['criterion_percent']:.1f}"
     yield "verdict", f"{gap['title']}: {gap['sentence']}"
     yield "gap before", digits(gap["gap"]["before"])
     yield "gap after", digits(gap["gap"]["after"])
-    yield "probability", f"{100.0 * max(p['probability'] for p in gap['evidence']):.0f}"
+    by_name: dict[str, float] = defaultdict(float)
+    for one in gap["evidence"]:
+        by_name[one["name"]] += one["probability"]
+    yield "probability", f"{100.0 * max(by_name.values()):.0f}"
     if gap["shrink"] is not None:
         yield "shrink", f"{gap['shrink']['percent']:.1f}"
-    if entered := re.search(LAG, " ".join(analysis["model"]["notes"])):
+    if analysis["model"] is not None:
+        yield from of_the_joint_estimate(analysis["model"])
+
+
+def of_the_joint_estimate(model: Document) -> Named:
+    yield "air speed of the derivatives", f"{model['reference_airspeed_m_s']:.1f}"
+    if (lag := model["instruments"].get("servo_lag_s")) is not None:
+        yield "servo lag, ms", with_half(1e3 * lag["value"], 1e3 * HALF * lag["std"])
+    if entered := re.search(LAG, " ".join(model["notes"])):
         yield "lag to enter, s", entered[1]
 
 
@@ -92,9 +103,8 @@ def of_an_assistant(reported: Reported) -> Named:
 def of_the_terminal(reported: Reported) -> Named:
     text, gap, doctor = (reported.printed[name] for name in ("analyze", "gap", "doctor"))
     for quantity in QUANTITIES.values():
-        found = re.search(rf"^{quantity.symbol} +(\S+) +(\S+) ", text, re.MULTILINE)
-        assert found is not None
-        yield quantity.symbol, f"{found[1]} ± {found[2]}"
+        if found := re.search(rf"^{quantity.symbol} +(\S+) +(\S+) ", text, re.MULTILINE):
+            yield quantity.symbol, f"{found[1]} ± {found[2]}"
         expected = re.search(rf"^  {quantity.symbol} +± (\S+)", doctor, re.MULTILINE)
         assert expected is not None
         yield f"expected error of {quantity.symbol}", expected[1]
@@ -105,7 +115,8 @@ def of_the_terminal(reported: Reported) -> Named:
     yield "decision", decision[2:]
     yield "advice", advice.strip().removeprefix("next: ").partition("; ")[0]
     rule = reported.analysis["flight_test"]["rule"]
-    yield "criterion", re.findall(rf"^rule {rule} .*criterion %: .*?([\d.]+)$", text, re.MULTILINE)[0]
+    for now in re.findall(rf"^rule {rule} .*criterion %: .*?([\d.]+)$", text, re.MULTILINE):
+        yield "criterion", now
     yield from (("lag to enter, s", one) for one in re.findall(LAG, text))
     yield from of_the_box(gap)
 
@@ -128,7 +139,7 @@ def of_the_box(text: str) -> Named:
 
 def of_the_page(reported: Reported) -> Named:
     page = reported.page
-    for row in page.tables["joint"][1:]:
+    for row in page.tables.get("joint", [])[1:]:
         yield row[0], row[1]
     yield from (("air speed of the derivatives", one) for one in re.findall(SPEED, page.text))
     yield from (("decision", mark) for mark in re.findall(r"[■▶] ([^\n<]+)", page.text))
@@ -144,7 +155,7 @@ def of_the_page(reported: Reported) -> Named:
     yield from (
         ("probability", one) for one in re.findall(r"Probability by the evidence: \D+(\d+) %", page.text)
     )
-    for before, after in re.findall(r"minus 1\): before (\S+), after (\S+?)\.", page.text):
+    for before, after in re.findall(r"minus 1\): before (\S+), after (\S+)\.(?:\s|$)", page.text):
         yield "gap before", before.replace(",", "")
         yield "gap after", after
     yield from (("shrink", one) for one in re.findall(r" ([\d.]+) % less \(95 %: ", page.text))
@@ -160,7 +171,8 @@ async def of_the_screen(reported: Reported) -> list[tuple[str, str]]:
         await here.until(lambda: table.row_count == len(PARAMETERS))
         for n in range(table.row_count):
             name, estimate = (str(cell).strip() for cell in table.get_row_at(n)[:2])
-            found.append((name.split()[0], estimate))
+            if estimate != "–":
+                found.append((name.split()[0], estimate))
         advised = advise(here.app.view)
         found.append(("decision", advised.sentence))
     for line in (" ".join(row) for row in criterion_rows(state.flight_test)):
@@ -234,13 +246,14 @@ async def test_every_number_and_sentence_of_a_flight_has_one_value_on_every_face
 
 
 @pytest.mark.study
+@pytest.mark.timeout(600)
 @pytest.mark.parametrize("log", ["bundled-demo", "arduplane-calm", "arduplane-turbulent"])
 async def test_a_sample_log_has_one_value_for_each_number_on_every_face(log: str, tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_bytes((LOGS / "arduplane-calm.yaml").read_bytes() if "arduplane" in log else BUNDLED)
     values = await of_all_faces(said_of(LOGS / f"{log}.tlog", path))
     assert {name: said for name, said in values.items() if len(said) > 1} == {}
-    assert len(values) > 40
+    assert len(values) > 30
 
 
 def test_the_answer_of_a_gap_has_one_title_one_sentence_and_one_probability_on_every_face() -> None:
@@ -256,6 +269,20 @@ def test_the_answer_of_a_gap_has_one_title_one_sentence_and_one_probability_on_e
     assert lines[1] == document["sentence"]
     assert page[0] == pane[0] == f"{document['title']}: {document['sentence']}"
     assert lines[2] == page[1] == pane[1]
+
+
+def test_an_unknown_cause_in_two_blocks_has_one_probability_on_every_face() -> None:
+    blocks = (("moment_equation", 0.5), ("force_equation", 0.42))
+    unknown = tuple(AlternativeEvidence(Alternative("unknown", "unknown", b), (), p) for b, p in blocks)
+    found = diagnosis(verdict="unknown", evidence=(*unknown, replace(EVIDENCE[1], probability=0.08)))
+    document, out = gap_document(found), StringIO()
+    Console(file=out, width=120, color_system=None, highlight=False).print(GapScreen(found))
+    said = (
+        "Probability by the evidence: something without a name in the pitching moment 92 %, actuator lag 8 %."
+    )
+    assert said in out.getvalue()
+    assert said in [block.text for block in answer(document) if isinstance(block, Paragraph)]
+    assert said in [text for _, text in answer_rows(document | {"next": []})]
 
 
 def test_the_plan_of_both_axes_names_one_input_on_every_face() -> None:

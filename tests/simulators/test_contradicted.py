@@ -40,7 +40,7 @@ def test_where_the_numbers_remove_the_gap_without_the_cause_every_face_says_wron
     assert "wrong numbers: the eight fitted derivatives remove" in found.sentence
     assert document["probabilities"]["parameters"] == pytest.approx(0.97)
     assert "transport_delay" not in document["probabilities"]["effects"]
-    assert document["where"]["block"] == "moment_equation"
+    assert (document["where"]["block"], document["where"]["share"]) == ("moment_equation", 0.9)
     assert "M_q" in steps[0].text
     screen = "\n".join(printed(found, 100, why=True, steps=steps))
     assert "WRONG NUMBERS" in screen
