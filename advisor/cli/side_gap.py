@@ -131,11 +131,12 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
         yield "Nuisance parameters of the fit, no part of the answer:"
     for name, told in found.instruments.items():
         yield f"  {_in_units(name, told)}"
-    if found.holdout and found.verdict is not None:
-        listed = ", ".join(map(str, found.holdout))
+    gap = found.diagnosis
+    if gap is not None and gap.after and found.verdict is not None:
+        listed = ", ".join(map(str, found.maneuvers))
         yield f"Gap on the held-out manoeuvres {listed}, mean square over that of the noise, minus 1:"
-        for name, before in found.before.items():
-            yield f"  {name:<5} {before:8.2f} before, {found.after[name]:.2f} after"
+        for name, before in gap.before.items():
+            yield f"  {name:<5} {before:8.2f} before, {gap.after[name]:.2f} after"
 
 
 def _title(found: SideGap) -> str:
@@ -181,31 +182,24 @@ def _diagnosis_lines(found: SideDiagnosis) -> Iterator[str]:
 
 def side_gap_document(found: SideGap) -> dict[str, Any]:
     """Return the block ``lateral`` of ``advisor gap --json``, in SI units."""
-    before, after = (float(np.mean(list(g.values()))) if g else None for g in (found.before, found.after))
+    gaps = found.diagnosis and found.diagnosis.after and (found.diagnosis.before, found.diagnosis.after)
+    by_channel, left = gaps or ({}, {})
+    before, after = (float(np.mean(list(g.values()))) if g else None for g in (by_channel, left))
     shrink = None
     if before is not None and after is not None:
         percent = 100.0 * (1.0 - after / before) if before > 0.0 else None
-        shrink = {"holdout": list(found.holdout), "before": before, "after": after, "percent": percent}
+        shrink = {"holdout": list(found.maneuvers), "before": before, "after": after, "percent": percent}
     told: dict[str, Any] = plain({
         **picked(found, "verdict sentence maneuvers not_identifiable"),
         "title": _title(found),
         "next": [] if (step := _to_decide(found.diagnosis)) is None else [step],
-        "gap": {"before": before, "by_channel": found.before, "by_channel_after": found.after},
+        "gap": {"before": before, "by_channel": by_channel, "by_channel_after": left},
         "parameters_changed": [changed_document(one) for one in found.derivatives if one.differs],
         "parameters_compared": [changed_document(one) for one in found.derivatives],
         "instruments": {n: {"value": v.value, "std": v.std} for n, v in found.instruments.items()},
         "shrink": shrink,
         **_diagnosis_document(found.diagnosis),
     })  # fmt: skip
-    told["decisions"].insert(
-        0,
-        {
-            "name": "the simulator's derivatives of roll and yaw",
-            "statistic": found.statistic,
-            "limit": found.limit,
-            "margin": found.limit - found.statistic,
-        },
-    )
     return told
 
 

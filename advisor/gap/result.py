@@ -102,6 +102,12 @@ class Where:
     """Blocks with their scores; the best explanation scores 1."""
 
 
+def ranked(scores: Mapping[str, float]) -> tuple[tuple[str, float], ...]:
+    """Return blocks with their scores over the largest one, which stands first."""
+    best = max([*scores.values(), 1e-12])
+    return tuple((b, round(scores[b] / best, 4)) for b in sorted(scores, key=lambda b: -scores[b]))
+
+
 @dataclass(frozen=True, slots=True)
 class Shrink:
     """Shrink of the gap on manoeuvres whose parameters were fitted without them.

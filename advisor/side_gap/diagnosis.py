@@ -1,28 +1,31 @@
 """Explanations of a lateral flight: no gap, wrong numbers, side gusts, one effect, or two at once."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative, Weighed
-from advisor.gap.fitting.prior import ERROR_IF_WRONG
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.inference.engine import Decided, decided, first_stage
 from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.posterior import NONE, relabelled
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.result import Cause, Value, Where
+from advisor.gap.result import Cause, Value, Where, ranked
 from advisor.gap.search.air import NATURAL_GUST_ANGLE
 from advisor.gap.verdict.reasons import weighed
 from advisor.gap.verdict.statements import what
 from advisor.gap.verdict.text import answers_of, place
+from advisor.model.lateral import LATERAL
 from advisor.side_gap.effects import block_of, side_effects, unseen
-from advisor.side_gap.evidence import Gain, information_of, posterior_of, share_of
+from advisor.side_gap.evidence import Gain, information_of, posterior_of, share_of, squares_of
 from advisor.side_gap.fit import Fit, N
-from advisor.side_gap.flight import LIKELY, SideFlight, SideModel
+from advisor.side_gap.flight import SideFlight, SideModel
 from advisor.side_gap.gusts import coloured_likelihood
-from advisor.side_gap.models import Case, base_of, plain_fit, refitted, simulated
+from advisor.side_gap.laws import side_laws
+from advisor.side_gap.models import Case, base_of
 from advisor.words.certainty import Answers
 
 PEAKS = ("p", "r")
@@ -71,6 +74,10 @@ class SideDiagnosis(Weighed):
     """Largest error with the flight's derivatives and no effect, rad/s."""
     cannot_see: Mapping[str, str]
     """Causes that these records cannot show, with the reason."""
+    before: Mapping[str, float] = field(default_factory=dict)
+    """Output to the simulator's gap: the mean square of its error over that of the noise, minus 1."""
+    after: Mapping[str, float] = field(default_factory=dict)
+    """Output to the gap with the derivatives of the flight, each manoeuvre predicted from all others."""
     waterfall: tuple[tuple[str, float], ...] = ()
     """Name of each effect of the model, and the gap that remains with it: the mean square over that of the
     whole model, minus 1."""
@@ -91,15 +98,14 @@ class SideDiagnosis(Weighed):
         """Block of the named effect, or else the likeliest one of a law without a name; None without both."""
         each = {a.block: one.probability for one in self.evidence if (a := one.alternative).kind == "unknown"}
         without = sum(each.values())
-        ranked = {block: p / without for block, p in each.items()} if without > 0.0 else {}
+        shares = {block: p / without for block, p in each.items() if without > 0.0}
         if self.verdict == "effect" and self.causes:
-            block = self.causes[0].block
-            ranked = {block: 1.0, **{other: p for other, p in ranked.items() if other != block}}
-        if not ranked:
+            first = {self.causes[0].block: 1.0}
+            shares = first | shares | first
+        if not shares:
             return None
-        first = max(ranked, key=lambda block: ranked[block])
-        ranking = sorted(((b, p / ranked[first]) for b, p in ranked.items()), key=lambda one: -one[1])
-        return Where(first, ranked[first], tuple(ranking))
+        ranking = ranked(shares)
+        return Where(ranking[0][0], shares[ranking[0][0]], ranking)
 
     @property
     def sentence(self) -> str:
@@ -119,21 +125,33 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> Sid
     prior : shares of the answers before the flight.
     listed : number of causes that are returned.
     """
-    first = plain_fit(case)
-    plain = None if first is None else refitted(case, first, ERROR_IF_WRONG, share_of(first))
-    as_given = None if plain is None else simulated(case, plain)
+    first = case.fit(case.begin, case.natural)
+    plain = first and case.fit(first.point, first.free, share=share_of(first))
+    as_given = plain and case.fit(plain.point._replace(theta=case.theta), plain.free, ERROR_IF_RIGHT * 1e-3)
     if plain is None or as_given is None:
         return None
     table = list(side_effects(case.flown))
-    flight = SideFlight(case, plain, table)
+    flight = SideFlight(case, plain, table, list(side_laws(case, plain)))
     found = decided(flight, first_stage(flight), prior, lambda rows: [_named_air(row) for row in rows])
     told = weighed(found.posteriors[0])
+    unseen_by = squares_of(plain, information_of(plain, 1.0), case.known(ERROR_IF_WRONG, plain.free))
     return SideDiagnosis(
         evidence=told.evidence, why=told.why, answer=told.answer, rival=told.rival, decisions=told.decisions,
         causes=tuple(_causes(case, found, as_given))[:listed],
         peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain),
+        before=_gap(plain, np.asarray(np.bincount(plain.assembly.channel, as_given.residual**2), float)),
+        after=_gap(plain, np.sum(unseen_by.held_out, axis=0)) if len(case.flown) > 1 else {},
         cannot_see=unseen(case.flown), waterfall=_waterfall(found.chosen[1:]),
     )  # fmt: skip
+
+
+def _gap(plain: Fit, squares: FloatArray) -> Mapping[str, float]:
+    """Return the gap of each output from sums of squares (outputs,)."""
+    counts = np.bincount(plain.assembly.channel)
+    return {
+        LATERAL.outputs[k]: max(0.0, float(squares[k] / counts[k] / plain.noise[k] ** 2) - 1.0)
+        for k in np.flatnonzero(counts)
+    }
 
 
 def _named_air(row: Row[SideModel]) -> Row[SideModel]:
@@ -148,9 +166,10 @@ def _causes(case: Case, found: Decided[SideModel], as_given: Fit) -> Iterator[Si
     posterior, together = found.posteriors[0], 1.0
     added = found.chosen[1:]
     if added:
+        last = added[-1].fit
         # The whole model leaves less colour than the model in which its last effect was sought.
-        share = share_of(added[-1].fit)
-        fit = refitted(case, added[-1].fit, added[-1].tolerance, share) or added[-1].fit
+        share = share_of(last)
+        fit = case.fit(last.point, last.free, added[-1].tolerance, share) or last
         for stage, one in zip(found.posteriors, added, strict=False):
             assert one.alternative is not None
             together *= stage.of(one.alternative)
@@ -164,10 +183,7 @@ def _causes(case: Case, found: Decided[SideModel], as_given: Fit) -> Iterator[Si
         if alternative == SIDE_GUSTS:
             yield _air(case, other, probability, posterior.answer == SIDE_GUSTS, as_given)
             continue
-        again = other.fit
-        if probability > LIKELY:
-            again = refitted(case, other.fit, other.tolerance, share) or other.fit
-        yield _cause(case, other, again, other.tolerance, probability, share, present=False)
+        yield _cause(case, other, other.fit, other.tolerance, probability, share, present=False)
 
 
 def _cause(

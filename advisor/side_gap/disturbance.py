@@ -63,23 +63,31 @@ def courses_of(fit: Fit, flown: Flown, block: str = AIR) -> tuple[Course, ...]:
 
 
 def _course(fit: Fit, flown: Flown, m: int, block: str) -> Course:
-    assembly = fit.assembly
-    own = np.flatnonzero(assembly.owner == m)
-    stamps = assembly.t[own]
+    own = np.flatnonzero(fit.assembly.owner == m)
+    stamps = fit.assembly.t[own]
     knots = np.arange(np.min(stamps), np.max(stamps) + KNOTS_S, KNOTS_S)
     t = np.arange(knots[0], knots[-1] + STEP_S, STEP_S)
-    seen = _outputs(fit.point.theta, flown, m, block, _hats(t, knots))
-    columns = np.zeros((len(own), len(knots)))
-    between = _hats(stamps, t, STEP_S)
-    for name, rows in assembly.rows[m].items():
-        if name in seen:
-            mine = slice(rows.start - own[0], rows.stop - own[0])
-            columns[mine] = between[mine] @ seen[name]
     weight = fit.weight[own][:, None]
-    local = fit.sensitivities[own][:, assembly.free[assembly.free >= N]] * weight
+    local = fit.sensitivities[own][:, fit.assembly.free[fit.assembly.free >= N]] * weight
     basis = np.linalg.svd(local, full_matrices=False)[0]
-    weighed = columns * weight
+    weighed = answered(fit, flown, m, block, t, _hats(t, knots)) * weight
     return Course(knots, (weighed - basis @ (basis.T @ weighed)) / weight)
+
+
+def answered(fit: Fit, flown: Flown, m: int, block: str, t: FloatArray, course: FloatArray) -> FloatArray:
+    """Return the change of the rows of a manoeuvre by disturbances (n, k) of a block, of values at ``t``."""
+    own = np.flatnonzero(fit.assembly.owner == m)
+    seen = _outputs(fit.point.theta, flown, m, block, course)
+    columns = np.zeros((len(own), course.shape[1]))
+    for name, rows in fit.assembly.rows[m].items():
+        if name in seen:
+            at = (fit.assembly.t[rows] - t[0]) / STEP_S
+            k = np.clip(at.astype(int), 0, len(t) - 2)
+            share = (at - k)[:, None]
+            columns[rows.start - own[0] : rows.stop - own[0]] = (1.0 - share) * seen[name][k] + share * seen[
+                name
+            ][k + 1]
+    return columns
 
 
 def _outputs(
@@ -125,6 +133,6 @@ def _drives(block: str, theta: FloatArray, aerodynamic: FloatArray) -> FloatArra
     return drives
 
 
-def _hats(t: FloatArray, knots: FloatArray, apart: float = KNOTS_S) -> FloatArray:
-    """Return the share (n, k) of every knot at times ``t``, linear between knots ``apart`` seconds apart."""
-    return np.maximum(0.0, 1.0 - np.abs(t[:, None] - knots) / apart)
+def _hats(t: FloatArray, knots: FloatArray) -> FloatArray:
+    """Return the share (n, k) of every knot at times ``t``, linear between knots."""
+    return np.maximum(0.0, 1.0 - np.abs(t[:, None] - knots) / KNOTS_S)

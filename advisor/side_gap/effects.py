@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.effects.accelerometer_offset import ARM
 from advisor.gap.effects.actuator_backlash import BACKLASH
 from advisor.gap.effects.actuator_deadband import DEADBAND_ABOUT_TRIM
@@ -44,6 +45,8 @@ class SideEffect:
     Where the bounds exclude negative sizes, the prior is half of a Gaussian."""
     words: Mapping[str, str] = field(default_factory=dict)
     """Words of the pitch axis' sentence to those of this axis."""
+    columns: FloatArray | None = field(default=None, compare=False)
+    """(N, k) change of the outputs per unit of each parameter, where it is linear."""
 
     @property
     def named(self) -> str:
@@ -98,26 +101,14 @@ _SERVO = (
 )
 """Effects of a servo, with entries and prior standard deviations. Servos of small aircraft lag by 50 ms. A
 slowness of 1.5 s/rad is a rate of 40 deg/s. Worn linkages have half a degree of play."""
-_SPOKEN = {
-    "p": "roll rate",
-    "r": "yaw rate",
-    "bank": "attitude",
-    "a_y": "lateral acceleration",
-    "beta": "sideslip",
+_READINGS = {
+    "p": ("roll rate", "pitch_rate_skew", "pitch_rate_sensor"),
+    "r": ("yaw rate", "pitch_rate_skew", "pitch_rate_sensor"),
+    "bank": ("attitude", "attitude_skew", ""),
+    "a_y": ("lateral acceleration", "accelerometer_skew", "accelerometer"),
+    "beta": ("sideslip", "alpha_skew", "alpha_sensor"),
 }
-_SKEWED = {
-    "p": "pitch_rate_skew",
-    "r": "pitch_rate_skew",
-    "bank": "attitude_skew",
-    "a_y": "accelerometer_skew",
-    "beta": "alpha_skew",
-}
-_SCALED = {
-    "p": "pitch_rate_sensor",
-    "r": "pitch_rate_sensor",
-    "a_y": "accelerometer",
-    "beta": "alpha_sensor",
-}
+"""Output to its name, to its late stamps in pitch, and to the block of a scale there, if any."""
 _SCALE_STD, _SKEW_STD_S, _ARM_STD_M = 0.1, 0.1, 0.3
 """Prior standard deviations of a scale error, 1, of late stamps, s, and of an accelerometer's arm, m."""
 
@@ -134,15 +125,14 @@ def side_effects(flown: Flown) -> Iterator[SideEffect]:
         for variant, entries, std in _SERVO:
             yield SideEffect(of, variant, tuple((of, e) for e in entries), std, {"elevator": of})
     measured = set.intersection(*(set(record.outputs) for record in problem.records))
-    for of, effect in _SKEWED.items():
-        if of in measured:
-            skew = skew_beyond(effect, FILTERED_S)
-            words = dict.fromkeys(("pitch rate", "angle of attack"), _SPOKEN[of])
-            yield SideEffect(of, skew, ((of, "skew_s"),), (_SKEW_STD_S,), words)
-    for of, block in _SCALED.items():
-        if of in measured:
+    readings = {of: told for of, told in _READINGS.items() if of in measured}
+    for of, (spoken, skew, _) in readings.items():
+        words = dict.fromkeys(("pitch rate", "angle of attack"), spoken)
+        yield SideEffect(of, skew_beyond(skew, FILTERED_S), ((of, "skew_s"),), (_SKEW_STD_S,), words)
+    for of, (spoken, _, block) in readings.items():
+        if block:
             scale = replace(SCALE, block=block)
-            yield SideEffect(of, scale, ((of, "scale"),), (_SCALE_STD,), {"pitch rate": _SPOKEN[of]})
+            yield SideEffect(of, scale, ((of, "scale"),), (_SCALE_STD,), {"pitch rate": spoken})
     if "a_y" in measured:
         yield SideEffect("a_y", ARM, (("a_y", "arm_m"),), (_ARM_STD_M,))
     if "beta" in measured and flown.arm_is_stated:

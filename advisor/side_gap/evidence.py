@@ -69,20 +69,15 @@ class Squares(NamedTuple):
 
 def squares_of(fit: Fit, told: Information, known: Known) -> Squares:
     """Return the squares of a model in the fit, and on manoeuvres held out one by one."""
-    return Squares(*(_squares(fit, told, known, without) for without in (0.0, 1.0)))
-
-
-def _squares(fit: Fit, told: Information, known: Known, without: float) -> FloatArray:
-    """Return the sums of squares of each manoeuvre by a fit to all, less a share of its own information."""
     matrix, gradient = np.sum(told.matrix, axis=0), np.sum(told.gradient, axis=0)
-    squares = np.zeros((fit.assembly.maneuvers, len(fit.noise)))
-    for m in range(len(squares)):
+    squares = np.zeros((2, fit.assembly.maneuvers, len(fit.noise)))
+    for m, without in np.ndindex(fit.assembly.maneuvers, 2):
         posterior = matrix - without * told.matrix[m] + np.diag(known.precision)
         pull = gradient - without * told.gradient[m] - known.precision * (fit.values - known.mean)
         rows = fit.assembly.owner == m
         left = fit.residual[rows] - fit.columns[rows] @ np.linalg.solve(posterior, pull)
-        squares[m] = np.bincount(fit.assembly.channel[rows], left**2, len(fit.noise))
-    return squares
+        squares[without, m] = np.bincount(fit.assembly.channel[rows], left**2, len(fit.noise))
+    return Squares(*squares)
 
 
 class Gain(NamedTuple):

@@ -40,6 +40,8 @@ class Free(NamedTuple):
     mean: float = 0.0
     column: FloatArray | None = None
     """(N,) derivative of the outputs that an earlier fit has found; None: every step takes differences."""
+    adds: bool = False
+    """Whether the outputs are the simulated ones and as much of the column as the number says."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +137,7 @@ def _at(flown: Flown, point: Point, free: Sequence[Free], known: Known) -> _At |
     g = np.empty((len(y), N + point.local.shape[1] + len(CAUSES)))
     if not respond_axis(assembly.grid, point.theta, point.local, y, g, _NO_MOTION):
         return None
+    y += _added(point, free)
     noise, minus_twice = weigh(assembly.z, y, assembly.channel, FLOOR)
     off = np.concatenate([point.theta, _numbers(point, free)]) - known.mean
     cost = float(minus_twice + off @ (known.precision * off))
@@ -147,8 +150,6 @@ def _trials(flown: Flown, at: _At, known: Known) -> Iterator[_At | None]:
     weight = 1.0 / at.noise[at.assembly.channel]
     residual = at.assembly.z - at.y
     projected, bases = _projected(at, columns, weight)
-    fixed = [k for k in range(N) if k not in at.assembly.free]
-    projected[:, fixed] = 0.0
     values = np.concatenate([at.point.theta, _numbers(at.point, at.free)])
     weighed = projected * weight[:, None]
     information = weighed.T @ weighed + np.diag(known.precision)
@@ -171,12 +172,16 @@ def _trials(flown: Flown, at: _At, known: Known) -> Iterator[_At | None]:
 def _projected(
     at: _At, columns: FloatArray, weight: FloatArray
 ) -> tuple[FloatArray, list[tuple[slice, FloatArray]]]:
-    """Return the columns without what each manoeuvre's own parameters absorb, and its own weighed columns."""
+    """Return the columns without what each manoeuvre's own parameters absorb, and its own weighed columns.
+
+    Columns of derivatives that the flight does not show are zero.
+    """
     result, bases = columns.copy(), []
     for rows in at.assembly.blocks:
         mine = at.g[rows][:, at.assembly.own]
         bases.append((rows, mine * weight[rows, None]))
         result[rows] = unabsorbed(columns[rows], mine, weight[rows])
+    result[:, [k for k in range(N) if k not in at.assembly.free]] = 0.0
     return result, bases
 
 
@@ -192,8 +197,13 @@ def _slopes(flown: Flown, at: _At) -> FloatArray:
             flown,
             at.point._replace(setting=moved_to(at.point.setting, [one.place], np.array([value + step]))),
         )
-        found[:, k] = (y - at.y) / step
+        found[:, k] = (y + _added(at.point, at.free) - at.y) / step
     return found
+
+
+def _added(point: Point, free: Sequence[Free]) -> FloatArray:
+    """Return what numbers with a column of their own add to the outputs, (N,) or zero."""
+    return np.asarray(sum(x * f.column for x, f in zip(_numbers(point, free), free, strict=True) if f.adds))
 
 
 def outputs(flown: Flown, point: Point) -> FloatArray:
@@ -212,6 +222,4 @@ def _numbers(point: Point, free: Sequence[Free]) -> FloatArray:
 def _finished(flown: Flown, at: _At) -> Fit:
     slopes = _slopes(flown, at)
     projected, _ = _projected(at, np.column_stack([at.g[:, :N], slopes]), 1.0 / at.noise[at.assembly.channel])
-    projected[:, [k for k in range(N) if k not in at.assembly.free]] = 0.0
-    free = tuple(at.free)
-    return Fit(at.point, at.assembly, free, at.y, at.noise, at.likelihood, projected, slopes, at.g)
+    return Fit(at.point, at.assembly, tuple(at.free), at.y, at.noise, at.likelihood, projected, slopes, at.g)

@@ -1,6 +1,6 @@
 """Roll and yaw, as the engine asks for it: fits with an effect, their evidence, and what they leave."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +10,7 @@ from advisor.gap.alternative import Alternative
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.inference.explanation import Evidence, Explanation
 from advisor.gap.inference.marginal import marginal
+from advisor.gap.inference.pitch import LAWS
 from advisor.gap.inference.residual import Residual
 from advisor.gap.inference.sizes import natural_share
 from advisor.gap.inference.stage import Pairs, Stage, likeliest, within_model_error
@@ -24,11 +25,12 @@ from advisor.side_gap.evidence import (
 )
 from advisor.side_gap.fit import Fit, Free, Known
 from advisor.side_gap.gusts import Gusts, coloured_likelihood, side_gusts
-from advisor.side_gap.models import Case, effect_fit, refitted
+from advisor.side_gap.models import Case, free_with
 from advisor.side_gap.residual import residual_of
 from advisor.side_gap.starts import Starts
 
 _TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
+LAW = Alternative("unknown", "unknown")
 LIKELY = 0.01
 """Probability above which an effect is tried in side gusts and its sizes are stated."""
 
@@ -67,11 +69,13 @@ class SideFlight:
     case: Case
     plain: Fit
     table: Sequence[SideEffect]
+    laws: Sequence[SideEffect] = ()
+    """Laws without a name."""
 
     @property
     def tried(self) -> tuple[int, int]:
-        """Number of effects; there are no laws outside the catalogue."""
-        return len(self.table), 0
+        """Numbers of effects and laws by name."""
+        return len(self.table), len({law.name for law in self.laws})
 
     @property
     def is_stated(self) -> bool:
@@ -85,14 +89,15 @@ class SideFlight:
             # With an effect, another lateness of commands and outputs changes the outputs by something else.
             begin = replace(base.fit, free=tuple(one._replace(column=None) for one in base.fit.free))
         share = share_of(begin)
-        plain = begin if base is None else refitted(self.case, begin, ERROR_IF_WRONG, share) or base.fit
-        starts = Starts(self.case, plain, self._beside(base))
-        chosen = likeliest(starts.of_each, most)
-        fits = [(one.effect, effect_fit(self.case, plain, one.effect, one.point, share)) for one in chosen]
-        return share**-2, [
-            replace(self._model(None, plain, plain, share), starts=starts),
-            *(self._model(effect, fit, plain, share) for effect, fit in fits if fit is not None),
-        ]
+        plain = begin if base is None else self.case.fit(begin.point, begin.free, share=share) or base.fit
+        starts = Starts(self.case, plain, _beside(base, self.table))
+        of_laws = Starts(self.case, plain, _beside(base, self.laws)).of_each
+        chosen = [*likeliest(starts.of_each, most), *likeliest(of_laws, LAWS)]
+        everyone = [replace(self._model(None, plain, plain, share), starts=starts)]
+        for one in chosen:
+            fit = self.case.fit(one.point, free_with(self.case, one.effect, plain), share=share)
+            everyone += [] if fit is None else [self._model(one.effect, fit, plain, share)]
+        return share**-2, everyone
 
     def at_the_files(self, one: SideModel, plain: SideModel, heat: float) -> SideModel | None:
         """Return an explanation fitted again where the file's derivatives are right; None without a fit.
@@ -100,7 +105,7 @@ class SideFlight:
         Where they are the likelier ones already, the fit is near enough for the quadratic expansion.
         """
         share, near = heat**-0.5, one.evidence.right > one.evidence.wrong
-        made = None if near else refitted(self.case, one.fit, ERROR_IF_RIGHT, share)
+        made = None if near else self.case.fit(one.fit.point, one.fit.free, ERROR_IF_RIGHT, share)
         if made is None:
             return None
         return replace(self._model(one.effect, made, plain.fit, share), starts=one.starts)
@@ -122,15 +127,10 @@ class SideFlight:
         assert looked is not None
         starts = {start.name: start for start in looked.of_each}
         for lead in leads:
-            for other in (starts[e.name] for e in self._beside(lead) if e.name in starts):
+            for other in (starts[e.name] for e in _beside(lead, self.table) if e.name in starts):
                 price = looked.together(starts[lead.name], other)
                 if price < starts[lead.name].price - 2.0 * stage.heat * np.log(len(self.table)):
                     yield price, lead.name, other.name
-
-    def _beside(self, base: SideModel | None) -> list[SideEffect]:
-        """Return the effects that set no number which that of a model sets."""
-        taken = set(base.effect.places) if base is not None and base.effect is not None else set()
-        return [effect for effect in self.table if not taken & set(effect.places)]
 
     def in_moving_air(self, stage: Stage[SideModel]) -> Stage[SideModel]:
         """Return the likely explanations again, in side gusts that enter all outputs together.
@@ -152,13 +152,7 @@ class SideFlight:
         gain = first.gusts.likelihood - coloured_likelihood(plain.fit)
         over = plain.evidence.right + gain - first.evidence.right
         first, *others = (
-            replace(
-                one,
-                evidence=one.evidence.more(over),
-                natural=one.natural.more(over),
-                likelihood=one.likelihood + over,
-            )
-            for one in (first, *others)
+            replace(one.more(over), likelihood=one.likelihood + over) for one in (first, *others)
         )
         return Stage(first, tuple(others), (), stage.heat)
 
@@ -167,52 +161,51 @@ class SideFlight:
 
     def _blown(self, one: SideModel, gusts: Gusts) -> SideModel:
         """Return an explanation in side gusts."""
-        evidence, natural = (
-            self._evidence(one.fit, gusts.likelihood, gusts.matrix, gusts.gradient, free).more(one.beyond)
-            for free in (one.fit.free, _narrowed(one.fit.free, one.effect))
-        )
+        evidence, natural = self._weighed(one.fit, one.effect, gusts.likelihood, gusts.matrix, gusts.gradient)
         highest = gusts.highest(self._wide(one.fit))
-        return replace(
-            one, gusts=gusts, evidence=evidence, natural=natural, likelihood=highest, model_error=0.0
-        )
+        blown = replace(one, gusts=gusts, evidence=evidence, natural=natural, likelihood=highest)
+        return replace(blown.more(one.beyond), model_error=0.0)
 
-    def _evidence(
-        self, fit: Fit, likelihood: float, matrix: FloatArray, gradient: FloatArray, free: Sequence[Free]
-    ) -> Evidence:
-        priors = (self.case.known(tolerance, free).prior(fit.values) for tolerance in _TOLERANCES)
-        return marginal(likelihood, matrix, gradient, *priors)
+    def _weighed(
+        self, fit: Fit, effect: SideEffect | None, likelihood: float, matrix: FloatArray, gradient: FloatArray
+    ) -> Iterator[Evidence]:
+        """Yield the evidence of a fit, and that with as little of its effect as every aircraft has."""
+        for free in (fit.free, _narrowed(fit.free, effect)):
+            priors = (self.case.known(tolerance, free).prior(fit.values) for tolerance in _TOLERANCES)
+            yield marginal(likelihood, matrix, gradient, *priors)
 
     def _model(self, effect: SideEffect | None, fit: Fit, plain: Fit, share: float) -> SideModel:
         """Return a model with its evidence, which unseen manoeuvres may cut."""
         told, likelihood = information_of(fit, share), share**2 * fit.likelihood
-        matrix, gradient = (np.sum(part, axis=0) for part in told)
-        evidence, natural = (
-            self._evidence(fit, likelihood, matrix, gradient, free)
-            for free in (fit.free, _narrowed(fit.free, effect))
-        )
+        whole = (np.sum(part, axis=0) for part in told)
+        evidence, natural = self._weighed(fit, effect, likelihood, *whole)
+        model = SideModel(
+            alternative=None, effect=effect, fit=fit, evidence=evidence, natural=natural,
+            likelihood=likelihood, beyond=0.0, gain=Gain(0.0, 0.0), change=change_of(plain, fit),
+        )  # fmt: skip
         if effect is None:
-            return SideModel(
-                alternative=None, effect=None, fit=fit, evidence=evidence, natural=evidence,
-                likelihood=likelihood, beyond=0.0, gain=Gain(0.0, 0.0),
-                change=change_of(plain, fit),
-            )  # fmt: skip
-        was = squares_of(plain, information_of(plain, share), self._wide(plain))
-        counts = np.bincount(fit.assembly.channel, minlength=len(fit.noise)).astype(float)
+            return model
         # Half of the prior lies below zero, where the bounds exclude a size.
         extra = np.log(2.0) if effect.is_one_sided else 0.0
         if effect.sides is not None:
             extra -= len(self.case.flown) * np.log(len(effect.sides[1]))
-        likelier = ERROR_IF_RIGHT if evidence.right > evidence.wrong else ERROR_IF_WRONG
-        now = squares_of(fit, told, self.case.known(likelier, fit.free))
+        was = squares_of(plain, information_of(plain, share), self._wide(plain))
+        now = squares_of(fit, told, self.case.known(model.tolerance, fit.free))
+        counts = np.bincount(fit.assembly.channel, minlength=len(fit.noise)).astype(float)
         gain = gain_of(was.held_out, now.held_out, counts, share)
         unseen = min(gain.total - gain_of(was.in_fit, now.in_fit, counts, share).total, 0.0)
-        return SideModel(
-            alternative=Alternative("effect", effect.name, effect.block),
-            name=effect.name, numbers=effect.variant.names, effect=effect, fit=fit,
-            evidence=evidence.more(extra + unseen), natural=natural.more(extra + unseen),
-            likelihood=likelihood, beyond=extra + unseen, unseen=unseen, gain=gain,
-            change=change_of(plain, fit),
+        is_law = any(effect is law for law in self.laws)
+        answer = LAW if is_law else Alternative("effect", effect.name)
+        return replace(
+            model.more(extra + unseen), alternative=replace(answer, block=effect.block), name=effect.name,
+            numbers=effect.variant.names, beyond=extra + unseen, unseen=unseen, gain=gain,
         )  # fmt: skip
+
+
+def _beside(base: SideModel | None, table: Sequence[SideEffect]) -> list[SideEffect]:
+    """Return the effects that set no number which that of a model sets."""
+    taken = set(base.effect.places) if base is not None and base.effect is not None else set()
+    return [effect for effect in table if not taken & set(effect.places)]
 
 
 def _narrowed(free: Sequence[Free], effect: SideEffect | None) -> list[Free]:

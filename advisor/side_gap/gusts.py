@@ -83,7 +83,9 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known) -> Gusts:
 
     def told(x: FloatArray) -> tuple[float, FloatArray]:
         noise, angle, memory_s = model(x)
-        parts = [one.told(noise, _root(one.knots, angle, memory_s)) for one in sums]
+        # Knots are equally far apart everywhere: a shorter manoeuvre has the first part of the factor.
+        root = _root(max((one.knots for one in sums), key=len), angle, memory_s)
+        parts = [one.told(noise, root[: len(one.knots), : len(one.knots)]) for one in sums]
         return sum(cost for cost, _ in parts), np.sum([inner for _, inner in parts], axis=0)
 
     def cost(x: FloatArray) -> float:

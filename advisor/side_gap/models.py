@@ -10,7 +10,7 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
+from advisor.gap.fitting.prior import ERROR_IF_WRONG
 from advisor.model.lateral import LATERAL, natural_size
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_instruments import beta_arm_m, nuisances_of
@@ -59,6 +59,12 @@ class Case:
         mean = np.concatenate([self.theta, [one.mean for one in free]])
         return Known(mean, 1.0 / (share * std) ** 2)
 
+    def fit(
+        self, at: Point, free: Sequence[Free], tolerance: float = ERROR_IF_WRONG, share: float = 1.0
+    ) -> Fit | None:
+        """Return the fit from a start, with stated derivatives of this relative error."""
+        return fitted(self.flown, at, free, self.known(tolerance, free, share))
+
 
 def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray) -> Case | NoEstimate:
     """Return the flight and the simulator of an aircraft file; ``theta`` (15,) is the flight's estimate."""
@@ -96,17 +102,6 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
     return Case(flown, given, stated, tuple(natural), begin)
 
 
-def plain_fit(case: Case) -> Fit | None:
-    """Return the fit without an effect, with derivatives that may be wrong."""
-    return fitted(case.flown, case.begin, case.natural, case.known(ERROR_IF_WRONG, case.natural))
-
-
-def simulated(case: Case, plain: Fit) -> Fit | None:
-    """Return the fit of trims and natural lateness with the simulator's derivatives."""
-    known = case.known(ERROR_IF_RIGHT * 1e-3, plain.free)
-    return fitted(case.flown, plain.point._replace(theta=case.theta), plain.free, known)
-
-
 def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
     """Return the free numbers of a model with an effect, which replaces a natural number at its place.
 
@@ -118,24 +113,14 @@ def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
         for k, one in enumerate(plain.free)
         if one.place not in effect.places
     ]
+    columns = [None] * len(effect.places) if effect.columns is None else effect.columns.T
+    base = base_of(case, effect)
+    numbers = zip(effect.places, effect.std, variant.steps, variant.bounds, base, columns, strict=True)
     own = [
-        Free(place, std, step, (min(low, low + at), high + at), at)
-        for place, std, step, (low, high), at in zip(
-            effect.places, effect.std, variant.steps, variant.bounds, base_of(case, effect), strict=True
-        )
+        Free(place, std, step, (min(low, low + at), high + at), at, column, column is not None)
+        for place, std, step, (low, high), at, column in numbers
     ]
     return (*kept, *own)
-
-
-def effect_fit(case: Case, plain: Fit, effect: SideEffect, begin: Point, share: float) -> Fit | None:
-    """Return the fit with an effect from a start, with derivatives that may be wrong."""
-    free = free_with(case, effect, plain)
-    return fitted(case.flown, begin, free, case.known(ERROR_IF_WRONG, free, share))
-
-
-def refitted(case: Case, fit: Fit, tolerance: float, share: float) -> Fit | None:
-    """Return a fit again, with another tolerance of the derivatives."""
-    return fitted(case.flown, fit.point, fit.free, case.known(tolerance, fit.free, share))
 
 
 def base_of(case: Case, effect: SideEffect) -> FloatArray:

@@ -11,6 +11,7 @@ from advisor.gap.fitting.prior import ERROR_IF_WRONG
 from advisor.side_gap.effects import SideEffect
 from advisor.side_gap.fit import Fit, N, Point, outputs
 from advisor.side_gap.models import Case, base_of
+from advisor.side_gap.setting import moved_to
 
 SECANT = (0.25, 2.0)
 """Least and greatest part of a start that the straight line from no effect may suggest."""
@@ -67,6 +68,8 @@ class Starts:
 
         An effect at the place of a natural number starts at that number, and saves what its prior has cost.
         """
+        if effect.columns is not None:
+            return self._linear(effect, effect.columns)
         plain = self._plain
         saved = sum(
             ((value - one.mean) / one.std) ** 2
@@ -77,6 +80,17 @@ class Starts:
             return min(self._each(effect), key=lambda start: start.cost, default=None)
         cost = self._cost + float(self._begin @ self._begin) - saved
         return Start(effect, cost, plain.point, np.zeros(len(self._begin)), saved)
+
+    def _linear(self, effect: SideEffect, columns: FloatArray) -> Start:
+        """Return the best start of an effect whose outputs are linear in its numbers."""
+        ways = np.column_stack([self._without(column * self._plain.weight) for column in columns.T])
+        prior = np.array(effect.std) ** -2.0
+        values = np.asarray(np.linalg.solve(ways.T @ ways + np.diag(prior), ways.T @ self._begin))
+        way = ways @ values
+        left = self._begin - way
+        point, cost = self._plain.point, self._cost + float(left @ left + prior @ values**2)
+        setting = moved_to(point.setting, effect.places, values)
+        return Start(effect, cost, point._replace(setting=setting), way)
 
     def _each(self, effect: SideEffect) -> Iterator[Start]:
         """Yield every start of an effect. Along the way from no effect to a start the outputs count as
@@ -97,7 +111,7 @@ class Starts:
                 ways.append(self._without((y - self._plain.fitted) * self._plain.weight))
             if len(ways) < len(sides):
                 continue
-            shares = [float(np.clip(self._share(way), *SECANT)) for way in ways]
+            shares = [np.clip(way @ self._begin / (way @ way + 1e-12), *SECANT) for way in ways]
             left = [self._begin - share * way for share, way in zip(shares, ways, strict=True)]
             squares = np.array([[float(one[rows] @ one[rows]) for rows in self._parts] for one in left])
             best = np.argmin(squares, axis=0)
@@ -109,10 +123,6 @@ class Starts:
             way = np.sum([ways[k] * rows for k, rows in zip(best, self._parts, strict=True)], axis=0)
             cost = self._cost + float(np.sum(np.min(squares, axis=0)))
             yield Start(effect, cost, point._replace(setting=setting), way)
-
-    def _share(self, way: FloatArray) -> float:
-        """Return the best part of a way."""
-        return float(way @ self._begin) / max(float(way @ way), 1e-12)
 
     def _without(self, left: FloatArray) -> FloatArray:
         """Return weighed rows (N,) without what all other parameters absorb."""

@@ -9,8 +9,10 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.side_gap.disturbance import courses_of
 from advisor.side_gap.fit import fitted
 from advisor.side_gap.gusts import coloured_likelihood, side_gusts
+from advisor.side_gap.laws import side_laws
 from advisor.side_gap.models import case_of
 from advisor.side_gap.residual import residual_of
+from advisor.side_gap.starts import Starts
 from tests.oem.lateral_builders import JET
 from tests.side_gap.test_comparison import AIRCRAFT, maneuvers
 
@@ -112,3 +114,31 @@ def test_the_derivatives_are_estimated_anew_in_gusts(case, flight):
     assert np.linalg.norm((step / np.abs(fit.values + 1e-9))[told]) < np.linalg.norm(
         (by_white / np.abs(fit.values + 1e-9))[told]
     )
+
+
+@pytest.mark.parametrize(
+    ("block", "of"),
+    [("rolling_moment", "p"), ("rolling_moment", "beta"), ("yawing_moment", "r"),
+     ("roll_rate_sensor", "roll_rate_sensor")],
+)  # fmt: skip
+def test_a_curve_is_found_in_its_block_with_what_bends_it(case, flight, block, of):
+    fit, _, _ = flight
+    laws = {law.name: law for law in side_laws(case, fit) if law.columns is not None}
+    bent = f"{block}_curve_of_{of}"
+    seen = laws[bent].columns @ laws[bent].std
+    largest = np.max(np.abs(seen) / NOISE[fit.assembly.channel])
+    left = with_residual(fit, 20.0 / largest * seen)
+    found = min(Starts(case, left, list(laws.values())).of_each, key=lambda start: start.price)
+    assert found.name == bent
+
+
+def test_a_bent_reading_is_the_square_and_the_cube_of_the_reading(case, flight):
+    fit, _, _ = flight
+    bent = "roll_rate_sensor_curve_of_roll_rate_sensor"
+    law = next(one for one in side_laws(case, fit) if one.name == bent)
+    rows = fit.assembly.rows[0]["p"]
+    p = fit.fitted[rows]
+    most = max(np.max(np.abs(fit.fitted[named["p"]])) for named in fit.assembly.rows)
+    share = p / most
+    assert law.columns[rows, 0] == pytest.approx(share * np.abs(share), abs=0.03)
+    assert law.columns[rows, 1] == pytest.approx(share**3, abs=0.03)

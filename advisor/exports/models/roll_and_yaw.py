@@ -28,7 +28,8 @@ from advisor.model.lateral import LATERAL
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_estimator import estimate_lateral
-from advisor.side_gap.comparison import compare_side, gap_on
+from advisor.oem.lateral_prediction import predicted_lateral
+from advisor.side_gap.comparison import compare_side
 from advisor.side_gap.diagnosis import SideDiagnosis
 from advisor.words.problems import UnusableInputError
 
@@ -152,8 +153,12 @@ def prove_side(
 
 
 def _gap(maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: FloatArray) -> float:
-    by_output = gap_on([maneuver], model, aircraft, theta)
-    return float(np.mean(list(by_output.values()))) if by_output else 0.0
+    """Return the mean over outputs of the mean square of the error over that of the noise, minus 1, at least
+    0."""
+    fits = predicted_lateral(maneuver, model, aircraft, theta)
+    if isinstance(fits, NoEstimate):
+        return 0.0
+    return float(np.mean([max(0.0, (fit.rms / fit.noise) ** 2 - 1.0) for fit in fits.values()]))
 
 
 def _flown(found: _Found | NoEstimate) -> _Found:

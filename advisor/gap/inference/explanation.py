@@ -63,10 +63,13 @@ class Explanation:
         """Error of the outputs by the form of the effect, as a share of the peaks."""
         return form_error(self.numbers, self.change)
 
+    def more(self, nats: float) -> Self:
+        """Return the explanation with so much more evidence."""
+        return replace(self, evidence=self.evidence.more(nats), natural=self.natural.more(nats))
+
     def lifted(self, nats: float) -> Self:
         """Return the explanation with evidence for the error of every simulator."""
-        more = self.evidence.more(nats), self.natural.more(nats)
-        return replace(self, evidence=more[0], natural=more[1], model_error=nats)
+        return replace(self.more(nats), model_error=nats)
 
 
 E = TypeVar("E", bound=Explanation)

@@ -20,7 +20,7 @@ from advisor.gap.inference.stage import Pairs, Stage, likeliest
 from advisor.gap.kit.variant import Variant
 from advisor.gap.search.screen import Screen
 
-_LAWS = 2
+LAWS = 2
 """Numerical: number of laws outside the catalogue that are fitted in full."""
 _AT_THE_FILE = 3
 """Numerical: number of effects that are fitted in full because they are the likeliest with the file's
@@ -73,7 +73,7 @@ class PitchFlight:
         loose = problem.within(ERROR_IF_WRONG)
         plain = fit(loose, begin.point, begin.noise, iterations=4)
         screen = Screen(loose, plain)
-        chosen = [*likeliest(screen.quick_fits(table), most), *likeliest(screen.quick_fits(self.laws), _LAWS)]
+        chosen = [*likeliest(screen.quick_fits(table), most), *likeliest(screen.quick_fits(self.laws), LAWS)]
         if problem.is_stated:
             seen = {one.name for one in chosen}
             near = problem.within(ERROR_IF_RIGHT)

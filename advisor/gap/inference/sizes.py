@@ -16,7 +16,7 @@ from advisor.gap.simulator.layout import natural_frequency
 
 _TIME_S, _SHARE = 0.05, 0.1
 """Prior: standard deviations of late stamps, s, and of relative errors of a reading."""
-_BENT = 0.5
+BENT = 0.5
 """Prior: standard deviation of a curve at the largest departure flown, relative to the linear term."""
 _SLOWEST_RAD_S = 0.5
 """Numerical: least frequency of a short period from which a length follows, rad/s."""
@@ -65,18 +65,23 @@ def with_sizes(variant: Variant, derivatives: FloatArray, flights: PreparedManeu
     way_m = flights.reference_m_s / max(natural_frequency(derivatives), _SLOWEST_RAD_S)
     span = max(float(flights.flights[-1].started_s - flights.flights[0].started_s), 1.0)
     of_number = {
-        "M_delta2": _BENT * m_delta / delta, "M_delta3": _BENT * m_delta / delta**2,
-        "M_alpha2": _BENT * m_alpha / alpha, "M_alpha3": _BENT * m_alpha / alpha**2,
-        "Z_alpha2": _BENT * z_alpha / alpha, "Z_alpha3": _BENT * z_alpha / alpha**2,
+        "M_delta2": BENT * m_delta / delta, "M_delta3": BENT * m_delta / delta**2,
+        "M_alpha2": BENT * m_alpha / alpha, "M_alpha3": BENT * m_alpha / alpha**2,
+        "Z_alpha2": BENT * z_alpha / alpha, "Z_alpha3": BENT * z_alpha / alpha**2,
         "M_throttle": 0.5 * m_delta * delta, "M_h": m_delta * delta, "Z_h": z_alpha * alpha,
         "at_s": span, "over_s": span, "rate_per_s": 0.2 / span, "skew_s": _TIME_S, "scale": _SHARE,
         "step": _SHARE, "arm_m": _ARM.get(variant.effect, 0.0) * way_m,
     }  # fmt: skip
     stds = [
-        _OF_EFFECT.get(f"{variant.effect}.{name}", of_number.get(name, _OF_RANGE * max(map(abs, bounds))))
-        for name, bounds in zip(variant.names, variant.bounds, strict=True)
+        _OF_EFFECT.get(f"{variant.effect}.{name}", of_number.get(name, std))
+        for name, std in zip(variant.names, of_range(variant), strict=True)
     ]
     return replace(variant, prior_std=tuple(stds))
+
+
+def of_range(variant: Variant) -> tuple[float, ...]:
+    """Return the prior widths of numbers of which no more is known than the range that is searched."""
+    return tuple(_OF_RANGE * max(map(abs, bounds)) for bounds in variant.bounds)
 
 
 def natural_share(variant: Variant) -> float:

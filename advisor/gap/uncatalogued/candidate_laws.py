@@ -54,6 +54,7 @@ def flow_lets_go(flights: PreparedManeuvers) -> Variant:
 
 
 SURFACE_STOP, VANE_STOP = "surface_stop", "vane_stop"
+STOPS = "stop_up_rad", "stop_down_rad"
 _TRIMMED_RAD = 0.002
 """Numerical: least distance of a stop from trim, rad."""
 
@@ -62,17 +63,17 @@ def surface_stops(flights: PreparedManeuvers) -> list[Variant]:
     """Return an elevator with a stop up, down or both."""
     trims = np.array([flight.u_trim for flight in flights.flights])
     flown = np.concatenate([flight.u for flight in flights.flights])
-    return _stops(SURFACE_STOP, "input", ("stop_up_rad", "stop_down_rad"), trims, flown)
+    return stops(SURFACE_STOP, "input", STOPS, trims, flown)
 
 
 def vane_stops(flights: PreparedManeuvers) -> list[Variant]:
     """Return a vane with a stop up, down or both."""
     trims = np.array([flight.alpha_trim for flight in flights.flights])
     flown = np.concatenate([flight.outputs["alpha"].y for flight in flights.flights])
-    return _stops(VANE_STOP, "alpha_sensor", ("vane_stop_up_rad", "vane_stop_down_rad"), trims, flown)
+    return stops(VANE_STOP, "alpha_sensor", ("vane_stop_up_rad", "vane_stop_down_rad"), trims, flown)
 
 
-def _stops(
+def stops(
     effect: str, block: str, entries: tuple[str, str], trims: FloatArray, flown: FloatArray
 ) -> list[Variant]:
     """Return stops at the same angles in all manoeuvres, given relative to the median trim.
@@ -205,9 +206,11 @@ _SENTENCES = {
 }
 
 
-def _sticking(flights: PreparedManeuvers) -> Variant:
-    """Return a surface that dry friction holds until the command is far enough away."""
-    most = float(np.median([np.max(np.abs(flight.u - flight.u_trim)) for flight in flights.flights]))
+def sticking(most: float) -> Variant:
+    """Return a surface that dry friction holds until the command is far enough away.
+
+    ``most`` is the largest change of the command, rad.
+    """
     return Variant(
         _STICKS, "input", ("breakaway_rad", "sliding_share", "loop_s"),
         tuple((share * most, 0.3, 0.03) for share in (0.15, 0.3, 0.45, 0.6)), (0.01 * most, 0.02, 2e-3),
@@ -236,7 +239,8 @@ def laws_for(flights: PreparedManeuvers) -> list[Variant]:
     of_readings = [variant for channel in readings for variant in _READINGS.get(channel, ())]
     of_readings += vane_stops(flights) if "alpha" in readings else []
     of_lift = [lift_memory(flights), flow_lets_go(flights)] if "alpha" in flights.channels else []
-    of_input = [*surface_stops(flights), RINGING, _sticking(flights), *_weaker(flights)]
+    most = float(np.median([np.max(np.abs(flight.u - flight.u_trim)) for flight in flights.flights]))
+    of_input = [*surface_stops(flights), RINGING, sticking(most), *_weaker(flights)]
     return [*of_readings, *_MOMENTS, *of_input, *of_lift]
 
 

@@ -25,7 +25,7 @@ from advisor.gap.inference.laws import sentence_of_law
 from advisor.gap.inference.pitch import PitchModel
 from advisor.gap.inference.posterior import NONE, PARAMETERS, Posterior, stated_as
 from advisor.gap.records.floor import tolerance_of
-from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Where
+from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Where, ranked
 from advisor.gap.search.air import SoughtAir
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_excess, airspeed_scale_of
@@ -117,11 +117,10 @@ def _unexplained(
         return None
     blocks = {a.block: p for a, p in posterior.by_alternative.items() if a.kind == "unknown"}
     total = sum(blocks.values())
-    ranking = tuple((block, round(p / max(blocks.values()), 4)) for block, p in blocks.items())
     note = ""
     if law is not None and law.variant is not None and law.name not in EFFECTS:
         note = sentence_of_law(law.name, law.values)
-    return Unexplained(answer.block, blocks[answer.block] / total, ranking, note=note)
+    return Unexplained(answer.block, blocks[answer.block] / total, ranked(blocks), note=note)
 
 
 def _diagnosed(
@@ -202,8 +201,7 @@ def _where(
     for a, p in posterior.by_alternative.items():
         if a.block:
             scores[a.block] = scores.get(a.block, 0.0) + p
-    best = max([*scores.values(), 1e-12])
-    ranking = tuple((b, round(s / best, 4)) for b, s in sorted(scores.items(), key=lambda i: -i[1]))
+    ranking = ranked(scores)
     block = present[0].block if present else (ranking[0][0] if ranking else "force_equation")
     removed = 1.0 - gap.after / max(gap.before, 1e-12)
     return Where(block, float(np.clip(removed, 0.0, 1.0)) if present else 0.0, ranking)
@@ -239,7 +237,5 @@ def _of_the_derivatives(problem: EffectProblem, fitted: EffectFit, known: FloatA
     for block, letter in (("force_equation", "Z"), ("moment_equation", "M")):
         its = [k for k, name in enumerate(DERIVATIVES) if name.startswith(letter)]
         scores[block] = float(off[its] @ np.linalg.pinv(known[np.ix_(its, its)], hermitian=True) @ off[its])
-    best = max(*scores.values(), 1e-12)
-    ranking = sorted(((b, round(s / best, 4)) for b, s in scores.items()), key=lambda item: -item[1])
     removed = 1.0 - gap.after / max(gap.before, 1e-12)
-    return Where(ranking[0][0], float(np.clip(removed, 0.0, 1.0)), tuple(ranking))
+    return Where(ranked(scores)[0][0], float(np.clip(removed, 0.0, 1.0)), ranked(scores))

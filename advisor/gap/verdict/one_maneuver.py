@@ -14,7 +14,7 @@ from advisor.gap.foresight.foresee import unseen_effects
 from advisor.gap.inference.diagnose import floor_of
 from advisor.gap.inference.findings import Findings, Model, Unexplained
 from advisor.gap.inference.residual import residual_of
-from advisor.gap.result import VISIBLE, Diagnosis, GapVerdict, Where
+from advisor.gap.result import VISIBLE, Diagnosis, GapVerdict, Where, ranked
 from advisor.gap.verdict.answer import speed_is_known
 from advisor.gap.verdict.notes import notes_of
 from advisor.gap.verdict.numbers import (
@@ -74,6 +74,5 @@ def _located(problem: EffectProblem, baseline: EffectFit) -> Unexplained:
         file = replace(baseline.point, derivatives=problem.prior_derivatives)
         as_filed = fit(replace(problem, derivatives_fixed=True), file, baseline.noise)
     blocks = residual_of(problem, as_filed, 1.0).blocks
-    best = max(blocks, key=lambda block: blocks[block])
-    ranking = tuple((b, round(p / blocks[best], 4)) for b, p in sorted(blocks.items(), key=lambda i: -i[1]))
-    return Unexplained(best, blocks[best], ranking)
+    ranking = ranked(blocks)
+    return Unexplained(ranking[0][0], blocks[ranking[0][0]], ranking)
