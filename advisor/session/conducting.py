@@ -1,5 +1,6 @@
 """Interface between the screens and the conductor of the campaign, and the differences of its reports."""
 
+from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, Protocol
@@ -73,6 +74,38 @@ class Conducting(Protocol):
 
     def step(self) -> None:
         """Play the next tenth of a second of a paused replay."""
+
+
+class AskedElsewhere:
+    """Requests of a `Conducting` that another process carries out."""
+
+    @abstractmethod
+    def ask(self, name: str, *arguments: object) -> None:
+        """Send a request: the name of a method of `Conducting`, and its arguments."""
+
+    def decide(self, decision: HandDecision) -> None:
+        """Exclude, include, note, mark, begin or end a marked manoeuvre."""
+        self.ask("decide", decision)
+
+    def order(self, order: LinkRequest) -> None:
+        """Carry out a crew's request to the link."""
+        self.ask("order", order)
+
+    def jump(self, number: int) -> None:
+        """Play on to just before a manoeuvre, or play to it from the beginning."""
+        self.ask("jump", number)
+
+    def seek(self, position_s: float) -> None:
+        """Play on to a position of the replay, s, or play to it from the beginning."""
+        self.ask("seek", position_s)
+
+    def play(self, tempo: Tempo) -> None:
+        """Pause a replay, continue it, or change its speed."""
+        self.ask("play", tempo)
+
+    def step(self) -> None:
+        """Play the next tenth of a second of a paused replay."""
+        self.ask("step")
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,10 +16,10 @@ from advisor.mavlink.link.observer import LinkObserver
 from advisor.process.liveness import Watch
 from advisor.session.behind import BehindTeller
 from advisor.session.child_process import pause_s, said_of, start_child
-from advisor.session.conducting import Changes, SessionReport, Tell
-from advisor.session.hand import CampaignLike, HandDecision
+from advisor.session.conducting import AskedElsewhere, Changes, SessionReport, Tell
+from advisor.session.hand import CampaignLike
 from advisor.session.live import renewed
-from advisor.session.source import LinkHealth, LinkRequest, Source, Tempo
+from advisor.session.source import LinkHealth, Source
 
 Request = tuple[str, tuple[object, ...]]
 """Name of a method of `Conducting`, and its arguments."""
@@ -43,7 +43,7 @@ class ConductorTask:
     """Address of the link's process, which tells the link's health without delay. None: no such process."""
 
 
-class RemoteConductor:
+class RemoteConductor(AskedElsewhere):
     """A `Conducting` that passes requests to another process, and reports back from it.
 
     Where the source can be read again from its beginning, the death of the other process ends nothing. The
@@ -88,33 +88,13 @@ class RemoteConductor:
     def stop(self) -> None:
         """End ``run`` at the next opportunity."""
         self._stopped.set()
-        self._requests.put(("stop", ()))
+        self.ask("stop")
         if self._watch is not None:
             self._watch.hurry()
 
-    def decide(self, decision: HandDecision) -> None:
-        """Exclude, include, note, mark, begin or end a marked manoeuvre."""
-        self._requests.put(("decide", (decision,)))
-
-    def order(self, order: LinkRequest) -> None:
-        """Carry out a crew's request to the link."""
-        self._requests.put(("order", (order,)))
-
-    def jump(self, number: int) -> None:
-        """Play on to just before a manoeuvre, or play to it from the beginning."""
-        self._requests.put(("jump", (number,)))
-
-    def seek(self, position_s: float) -> None:
-        """Play on to a position of the replay, s, or play to it from the beginning."""
-        self._requests.put(("seek", (position_s,)))
-
-    def play(self, tempo: Tempo) -> None:
-        """Pause a replay, continue it, or change its speed."""
-        self._requests.put(("play", (tempo,)))
-
-    def step(self) -> None:
-        """Play the next tenth of a second of a paused replay."""
-        self._requests.put(("step", ()))
+    def ask(self, name: str, *arguments: object) -> None:
+        """Pass a request on, once a process takes it."""
+        self._requests.put((name, arguments))
 
     def _conduct_to_the_end(self, tell: Tell) -> None:
         """Run one process after another until one comes to its end."""

@@ -4,9 +4,7 @@ from multiprocessing.connection import Connection
 from threading import Event
 
 from advisor.process.liveness import OLD_AFTER_S
-from advisor.session.conducting import Changes, SessionReport, Tell
-from advisor.session.hand import HandDecision
-from advisor.session.source import LinkRequest, Tempo
+from advisor.session.conducting import AskedElsewhere, Changes, SessionReport, Tell
 
 LOOK_EVERY_S = 0.1
 """Time after which a thread without news tests whether to stop, s."""
@@ -16,7 +14,7 @@ class ServerGoneError(Exception):
     """The server has ended, and with it the campaign that the page shows."""
 
 
-class AttachedConductor:
+class AttachedConductor(AskedElsewhere):
     """A `Conducting` whose campaign runs in the server.
 
     Parameters
@@ -58,30 +56,6 @@ class AttachedConductor:
         """End ``run`` at the next opportunity."""
         self._stopped.set()
 
-    def decide(self, decision: HandDecision) -> None:
-        """Exclude, include, note, mark, begin or end a marked manoeuvre."""
-        self._ask("decide", decision)
-
-    def order(self, order: LinkRequest) -> None:
-        """Carry out a crew's request to the link."""
-        self._ask("order", order)
-
-    def jump(self, number: int) -> None:
-        """Play on to just before a manoeuvre, or play to it from the beginning."""
-        self._ask("jump", number)
-
-    def seek(self, position_s: float) -> None:
-        """Play on to a position of the replay, s, or play to it from the beginning."""
-        self._ask("seek", position_s)
-
-    def play(self, tempo: Tempo) -> None:
-        """Pause a replay, continue it, or change its speed."""
-        self._ask("play", tempo)
-
-    def step(self) -> None:
-        """Play the next tenth of a second of a paused replay."""
-        self._ask("step")
-
     def _hear(self) -> object:
         """Return the next message of the server, or None when none came in time."""
         try:
@@ -89,7 +63,8 @@ class AttachedConductor:
         except (OSError, EOFError) as error:
             raise ServerGoneError("The server of this page has ended.") from error
 
-    def _ask(self, name: str, *arguments: object) -> None:
+    def ask(self, name: str, *arguments: object) -> None:
+        """Send a request to the server."""
         try:
             self._connection.send((name, arguments))
         except OSError:
