@@ -32,6 +32,8 @@ class Evaluated:
     """(m, p + k) contribution of each manoeuvre's residuals to each parameter; they sum to zero."""
     systematic: FloatArray
     """(p + k, p + k) covariance by dynamics that the model lacks, alike in all manoeuvres."""
+    modes: FloatArray | None = None
+    """(p + k, p + k) second moment of another mode of the posterior about this one, by its probability."""
     extra: Extra | None = None
     """The e >= k additional parameters, such as the times of edges."""
 
@@ -52,9 +54,10 @@ class Evaluated:
 
     @property
     def widened(self) -> FloatArray:
-        """(p + k, p + k) covariance that also has what the manoeuvres have in common and the model lacks."""
+        """(p + k, p + k) covariance that also has another mode, and errors that all manoeuvres have alike."""
         size = len(self.covariance)
-        return np.asarray(self.scattered + self.systematic[:size, :size])
+        total = self.scattered + self.systematic[:size, :size]
+        return np.asarray(total if self.modes is None else total + self.modes[:size, :size])
 
 
 def errors_of(

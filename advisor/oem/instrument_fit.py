@@ -27,7 +27,7 @@ from advisor.oem.descent import Response, descended
 from advisor.oem.estimate import InstrumentEstimate, NoEstimate
 from advisor.oem.extra import Prior, penalty
 from advisor.oem.gauss_newton import CONVERGED
-from advisor.oem.instruments import Instrument, extra_of
+from advisor.oem.instruments import SERVO_LAG, Instrument, extra_of
 from advisor.oem.prior import about_zero, precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 from advisor.oem.solution import Solution, evaluate, search, spread_of
@@ -123,19 +123,50 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
     problem, place = _looked_about(plain, tuple(weighed(x, share_of(plain)) for x in unknown))
     solution = plain
     for _ in range(2):
-        names = tuple(weighed(x, share_of(solution)) for x in unknown)
-        found = _fitted(problem, names, place)
+        share = share_of(solution)
+        names = tuple(weighed(x, share) for x in unknown)
+        found = _fitted(problem, names, place, share)
         if found is None:
             return InstrumentFit(plain)
         solution, problem, place = found, found.problem, (found.optimum.shared, found.optimum.local)
-    return _with_statements(names, solution, plain)
+    return _with_statements(names, _between_modes(solution, names), plain)
+
+
+def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
+    """Return the likelier of two modes, with the second moment of the other one by its probability.
+
+    A servo's lag and the delay of its command act alike. The posterior of a lag may have a second peak at a
+    third of the lag, with other derivatives. Coloured noise tells the two apart less than white noise does.
+    One manoeuvre takes its lag from all together, and looks for no second peak.
+    """
+    lag = next((x for x in names if x.name == SERVO_LAG.name and x.prior is not None), None)
+    if lag is None or len(best.problem.records) == 1:
+        return best
+    there = lag.write(best.problem, lag.read(best.problem) / 3.0)
+    share = share_of(best)
+    rival = _fitted(there, names, (best.optimum.shared, best.optimum.local), share)
+    if rival is None:
+        return best
+    apart = 0.5 * share**2 * (rival.optimum.log_likelihood_cost - best.optimum.log_likelihood_cost)
+    if apart < 0.0:
+        best, rival, apart = rival, best, -apart
+    moved = [x.read(rival.problem) - x.read(best.problem) for x in names]
+    step = np.array([*(rival.theta - best.theta), *moved])
+    return replace(best, modes=np.outer(step, step) / (1.0 + np.exp(apart)))
 
 
 def _fitted(
-    problem: OutputErrorProblem, names: Sequence[Instrument], place: tuple[FloatArray, FloatArray]
+    problem: OutputErrorProblem,
+    names: Sequence[Instrument],
+    place: tuple[FloatArray, FloatArray],
+    share: float,
 ) -> Solution | None:
-    """Return the solution with instruments from a start; None where the search finds none."""
-    fit = descended(_PITCH, problem, names, about_zero(precision(problem, place[0])), place)
+    """Return the solution with instruments from a start; None where the search finds none.
+
+    ``share`` is that by which white noise weighs the priors of the derivatives.
+    """
+    prior = replace(about_zero(precision(problem, place[0])), share=share)
+    fit = descended(_PITCH, problem, names, prior, place)
     if isinstance(fit, NoEstimate) or fit.optimum.status != CONVERGED:
         return None
     found = evaluate(fit.problem, fit.assembly, fit.optimum, fit.extra)
@@ -174,7 +205,7 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
         else:
             problem = x.write(problem, x.stated)
     place = solution.optimum.shared, solution.optimum.local
-    final = _fitted(problem, tuple(one.instrument for one in kept), place)
+    final = _fitted(problem, tuple(one.instrument for one in kept), place, share_of(solution))
     return InstrumentFit(plain) if final is None else InstrumentFit(final, refreshed(kept, final))
 
 

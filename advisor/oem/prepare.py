@@ -7,18 +7,21 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.instruments.atmosphere import AirData
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.motion import channel_at, gravity_in_plane, integrated
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
-from advisor.flight.signals.true_airspeed import true_over_read
+from advisor.flight.signals.true_airspeed import SEA_LEVEL_DENSITY_KG_M3, true_over_read
 from advisor.oem.airspeed import Airspeed, airspeed
 from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, infer, lacking, why_left_out
 from advisor.oem.alpha_use import has as _has
+from advisor.oem.coefficients import scales
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.found import found_of
 from advisor.oem.instruments import as_found
 from advisor.oem.lost_input import restored
+from advisor.oem.prior import COEFFICIENT_STD
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
@@ -127,6 +130,7 @@ def _prepared(
         for maneuver, speed in zip(maneuvers, speeds, strict=True)
     ]
     known = [signal for signal in signals if signal is not None]
+    flown_m_s = float(np.mean([signal.y.mean() for signal in known])) if known else None
     problem = OutputErrorProblem(
         records=tuple(
             _record(maneuver, signal, alpha, usable)
@@ -140,6 +144,7 @@ def _prepared(
         servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
         vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if known else 0.0,
         accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
+        per_coefficient=_per_coefficient(aircraft, flown_m_s),
         alpha_is_computed="alpha" in usable and all(_is_computed(m.channels["alpha"]) for m in maneuvers),
     )
     return Prepared(
@@ -149,8 +154,15 @@ def _prepared(
         alpha_left_out=alpha_left_out,
         missing=missing,
         airspeed_lag_s=float(np.mean([speed.lag_s for speed in measured])) if measured else 0.0,
-        airspeed_m_s=float(np.mean([signal.y.mean() for signal in known])) if known else None,
+        airspeed_m_s=flown_m_s,
     )
+
+
+def _per_coefficient(aircraft: Aircraft, airspeed_m_s: float | None) -> Mapping[str, float]:
+    """Return derivatives of the moment for coefficients of 1, in the air of sea level."""
+    air = AirData(SEA_LEVEL_DENSITY_KG_M3, "sea level", "true")
+    found = scales(airspeed_m_s, aircraft.reference, air) if airspeed_m_s else {}
+    return {name: 1.0 / factor for name, factor in found.values() if name in COEFFICIENT_STD}
 
 
 def _is_computed(alpha: Channel) -> bool:

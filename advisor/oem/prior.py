@@ -1,9 +1,10 @@
 """Priors of derivatives that a record may leave open.
 
 *Short period.* Without a vane, Z_q and Z_δe are correlated with Z_α in pitch rate and specific force of a
-well damped aircraft. Both are small on every aircraft with a tail:
+well damped aircraft. Usual sizes hold them:
 
 - Z_q = -ρ·S·c·C_Lq/(4·m) is the lift of the pitch rate relative to the turn of the path;
+- M_α and M_q are those of usual coefficients, where the file states wing, chord and inertia;
 - Z_δe/M_δe = k_y²/(l_t·V): the tail's lift turns the path by its force, the nose by its moment, with k_y the
   radius of gyration and l_t the tail's lever.
 
@@ -32,6 +33,9 @@ Z_Q_STD = 0.1
 LIFT_OVER_MOMENT_S = 0.02
 """Standard deviation of Z_δe/M_δe, s. Published estimates give 0.008 (twin jet) and 0.010 (twin
 turboprop)."""
+COEFFICIENT_STD = {"M_alpha": 1.5, "M_q": 20.0}
+"""Standard deviation of C_mα and C_mq about zero, 1, where no angle of attack is measured. Published values
+are -0.3 to -1.8 and -10 to -25 for manned aircraft, and -2.7 and -38 for an unmanned one of 13 kg."""
 SIDE_FORCE_STD = 0.05
 """Standard deviation of Y_p and Y_r about zero, 1. C_Yp and C_Yr of 0.4 give 0.01 for a jet of 15 t and 0.04
 for an aircraft of 3 kg."""
@@ -61,7 +65,10 @@ def precision(problem: OutputErrorProblem, shared: FloatArray) -> FloatArray:
     """
     if all("alpha" in record.outputs for record in problem.records):
         return np.zeros(N_SHARED)
-    return precision_without_alpha(shared)
+    weight = precision_without_alpha(shared)
+    for name, size in problem.per_coefficient.items():
+        weight[SHARED.index(name)] = (COEFFICIENT_STD[name] * size) ** -2
+    return weight
 
 
 def precision_without_alpha(shared: FloatArray) -> FloatArray:

@@ -66,6 +66,8 @@ class OutputErrorProblem:
     steady_moment_rad: float = 0.0
     """Moment that does not scale with the square of the air speed, as the deflection that balances it at the
     reference speed, rad."""
+    per_coefficient: Mapping[str, float] = field(default_factory=dict)
+    """Derivative of the moment to its size for a coefficient of 1; empty for an unknown geometry."""
     airspeed_may_be_off: bool = True
     """Whether a scale error of the air speed in a_z is estimated. Equivalent, ratiometric or derived speeds
     are off by some per cent, which would otherwise bias Z_alpha and M_alpha."""
