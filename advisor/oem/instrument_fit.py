@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import expit
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
@@ -152,7 +153,7 @@ def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
         best, rival, apart = rival, best, -apart
     moved = [x.read(rival.problem) - x.read(best.problem) for x in names]
     step = np.array([*(rival.theta - best.theta), *moved])
-    return replace(best, modes=np.outer(step, step) / (1.0 + np.exp(apart)))
+    return replace(best, modes=float(expit(-apart)) * np.outer(step, step))
 
 
 def _fitted(
