@@ -1,6 +1,6 @@
 """The estimation problem of the lateral axis: data of one or more manoeuvres, each channel at its stamps."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -93,15 +93,15 @@ class LateralAssembly(Laid):
     """(m,) time of the first event of each record, s, to which the initial states belong."""
 
 
-def assemble_lateral(problem: LateralProblem) -> LateralAssembly:
-    """Lay the records on the union of their stamps.
+def assemble_lateral(problem: LateralProblem, causes: Sequence[str] = CAUSES) -> LateralAssembly:
+    """Lay the records on the union of their stamps, with derivatives by all ``CAUSES`` or by none.
 
     Raises
     ------
     ValueError
         A record lacks p, r or bank, or has fewer than two stamps of one of them.
     """
-    pieces = [_piece(record, problem) for record in problem.records]
+    pieces = [_piece(record, problem, causes) for record in problem.records]
     measured = {name for piece in pieces for name in piece.outputs}
     laid = lay_rows(pieces, LATERAL.outputs)
     grid = AxisGrid(
@@ -143,7 +143,7 @@ _WITHOUT_FORCE = ("Y_beta", *(term.name for term in LATERAL.shared if term.state
 """Derivatives that are estimated where neither the side force nor the sideslip is measured."""
 
 
-def _piece(record: LateralRecord, problem: LateralProblem) -> Piece:
+def _piece(record: LateralRecord, problem: LateralProblem, causes: Sequence[str]) -> Piece:
     """Return one record on the union of its stamps."""
     outputs = measured_in(record.outputs, LATERAL.outputs, problem.delays_s)
     with_samples(outputs, NEEDED)
@@ -155,24 +155,27 @@ def _piece(record: LateralRecord, problem: LateralProblem) -> Piece:
     columns = {
         "step_s": padded(step),
         "ratio": np.ones(len(t)) if reference is None else read / reference,
-        **_moved(record, problem, t),
+        **_moved(record, problem, t, causes),
         **_known(record, middle, true * read),
         **_outputs(true * record.airspeed.at(t), problem),
     }
     return Piece(t, outputs, columns)
 
 
-def _moved(record: LateralRecord, problem: LateralProblem, t: FloatArray) -> dict[str, FloatArray]:
+def _moved(
+    record: LateralRecord, problem: LateralProblem, t: FloatArray, causes: Sequence[str]
+) -> dict[str, FloatArray]:
     """Return the inputs at the stamps, just after them, and their rates, each (E, 2), with their derivatives
-    by ``CAUSES``, each (E, 3, 2)."""
+    by k causes, each (E, k, 2)."""
     inputs = np.zeros((3, len(t), len(LATERAL.inputs)))
-    changed = np.zeros((3, len(t), len(CAUSES), len(LATERAL.inputs)))
+    changed = np.zeros((3, len(t), len(causes), len(LATERAL.inputs)))
     for j, name in enumerate(LATERAL.inputs):
         if name in record.inputs:
             servo, command = problem.servo(name), record.inputs[name]
             inputs[:, :, j] = servo.course(*command, t)
-            causes = [CAUSES.index("command"), CAUSES.index(name)]
-            changed[:, :, causes, j] = servo.changes(*command, t)[:3]
+            if causes:
+                its = [causes.index("command"), causes.index(name)]
+                changed[:, :, its, j] = servo.changes(*command, t)[:3]
     return dict(zip(("inputs", "start", "slope"), inputs, strict=True)) | dict(
         zip(("changed", "changed_start", "changed_slope"), changed, strict=True)
     )

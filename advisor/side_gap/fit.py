@@ -17,7 +17,7 @@ from advisor.model.lateral import LATERAL
 from advisor.oem.arrow import unabsorbed
 from advisor.oem.gauss_newton import weigh
 from advisor.oem.lateral_motion import FLOOR
-from advisor.oem.lateral_problem import CAUSES, LateralAssembly
+from advisor.oem.lateral_problem import LateralAssembly
 from advisor.side_gap.setting import Flown, Place, Setting, laid_out, moved_to
 
 ROUNDS = 12
@@ -134,7 +134,7 @@ class _At(NamedTuple):
 def _at(flown: Flown, point: Point, free: Sequence[Free], known: Known) -> _At | None:
     assembly = laid_out(flown, point.setting)
     y = np.empty(len(assembly.z))
-    g = np.empty((len(y), N + point.local.shape[1] + len(CAUSES)))
+    g = np.empty((len(y), N + point.local.shape[1]))
     if not respond_axis(assembly.grid, point.theta, point.local, y, g, _NO_MOTION):
         return None
     y += _added(point, free)
@@ -210,7 +210,7 @@ def outputs(flown: Flown, point: Point) -> FloatArray:
     """Return the outputs (N,) of a point."""
     assembly = laid_out(flown, point.setting)
     y = np.empty(len(assembly.z))
-    no_slopes = np.empty((0, N + point.local.shape[1] + len(CAUSES)))
+    no_slopes = np.empty((0, N + point.local.shape[1]))
     respond_axis(assembly.grid, point.theta, point.local, y, no_slopes, _NO_MOTION)
     return y
 

@@ -68,7 +68,7 @@ def laid_out(flown: Flown, setting: Setting) -> LateralAssembly:
         beta_arm_m=base.beta_arm_m + whole(("beta", "arm_m")),
         accelerometer_arm_m=base.accelerometer_arm_m + whole(("a_y", "arm_m")),
     )
-    assembly = assemble_lateral(problem)
+    assembly = assemble_lateral(problem, causes=())
     scale = np.array([1.0 + whole((name, "scale")) for name in outputs])[None, :, None]
     if np.all(scale == 1.0):
         return assembly
