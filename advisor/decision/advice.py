@@ -58,17 +58,6 @@ def next_input(
     return NextInput(f"next: {spoken}", remaining, held_by, chosen, conditions.travel_rad)
 
 
-def recommended(history: Sequence[CandidateManeuver], aircraft: Aircraft) -> StepInput | None:
-    """Return the input that helps most now; None before the first usable manoeuvre."""
-    course = CriterionCourse(aircraft.campaign)
-    conditions = find_conditions(history, aircraft, course)
-    if conditions is None:
-        return None
-    known = course.known(usable_ones(history))
-    choice = _choose(conditions, known, aircraft.campaign)
-    return choice[0] if choice else None
-
-
 def _choose(conditions: Conditions, known: Knowledge, plan: CampaignPlan) -> Choice | None:
     std = np.sqrt(known.widening * np.diag(conditions.last_covariance))
     return best_input(conditions, std, lambda expected: _distance_to_stop(expected, plan, known))

@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterator, Sequence
 
 from advisor.campaign.campaign import Campaign, CampaignEvent, LateralJudged, ManeuverJudged
 from advisor.campaign.state import CampaignState
+from advisor.decision.crew_plan import CrewPlan
+from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import (
     DataAgain,
     FlightBegan,
@@ -73,11 +75,19 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
                 say(f"NO DATA: {problem}")
         case DataAgain():
             say("DATA AGAIN: what arrives can serve.")
-        case ManeuverJudged(judged, verdict):
+        case ManeuverJudged(judged, verdict, plan):
             say(maneuver_line(judged))
-            say(f"    {stop_line(verdict)}")
-            say(f"    {next_line(verdict)}")
-        case LateralJudged(judged, verdict):
+            _say_decision(verdict, plan, say)
+        case LateralJudged(judged, verdict, plan):
             say(f"{maneuver_line(judged, ROOM)}  (roll and yaw)")
-            say(f"    {stop_line(verdict)}")
-            say(f"    {next_line(verdict)}")
+            _say_decision(verdict, plan, say)
+
+
+def _say_decision(verdict: FlightTestVerdict, plan: CrewPlan | None, say: Callable[[str], object]) -> None:
+    """Say stop or continue, and the next input: those of both axes once one of them is complete."""
+    if plan is not None and plan.done:
+        say(f"    {plan.announced}")
+        say(f"    {plan.advice}")
+    else:
+        say(f"    {stop_line(verdict)}")
+        say(f"    {next_line(verdict)}")

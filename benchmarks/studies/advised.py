@@ -20,7 +20,7 @@ from advisor.bundled.study.flying import (
     follow,
     noise_scale,
 )
-from advisor.decision.advice import recommended
+from advisor.decision.advice import next_input
 from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.decision.information import knowledge
 from advisor.decision.inputs import StepInput
@@ -120,7 +120,7 @@ def fly(pair: Pair) -> tuple[int, int]:
         return named["rev" if len(history) % 2 else "3211"]
 
     def advised(history: list[CandidateManeuver]) -> NoiselessManeuver:
-        option = recommended(history, crew)
+        option = next_input(history, crew, stopped=False).input
         return standard(history) if option is None else fly_input(scene, option)
 
     return _needed(scene, first, standard, noise, rng), _needed(scene, first, advised, noise, rng)

@@ -1,13 +1,18 @@
 """The lines of a campaign without a screen."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
 
-from advisor.campaign.campaign import Campaign
+from advisor.campaign.campaign import Campaign, ManeuverJudged
+from advisor.decision.advice import ENOUGH
+from advisor.decision.crew_plan import crew_plan
+from advisor.decision.verdict import FlightTestVerdict, NextInput
 from advisor.flight.maneuvers.events import DataAgain, NoData
+from advisor.report import follow as module
 from advisor.report.follow import follow
 from advisor.words.problems import Problem
 
@@ -49,6 +54,18 @@ def test_data_that_fail_after_they_served_give_an_alarm(of_log: bool) -> None:
 
 def test_a_link_that_begins_with_slow_streams_gives_an_alarm() -> None:
     assert lines([SLOW], of_log=False) == ["NO DATA: ATTITUDE arrives at 4.0 Hz. Ask for 50 Hz."]
+
+
+def test_a_complete_axis_is_no_complete_test_while_the_other_is_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "maneuver_line", lambda _: "1  3-2-1-1")
+    pitch = FlightTestVerdict("information", "stop", "TEST COMPLETE", 20.0, 100.0, 1, next=ENOUGH)
+    open_ = replace(pitch, decision="continue", next=NextInput("next: aileron doublet", None))
+    judged = ManeuverJudged(cast(Any, None), pitch, crew_plan(pitch, open_))
+    assert lines([judged], of_log=True) == [
+        "1  3-2-1-1",
+        "    Pitch is complete, roll and yaw are open.",
+        "    next: aileron doublet",
+    ]
 
 
 def test_the_campaign_type_has_what_follow_asks() -> None:
