@@ -41,6 +41,8 @@ starts of a lag differ by hundreds of times as much."""
 MODEL_ERROR = 1e-3
 """Numerical: error of the model's outputs over their spread. A surface behind a lag is linear between the
 stamps of the grid (``surface``)."""
+SAME_SHARE = 0.1
+"""Numerical: relative change of the share below which the fit is not repeated with the new one."""
 LEAST_SHARE = 0.01
 """Least share by which white noise weighs a prior; data without noise have no colour."""
 CONTRADICTS = 3.0
@@ -121,16 +123,21 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
     """
     if not unknown:
         return InstrumentFit(plain)
-    problem, place = _looked_about(plain, tuple(weighed(x, share_of(plain)) for x in unknown))
-    solution = plain
-    for _ in range(2):
-        share = share_of(solution)
+    share = share_of(plain)
+    names = tuple(weighed(x, share) for x in unknown)
+    found = _fitted(*_looked_about(plain, names), names, share)
+    if found is not None and not np.isclose(share_of(found), share, rtol=SAME_SHARE):
+        share = share_of(found)
         names = tuple(weighed(x, share) for x in unknown)
-        found = _fitted(problem, names, place, share)
-        if found is None:
-            return InstrumentFit(plain)
-        solution, problem, place = found, found.problem, (found.optimum.shared, found.optimum.local)
-    return _with_statements(names, _between_modes(solution, names), plain)
+        found = _fitted(found.problem, _place(found), names, share)
+    if found is None:
+        return InstrumentFit(plain)
+    return _with_statements(names, _between_modes(found, names), plain)
+
+
+def _place(solution: Solution) -> tuple[FloatArray, FloatArray]:
+    """Return the derivatives and the local parameters of a solution, from which another search begins."""
+    return solution.optimum.shared, solution.optimum.local
 
 
 def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
@@ -141,11 +148,11 @@ def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
     One manoeuvre takes its lag from all together, and looks for no second peak.
     """
     lag = next((x for x in names if x.name == SERVO_LAG.name and x.prior is not None), None)
-    if lag is None or len(best.problem.records) == 1:
+    if lag is None or len(best.problem.records) == 1 or lag.read(best.problem) < lag.resolution:
         return best
     there = lag.write(best.problem, lag.read(best.problem) / 3.0)
     share = share_of(best)
-    rival = _fitted(there, names, (best.optimum.shared, best.optimum.local), share)
+    rival = _fitted(there, _place(best), names, share)
     if rival is None:
         return best
     apart = 0.5 * share**2 * (rival.optimum.log_likelihood_cost - best.optimum.log_likelihood_cost)
@@ -158,8 +165,8 @@ def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
 
 def _fitted(
     problem: OutputErrorProblem,
-    names: Sequence[Instrument],
     place: tuple[FloatArray, FloatArray],
+    names: Sequence[Instrument],
     share: float,
 ) -> Solution | None:
     """Return the solution with instruments from a start; None where the search finds none.
@@ -205,8 +212,7 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
             kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, width, share))))
         else:
             problem = x.write(problem, x.stated)
-    place = solution.optimum.shared, solution.optimum.local
-    final = _fitted(problem, tuple(one.instrument for one in kept), place, share_of(solution))
+    final = _fitted(problem, _place(solution), tuple(one.instrument for one in kept), share_of(solution))
     return InstrumentFit(plain) if final is None else InstrumentFit(final, refreshed(kept, final))
 
 
