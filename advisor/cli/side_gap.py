@@ -134,7 +134,7 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
     gap = found.diagnosis
     if gap is not None and gap.after and found.verdict is not None:
         listed = ", ".join(map(str, found.maneuvers))
-        yield f"Gap on the held-out manoeuvres {listed}, mean square over that of the noise, minus 1:"
+        yield f"Gap on manoeuvres {listed}, each held out in turn, mean square over noise, minus 1:"
         for name, before in gap.before.items():
             yield f"  {name:<5} {before:8.2f} before, {gap.after[name]:.2f} after"
 
