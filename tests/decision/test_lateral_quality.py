@@ -96,3 +96,17 @@ def test_a_rate_that_hardly_exceeds_its_noise_is_too_gentle():
 def test_a_yaw_rate_below_one_degree_a_second_is_too_gentle():
     assert codes(flown(size=0.175), told()) == []
     assert codes(flown(size=0.173), told()) == ["amplitude"]
+
+
+def test_stamps_that_leap_are_the_one_reason():
+    assert codes(replace(flown(), leapt_s=7200.0), told()) == ["clock"]
+
+
+def test_a_short_record_of_which_the_advisor_missed_a_part_blames_the_advisor():
+    assert codes(replace(flown(free_s=0.3), missed_s=2.0), told(untold=["N_beta"])) == ["advisor_down"]
+
+
+def test_a_poor_record_is_told_how_much_more_of_its_control_to_use():
+    (reason,) = judge_lateral(flown(), told(band=0.5), Aircraft())
+    assert reason.code == "information"
+    assert reason.text.endswith("use about 2.2 times the rudder")
