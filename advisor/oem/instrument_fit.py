@@ -41,8 +41,6 @@ starts of a lag differ by hundreds of times as much."""
 MODEL_ERROR = 1e-3
 """Numerical: error of the model's outputs over their spread. A surface behind a lag is linear between the
 stamps of the grid (``surface``)."""
-SAME_SHARE = 0.1
-"""Numerical: relative change of the share below which the fit is not repeated with the new one."""
 LEAST_SHARE = 0.01
 """Least share by which white noise weighs a prior; data without noise have no colour."""
 CONTRADICTS = 3.0
@@ -126,7 +124,7 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
     share = share_of(plain)
     names = tuple(weighed(x, share) for x in unknown)
     found = _fitted(*_looked_about(plain, names), names, share)
-    if found is not None and not np.isclose(share_of(found), share, rtol=SAME_SHARE):
+    if found is not None:
         share = share_of(found)
         names = tuple(weighed(x, share) for x in unknown)
         found = _fitted(found.problem, _place(found), names, share)
