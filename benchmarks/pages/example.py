@@ -22,6 +22,7 @@ LOG = ROOT / "logs" / "arduplane-calm.tlog"
 AIRCRAFT = LOG.with_suffix(".yaml")
 UAV = """name: uav
 reference_airspeed_m_s: 22.0
+reference: {mass_kg: 10.0, wing_area_m2: 0.7, chord_m: 0.28, span_m: 2.5, iyy_kg_m2: 1.1}
 model: {Z_0: 0.04, Z_alpha: -4.3, Z_q: -0.03, Z_delta_e: -0.28,
         M_0: 0.0, M_alpha: -37.0, M_q: -4.8, M_delta_e: -52.0}
 """
