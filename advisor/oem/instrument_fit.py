@@ -1,7 +1,7 @@
 """Estimation of instrument parameters together with the derivatives.
 
-Gauss-Newton steps move all instruments of a problem, with everything else refitted. Three kinds of parameter
-differ by what is known before the flight:
+One search moves instruments and derivatives together (``descent``). Three kinds of parameter differ by what
+is known before the flight:
 
 - *The delays of the command and of the angle of attack* are nuisances of every log. A prior holds each, and
   every interval contains both. A late angle of attack and a vane's arm look nearly alike, and are off by
