@@ -49,3 +49,15 @@ def test_a_peak_far_below_the_best_adds_nothing(joint, monkeypatch):
 def test_the_higher_peak_is_the_estimate(joint, monkeypatch):
     _, rival, found = with_rival(joint, -1e4, monkeypatch)
     assert found.theta is rival.theta
+
+
+def test_coloured_noise_brings_a_lower_peak_nearer(joint, monkeypatch):
+    monkeypatch.setattr(instrument_fit, "share_of", lambda _: 0.1)
+    _, _, found = with_rival(joint, 200.0, monkeypatch)
+    np.testing.assert_allclose(found.modes[:8, :8], np.outer(OFF, OFF) / (1.0 + np.e), rtol=1e-9)
+
+
+def test_one_manoeuvre_looks_for_no_second_peak(monkeypatch):
+    alone = fit_jointly([equipped(lag_s=0.1, noise=0.02)], Aircraft(airspeed_m_s=SPEED)).fitted
+    best, _, found = with_rival(alone, 0.0, monkeypatch)
+    assert found is best
