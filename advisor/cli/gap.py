@@ -170,8 +170,8 @@ def command(
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.exports.models.flown import FlownModel
-    from advisor.gap.document import gap_document
     from advisor.gap.inference.prior import FIELD, field_prior
+    from advisor.report.gap_document import gap_document
     from advisor.report.gap_steps import next_steps
     from advisor.simulators.compare import Compared
     from advisor.words.plain import plain
@@ -222,7 +222,7 @@ def command(
 
 def compared_or_code(part: str, compare: "Callable[[], Found]", as_json: bool) -> "Found | int":
     """Return a comparison. Without one, print the answer that remains and return its exit code."""
-    from advisor.gap.document import gap_document
+    from advisor.report.gap_document import gap_document
 
     try:
         found = attempt(part, compare)

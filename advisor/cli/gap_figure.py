@@ -50,7 +50,7 @@ def write_figure(figure: Path | None, found: "Diagnosis") -> None:
     """
     if figure is None:
         return
-    from advisor.gap.document import gap_document
+    from advisor.report.gap_document import gap_document
     from advisor.report.page.gap_picture import write_gap_picture
 
     with writing("--figure", figure):

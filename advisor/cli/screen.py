@@ -149,15 +149,14 @@ def _show(
 def so_far(state: "CampaignState", aircraft: Aircraft) -> Iterator[str]:
     """Yield each verdict of a flight test that was left, and stop or continue; nothing before the first
     verdict of an axis."""
-    from advisor.report.lateral import lateral_decision, lateral_lines
+    from advisor.report.facts.decision import decisions
+    from advisor.report.lateral import lateral_lines
     from advisor.report.result_rows import maneuver_line
-    from advisor.report.text import next_line, stop_line
 
-    if state.maneuvers:
-        yield from map(maneuver_line, state.maneuvers)
-        yield stop_line(state.flight_test)
-        yield next_line(state.flight_test)
-    if state.lateral is not None and state.lateral.maneuvers:
+    lateral = state.lateral is not None and state.lateral.maneuvers
+    yield from map(maneuver_line, state.maneuvers)
+    if state.lateral is not None and lateral:
         yield "Roll and yaw"
         yield from lateral_lines(state.lateral, aircraft)
-        yield from lateral_decision(state.lateral)
+    if state.maneuvers or lateral:
+        yield from decisions(state, pitch=bool(state.maneuvers))

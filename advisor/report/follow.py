@@ -16,9 +16,9 @@ from advisor.flight.maneuvers.events import (
     VehicleFound,
 )
 from advisor.flight.signals.messages import Columns
+from advisor.report.facts.decision import next_line, stop_line
 from advisor.report.lateral import ROOM
 from advisor.report.result_rows import maneuver_line
-from advisor.report.text import next_line, stop_line
 from advisor.words.vehicle_time import CLOCK, clock
 
 

@@ -13,8 +13,8 @@ from advisor.gap.alternative import Alternative, Kind, Weighed
 from advisor.gap.decision import Decision
 from advisor.gap.result import Cause, Unseen, spelled
 from advisor.gap.verdict.text import BLOCKS, in_words
-from advisor.report.gap_reasons import heading, in_percent, weighed
-from advisor.report.gap_sizes import marked, sizes_of
+from advisor.report.facts.reasons import heading, in_percent, weighed
+from advisor.report.facts.sizes import marked, sizes_of
 
 _LIKELY = 0.01
 """Probability below which alternatives share one line."""
@@ -95,9 +95,7 @@ def why_of(d: Weighed) -> Iterator[RenderableType]:
         *reasons, total = weighed((reason.nats, reason.sentence) for reason in d.why)
         lines = [Text(f"{nats:>6s}  {said}") for nats, said in reasons]
         lines.append(Text(f"{total[0]:>6s}  {total[1]}", style="bold"))
-        stated = {one.alternative.label: one.alternative for one in d.evidence}
-        title = heading(in_words(d.answer), in_words(stated[d.rival]))
-        yield Panel(Group(*lines), title=title, title_align="left")
+        yield Panel(Group(*lines), title=heading(d), title_align="left")
     if d.decisions:
         decided = [Text(decision_in_words(decision)) for decision in d.decisions]
         yield Panel(Group(*decided), title="every decision on the way", title_align="left")

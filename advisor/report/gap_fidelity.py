@@ -11,7 +11,7 @@ from rich.text import Text
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Diagnosis, Gap, Trace
-from advisor.report.gap_sizes import before_after, short
+from advisor.report.facts.sizes import before_after, short
 from advisor.words.quantities import CHANNELS
 
 _TICKS = "▁▂▃▄▅▆▇█"

@@ -11,13 +11,14 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
-from advisor.gap.verdict.text import answers_of, limits_of, place, title_of
+from advisor.gap.verdict.text import answers_of, limits_of, title_of
 from advisor.process.installed import SIMULATOR
+from advisor.report.facts.gap import changes, grown_said, shrink_said, size_of_gap, where_said
+from advisor.report.facts.reasons import how_sure
+from advisor.report.facts.sizes import WORSE, short
 from advisor.report.gap_causes import PRESENT, ranking, unseen, why_of
 from advisor.report.gap_fidelity import errors, peaks, whereabouts, worst_maneuver, yardsticks
-from advisor.report.gap_reasons import how_sure
 from advisor.report.gap_simulator import simulated
-from advisor.report.gap_sizes import WORSE, before_after, changes, has_grown, short
 from advisor.report.gap_steps import GapStep
 
 WIDEST = 120
@@ -176,39 +177,18 @@ def _note(text: str) -> Table:
 
 
 def _numbers(d: Diagnosis) -> Text:
-    before, after = short(d.gap.before), short(d.gap.after)
-    lines = [f"gap {before_after(d.gap.before, d.gap.after)} times the noise floor's power"]
-    if d.verdict == "untested":
-        lines = [f"what the fitted model leaves: {after} times the noise floor's power"]
-    elif d.verdict == "none":
-        lines = [f"gap {before} times the noise floor's power, {after} with fitted numbers"]
+    lines = [size_of_gap(d)]
     if d.shrink is not None:
-        low, high = d.shrink.ci95_percent
-        lines.append(
-            f"{d.shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out "
-            f"manoeuvres: {_counted(d.shrink.holdout)}"
-        )
+        lines.append(shrink_said(d.shrink))
         if d.shrink.beyond_air_percent is not None:
             lines.append(f"without the air's own course: {d.shrink.beyond_air_percent:.0f} % less")
-    grown = [number for number, before, after in d.gap.by_maneuver if has_grown(after, before)]
-    if grown:
-        than = "fitted numbers are worse" if d.verdict == "none" else "worse than before"
-        lines.append(f"{WORSE} {than} in manoeuvres: {_counted(grown)}")
+    if grown := grown_said(d):
+        lines.append(f"{WORSE} {grown}")
     return Text("\n".join(lines))
 
 
-def _counted(numbers: Sequence[int]) -> str:
-    """Return ``1 to 9`` for numbers without a gap, else a list."""
-    if len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1:
-        return f"{numbers[0]} to {numbers[-1]}"
-    return ", ".join(map(str, numbers))
-
-
 def _where(d: Diagnosis) -> str:
-    if d.verdict not in ("effect", "unknown"):
-        return "where"
-    share = f", {100 * d.where.share:.0f} % of the gap" if d.where.share >= _WORTH_SAYING else ""
-    return f"where: {place(d.where.block)}{share}"
+    return f"where: {where_said(d.where)}" if d.verdict in ("effect", "unknown") else "where"
 
 
 def _picture(d: Diagnosis) -> Iterator[RenderableType]:

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.gap.result import InSimulator, Qualification, spelled
-from advisor.report.gap_sizes import short
+from advisor.report.facts.sizes import short
 from advisor.words.quantities import CHANNELS, Quantity
 
 _QUANTITIES = CHANNELS | {"a_z": Quantity("a_z", "g", 1.0 / GRAVITY_M_S2)}

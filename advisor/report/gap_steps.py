@@ -11,8 +11,9 @@ from advisor.gap.alternative import Contribution, together
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.result import Cause, Diagnosis, spelled
 from advisor.gap.verdict.text import answers_of
-from advisor.report.gap_reasons import in_percent
-from advisor.report.gap_sizes import changed, sizes_of
+from advisor.report.facts.gap import changed
+from advisor.report.facts.reasons import in_percent
+from advisor.report.facts.sizes import sizes_of
 from advisor.report.improved import improved_name
 from advisor.words.certainty import Answers, doubt_of
 
@@ -63,7 +64,7 @@ def next_steps(
         write, proved, formats = _improvement(better, aircraft_file, simulator)
         if written is None:
             command = shlex.join([*read, *write]) if write else ""
-            found.append(GapStep(f"Put into the simulator: {what}.{formats}", command))
+            found.append(GapStep(f"Put into the simulator what it lacks: {what}.{formats}", command))
         prove = shlex.join([*read, *proved])
         found.append(GapStep("Prove the change: the gap must fall to what is printed above.", prove))
     if rival := _against_the_rival(d):

@@ -11,11 +11,10 @@ from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.estimate import Estimate
 from advisor.oem.lateral_estimate import LateralEstimate, LateralModes
 from advisor.report.axis_document import fitted, flown, with_intervals
-from advisor.report.qualities import MODES, levels_document, levels_of, modes_told, tests_document, tests_of
-from advisor.report.result_rows import maneuver_line, parameter_row, untold
-from advisor.words.digits import with_half
+from advisor.report.facts.estimates import estimated_parameter, untold
+from advisor.report.qualities import levels_document, levels_of, mode_facts, tests_document, tests_of
+from advisor.report.result_rows import maneuver_line
 from advisor.words.plain import picked, plain
-from advisor.words.quantiles import NORMAL_95
 
 _quality = partial(picked, names="value std ci95")
 
@@ -97,13 +96,6 @@ def lateral_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
         yield from lateral_results(state, aircraft)
 
 
-def lateral_decision(state: LateralState) -> Iterator[str]:
-    """Yield stop or continue, and the next input."""
-    yield state.flight_test.sentence
-    if state.maneuvers and state.flight_test.next is not None:
-        yield f"  {state.flight_test.next.advice}"
-
-
 def lateral_results(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
     """Yield derivatives, modes, levels and tests of the joint estimate; nothing without one."""
     if state.model is not None:
@@ -113,15 +105,12 @@ def lateral_results(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
 
 def _model_lines(model: LateralEstimate) -> Iterator[str]:
     estimate = model.estimate
-    for row in (parameter_row(name, estimate, {}) for name in estimate.names):
+    for row in (estimated_parameter(name, estimate, {}) for name in estimate.names):
         if not row.reason:
-            yield f"  {row.quantity.symbol:<6} {row.cell:>20} {row.quantity.unit}"
+            yield f"  {row.name:<6} {row.cell:>20} {row.unit}"
     for text, names in untold(estimate).items():
         yield f"  not identifiable: {', '.join(names)} ({text})"
-    for name, quality in modes_told(model.modes).items():
-        words, unit = MODES[name]
-        half = NORMAL_95 * quality.std
-        yield f"  {words:<18} {with_half(quality.value, half)} {unit}".rstrip()
+    yield from (f"  {one.name:<18} {one.sentence}" for one in mode_facts(model.modes))
     for mode, text in model.modes.left_out.items():
         yield f"  no {mode.replace('_', ' ')}: {text}"
 

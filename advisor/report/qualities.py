@@ -17,11 +17,10 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.lateral import Trim
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED, SOURCE, LevelFound
 from advisor.oem.coefficients import CONVENTION, Coefficient, coefficients
-from advisor.oem.flying_qualities import UNITS, FlyingQualities, Quality, flying_qualities
+from advisor.oem.flying_qualities import UNITS, FlyingQualities, flying_qualities
 from advisor.oem.lateral_estimate import LateralModes
-from advisor.words.digits import with_half
+from advisor.report.facts.fact import Fact, fact_of
 from advisor.words.plain import picked
-from advisor.words.quantiles import NORMAL_95
 
 NAMES: Mapping[str, str] = {
     "natural_frequency": "short period ω_n",
@@ -101,8 +100,8 @@ def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient
     """Yield flying qualities and coefficients, one on each line, with half the 95 % interval."""
     yield f"Flying qualities at {_speeds(found)}:"
     for name, one in found.qualities.items():
-        shown = with_half(one.value, NORMAL_95 * one.std)
-        yield f"  {NAMES[name]:<17} {shown} {UNITS[name].removesuffix('1')}".rstrip()
+        fact = fact_of(NAMES[name], one.value, one.std, UNITS[name])
+        yield f"  {fact.name:<17} {fact.sentence}"
     for name, why in found.left_out.items():
         yield f"  {NAMES[name]:<17} not given: {why}"
     if found.levels:
@@ -111,10 +110,8 @@ def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient
         yield f"  {MANNED}"
     if coefficients:
         yield f"Coefficients {CONVENTION}:"
-        listed = "  ".join(
-            f"{name} {with_half(c.value, NORMAL_95 * c.std)}" for name, c in coefficients.items()
-        )
-        yield f"  {listed}"
+        each = (fact_of(name, one.value, one.std) for name, one in coefficients.items())
+        yield f"  {'  '.join(f'{fact.name} {fact.cell}' for fact in each)}"
     yield f"note: {found.air.sentence[0].upper()}{found.air.sentence[1:]}."
 
 
@@ -138,9 +135,10 @@ OPTIONAL = frozenset({"Y_p", "Y_r", "Y_delta_a"})
 """Derivatives that count as zero where the aircraft file states the others: a few per cent everywhere."""
 
 
-def modes_told(modes: LateralModes) -> dict[str, Quality]:
-    """Return the modes that the estimate tells, by the names of ``MODES``."""
-    return {name: one for name in MODES if (one := getattr(modes, name)) is not None}
+def mode_facts(modes: LateralModes) -> list[Fact]:
+    """Return frequency, damping, time constant and pole of the modes that the estimate tells."""
+    told = ((one, named) for name, named in MODES.items() if (one := getattr(modes, name)) is not None)
+    return [fact_of(name, one.value, one.std, unit) for one, (name, unit) in told]
 
 
 def levels_of(state: LateralState) -> tuple[LateralLevels, ...]:

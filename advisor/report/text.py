@@ -10,14 +10,15 @@ from rich.text import Text
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver
-from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.oem.estimate import Estimate
 from advisor.report import table as report_table
-from advisor.report.lateral import lateral_decision, lateral_lines
+from advisor.report.facts.decision import INDENT, decisions
+from advisor.report.facts.estimates import EstimatedParameter, estimated_parameter, joint_source
+from advisor.report.lateral import lateral_lines
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines, reference_speed
-from advisor.report.result_rows import ParameterRow, channel_table, maneuver_line, parameter_row
+from advisor.report.result_rows import channel_table, maneuver_line
 from advisor.words.digits import decimals_for, signed
 from advisor.words.vehicle_time import CLOCK, clock
 
@@ -47,28 +48,14 @@ def _listed(numbers: Sequence[int]) -> str:
     return f"{numbers[0]}-{numbers[-1]}" if whole else ", ".join(map(str, numbers))
 
 
-def stop_line(verdict: FlightTestVerdict) -> str:
-    """Return stop or continue, with the criterion and its limit."""
-    mark = "■" if verdict.decision == "stop" else "▶"
-    return f"{mark} {verdict.sentence}"
-
-
-def next_line(verdict: FlightTestVerdict) -> str:
-    """Return the next input, and the expected number of further manoeuvres."""
-    if verdict.next is None:
-        return "no advice yet"
-    more = "" if verdict.decision == "stop" else verdict.next.foretold
-    return "; ".join(filter(None, (verdict.next.advice, more)))
-
-
-def parameter_cells(row: ParameterRow) -> tuple[str, ...]:
+def parameter_cells(row: EstimatedParameter) -> tuple[str, ...]:
     """Return the cells of one parameter: symbol, value, intervals, the simulator's value, unit or reason."""
     known = "" if row.prior is None else row.prior_cell
     if row.reason:
-        return row.quantity.symbol, "–", "", "", known, row.reason
+        return row.name, "–", "", "", known, row.reason
     decimals = decimals_for(row.half)
     numbers = signed(row.value, decimals), signed(row.half, decimals), f"{row.half_if_white:.2g}"
-    return row.quantity.symbol, *numbers, known, row.quantity.unit
+    return row.name, *numbers, known, row.unit
 
 
 class AnalysisText:
@@ -87,7 +74,8 @@ class AnalysisText:
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the decisions on both axes first, then what they rest on."""
-        yield from self._decisions()
+        for line in decisions(self.state, pitch=self.pitch):
+            yield Text(line, style="" if line.startswith(INDENT) else "bold")
         yield Text()
         for flight in self.state.flights:
             vehicle = flight.vehicle if flight.vehicle else "no vehicle"
@@ -149,14 +137,13 @@ class AnalysisText:
             yield from (line for _, line in here)
 
     def _parameters(self, model: Estimate) -> Table:
-        speed = reference_speed(self.state)
-        numbers = ", ".join(str(number) for number in self.state.estimate_from)
-        rows = (parameter_row(name, model, self.aircraft.model) for name in PARAMETERS)
+        source = joint_source(self.state.estimate_from, reference_speed(self.state))
+        rows = (estimated_parameter(name, model, self.aircraft.model) for name in PARAMETERS)
         head = ("parameter", "estimate", "± 95 %", "± 95 % if white", "simulator", "unit")
         table = report_table.Table(
             "joint", "", head, tuple(map(parameter_cells, rows)), frozenset({1, 2, 3, 4})
         )
-        return table.on_console(f"Joint estimate from manoeuvres {numbers}{speed}")
+        return table.on_console(source)
 
     def _qualities(self) -> Iterator[Text]:
         reference = self.aircraft.reference
@@ -164,21 +151,6 @@ class AnalysisText:
         if found is not None:
             lines = quality_lines(found, coefficients_of(self.state, reference))
             yield from (Text(line, style="bold" if line[0] in "FC" else "") for line in lines)
-
-    def _decisions(self) -> Iterator[Text]:
-        """Yield stop or continue of each axis, with the next input: one input where both are tested."""
-        plan = self.state.plan if self.pitch else None
-        if self.pitch:
-            yield Text(stop_line(self.state.flight_test), style="bold")
-            if plan is None:
-                yield Text(f"  {next_line(self.state.flight_test)}")
-        if self.state.lateral is not None:
-            lead, *advice = lateral_decision(self.state.lateral)
-            yield Text(f"Roll and yaw: {lead}", style="bold")
-            yield from map(Text, advice if plan is None else ())
-        if plan is not None:
-            yield Text(f"Both axes: {plan.sentence}", style="bold")
-            yield Text(f"  {plan.advice}")
 
     def _rules(self) -> Iterator[Text]:
         """Yield the history of every rule, the information, and the warnings."""

@@ -63,8 +63,8 @@ def diagnosed(
         Options of the command line by which the logs are read.
     """
     from advisor.analysis.gap import compare_logs, named_simulator
-    from advisor.gap.document import gap_document
     from advisor.process.parts import FailedPart, attempt
+    from advisor.report.gap_document import gap_document
     from advisor.report.gap_steps import next_steps
     from advisor.words.plain import plain
     from advisor.words.problems import UnusableInputError
@@ -93,7 +93,7 @@ def diagnose_elsewhere(task: GapTask) -> Document:
     with start_child("advisor.session.diagnosis") as process:
         told, _ = process.communicate(pickle.dumps(task))
     if process.returncode or not told:
-        from advisor.gap.document import gap_document
+        from advisor.report.gap_document import gap_document
 
         said = f"The process of the diagnosis ended with exit code {process.returncode}."
         return gap_document(None, [Problem("diagnosis", said, "Run advisor gap in another terminal.")])

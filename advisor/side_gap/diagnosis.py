@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from statistics import fmean
 from typing import Literal
 
 import numpy as np
@@ -81,6 +82,17 @@ class SideDiagnosis(Weighed):
     waterfall: tuple[tuple[str, float], ...] = ()
     """Name of each effect of the model, and the gap that remains with it: the mean square over that of the
     whole model, minus 1."""
+
+    @property
+    def mean_gap(self) -> tuple[float, float] | None:
+        """Mean gap of the outputs, of the simulator and of the flight's derivatives; None without both."""
+        return (fmean(self.before.values()), fmean(self.after.values())) if self.after else None
+
+    @property
+    def shrink_percent(self) -> float | None:
+        """Share of the mean gap that the flight's derivatives remove, per cent; None without a gap."""
+        gap = self.mean_gap
+        return 100.0 * (1.0 - gap[1] / gap[0]) if gap and gap[0] > 0.0 else None
 
     @property
     def verdict(self) -> Kind:

@@ -8,7 +8,7 @@ from advisor.gap.effects import EFFECTS
 from advisor.gap.kit.effect import BLOCKS, Effect, Said, without_sizes
 from advisor.gap.kit.variant import Variant
 from advisor.gap.verdict.causes import parameters_of
-from advisor.report.gap_sizes import in_units, short
+from advisor.report.facts.sizes import in_units, short
 from benchmarks.pages.planned import PLANS, Plan, described
 
 _HEAD = """# The effects that a diagnosis can name

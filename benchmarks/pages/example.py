@@ -70,7 +70,7 @@ EXAMPLES: Sequence[Example] = (
             "analyze-qualities": [Part("Flying qualities", "  static margin")],
             "analyze-rules": [Part("rule continuous")],
             "analyze-short": [
-                Part(until="Roll and yaw"),
+                Part(until="arduplane-calm.tlog:"),
                 Part(" 1 ", " 3 "),
                 Part("Joint estimate", "note:"),
             ],

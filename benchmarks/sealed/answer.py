@@ -25,7 +25,7 @@ def answer(case: Path) -> tuple[dict[str, Any], float]:
     """Return the document of ``advisor gap --json`` (empty without one), and the CPU time in s."""
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.cli.options import read_aircraft
-    from advisor.gap.document import gap_document
+    from advisor.report.gap_document import gap_document
     from advisor.words.problems import UnusableInputError
     from sim.sealed.cases import AIRCRAFT, LOG
 

@@ -12,7 +12,8 @@ from advisor.flight.maneuvers.markers import SWEPT
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.parameters import filter_delay_s
-from advisor.report.lateral import lateral_decision, lateral_document, lateral_lines
+from advisor.report.facts.decision import lateral_decision
+from advisor.report.lateral import lateral_document, lateral_lines
 from tests.flight.columns import Wire, heartbeat, plane_parameters
 from tests.oem.lateral_builders import JET, flown, steps
 
@@ -111,7 +112,7 @@ def test_a_derivative_is_told_or_not_identifiable_and_never_both(state):
 def test_the_text_says_every_verdict_and_the_decision(state):
     lines = list(lateral_lines(state, AIRCRAFT))
     assert sum("doublet" in line and "✓" in line for line in lines) == 2
-    assert next(lateral_decision(state)).startswith(("TEST COMPLETE", "CONTINUE"))
+    assert next(lateral_decision(state)).startswith("Roll and yaw: CONTINUE: ")
 
 
 def test_the_result_does_not_depend_on_the_batches(both, state):
@@ -215,7 +216,7 @@ def test_where_nothing_states_an_output_that_is_said_and_not_that_nothing_was_fl
     assert state.flight_test.next is None
     assert list(lateral_lines(state, aircraft)) == []
     (line,) = lateral_decision(state)
-    assert line.startswith(said)
+    assert line.startswith(f"Roll and yaw: {said}")
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from advisor.gap.document import gap_document
+from advisor.report.gap_document import gap_document
 from tests.gap.test_report_screen import EVIDENCE, diagnosis
 from tests.schemas import breaches
 

@@ -7,13 +7,13 @@ import pytest
 
 from advisor.gap.alternative import Contribution
 from advisor.gap.decision import Decision
-from advisor.gap.document import gap_document
 from advisor.gap.result import ComparedDerivative, Shrink, Value
 from advisor.gap.verdict.text import limits_of
+from advisor.report.facts.gap import changed, changes
+from advisor.report.facts.reasons import in_percent, weighed
 from advisor.report.gap_causes import decision_in_words
+from advisor.report.gap_document import gap_document
 from advisor.report.gap_fidelity import peaks
-from advisor.report.gap_reasons import alternatives_of, heading_of, how_sure, in_percent, weighed
-from advisor.report.gap_sizes import changed, changes
 from advisor.report.gap_steps import next_steps
 from advisor.report.page.blocks import Listing
 from advisor.report.page.gap import answer, shown_causes
@@ -27,12 +27,12 @@ LOGS = ["flight.tlog"]
 
 
 def test_a_derivative_that_differs_stands_with_both_values_the_interval_and_the_change():
-    assert changed(STIFFER) == "M_α −44.60 → −34.30 ± 0.71 (−23 %)"
+    assert changed(STIFFER) == "M_α −44.60 → −34.30 ± 0.71 1/s² (−23 %)"
     assert changed(replace(STIFFER, given=-30.0)).endswith("(+14 %)")
 
 
 def test_a_derivative_of_another_sign_has_no_per_cent():
-    assert changed(replace(STIFFER, given=44.6)) == "M_α 44.60 → −34.30 ± 0.71"
+    assert changed(replace(STIFFER, given=44.6)) == "M_α 44.60 → −34.30 ± 0.71 1/s²"
 
 
 def test_derivatives_that_agree_share_a_line():
@@ -45,7 +45,7 @@ def test_wrong_numbers_are_named_in_the_box():
     lines = printed(diagnosis(verdict="parameters", derivatives=DERIVATIVES), 80)
     box = lines[: next(k for k, line in enumerate(lines) if line.startswith("╰"))]
     assert "WRONG NUMBERS" in box[0]
-    assert any("M_α −44.60 → −34.30 ± 0.71 (−23 %)" in line for line in box)
+    assert any("M_α −44.60 → −34.30 ± 0.71 1/s² (−23 %)" in line for line in box)
 
 
 def test_the_peak_error_comes_in_an_engineers_units():
@@ -77,7 +77,7 @@ def test_a_gap_that_has_grown_is_marked():
     gap = replace(diagnosis().gap, by_maneuver=((1, 2.0, 0.1), (2, 0.5, 0.7)))
     lines = printed(diagnosis(gap=gap), 80)
     assert any("0.5 → 0.7 ▲" in line for line in lines)
-    assert any(line.strip() == "▲ worse than before in manoeuvres: 2" for line in lines)
+    assert any(line.strip() == "▲ the gap is larger than before in manoeuvre 2" for line in lines)
 
 
 def test_a_gap_that_prints_alike_has_not_grown():
@@ -162,10 +162,10 @@ def test_the_reasons_of_the_document_end_with_their_sum_in_odds():
     found = gap_document(
         diagnosis(why=reasons, answer=EVIDENCE[0].alternative, rival="actuator_lag", evidence=EVIDENCE)
     )
-    assert heading_of(found).startswith("why transport delay, and not actuator lag")
+    assert found["why_heading"].startswith("why transport delay, and not actuator lag")
     assert weighed((one["nats"], one["text"]) for one in found["why"]) == [
         ("+2.0", "gain"),
         ("−0.5", "rest"),
         ("+1.5", "together: 4.5 to 1 for the answer"),
     ]
-    assert how_sure(alternatives_of(found)).startswith("Probability by the evidence: transport delay 82 %,")
+    assert found["how_sure"].startswith("Probability by the evidence: transport delay 82 %,")

@@ -99,7 +99,7 @@ def test_a_lag_that_the_data_cannot_tell_from_a_delay_is_named_with_it():
 
     two = "a delay between command and surface, or a servo that lags by 50 ms; adding"
     assert two in said(delay, lag, skew)
-    assert "real servo lags by 50 ms, or a delay of 60 ms; adding" in said(
+    assert "it lacks 50 ms of servo lag, or a delay of 60 ms; adding" in said(
         replace(lag, present=True, cannot_be_told_from=("transport_delay",)), replace(delay, present=False)
     )
     assert ", or " not in said(replace(delay, cannot_be_told_from=()), lag, skew)
@@ -108,5 +108,5 @@ def test_a_lag_that_the_data_cannot_tell_from_a_delay_is_named_with_it():
 def test_where_the_cause_was_taken_back_the_sentence_says_that_the_numbers_remove_the_gap():
     lag = replace(found("actuator_lag", lag_s=0.083), present=False)
     sentence = sentence_of("effect", diagnosis().gap, diagnosis().where, [lag], diagnosis().shrink)
-    assert "the real servo lags by 83 ms; the eight fitted derivatives alone remove" in sentence
+    assert "it lacks 83 ms of servo lag; the eight fitted derivatives alone remove" in sentence
     assert "adding it" not in sentence

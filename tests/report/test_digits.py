@@ -2,9 +2,8 @@
 
 import pytest
 
-from advisor.report.result_rows import ParameterRow
+from advisor.report.facts.estimates import EstimatedParameter
 from advisor.report.text import parameter_cells
-from advisor.words.quantities import PARAMETERS
 
 
 @pytest.mark.parametrize(
@@ -17,4 +16,5 @@ from advisor.words.quantities import PARAMETERS
 def test_a_value_has_the_decimals_of_its_interval(
     value: float, half: float, prior: float | None, cells: tuple[str, ...]
 ) -> None:
-    assert parameter_cells(ParameterRow(PARAMETERS["M_alpha"], value, half, 1.8, prior)) == cells
+    row = EstimatedParameter(name="M_α", unit="1/s²", value=value, half=half, half_if_white=1.8, prior=prior)
+    assert parameter_cells(row) == cells

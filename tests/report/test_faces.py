@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from io import StringIO
+from itertools import pairwise
 from math import degrees
 from pathlib import Path
 from typing import Any
@@ -20,9 +21,9 @@ from advisor.assistant.fitting import written
 from advisor.campaign.campaign import ManeuverJudged
 from advisor.cli.live import _announce
 from advisor.gap.alternative import Alternative, AlternativeEvidence
-from advisor.gap.document import gap_document
 from advisor.mavlink.link.announce import Announcer
 from advisor.report.document import analysis_document
+from advisor.report.gap_document import gap_document
 from advisor.report.gap_screen import GapScreen
 from advisor.report.page.blocks import Paragraph
 from advisor.report.page.gap import answer
@@ -48,6 +49,8 @@ BUNDLED = (
     b"model: {Z_alpha: -0.483, Z_q: 0.104, Z_delta_e: 0.676, M_alpha: -6.0, M_q: -2.01, M_delta_e: -7.21}"
 )
 LOGS = Path(__file__).parents[2] / "logs"
+FLIGHTS = LOGS.parents[1] / "shared" / "flights"
+"""Records of aircraft and autopilots that nobody here made, where they are at hand."""
 pytestmark = pytest.mark.xdist_group("report")
 
 Named = Iterator[tuple[str, str]]
@@ -113,7 +116,7 @@ def of_the_terminal(reported: Reported) -> Named:
         yield f"rate of {name}", rate
     decision, advice, *_ = text.splitlines()
     yield "decision", decision[2:]
-    yield "advice", advice.strip().removeprefix("next: ").partition("; ")[0]
+    yield from of_advice(advice)
     rule = reported.analysis["flight_test"]["rule"]
     for now in re.findall(rf"^rule {rule} .*criterion %: .*?([\d.]+)$", text, re.MULTILINE):
         yield "criterion", now
@@ -131,10 +134,18 @@ def of_the_box(text: str) -> Named:
     sure = next(k for k, line in enumerate(lines) if line.startswith("Probability"))
     yield "verdict", f"{title}: {' '.join(lines[1:sure])}"
     yield "probability", re.findall(r"(\d+) %", lines[sure])[0]
-    if found := re.search(r"^gap (\S+) → (\S+)(?: ▲)? times", text, re.MULTILINE):
-        yield "gap before", found[1].replace(",", "")
-        yield "gap after", found[2]
+    yield from of_a_size(text)
     yield from (("shrink", one) for one in re.findall(r"^([\d.−-]+) % less \(95", text, re.MULTILINE))
+
+
+def of_advice(line: str) -> Named:
+    yield "advice", line.strip().removeprefix("next: ").partition("; ")[0]
+
+
+def of_a_size(text: str) -> Named:
+    for before, after in re.findall(r"\bgap (\S+) → (\S+)(?: ▲)? times", text):
+        yield "gap before", before.replace(",", "")
+        yield "gap after", after
 
 
 def of_the_page(reported: Reported) -> Named:
@@ -142,23 +153,22 @@ def of_the_page(reported: Reported) -> Named:
     for row in page.tables.get("joint", [])[1:]:
         yield row[0], row[1]
     yield from (("air speed of the derivatives", one) for one in re.findall(SPEED, page.text))
-    yield from (("decision", mark) for mark in re.findall(r"[■▶] ([^\n<]+)", page.text))
+    for said, advice in pairwise(page.paragraphs):
+        if said[0] in "■▶":
+            yield "decision", said[2:]
+            yield from of_advice(advice)
     for name, cell, *_ in page.tables.get("instruments", ()):
-        if name == "servo lag":
+        if name.startswith("servo lag"):
             yield "servo lag, ms", cell
     for name, _, _, rate, _ in page.tables["channels-0"][1:]:
         yield f"rate of {name}", rate
     yield from (("criterion", one) for one in re.findall(r"its criterion is ([\d.]+) %", page.text))
-    for advice in re.findall(r"Next: ([^\n]+)\.\n", page.text):
-        yield "advice", advice
     yield from (("verdict", one) for one in page.paragraphs if one.startswith(f"{reported.gap['title']}: "))
     yield from (
         ("probability", one) for one in re.findall(r"Probability by the evidence: \D+(\d+) %", page.text)
     )
-    for before, after in re.findall(r"minus 1\): before (\S+), after (\S+)\.(?:\s|$)", page.text):
-        yield "gap before", before.replace(",", "")
-        yield "gap after", after
-    yield from (("shrink", one) for one in re.findall(r" ([\d.]+) % less \(95 %: ", page.text))
+    yield from of_a_size(page.text)
+    yield from (("shrink", one) for one in re.findall(r" ([\d.−-]+) % less \(95 %: ", page.text))
 
 
 async def of_the_screen(reported: Reported) -> list[tuple[str, str]]:
@@ -181,7 +191,8 @@ async def of_the_screen(reported: Reported) -> list[tuple[str, str]]:
             found.append(("criterion", f"{percent:.{len(now[1].partition('.')[2])}f}"))
     rows = [text for _, text in answer_rows(reported.gap)]
     found += [("verdict", rows[0]), ("probability", re.findall(r"(\d+) %", rows[1])[0])]
-    found += [("shrink", one) for row in rows for one in re.findall(r"^gap ([\d.]+) % less", row)]
+    found += [("shrink", one) for row in rows for one in re.findall(r"^([\d.−-]+) % less", row)]
+    found += [one for row in rows for one in of_a_size(row)]
     return found
 
 
@@ -240,7 +251,8 @@ async def test_every_number_and_sentence_of_a_flight_has_one_value_on_every_face
     assert all(faces[QUANTITIES[name].symbol] == everywhere for name in PARAMETERS)
     for name in ("decision", "criterion", "verdict", "probability"):
         assert faces[name] >= everywhere, name
-    for name in ("gap before", "gap after", "air speed of the derivatives", "advice", "rate of q"):
+    assert faces["gap before"] == faces["gap after"] == everywhere
+    for name in ("air speed of the derivatives", "advice", "rate of q"):
         assert faces[name] == everywhere - {"screen"}, name
     assert faces["expected error of M_α"] == {"document", "assistant", "terminal"}
 
@@ -249,9 +261,26 @@ async def test_every_number_and_sentence_of_a_flight_has_one_value_on_every_face
 @pytest.mark.timeout(600)
 @pytest.mark.parametrize("log", ["bundled-demo", "arduplane-calm", "arduplane-turbulent"])
 async def test_a_sample_log_has_one_value_for_each_number_on_every_face(log: str, tmp_path: Path) -> None:
-    path = tmp_path / "mine.yaml"
-    path.write_bytes((LOGS / "arduplane-calm.yaml").read_bytes() if "arduplane" in log else BUNDLED)
-    values = await of_all_faces(said_of(LOGS / f"{log}.tlog", path))
+    content = (LOGS / "arduplane-calm.yaml").read_bytes() if "arduplane" in log else BUNDLED
+    await assert_one_value(LOGS / f"{log}.tlog", content, tmp_path)
+
+
+@pytest.mark.study
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize("flight", ["jet-vane", "turboprop", "autopilot-16", "autopilot-42"])
+async def test_a_flight_of_others_has_one_value_for_each_number_on_every_face(
+    flight: str, tmp_path: Path
+) -> None:
+    log = FLIGHTS / f"{flight}.tlog"
+    if not log.exists():
+        pytest.skip("the records of others are not here")
+    await assert_one_value(log, log.with_suffix(".yaml").read_bytes(), tmp_path)
+
+
+async def assert_one_value(log: Path, aircraft: bytes, folder: Path) -> None:
+    path = folder / "mine.yaml"
+    path.write_bytes(aircraft)
+    values = await of_all_faces(said_of(log, path))
     assert {name: said for name, said in values.items() if len(said) > 1} == {}
     assert len(values) > 30
 

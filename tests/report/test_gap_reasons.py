@@ -2,7 +2,7 @@
 
 import pytest
 
-from advisor.report.gap_reasons import how_sure, in_percent, weighed
+from advisor.report.facts.reasons import how_sure, in_percent, weighed
 
 
 def test_four_alternatives_are_named_and_the_others_mentioned():

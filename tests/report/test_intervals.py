@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from advisor.oem.coefficients import Coefficient
+from advisor.report.facts.estimates import estimated_parameter
 from advisor.report.qualities import quality_lines
-from advisor.report.result_rows import parameter_row
 from advisor.words.digits import with_half
 from tests.decision.campaigns import estimate
 
@@ -29,7 +29,7 @@ def test_flying_qualities_and_coefficients_are_shown_with_half_their_interval() 
 
 
 def test_a_trim_is_shown_in_degrees_with_half_its_interval() -> None:
-    value, half = (float(part) for part in parameter_row("M_0", estimate(), {}).cell.split(" ± "))
+    value, half = (float(part) for part in estimated_parameter("M_0", estimate(), {}).cell.split(" ± "))
     assert value == pytest.approx(degrees(0.475), abs=0.05)
     assert half == pytest.approx(HALF * degrees(0.00475), abs=0.005)
 

@@ -87,7 +87,7 @@ def test_the_gap_is_that_of_gap(reported: Reported) -> None:
     gap, text = reported.gap, reported.page.text
     assert gap["verdict"] == "parameters"
     assert gap["sentence"] in text
-    assert f"before {gap['gap']['before']:.3g}, after {gap['gap']['after']:.3g}." in text
+    assert f"gap {gap['gap']['before']:.3g} → {gap['gap']['after']:.3g} times" in text
     before = [float(row[1]) for row in reported.page.tables["gap-channels"][1:]]
     assert before == pytest.approx(list(gap["gap"]["by_channel"].values()), rel=6e-3)
 

@@ -1,33 +1,27 @@
-"""The page has one lag to enter: the gap's, where it names one, else that of the estimate."""
+"""Two lags of a servo answer two questions, and only that of the estimate is for the aircraft file."""
 
-from types import SimpleNamespace
+from dataclasses import replace
 
-import pytest
+from advisor.gap.result import Value
+from advisor.gap.verdict.statements import what
+from advisor.oem.estimate import InstrumentEstimate
+from advisor.report.facts.estimates import instrument_facts
+from advisor.report.gap_steps import next_steps
+from tests.decision.campaigns import estimate
+from tests.gap.test_report_screen import DELAY, diagnosis
 
-from advisor.oem.findings import line_of
-from advisor.report.page.appendix import assumptions
-
-NOTE = "The servo's lag is 0.143 ± 0.020 s, by which the estimate lags the command. For the aircraft file: "
-
-
-def cause(in_model: bool) -> dict:
-    size = {"lag_s": {"value": 0.129, "std": 0.00765}}
-    return {"effect": "actuator_lag", "in_model": in_model, "parameters": size}
+LAG = replace(DELAY, effect="actuator_lag", parameters={"lag_s": Value(0.129, 0.00765)})
 
 
-@pytest.mark.parametrize(
-    ("gap", "entered"),
-    [
-        (None, "For the aircraft file: elevator: {lag_s: 0.143}"),
-        ({"causes": [cause(in_model=False)]}, "For the aircraft file: elevator: {lag_s: 0.143}"),
-        ({"causes": [cause(in_model=True)]}, "Put into the simulator what it lacks by the gap: 129 ± 15 ms."),
-    ],
-)
-def test_the_lag_to_enter_is_that_of_the_gap_where_the_gap_names_one(gap, entered):
-    estimate = SimpleNamespace(instrument=lambda name: SimpleNamespace(value=0.143))
-    notes = [NOTE + line_of("servo_lag_s", 0.143), "Another note."]
-    analysis = {"log": {"notes": []}, "model": {"notes": notes}}
-    state = SimpleNamespace(model=estimate, flights=())
-    content = SimpleNamespace(analysis=analysis, gap=gap, state=state, names=())
-    (said,) = assumptions(content).blocks
-    assert said.items == (NOTE.partition(" For the")[0] + " " + entered, "Another note.")
+def test_the_lag_of_the_estimate_is_that_by_which_it_delays_the_command() -> None:
+    found = replace(estimate(), instruments=(InstrumentEstimate("servo_lag_s", 0.143, 0.0102, None),))
+    ((fact, stated),) = instrument_facts(found, {})
+    assert (fact.name, stated) == ("servo lag, by which the estimate delays the command", "–")
+    assert fact.sentence == "143 ± 20 ms"
+
+
+def test_the_lag_of_the_gap_is_what_the_simulator_lacks() -> None:
+    said = [what(LAG), next_steps(diagnosis(causes=(LAG,)), ["flight.tlog"], "mine.yaml")[0].text]
+    assert said[0].endswith("it lacks 129 ms of servo lag")
+    assert said[1].startswith("Put into the simulator what it lacks: actuator lag 129 ± 15 ms.")
+    assert not any("aircraft file" in one for one in said)

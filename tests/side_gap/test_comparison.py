@@ -8,9 +8,9 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import SideControl
 from advisor.aircraft.sensors import Beta
-from advisor.cli.side_gap import side_gap_document
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
+from advisor.report.side_gap import side_gap_document
 from advisor.side_gap import comparison
 from advisor.side_gap.comparison import compare_side
 from tests.oem.lateral_builders import JET, aileron_doublet, flown, rudder_doublet

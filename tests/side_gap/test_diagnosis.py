@@ -10,11 +10,11 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.aircraft.sensors import Beta
-from advisor.cli.side_gap import side_gap_document, side_gap_lines
 from advisor.gap.alternative import Alternative, AlternativeEvidence, together
 from advisor.gap.inference.explanation import Evidence, Row
 from advisor.gap.inference.posterior import NONE
 from advisor.gap.result import Cause, Value
+from advisor.report.side_gap import side_gap_document, side_gap_lines
 from advisor.side_gap import diagnosis
 from advisor.side_gap import flight as flight_of_side
 from advisor.side_gap.comparison import SideGap

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from advisor.gap.alternative import Alternative, AlternativeEvidence
-from advisor.gap.document import gap_document
 from advisor.gap.result import ComparedDerivative, Diagnosis, Value
 from advisor.gap.verdict.text import title_of
+from advisor.report.gap_document import gap_document
 from advisor.report.gap_steps import next_steps
 from advisor.simulators.contradicted import contradicted
 from tests.gap.test_report_screen import CURVED, DELAY, diagnosis, printed

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from advisor.gap.alternative import Contribution
-from advisor.gap.document import gap_document
+from advisor.report.gap_document import gap_document
 from advisor.session.diagnosis import GapTask, diagnose_elsewhere
 from advisor.tui.panes import gap as pane
 from advisor.tui.plot.widget import Plot
@@ -63,7 +63,7 @@ async def test_choosing_the_pane_diagnoses_the_flight_and_shows_the_worst_manoeu
         assert "99.9 % less" in said
         assert "1. Put it there. advisor gap x" in said
         assert "Probability by the evidence: transport delay 82 %, actuator lag 18 %." in said
-        assert "▲ larger than before in manoeuvre 3" in said
+        assert "▲ the gap is larger than before in manoeuvre 3" in said
         assert "+2.0 gain in the fit" in said
         assert "+1.5 together: 4.5 to 1 for the answer" in said
         chart = here.app.screen.query_one("#gap-alpha", Plot).chart

@@ -35,10 +35,10 @@ EFFECT = Effect(
     keys={"lag_s": 0.0, "damping": 0.0},
     variants=always(LAG, _SECOND),
     said=(
-        "The simulator's elevator is too quick: the real servo lags by {lag_s_ms:.0f} ms",
+        "The simulator's elevator is too quick: it lacks {lag_s_ms:.0f} ms of servo lag",
         "The simulator's elevator is too slow: its servo lags by {lag_s_ms:.0f} ms too much",
     ),
-    said_beyond="The simulator's elevator is too quick: the real servo lags by {lag_s_ms:.0f} ms more",
+    said_beyond="The simulator's elevator is too quick: it lacks {lag_s_ms:.0f} ms more of servo lag",
     said_or="a servo that lags by {lag_s_ms:.0f} ms",
     distinguished_by={
         "transport_delay": "log the measured surface position",

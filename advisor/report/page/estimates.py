@@ -6,11 +6,16 @@ from matplotlib.figure import Figure as Drawing
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.oem.estimate import Estimate
+from advisor.report.facts.estimates import (
+    EstimatedParameter,
+    estimated_parameter,
+    instrument_facts,
+    joint_source,
+)
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, ORANGE, picture
 from advisor.report.qualities import reference_speed
-from advisor.report.result_rows import ParameterRow, instrument_rows, parameter_row
 from advisor.report.table import Table
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 
@@ -30,18 +35,18 @@ def _blocks(content: Content) -> Iterator[Block]:
     if model is None:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")
         return
-    joint = {name: parameter_row(name, model, prior) for name in PARAMETERS}
-    alpha = content.state.channels.get("alpha")
-    with_vane = alpha is not None and alpha.provenance in ("vane", "simulated")
-    if rows := instrument_rows(model, with_vane):
+    joint = {name: estimated_parameter(name, model, prior) for name in PARAMETERS}
+    if found := instrument_facts(model, content.state.channels):
         yield Table(
             "instruments",
             "Nuisance parameters, estimated with the derivatives; ± is half the 95 % interval.",
             ("nuisance parameter", "estimate ± 95 %", "aircraft file", "unit"),
-            tuple((row.name, row.cell, row.stated, row.unit) for row in rows), frozenset({1, 2}),
+            tuple((one.name, one.cell, stated, one.unit) for one, stated in found), frozenset({1, 2}),
         )  # fmt: skip
     alone = {
-        str(one.maneuver.number): {name: parameter_row(name, one.estimate, prior) for name in PARAMETERS}
+        str(one.maneuver.number): {
+            name: estimated_parameter(name, one.estimate, prior) for name in PARAMETERS
+        }
         for one in content.state.maneuvers
         if one.verdict.accepted and isinstance(one.estimate, Estimate)
     }
@@ -59,26 +64,30 @@ def joint_table(content: Content) -> Table | None:
     model = content.state.model
     if model is None:
         return None
-    at = reference_speed(content.state)
-    rows = [parameter_row(name, model, content.aircraft.model) for name in PARAMETERS]
-    told = f"{at}; ± is half the 95 % interval."
-    return joint_of("joint", content.state.estimate_from, told, rows, with_reasons=True)
+    rows = [estimated_parameter(name, model, content.aircraft.model) for name in PARAMETERS]
+    source = joint_source(content.state.estimate_from, reference_speed(content.state))
+    return joint_of("joint", source, rows, with_reasons=True)
 
 
 def joint_of(
-    name: str, numbers: Iterable[int], told: str, rows: Iterable[ParameterRow], *, with_reasons: bool = False
+    name: str,
+    source: str,
+    rows: Iterable[EstimatedParameter],
+    more: str = "",
+    *,
+    with_reasons: bool = False,
 ) -> Table:
-    """Return the table ``name`` of a joint estimate from manoeuvres; ``told`` ends the sentence above it."""
+    """Return the table ``name`` of a joint estimate; ``more`` follows the sentence above the table."""
     return Table(
-        name, f"Joint estimate from manoeuvres {', '.join(map(str, numbers))}{told}",
+        name, f"{source}; ± is half the 95 % interval.{more}",
         ("parameter", "estimate ± 95 %", "± 95 % if white", "simulator", "unit"),
         tuple(
             (
-                row.quantity.symbol,
+                row.name,
                 f"– ({row.reason})" if row.reason and with_reasons else row.cell,
                 "–" if row.reason else f"{row.half_if_white:.2g}",
                 row.prior_cell,
-                row.quantity.unit,
+                row.unit,
             )
             for row in rows
         ),
@@ -92,19 +101,21 @@ def _narrow(cell: str) -> str:
 
 
 def _forest(
-    name: str, alone: Mapping[str, Mapping[str, ParameterRow]], joint: Mapping[str, ParameterRow]
+    name: str, alone: Mapping[str, Mapping[str, EstimatedParameter]], joint: Mapping[str, EstimatedParameter]
 ) -> Figure:
     rows = [*((number, found[name]) for number, found in alone.items()), ("joint", joint[name])]
     known = [(label, row) for label, row in rows if row.is_known]
     svg = picture(f"forest-{name}", 2.4, min(0.9 + 0.15 * len(rows), _TALLEST_IN), _paint, joint[name], known)
     told = "" if joint[name].prior is None else " Dashes: the simulator's value."
-    symbol = joint[name].quantity.symbol
+    symbol = joint[name].name
     return Figure(
         svg, f"{symbol}: each manoeuvre and the joint estimate with 95 % intervals.{told}", "quarter"
     )
 
 
-def _paint(drawing: Drawing, joint: ParameterRow, known: Sequence[tuple[str, ParameterRow]]) -> None:
+def _paint(
+    drawing: Drawing, joint: EstimatedParameter, known: Sequence[tuple[str, EstimatedParameter]]
+) -> None:
     axes = drawing.subplots()
     for at, (label, row) in enumerate(known):
         of_all = label == "joint"
@@ -119,5 +130,5 @@ def _paint(drawing: Drawing, joint: ParameterRow, known: Sequence[tuple[str, Par
     named = [(at, label) for at, (label, _) in enumerate(known) if at % every == 0 or label == "joint"]
     axes.set_yticks([at for at, _ in named], [label for _, label in named])
     axes.invert_yaxis()
-    axes.set_xlabel(joint.quantity.label)
+    axes.set_xlabel(joint.label)
     axes.locator_params(axis="x", nbins=5)

@@ -12,13 +12,13 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.mil_f_8785c import CATEGORIES, LIMITS, Range, ShortPeriodLimits
+from advisor.report.facts.fact import fact_of
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLACK, BLUE, GREY, log_ticks, picture
 from advisor.report.qualities import NAMES
 from advisor.report.table import Table
-from advisor.words.digits import with_half
-from advisor.words.quantiles import NORMAL_95, PAIR_95
+from advisor.words.quantiles import PAIR_95
 
 
 def flying(content: Content) -> Section:
@@ -65,7 +65,7 @@ def _blocks(content: Content) -> Iterator[Block]:
 
 
 def _with_interval(one: Document) -> str:
-    return with_half(one["value"], NORMAL_95 * one["std"])
+    return fact_of("", one["value"], one["std"]).cell
 
 
 _FILLS = ("#c6dbef", "#e1ecf7", "#f3f7fb")

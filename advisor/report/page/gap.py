@@ -8,17 +8,16 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FuncFormatter
 
 from advisor.gap.result import Value, spelled
-from advisor.gap.verdict.text import place
-from advisor.report.gap_reasons import alternatives_of, heading_of, how_sure, in_percent, is_shown, weighed
-from advisor.report.gap_sizes import WORSE, marked, short, sizes_of
+from advisor.report.facts.reasons import in_percent, is_shown, weighed
+from advisor.report.facts.sizes import WORSE, marked, short, sizes_of
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Verbatim, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
 from advisor.report.page.gap_picture import caption, gap_picture
 from advisor.report.table import Table
-from advisor.words.digits import decimals_for, signed, with_half
-from advisor.words.quantities import CHANNELS, PARAMETERS
+from advisor.words.quantities import CHANNELS
 
+_DEFINED = "The gap is the mean square of the simulator's error over that of the noise floor, minus 1: "
 _LINEAR = 10.0
 """Largest gap on a linear axis."""
 
@@ -41,12 +40,10 @@ def _blocks(found: Document) -> Iterator[Block]:
         close, phone = gap_picture("gap-picture", found), gap_picture("gap-phone", found, across=1)
         yield Gallery((Figure(close, caption(found), narrow=phone, printed=False),))
     if found["parameters_changed"]:
-        yield Table(
-            "gap-parameters", "Derivatives that differ from the simulator's; the others agree within 95 %.",
-            ("derivative", "simulator", "flight ± 95 %", "change", "unit"),
-            tuple(map(_changed, found["parameters_changed"])), frozenset({1, 2, 3}),
-        )  # fmt: skip
-    yield Paragraph(_size(size, untested=found["verdict"] is None) + _shrink(shrink))
+        yield Paragraph("Derivatives that differ from the simulator's; the others agree within 95 %:")
+        yield from listing([one["text"] for one in found["parameters_changed"]])
+    said = (size["text"], shrink and shrink["text"], size["grown"])
+    yield Paragraph(f"{_DEFINED}{'. '.join(filter(None, said))}.")
     yield Table(
         "gap-channels", f"Gap by channel. {WORSE}: larger than before.",
         ("channel", "before", "after", "noise floor"),
@@ -54,7 +51,7 @@ def _blocks(found: Document) -> Iterator[Block]:
     )  # fmt: skip
     where = found["where"]
     if found["verdict"] in ("effect", "unknown"):
-        yield Paragraph(f"Where: {place(where['block'])}, {100.0 * where['share']:.0f} % of the gap.")
+        yield Paragraph(f"Where: {where['text']}.")
     steps = [(spelled(s["effect"]), s["after"]) for s in found["waterfall"] if s["after"] != size["before"]]
     if steps:
         rows = [("as it is", size["before"]), *((f"+ {name}", after) for name, after in steps)]
@@ -69,7 +66,7 @@ def _blocks(found: Document) -> Iterator[Block]:
         )  # fmt: skip
     if found["why"]:
         reasons = weighed((one["nats"], one["text"]) for one in found["why"])
-        title = heading_of(found)
+        title = found["why_heading"]
         yield Table(
             "gap-why",
             f"{title[0].upper()}{title[1:]}. First the value of the answer, then that of the rival.",
@@ -93,8 +90,8 @@ def _blocks(found: Document) -> Iterator[Block]:
 def answer(found: Document) -> Iterator[Block]:
     """Yield the sentence, how sure it is, and what limits it."""
     yield Paragraph(f"{found['title']}: {found['sentence']}", "verdict")
-    if sure := how_sure(alternatives_of(found)):
-        yield Paragraph(sure)
+    if found["how_sure"]:
+        yield Paragraph(found["how_sure"])
     yield from listing(list(found["limits"]))
 
 
@@ -103,36 +100,11 @@ def shown_causes(found: Document) -> list[Mapping[str, Any]]:
     return [cause for cause in found["causes"] if cause["in_model"] or is_shown(cause["probability"])]
 
 
-def _changed(one: Mapping[str, Any]) -> tuple[str, ...]:
-    quantity = PARAMETERS[one["derivative"]]
-    low, high = one["ci95"]
-    half, found = 0.5 * (high - low) * quantity.factor, one["found"] * quantity.factor
-    share = "–" if one["percent"] is None else f"{signed(one['percent'], 0)} %"
-    given = signed(one["simulator"] * quantity.factor, decimals_for(half))
-    return quantity.symbol, given, with_half(found, half), share, quantity.unit
-
-
-def _size(size: Mapping[str, Any], untested: bool) -> str:
-    what = "mean square of the simulator's error over the noise floor's, minus 1"
-    if untested:
-        return f"The fitted model leaves {short(size['after'])} ({what})."
-    return f"Gap ({what}): before {short(size['before'])}, after {short(size['after'])}."
-
-
 def _channel(name: str, size: Mapping[str, Any]) -> tuple[str, ...]:
     after, quantity = size["by_channel_after"].get(name), CHANNELS[name]
     floor = f"{size['floor'][name] * quantity.factor:.2g} {quantity.unit}"
     before = size["by_channel"][name]
     return quantity.symbol, short(before), "–" if after is None else marked(after, before), floor
-
-
-def _shrink(shrink: Mapping[str, Any] | None) -> str:
-    if shrink is None:
-        return ""
-    low, high = shrink["ci95_percent"]
-    interval = "" if low is None or high is None else f" (95 %: {low:.1f} to {high:.1f})"
-    held_out = ", ".join(map(str, shrink["holdout"]))
-    return f" {shrink['percent']:.1f} % less{interval} on held-out manoeuvres {held_out}."
 
 
 def _cause(cause: Mapping[str, Any], before: float) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from advisor.report.page.content import Content
 from advisor.report.page.estimates import joint_table
 from advisor.report.page.gap import answer
 from advisor.report.page.gap_picture import caption, gap_picture
-from advisor.report.page.lateral import derivatives, lateral_verdict
+from advisor.report.page.lateral import decided, derivatives
 from advisor.report.table import Table
 
 _GLANCE = 4
@@ -25,28 +25,18 @@ def _blocks(content: Content) -> Iterator[Block]:
     yield _flown(content)
     side = content.state.lateral
     if side is not None and side.maneuvers and not maneuvers:
-        yield from lateral_verdict(side)
+        yield from decided(content.state, pitch=False)
         if side.model is not None:
             yield derivatives(side, side.model, content.aircraft.model, "lateral-glance")
         yield Paragraph(verdict["sentence"])
         return
-    mark = "■" if verdict["decision"] == "stop" else "▶"
-    yield Paragraph(f"{mark} {verdict['sentence']}", "verdict")
+    yield from decided(content.state)
     if maneuvers:
         yield Paragraph(
             f"{len(accepted)} of {len(maneuvers)} manoeuvres are accepted. The rule {verdict['rule']} "
             f"decides: {_criterion(verdict['criterion_percent'], verdict['limit_percent'])}."
         )
-    following = verdict["next"]
-    if following is not None and content.state.plan is None:
-        yield Paragraph(f"Next: {following['advice'].removeprefix('next: ')}.".replace("..", "."))
     yield from listing([f"Warning: {warning}" for warning in verdict["warnings"]])
-    if side is not None and (side.maneuvers or not maneuvers or side.flight_test.next is None):
-        yield Paragraph(f"Roll and yaw: {side.flight_test.sentence}")
-    plan = content.state.plan
-    if plan is not None:
-        advice = plan.advice.removeprefix("next: ")
-        yield Paragraph(f"Both axes: {plan.sentence} Next: {advice}.")
     joint = joint_table(content)
     if joint is not None:
         yield joint

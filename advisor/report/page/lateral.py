@@ -3,24 +3,23 @@
 from collections.abc import Iterator, Mapping
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.campaign.state import JudgedLateral, LateralState
+from advisor.campaign.state import CampaignState, JudgedLateral, LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE
 from advisor.decision.lateral_qualification import LateralTest
 from advisor.model.lateral import LATERAL
 from advisor.model.mil_f_8785c import MANNED
 from advisor.oem.estimate import Estimate
 from advisor.oem.lateral_estimate import LateralEstimate
+from advisor.report.facts.decision import INDENT, decisions
+from advisor.report.facts.estimates import estimated_parameter, joint_source, untold
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import picture
 from advisor.report.page.estimates import joint_of
 from advisor.report.page.fits import by_fit, caption_of, paint_rows
 from advisor.report.page.maneuvers import HEAD, maneuver_row
-from advisor.report.qualities import MODE_NAMES, MODES, levels_of, modes_told, tests_of
-from advisor.report.result_rows import parameter_row, untold
+from advisor.report.qualities import MODE_NAMES, levels_of, mode_facts, tests_of
 from advisor.report.table import Table
-from advisor.words.digits import with_half
-from advisor.words.quantiles import NORMAL_95
 from advisor.words.vehicle_time import CLOCK
 
 
@@ -33,7 +32,7 @@ def lateral(content: Content) -> Section | None:
 
 
 def _blocks(content: Content, state: LateralState) -> Iterator[Block]:
-    yield from lateral_verdict(state)
+    yield from decided(content.state, pitch=False)
     rows = tuple(
         maneuver_row(one, several=len(content.names) > 1) for one in content.analysis["lateral"]["maneuvers"]
     )
@@ -50,23 +49,20 @@ def _blocks(content: Content, state: LateralState) -> Iterator[Block]:
     yield from lateral_fits(state)
 
 
-def lateral_verdict(state: LateralState) -> Iterator[Block]:
-    """Yield the sentence on the lateral test, and the next input."""
-    verdict = state.flight_test
-    mark = "■" if verdict.decision == "stop" else "▶"
-    yield Paragraph(f"{mark} {verdict.sentence}", "verdict")
-    if verdict.next is not None:
-        yield Paragraph(f"Next: {verdict.next.advice.removeprefix('next: ')}.")
+def decided(state: CampaignState, *, pitch: bool = True) -> Iterator[Block]:
+    """Yield stop or continue of each axis, and the next input."""
+    for line in decisions(state, pitch=pitch):
+        yield Paragraph(line.strip(), "plain" if line.startswith(INDENT) else "verdict")
 
 
 def derivatives(state: LateralState, model: LateralEstimate, prior: Mapping[str, float], name: str) -> Table:
     """Return the table of the joint estimate under this name, which is unique on a page."""
     return joint_of(
-        name, state.estimate_from,
-        f" at {model.estimate.airspeed_m_s:.1f} m/s; ± is half the 95 % interval. L and N hold the products "
-        "of inertia.",
-        [parameter_row(one, model.estimate, prior) for one in SIDE_PARAMETERS],
-    )  # fmt: skip
+        name,
+        joint_source(state.estimate_from, f" at {model.estimate.airspeed_m_s:.1f} m/s"),
+        [estimated_parameter(one, model.estimate, prior) for one in SIDE_PARAMETERS],
+        " L and N hold the products of inertia.",
+    )
 
 
 def _untold(model: LateralEstimate) -> list[str]:
@@ -78,15 +74,12 @@ def _untold(model: LateralEstimate) -> list[str]:
 
 def _modes(content: Content, state: LateralState) -> Iterator[Block]:
     model = state.model
-    told = modes_told(model.modes) if model is not None else {}
-    if told:
+    modes = mode_facts(model.modes) if model is not None else []
+    if modes:
         yield Table(
             "lateral-modes", "Modes of the joint estimate, ± half the 95 % interval (delta method).",
             ("mode", "value ± 95 %", "unit"),
-            tuple(
-                (MODES[name][0], with_half(one.value, NORMAL_95 * one.std), MODES[name][1])
-                for name, one in told.items()
-            ),
+            tuple((one.name, one.cell, one.unit) for one in modes),
             frozenset({1}),
         )  # fmt: skip
     levels = levels_of(state)

@@ -10,16 +10,15 @@ from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 from textual.events import Resize
 
-from advisor.report.gap_reasons import alternatives_of, heading_of, how_sure, weighed
-from advisor.report.gap_sizes import WORSE, has_grown
+from advisor.report.facts.reasons import weighed
+from advisor.report.facts.sizes import WORSE
 from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
 from advisor.session.view import View
 from advisor.tui.panes.lines import HangingLines, Labelled
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Series
 from advisor.tui.plot.widget import Plot
-from advisor.words.digits import decimals_for, signed, with_half
-from advisor.words.quantities import PARAMETERS, channel
+from advisor.words.quantities import channel
 
 _SHOWN = ("alpha", "q", "a_z", "theta")
 _ROWS_FOR_ONE = 6
@@ -121,43 +120,19 @@ def answer_rows(document: Document) -> Iterator[Labelled]:
         yield from (("✗ ", f"{problem['text']} {problem['fix']}") for problem in document["problems"])
         return
     yield "", f"{document['title']}: {document['sentence']}"
-    if sure := how_sure(alternatives_of(document)):
-        yield "", sure
+    if document["how_sure"]:
+        yield "", document["how_sure"]
     yield from (("! ", limit) for limit in document["limits"])
-    yield from (("  ", _changed(one)) for one in document["parameters_changed"])
-    shrink = document["shrink"]
-    if shrink is not None:
-        low, high = shrink["ci95_percent"]
-        yield "", f"gap {shrink['percent']:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out manoeuvres"
-    if worse := _worse(document["gap"]):
-        yield f"{WORSE} ", worse
+    yield from (("  ", one["text"]) for one in document["parameters_changed"])
+    yield from (("", one["text"]) for one in (document["gap"], document["shrink"]) if one is not None)
+    if document["gap"]["grown"]:
+        yield f"{WORSE} ", document["gap"]["grown"]
     for number, step in enumerate(document["next"], start=1):
         yield f"{number}. ", " ".join(filter(None, (step["text"], step["command"])))
     if document["why"]:
-        yield "", heading_of(document)
+        yield "", document["why_heading"]
         reasons = weighed((one["nats"], one["text"]) for one in document["why"])
         yield from ((f"{nats:>6}  ", said) for nats, said in reasons)
-
-
-def _worse(size: Mapping[str, Any]) -> str:
-    """Return the channels and manoeuvres whose gap has grown; empty where none has."""
-    channels = [
-        channel(name).symbol
-        for name, after in size["by_channel_after"].items()
-        if has_grown(after, size["by_channel"][name])
-    ]
-    numbers = [str(one["number"]) for one in size["by_maneuver"] if has_grown(one["after"], one["before"])]
-    noun = "manoeuvre" if len(numbers) == 1 else "manoeuvres"
-    grown = [*channels, *([f"{noun} {', '.join(numbers)}"] if numbers else [])]
-    return f"larger than before in {', '.join(grown)}" if grown else ""
-
-
-def _changed(one: Mapping[str, Any]) -> str:
-    quantity = PARAMETERS[one["derivative"]]
-    low, high = one["ci95"]
-    half = 0.5 * (high - low) * quantity.factor
-    given = signed(one["simulator"] * quantity.factor, decimals_for(half))
-    return f"{quantity.symbol} {given} → {with_half(one['found'] * quantity.factor, half)} {quantity.unit}"
 
 
 def _chart(name: str, trace: Mapping[str, Any]) -> Chart:

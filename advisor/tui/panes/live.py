@@ -6,7 +6,7 @@ from textual.events import Resize
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
-from advisor.report.result_rows import parameter_row
+from advisor.report.facts.estimates import estimated_parameter
 from advisor.session.view import View
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
@@ -77,5 +77,5 @@ def _settling_in_words(state: CampaignState) -> str:
     settling = state.settling
     if settling is None or not state.readable:
         return f"{state.progress}; numbers come when the input is over and they agree with the tests before."
-    rows = [parameter_row(name, settling, {}) for name in ("M_alpha", "M_q", "M_delta_e", "Z_alpha")]
-    return "   ".join(f"{row.quantity.symbol} {row.cell}" for row in rows)
+    rows = [estimated_parameter(name, settling, {}) for name in ("M_alpha", "M_q", "M_delta_e", "Z_alpha")]
+    return "   ".join(f"{row.name} {row.cell}" for row in rows)

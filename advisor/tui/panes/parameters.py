@@ -9,7 +9,7 @@ from textual.events import Resize
 from textual.widgets import DataTable
 
 from advisor.aircraft.reference import PARAMETERS as NAMES
-from advisor.report.result_rows import parameter_row
+from advisor.report.facts.estimates import estimated_parameter
 from advisor.session.view import View
 from advisor.tui.panes.courses import history_chart
 from advisor.tui.panes.pane import Pane
@@ -100,9 +100,9 @@ others; the verdict pane says why.
 
 
 def _cells(name: str, model: object, selected: object, known: Mapping[str, float]) -> tuple[str, ...]:
-    joint, alone = (parameter_row(name, estimate, known) for estimate in (model, selected))
+    joint, alone = (estimated_parameter(name, estimate, known) for estimate in (model, selected))
     return (
-        f"{joint.quantity.symbol} {joint.quantity.unit}".removesuffix(" 1"),
+        f"{joint.name} {joint.unit}".removesuffix(" 1"),
         *("not identifiable" if row.reason else row.cell for row in (joint, alone)),
         joint.prior_cell,
         "–" if joint.off_by is None else f"{joint.off_by:.1f} σ",

@@ -1,10 +1,10 @@
 """Sizes of effects and derivatives in units for people: milliseconds, degrees, per cent, metres."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-from advisor.gap.result import ComparedDerivative, Value
-from advisor.words.digits import decimals_for, signed, with_half
+from advisor.gap.result import Value
+from advisor.words.digits import with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import PARAMETERS
 
@@ -23,7 +23,7 @@ _OWN_UNITS = {"at_s": (1.0, "s"), "over_s": (1.0, "s"), "omega_rad_s": (0.5 / ma
 """Parameters whose unit for people is not that of their ending."""
 _LEAST, _ROUNDING = 1e-3, 1e-9
 """Gap too small for a number, and gap that is only rounding."""
-_SHARES = frozenset({"scale", "step", "inertia", "change", "share", "damping", "lift_h"})
+_SHARES = frozenset({"scale", "step", "inertia", "change", "share", "damping", "lift_h", "airspeed_excess"})
 _ICE = frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e"})
 """Changes of derivatives, as a share of each derivative."""
 _OF_DERIVATIVES = {
@@ -119,20 +119,3 @@ def named(parameter: str) -> str:
         if parameter.endswith(ending):
             return parameter.removesuffix(ending).replace("_", " ")
     return parameter.replace("_", " ")
-
-
-def changed(one: ComparedDerivative) -> str:
-    """Return one derivative: the simulator's value, the flight's with half its 95 % interval, the change."""
-    quantity = PARAMETERS[one.name]
-    given, found, half = (quantity.factor * x for x in (one.given, one.found.value, one.half))
-    share = "" if one.percent is None else f" ({signed(one.percent, 0)} %)"
-    if one.percent is not None and one.percent > 0.0:
-        share = f" (+{signed(one.percent, 0)} %)"
-    return f"{quantity.symbol} {signed(given, decimals_for(half))} → {with_half(found, half)}{share}"
-
-
-def changes(derivatives: Sequence[ComparedDerivative]) -> list[str]:
-    """Return a line for each derivative that differs, then one with those that agree."""
-    agree = [PARAMETERS[one.name].symbol for one in derivatives if not one.differs]
-    lines = [changed(one) for one in derivatives if one.differs]
-    return [*lines, *([f"{', '.join(agree)} agree{'s' if len(agree) == 1 else ''}"] if agree else [])]

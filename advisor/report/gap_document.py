@@ -10,6 +10,8 @@ from advisor.gap.alternative import AlternativeEvidence, Weighed
 from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification
 from advisor.gap.verdict.text import answers_of, in_words, limits_of, title_of
 from advisor.process.parts import FailedPart
+from advisor.report.facts.gap import changed, grown_said, shrink_said, size_of_gap, where_said
+from advisor.report.facts.reasons import heading, how_sure
 from advisor.words.certainty import is_decided
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
@@ -22,7 +24,7 @@ _NOTHING: Mapping[str, Any] = {
     "improved_model": None, "parameters_changed": [], "traces": [], "share_irreducible": None,
     "decisions": [], "simulator": None, "qualification": None, "static": [], "trims": [],
     "probabilities": None, "evidence": [], "why": [], "answer": None, "decided": None,
-    "rival": None,
+    "rival": None, "how_sure": "", "why_heading": "",
 }  # fmt: skip
 """Keys and values of a document without a diagnosis."""
 
@@ -54,16 +56,20 @@ def gap_document(
         **picked(d, "sentence maneuvers model reference_airspeed_m_s cannot_see notes share_irreducible"),
         "limits": list(limits_of(d)),
         "gap": {
+            "text": size_of_gap(d),
+            "grown": grown_said(d),
             **picked(gap, "before after floor floor_note by_channel by_channel_after by_phase"),
             "by_maneuver": [{"number": n, "before": b, "after": a} for n, b, a in gap.by_maneuver],
             "by_band_hz": [{"from_hz": a, "to_hz": b, "share": s} for a, b, s in gap.by_band_hz],
         },
         "where": {
+            "text": where_said(d.where),
             **picked(d.where, "block share"),
             "ranking": [{"block": b, "score": s} for b, s in d.where.ranking],
         },
         "causes": [_cause(c) for c in d.causes],
-        "shrink": d.shrink and {**plain(d.shrink), "in_simulator": _in_simulator(d.in_simulator)},
+        "shrink": d.shrink
+        and {**plain(d.shrink), "text": shrink_said(d.shrink), "in_simulator": _in_simulator(d.in_simulator)},
         **_of_the_simulator(d),
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
         "alpha_check": {
@@ -87,12 +93,15 @@ def gap_document(
 
 def weighed_document(d: Weighed) -> dict[str, Any]:
     """Return the probabilities of all alternatives, their evidence, and the reasons for the answer."""
+    answers = answers_of(d.evidence)
     return {
+        "how_sure": how_sure(answers),
         "probabilities": d.probabilities,
         "evidence": [_evidence(one) for one in d.evidence],
+        "why_heading": heading(d),
         "why": [{"name": c.name, "nats": c.nats, "text": c.sentence} for c in d.why],
         "answer": d.answer and d.answer.label,
-        "decided": is_decided(answers_of(d.evidence)),
+        "decided": is_decided(answers),
         "rival": d.rival or None,
         "decisions": [
             {"name": f"{one.about} {one.name}", **picked(one, "about statistic limit margin unit holds")}
@@ -114,6 +123,7 @@ def _of_the_simulator(d: Diagnosis) -> dict[str, Any]:
 def changed_document(one: ComparedDerivative) -> dict[str, Any]:
     """Return a derivative of the simulator and of the flight."""
     return {
+        "text": changed(one),
         "derivative": one.name,
         "simulator": one.given,
         "found": one.found.value,

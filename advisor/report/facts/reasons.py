@@ -1,10 +1,10 @@
 """How sure the answer of a diagnosis is, and what speaks for it: sentences for every face."""
 
 import math
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable
 
-from advisor.gap.alternative import Alternative, together
+from advisor.gap.alternative import Weighed
+from advisor.gap.verdict.text import in_words
 
 _SAYABLE_NATS = 12.0
 """Log odds, nats, above which odds are no longer written as a number: 160,000 to 1."""
@@ -41,26 +41,12 @@ def how_sure(alternatives: Iterable[tuple[str, float]]) -> str:
     return f"Probability by the evidence: {', '.join(shown[:_MOST])}{more}."
 
 
-def alternatives_of(found: Mapping[str, Any]) -> list[tuple[str, float]]:
-    """Return the alternatives in words and their probabilities from ``advisor.gap/1``, likeliest first.
-
-    All blocks of the unknown are one, in the words of the likeliest block.
-    """
-    words = {one["name"]: one["text"] for one in reversed(found["evidence"])}
-    each = (
-        (Alternative(one["kind"], one["name"], one["block"]), one["probability"]) for one in found["evidence"]
-    )
-    return [(words[alternative.name], p) for alternative, p in together(each)]
-
-
-def heading_of(found: Mapping[str, Any]) -> str:
-    """Return the heading of the reasons from ``advisor.gap/1``."""
-    words = {one["alternative"]: one["text"] for one in found["evidence"]}
-    return heading(words[found["answer"]], words[found["rival"]])
-
-
-def heading(answer: str, rival: str) -> str:
-    """Return the heading of the reasons."""
+def heading(d: Weighed) -> str:
+    """Return the heading of the reasons; empty without reasons."""
+    if d.answer is None or not d.why:
+        return ""
+    stated = {one.alternative.label: in_words(one.alternative) for one in d.evidence}
+    answer, rival = in_words(d.answer), stated[d.rival]
     return f"why {answer}, and not {rival}: parts of the log odds, in nats"
 
 

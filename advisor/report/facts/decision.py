@@ -1,0 +1,51 @@
+"""Stop or continue and the next input, as terminal, page and announcements write them."""
+
+from collections.abc import Iterator
+
+from advisor.campaign.state import CampaignState, LateralState
+from advisor.decision.verdict import FlightTestVerdict
+
+INDENT = "  "
+"""Beginning of the lines with the next input."""
+
+
+def stop_line(verdict: FlightTestVerdict) -> str:
+    """Return stop or continue, with the criterion and its limit."""
+    mark = "■" if verdict.decision == "stop" else "▶"
+    return f"{mark} {verdict.sentence}"
+
+
+def next_line(verdict: FlightTestVerdict) -> str:
+    """Return the next input, and the expected number of further manoeuvres."""
+    if verdict.next is None:
+        return "no advice yet"
+    more = "" if verdict.decision == "stop" else verdict.next.foretold
+    return "; ".join(filter(None, (verdict.next.advice, more)))
+
+
+def decisions(state: CampaignState, *, pitch: bool = True) -> Iterator[str]:
+    """Yield stop or continue of each axis, with the next input: one input where both axes are tested."""
+    plan = state.plan if pitch else None
+    if pitch:
+        yield stop_line(state.flight_test)
+        if plan is None:
+            yield f"{INDENT}{next_line(state.flight_test)}"
+    if state.lateral is not None and (_is_told(state.lateral) or not state.maneuvers):
+        lead, *advice = lateral_decision(state.lateral)
+        yield lead
+        yield from advice if plan is None else ()
+    if plan is not None:
+        yield f"Both axes: {plan.sentence}"
+        yield f"{INDENT}{plan.advice}"
+
+
+def _is_told(state: LateralState) -> bool:
+    """Return whether roll and yaw were tested, or cannot be until an output is known."""
+    return bool(state.maneuvers) or state.flight_test.next is None
+
+
+def lateral_decision(state: LateralState) -> Iterator[str]:
+    """Yield stop or continue of roll and yaw, and the next input."""
+    yield f"Roll and yaw: {state.flight_test.sentence}"
+    if state.maneuvers and state.flight_test.next is not None:
+        yield f"{INDENT}{state.flight_test.next.advice}"

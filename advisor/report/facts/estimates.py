@@ -1,0 +1,100 @@
+"""Parameters and instruments of an estimate as facts, in the unit for people."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from math import nan
+
+from advisor.flight.signals.track import ChannelStatus
+from advisor.oem.estimate import Estimate
+from advisor.report.facts.fact import Fact, fact_of
+from advisor.words.digits import decimals_for, signed
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import DEG, symbol
+from advisor.words.quantities import PARAMETERS as PITCH
+from advisor.words.quantities import SIDE_PARAMETERS as SIDE
+
+_QUANTITIES = {**PITCH, **SIDE}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EstimatedParameter(Fact):
+    """One parameter of an estimate, next to the aircraft file's value."""
+
+    half_if_white: float = nan
+    """Half of the 95 % interval by the Cramér-Rao bound; NaN without a value."""
+    prior: float | None = None
+    """Value of the aircraft file's model; None where the file has none."""
+
+    @property
+    def prior_cell(self) -> str:
+        """Value of the aircraft file with the decimals of the estimate."""
+        return "–" if self.prior is None else signed(self.prior, decimals_for(self.half))
+
+    @property
+    def off_by(self) -> float | None:
+        """Distance of the file's value from the estimate in standard deviations."""
+        if self.prior is None or not self.is_known:
+            return None
+        return abs(self.value - self.prior) / self.half * NORMAL_95
+
+
+def estimated_parameter(name: str, estimate: object, prior: Mapping[str, float]) -> EstimatedParameter:
+    """Return one parameter of an estimate against the aircraft file's model, which may lack it."""
+    quantity, stated = _QUANTITIES[name], prior.get(name)
+    known = None if stated is None else stated * quantity.factor
+    named = EstimatedParameter(name=quantity.symbol, unit=quantity.unit, prior=known)
+    if not isinstance(estimate, Estimate):
+        return named
+    if name in estimate.not_identifiable:
+        return replace(named, reason=estimate.not_identifiable[name])
+    k, half = estimate.names.index(name), NORMAL_95 * quantity.factor
+    return replace(
+        named,
+        value=float(estimate.theta[k]) * quantity.factor,
+        half=half * float(estimate.std[k]),
+        half_if_white=half * float(estimate.std_cr[k]),
+    )
+
+
+def joint_source(numbers: Iterable[int], at: str) -> str:
+    """Return the heading of a joint estimate from manoeuvres, at an air speed in words."""
+    return f"Joint estimate from manoeuvres {', '.join(map(str, numbers))}{at}"
+
+
+def untold(estimate: Estimate) -> dict[str, list[str]]:
+    """Return each reason for which derivatives are not told, with their symbols."""
+    found: dict[str, list[str]] = {}
+    for name, reason in estimate.not_identifiable.items():
+        found.setdefault(reason, []).append(symbol(name))
+    return found
+
+
+def instrument_facts(estimate: object, channels: Mapping[str, ChannelStatus]) -> list[tuple[Fact, str]]:
+    """Return the nuisance parameters of the instruments, each with the aircraft file's value or a dash.
+
+    Without a vane the place is that of a vane which would read like the angle of attack.
+    """
+    if not isinstance(estimate, Estimate):
+        return []
+    alpha = channels.get("alpha")
+    with_vane = alpha is not None and alpha.provenance in ("vane", "simulated")
+    found = []
+    for one in estimate.instruments:
+        key = one.name if with_vane or one.name != "vane_arm_m" else "no_vane_arm_m"
+        name, unit, factor = _INSTRUMENTS.get(key, (one.name.replace("_", " "), "SI", 1.0))
+        fact = fact_of(name, one.value, one.std, unit, factor)
+        stated = "–" if one.stated is None else signed(factor * one.stated, decimals_for(fact.half))
+        found.append((fact, stated))
+    return found
+
+
+_INSTRUMENTS: Mapping[str, tuple[str, str, float]] = {
+    "servo_lag_s": ("servo lag, by which the estimate delays the command", "ms", 1e3),
+    "command_delay_s": ("delay of the command", "ms", 1e3),
+    "vane_arm_m": ("vane ahead of the centre of gravity", "m", 1.0),
+    "no_vane_arm_m": ("α reads like a vane ahead of the centre of gravity", "m", 1.0),
+    "alpha_delay_s": ("delay of α", "ms", 1e3),
+    "accelerometer_arm_m": ("accelerometer ahead of the centre of gravity", "m", 1.0),
+    "steady_moment_rad": ("steady moment, as elevator", "deg", DEG),
+}
+"""Instrument parameter to its name, unit and factor from SI."""

@@ -1,0 +1,49 @@
+"""A number of a flight as every face states it: name, value, 95 % interval, unit, source."""
+
+from dataclasses import dataclass
+from math import isfinite, nan
+
+from advisor.words.digits import with_half
+from advisor.words.quantiles import NORMAL_95
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fact:
+    """One number, in the unit for people."""
+
+    name: str
+    """Symbol or name for people: ``M_α``, ``Dutch roll ζ``."""
+    value: float = nan
+    """NaN where the source does not tell the number."""
+    half: float = nan
+    """Half of the 95 % interval, corrected for coloured residuals; NaN without a value."""
+    unit: str = ""
+    source: str = ""
+    """Question that the number answers: the joint estimate, one manoeuvre alone."""
+    reason: str = ""
+    """Reason for which the source does not tell the number."""
+
+    @property
+    def is_known(self) -> bool:
+        """Whether value and interval are numbers."""
+        return isfinite(self.value) and isfinite(self.half)
+
+    @property
+    def label(self) -> str:
+        """Label of an axis: ``q [deg/s]``."""
+        return f"{self.name} [{self.unit}]"
+
+    @property
+    def cell(self) -> str:
+        """Value with half its 95 % interval: ``−48.3 ± 2.1``."""
+        return with_half(self.value, self.half) if self.is_known else "–"
+
+    @property
+    def sentence(self) -> str:
+        """Value with half its 95 % interval and its unit: ``−48.3 ± 2.1 1/s²``."""
+        return f"{self.cell} {self.unit.removesuffix('1')}".rstrip()
+
+
+def fact_of(name: str, value: float, std: float, unit: str = "", factor: float = 1.0) -> Fact:
+    """Return a number with its interval from value and standard deviation in SI; ``factor`` leaves SI."""
+    return Fact(name=name, value=factor * value, half=NORMAL_95 * factor * std, unit=unit)

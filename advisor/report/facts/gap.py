@@ -1,0 +1,74 @@
+"""Sentences on a gap: its size, its shrink, its place, and the derivatives that differ."""
+
+from collections.abc import Sequence
+
+from advisor.gap.result import ComparedDerivative, Diagnosis, Shrink, Where
+from advisor.gap.verdict.text import place
+from advisor.report.facts.sizes import before_after, has_grown, short
+from advisor.words.digits import decimals_for, signed, with_half
+from advisor.words.quantities import CHANNELS, PARAMETERS, SIDE_PARAMETERS
+
+_QUANTITIES = {**PARAMETERS, **SIDE_PARAMETERS}
+_WORTH_SAYING = 0.005
+"""Share of a gap that rounds to 0 %, so that the sentence leaves the share out."""
+
+
+def size_of_gap(d: Diagnosis) -> str:
+    """Return the gap of the simulator as given and with the findings: ``gap 119 → 0.116 times ...``."""
+    before, after = short(d.gap.before), short(d.gap.after)
+    if d.verdict == "untested":
+        return f"what the fitted model leaves: {after} times the noise floor's power"
+    if d.verdict == "none":
+        return f"gap {before} times the noise floor's power, {after} with fitted numbers"
+    return f"gap {before_after(d.gap.before, d.gap.after)} times the noise floor's power"
+
+
+def shrink_said(shrink: Shrink) -> str:
+    """Return by how much the gap shrinks, with the 95 % interval and the held-out manoeuvres."""
+    low, high = shrink.ci95_percent
+    return (
+        f"{shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out "
+        f"manoeuvres: {counted(shrink.holdout)}"
+    )
+
+
+def where_said(where: Where) -> str:
+    """Return the place of a gap, and its share: ``in the lift, 93 % of the gap``."""
+    share = f", {100 * where.share:.0f} % of the gap" if where.share >= _WORTH_SAYING else ""
+    return f"{place(where.block)}{share}"
+
+
+def grown_said(d: Diagnosis) -> str:
+    """Return the channels and manoeuvres whose gap has grown; empty where none has."""
+    given, left = d.gap.by_channel, d.gap.by_channel_after
+    channels = [CHANNELS[name].symbol for name, after in left.items() if has_grown(after, given[name])]
+    numbers = [number for number, before, after in d.gap.by_maneuver if has_grown(after, before)]
+    noun = "manoeuvre" if len(numbers) == 1 else "manoeuvres"
+    grown = [*channels, *([f"{noun} {counted(numbers)}"] if numbers else [])]
+    cause = "fitted numbers make the gap larger" if d.verdict == "none" else "the gap is larger than before"
+    return f"{cause} in {', '.join(grown)}" if grown else ""
+
+
+def counted(numbers: Sequence[int]) -> str:
+    """Return ``1 to 9`` for numbers without a gap, else a list."""
+    if len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1:
+        return f"{numbers[0]} to {numbers[-1]}"
+    return ", ".join(map(str, numbers))
+
+
+def changed(one: ComparedDerivative) -> str:
+    """Return one derivative: the simulator's value, the flight's with half its 95 % interval, the change."""
+    quantity = _QUANTITIES[one.name]
+    given, found, half = (quantity.factor * x for x in (one.given, one.found.value, one.half))
+    share = ""
+    if one.percent is not None:
+        share = f" ({'+' if one.percent > 0.0 else ''}{signed(one.percent, 0)} %)"
+    said = f"{quantity.symbol} {signed(given, decimals_for(half))} → {with_half(found, half)}"
+    return f"{said} {quantity.unit.removesuffix('1')}".rstrip() + share
+
+
+def changes(derivatives: Sequence[ComparedDerivative]) -> list[str]:
+    """Return a line for each derivative that differs, then one with those that agree."""
+    agree = [_QUANTITIES[one.name].symbol for one in derivatives if not one.differs]
+    lines = [changed(one) for one in derivatives if one.differs]
+    return [*lines, *([f"{', '.join(agree)} agree{'s' if len(agree) == 1 else ''}"] if agree else [])]
