@@ -9,11 +9,11 @@ from advisor.flight.instruments.kinematics import check_alpha, combine
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.alpha_offset import least_offset_rad
 from advisor.gap.candidates.known import AIR, left_aside
-from advisor.gap.fitting.prior_speed import prior_speed
 from advisor.gap.inference.diagnose import infer
 from advisor.gap.inference.engine import Progress
 from advisor.gap.inference.findings import Circumstances, Findings
 from advisor.gap.inference.prior import FIELD, FieldPrior
+from advisor.gap.inference.prior_speed import prior_speed
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.flights import PreparedManeuvers

@@ -6,7 +6,6 @@ yaw together. A disturbance is linear between knots.
 """
 
 from collections.abc import Iterator, Mapping
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -70,24 +69,39 @@ def _course(fit: Fit, flown: Flown, m: int, block: str) -> Course:
     weight = fit.weight[own][:, None]
     local = fit.sensitivities[own][:, fit.assembly.free[fit.assembly.free >= N]] * weight
     basis = np.linalg.svd(local, full_matrices=False)[0]
-    weighed = answered(fit, flown, m, block, t, _hats(t, knots)) * weight
+    # Speed and trim are constant: every knot but the first changes the outputs like the second one, later.
+    begun = _outputs(fit.point.theta, flown, m, block, _hats(t, knots[:2]))
+    seen = {name: _later(two, len(knots)) for name, two in begun.items()}
+    weighed = _read(fit, m, t, seen) * weight
     return Course(knots, (weighed - basis @ (basis.T @ weighed)) / weight)
+
+
+def _later(two: FloatArray, knots: int) -> FloatArray:
+    """Return the changes (n, knots) by a disturbance at every knot, given those at the first two (n, 2)."""
+    step = round(KNOTS_S / STEP_S)
+    changes = np.zeros((len(two), knots))
+    changes[:, 0] = two[:, 0]
+    for k in range(1, knots):
+        late = (k - 1) * step
+        changes[late:, k] = two[: len(two) - late, 1]
+    return changes
 
 
 def answered(fit: Fit, flown: Flown, m: int, block: str, t: FloatArray, course: FloatArray) -> FloatArray:
     """Return the change of the rows of a manoeuvre by disturbances (n, k) of a block, of values at ``t``."""
-    own = np.flatnonzero(fit.assembly.owner == m)
-    seen = _outputs(fit.point.theta, flown, m, block, course)
-    columns = np.zeros((len(own), course.shape[1]))
+    return _read(fit, m, t, _outputs(fit.point.theta, flown, m, block, course))
+
+
+def _read(fit: Fit, m: int, t: FloatArray, seen: Mapping[str, FloatArray]) -> FloatArray:
+    """Return changes of outputs (n, k) by their names, of values at ``t``, as rows of a manoeuvre."""
+    parts = []
     for name, rows in fit.assembly.rows[m].items():
-        if name in seen:
-            at = (fit.assembly.t[rows] - t[0]) / STEP_S
-            k = np.clip(at.astype(int), 0, len(t) - 2)
-            share = (at - k)[:, None]
-            columns[rows.start - own[0] : rows.stop - own[0]] = (1.0 - share) * seen[name][k] + share * seen[
-                name
-            ][k + 1]
-    return columns
+        change = seen.get(name, np.zeros((len(t), next(iter(seen.values())).shape[1])))
+        at = (fit.assembly.t[rows] - t[0]) / STEP_S
+        k = np.clip(at.astype(int), 0, len(t) - 2)
+        share = (at - k)[:, None]
+        parts.append((1.0 - share) * change[k] + share * change[k + 1])
+    return np.concatenate(parts)
 
 
 def _outputs(
@@ -108,8 +122,9 @@ def _outputs(
     whole[:4, :4], whole[:4, 4], whole[4, 5] = a, drives, 1.0 / STEP_S
     step = expm(STEP_S * whole)
     x = np.zeros((len(course), 4, course.shape[1]))
-    for i, (now, following) in enumerate(pairwise(course)):
-        x[i + 1] = step[:4, :4] @ x[i] + np.outer(step[:4, 4], now) + np.outer(step[:4, 5], following - now)
+    x[1:] = step[:4, 4, None] * course[:-1, None] + step[:4, 5, None] * np.diff(course, axis=0)[:, None]
+    for i in range(len(course) - 1):
+        x[i + 1] += step[:4, :4] @ x[i]
     force, turn = (np.einsum("s,nsk->nk", aerodynamic[k], x) + drives[k] * course for k in (_BETA, _R))
     return {
         "p": x[:, _P],

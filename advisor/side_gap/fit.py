@@ -14,7 +14,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.inference.marginal import Prior
 from advisor.model.axis_response import respond_axis
 from advisor.model.lateral import LATERAL
-from advisor.oem.arrow import unabsorbed
+from advisor.oem.arrow import solved_within, unabsorbed
 from advisor.oem.gauss_newton import weigh
 from advisor.oem.lateral_motion import FLOOR
 from advisor.oem.lateral_problem import LateralAssembly
@@ -154,11 +154,11 @@ def _trials(flown: Flown, at: _At, known: Known) -> Iterator[_At | None]:
     weighed = projected * weight[:, None]
     information = weighed.T @ weighed + np.diag(known.precision)
     pull = weighed.T @ (weight * residual) + known.precision * (known.mean - values)
-    step = np.linalg.lstsq(information, pull, rcond=1e-13)[0]
-    low, high = np.array([f.bounds for f in at.free]).reshape(-1, 2).T
+    low, high = np.array([(-np.inf, np.inf)] * N + [f.bounds for f in at.free]).T
+    step = solved_within(information, pull, low - values, high - values)
     for share in (1.0, 0.25, 0.06):
-        numbers = np.clip(values[N:] + share * step[N:], low, high)
-        moved = np.concatenate([share * step[:N], numbers - values[N:]])
+        moved = share * step
+        numbers = values[N:] + moved[N:]
         left = weight * (residual - columns @ moved)
         local = at.point.local.copy()
         own = at.assembly.own - N

@@ -10,7 +10,7 @@ from advisor.gap.alternative import Alternative
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.inference.explanation import Evidence, Explanation
 from advisor.gap.inference.marginal import marginal
-from advisor.gap.inference.pitch import LAWS
+from advisor.gap.inference.pitch import AT_THE_FILE, LAWS
 from advisor.gap.inference.residual import Residual
 from advisor.gap.inference.sizes import natural_share
 from advisor.gap.inference.stage import Pairs, Stage, likeliest, within_model_error
@@ -20,6 +20,7 @@ from advisor.side_gap.evidence import (
     Gain,
     gain_of,
     information_of,
+    posterior_of,
     share_of,
     squares_of,
 )
@@ -90,9 +91,16 @@ class SideFlight:
             begin = replace(base.fit, free=tuple(one._replace(column=None) for one in base.fit.free))
         share = share_of(begin)
         plain = begin if base is None else self.case.fit(begin.point, begin.free, share=share) or base.fit
-        starts = Starts(self.case, plain, _beside(base, self.table))
+        table = _beside(base, self.table)
+        starts = Starts(self.case, plain, table)
         of_laws = Starts(self.case, plain, _beside(base, self.laws)).of_each
         chosen = [*likeliest(starts.of_each, most), *likeliest(of_laws, LAWS)]
+        near = self.case.fit(plain.point, plain.free, ERROR_IF_RIGHT, share) if self.is_stated else None
+        if near is not None:
+            seen = {one.name for one in chosen}
+            others = [effect for effect in table if effect.name not in seen]
+            tight = Starts(self.case, near, others, ERROR_IF_RIGHT)
+            chosen += likeliest(tight.of_each, AT_THE_FILE)
         everyone = [replace(self._model(None, plain, plain, share), starts=starts)]
         for one in chosen:
             fit = self.case.fit(one.point, free_with(self.case, one.effect, plain), share=share)
@@ -144,9 +152,9 @@ class SideFlight:
         least = np.logaddexp.reduce(told) + np.log(LIKELY)
         likely = [one for one, nats in zip(stage.effects, told[1:], strict=True) if nats > least]
         courses = courses_of(plain.fit, self.case.flown)
-        blown = [
-            self._blown(one, side_gusts(one.fit, courses, self._wide(one.fit))) for one in (plain, *likely)
-        ]
+        air = side_gusts(plain.fit, courses, self._wide(plain.fit))
+        blown = [self._blown(plain, air)]
+        blown += [self._blown(one, side_gusts(one.fit, courses, self._wide(one.fit), air)) for one in likely]
         first, *others = within_model_error(self, blown, 0.0)
         assert first.gusts is not None
         gain = first.gusts.likelihood - coloured_likelihood(plain.fit)
@@ -177,8 +185,11 @@ class SideFlight:
     def _model(self, effect: SideEffect | None, fit: Fit, plain: Fit, share: float) -> SideModel:
         """Return a model with its evidence, which unseen manoeuvres may cut."""
         told, likelihood = information_of(fit, share), share**2 * fit.likelihood
-        whole = (np.sum(part, axis=0) for part in told)
-        evidence, natural = self._weighed(fit, effect, likelihood, *whole)
+        matrix, gradient = (np.sum(part, axis=0) for part in told)
+        evidence, natural = self._weighed(fit, effect, likelihood, matrix, gradient)
+        # A search that ends early, as at a bound, leaves a step to the optimum, which the evidence has taken.
+        step = posterior_of(fit, told, self._wide(fit))[0] - fit.values
+        likelihood += float(gradient @ step - 0.5 * step @ matrix @ step)
         model = SideModel(
             alternative=None, effect=effect, fit=fit, evidence=evidence, natural=natural,
             likelihood=likelihood, beyond=0.0, gain=Gain(0.0, 0.0), change=change_of(plain, fit),

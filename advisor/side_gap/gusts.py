@@ -40,6 +40,8 @@ class Gusts:
     """(outputs,) standard deviation of the white noise."""
     angle: float
     """Standard deviation of the gust angle, rad."""
+    memory_s: float
+    """Correlation time, s."""
     angle_std: float
     """Standard deviation of that number, with all other numbers at their values."""
     likelihood: float
@@ -55,7 +57,7 @@ class Gusts:
         return self.likelihood + 0.5 * float(self.gradient @ np.linalg.solve(whole, self.gradient))
 
 
-def side_gusts(fit: Fit, courses: Sequence[Course], known: Known) -> Gusts:
+def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | None = None) -> Gusts:
     """Return the likeliest white noise and gusts in the residuals of a fit.
 
     Derivatives and numbers are integrated over: a fit under white noise has taken up a part of the gusts.
@@ -64,6 +66,8 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known) -> Gusts:
     ----------
     known
         Prior of derivatives and numbers.
+    near
+        Gusts of a similar fit, from which the search begins.
     """
     prior = known.prior(fit.values)
     sums = [_Sums.of(fit, m, course) for m, course in enumerate(courses)]
@@ -94,21 +98,22 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known) -> Gusts:
         return -2.0 * marginal(likelihood, inner[1:, 1:], inner[1:, 0], prior, prior).right
 
     sizes = np.append(fit.noise[there], angle)
+    first = [*sizes, _MEMORY_S] if near is None else [*near.noise[there], near.angle, near.memory_s]
     bounds = [*((np.log(_RANGE[0] * s), np.log(_RANGE[1] * s)) for s in sizes),
               (np.log(KNOTS_S), np.log(_LONGEST_MEMORY_S))]  # fmt: skip
     found = minimize(
         cost,
-        np.log([*sizes, _MEMORY_S]),
+        np.log([np.clip(x, *np.exp(ends)) for x, ends in zip(first, bounds, strict=True)]),
         method="Nelder-Mead",
         bounds=bounds,
         options={"maxfev": _MOST_STEPS, "xatol": 0.02, "fatol": 0.1},
     )
     step = _BEND * (np.arange(len(found.x)) == len(found.x) - 2)
     bend = (cost(found.x + step) - 2.0 * float(found.fun) + cost(found.x - step)) / (2.0 * _BEND**2)
-    noise, angle, _ = model(found.x)
+    noise, angle, memory_s = model(found.x)
     volume, inner = told(found.x)
     return Gusts(
-        noise, angle, angle / np.sqrt(max(bend, _BEND)),
+        noise, angle, memory_s, angle / np.sqrt(max(bend, _BEND)),
         -0.5 * (volume + float(inner[0, 0]) - len(fit.fitted)), inner[1:, 1:], inner[1:, 0],
     )  # fmt: skip
 

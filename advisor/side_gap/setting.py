@@ -20,7 +20,8 @@ from advisor.oem.surface import LONGEST_STEP_S, Servo
 Place = tuple[str, str]
 """Control or output, and the entry of it that a number sets: ``("aileron", "lag_s")``, ``("p", "scale")``."""
 COMMAND = ("command", "delay_s")
-PROPELLER = ("throttle", "aileron_rad")
+PROPELLER, PROPELLED = ("throttle", "aileron_rad"), "aileron"
+"""Place of the propeller's roll, and the control that rolls as much."""
 AIR_SPEED = ("air", "scale")
 """Relative excess of the true over the read air speed."""
 
@@ -79,19 +80,21 @@ def laid_out(flown: Flown, setting: Setting) -> LateralAssembly:
 def _driven(flown: Flown, m: int, setting: Setting) -> LateralRecord:
     """Return record ``m`` with the deflections of its surfaces as inputs."""
     record = flown.problem.records[m]
-    inputs = {}
-    for name, command in record.inputs.items():
-        p = np.zeros(len(ENTRIES))
-        for (of, entry), values in setting.items():
-            if of == name:
-                p[INDEX[entry]] = values[m]
-        inputs[name] = _deflected(command, p)
+    return replace(record, inputs={name: deflection(flown, m, name, setting) for name in record.inputs})
+
+
+def deflection(flown: Flown, m: int, control: str, setting: Setting) -> Signal:
+    """Return the deflection of a surface in record ``m``, without the delay that all commands share."""
+    p = np.zeros(len(ENTRIES))
+    for (of, entry), values in setting.items():
+        if of == control:
+            p[INDEX[entry]] = values[m]
+    moved = _deflected(flown.problem.records[m].inputs[control], p)
     throttle, share = flown.throttle[m], setting.get(PROPELLER)
-    if throttle is not None and share is not None and "aileron" in inputs and share[m] != 0.0:
-        moved = inputs["aileron"]
-        t = np.union1d(moved.t, throttle.t)
-        inputs["aileron"] = Signal(t, moved.at(t) + share[m] * (throttle.at(t) - throttle.y[0]))
-    return replace(record, inputs=inputs)
+    if throttle is None or share is None or control != PROPELLED or share[m] == 0.0:
+        return moved
+    t = np.union1d(moved.t, throttle.t)
+    return Signal(t, moved.at(t) + share[m] * (throttle.at(t) - throttle.y[0]))
 
 
 def _deflected(command: Signal, p: FloatArray) -> Signal:

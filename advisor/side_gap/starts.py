@@ -8,8 +8,9 @@ from scipy.optimize import nnls
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
+from advisor.side_gap.change import changes_by
 from advisor.side_gap.effects import SideEffect
-from advisor.side_gap.fit import Fit, N, Point, outputs
+from advisor.side_gap.fit import Fit, N, Point
 from advisor.side_gap.models import Case, base_of
 from advisor.side_gap.setting import moved_to
 
@@ -43,9 +44,11 @@ class Start(NamedTuple):
 class Starts:
     """The best start of each effect of a table."""
 
-    def __init__(self, case: Case, plain: Fit, table: Sequence[SideEffect]) -> None:
+    def __init__(
+        self, case: Case, plain: Fit, table: Sequence[SideEffect], tolerance: float = ERROR_IF_WRONG
+    ) -> None:
         self._case, self._plain = case, plain
-        known = case.known(ERROR_IF_WRONG, plain.free)
+        known = case.known(tolerance, plain.free)
         self._columns = plain.columns * plain.weight[:, None]
         self._information = self._columns.T @ self._columns + np.diag(known.precision)
         own = plain.assembly.free[plain.assembly.free >= N]
@@ -98,28 +101,21 @@ class Starts:
         case, point = self._case, self._plain.point
         place, sides = effect.sides or (("", ""), (0.0,))
         base = base_of(case, effect)
-        for values in effect.starts:
-            setting = dict(point.setting)
-            for at, value, known in zip(effect.places, values, base, strict=True):
-                setting[at] = np.full(len(case.flown), known + value)
-            ways = []
-            for side in sides:
-                setting[place] = np.full(len(case.flown), side)
-                y = outputs(case.flown, point._replace(setting=setting))
-                if not np.all(np.isfinite(y)):
-                    break
-                ways.append(self._without((y - self._plain.fitted) * self._plain.weight))
-            if len(ways) < len(sides):
+        begun = [moved_to(point.setting, effect.places, base + values) for values in effect.starts]
+        tried = [moved_to(setting, [place], np.array([side])) for setting in begun for side in sides]
+        changes = changes_by(self._plain, case.flown, effect.of, tried).reshape(len(begun), len(sides), -1)
+        for values, setting, changed in zip(effect.starts, begun, changes, strict=True):
+            if not np.all(np.isfinite(changed)):
                 continue
+            ways = [self._without(change * self._plain.weight) for change in changed]
             shares = [np.clip(way @ self._begin / (way @ way + 1e-12), *SECANT) for way in ways]
             left = [self._begin - share * way for share, way in zip(shares, ways, strict=True)]
             squares = np.array([[float(one[rows] @ one[rows]) for rows in self._parts] for one in left])
             best = np.argmin(squares, axis=0)
             if effect.sides is None:
-                del setting[place]
-                setting[effect.places[0]] = np.full(len(case.flown), base[0] + shares[0] * values[0])
+                setting = moved_to(setting, effect.places[:1], np.array([base[0] + shares[0] * values[0]]))
             else:
-                setting[place] = np.array(sides)[best]
+                setting = {**setting, place: np.array(sides)[best]}
             way = np.sum([ways[k] * rows for k, rows in zip(best, self._parts, strict=True)], axis=0)
             cost = self._cost + float(np.sum(np.min(squares, axis=0)))
             yield Start(effect, cost, point._replace(setting=setting), way)

@@ -186,7 +186,7 @@ def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_a
     monkeypatch.setattr(
         SideFlight, "_model", lambda *_: SideModel(**dict.fromkeys(SideModel.__dataclass_fields__))
     )
-    case = SimpleNamespace(fit=lambda at, free, **_: again.extend(free) or fit)
+    case = SimpleNamespace(stated=(), fit=lambda at, free, **_: again.extend(free) or fit)
     SideFlight(case, fit, []).explained(SimpleNamespace(fit=fit, effect=None), 3)
     assert [one.column for one in again] == [None]
 

@@ -7,13 +7,7 @@ from itertools import accumulate, pairwise
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.prior import (
-    ERROR_IF_FIXED,
-    ERROR_IF_RIGHT,
-    ERROR_IF_WRONG,
-    prior_precision,
-    small_without_alpha,
-)
+from advisor.gap.fitting.prior import ERROR_IF_WRONG, prior_precision, small_without_alpha
 from advisor.gap.fitting.whitening import Filters, Whitening
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
@@ -111,8 +105,6 @@ class EffectProblem:
     """Shape (channels,): lower bound of the innovations' noise."""
     prior_derivatives: FloatArray | None = None
     """Shape (6,): derivatives of the aircraft file; None where the file lacks one."""
-    derivatives_fixed: bool = False
-    """Whether fitted derivatives are held at the aircraft file's."""
     jitter_s: float = 0.0
     """Standard deviation of all stamps, including the command's, s."""
     whitening: Whitening | None = None
@@ -145,16 +137,12 @@ class EffectProblem:
 
         The prior mean is the file's for derivatives and zero for nuisance parameters. The prior is weak and
         decides only what the data leave open. Without a measured angle of attack Z_q and Z_δe also have the
-        prior of the estimate, about zero. With an effect that derivatives imitate exactly, the file's
-        derivatives hold within their tolerance.
+        prior of the estimate, about zero.
         """
         inverse, expected = [np.zeros(len(DERIVATIVES))], [point.derivatives]
         if self.prior_derivatives is not None:
-            trusted = any(effect.twin is not None for effect in point.effects)
-            tolerance = (
-                ERROR_IF_FIXED if self.derivatives_fixed else ERROR_IF_RIGHT if trusted else ERROR_IF_WRONG
-            )
-            inverse, expected = [prior_precision(self.prior_derivatives, tolerance)], [self.prior_derivatives]
+            inverse = [prior_precision(self.prior_derivatives, ERROR_IF_WRONG)]
+            expected = [self.prior_derivatives]
         if "alpha" not in self.channels:
             small = small_without_alpha(point.derivatives)
             expected[0] = inverse[0] * expected[0] / np.maximum(inverse[0] + small, 1e-300)

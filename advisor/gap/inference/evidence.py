@@ -12,10 +12,10 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG, derivative_scale, small_without_alpha
-from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.fitting.uncertainty import colour_of
 from advisor.gap.inference.explanation import Evidence
 from advisor.gap.inference.marginal import Prior, marginal
-from advisor.gap.records.floor import effective_sample_size
 
 _UNSTATED = 1.0
 """Prior: relative standard deviation of derivatives that no file states."""
@@ -85,16 +85,6 @@ def temperature(problem: EffectProblem, fitted: EffectFit) -> float:
     return colour_of(problem, fitted) * (1.0 + shared * (len(problem.flights) - 1))
 
 
-def colour_of(problem: EffectProblem, fitted: EffectFit) -> float:
-    """Return the number of samples that count as one independent sample of the innovations, at least 1."""
-    effective = sum(
-        effective_sample_size(residual[rows])
-        for flight, residual in zip(problem.flights.flights, fitted.innovations, strict=True)
-        for rows in problem.rows(flight)
-    )
-    return max(float(np.sum(counts(problem))) / max(effective, 1.0), 1.0)
-
-
 def log_likelihood(problem: EffectProblem, fitted: EffectFit) -> float:
     """Return the log likelihood of a fit, profiled over the noise, up to a constant of the flight."""
     return -0.5 * (fitted.cost - problem.prior_cost(fitted.point))
@@ -122,12 +112,3 @@ def evidence_of(problem: FlightProblem, fitted: EffectFit, heat: float, narrower
         -precision * pull / heat,
         *priors,
     )
-
-
-def covariance_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> FloatArray:
-    """Return the posterior covariance of the shared parameters, shape (k, k); the prior is not widened."""
-    precision, _ = problem.prior_of(fitted.point)
-    information = (fitted.information - np.diag(precision)) / heat + np.diag(precision)
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(information), 1e-300))
-    inverse = np.linalg.pinv(information * np.outer(scale, scale), hermitian=True)
-    return np.asarray(inverse * np.outer(scale, scale))

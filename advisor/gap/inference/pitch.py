@@ -22,7 +22,7 @@ from advisor.gap.search.screen import Screen
 
 LAWS = 2
 """Numerical: number of laws outside the catalogue that are fitted in full."""
-_AT_THE_FILE = 3
+AT_THE_FILE = 3
 """Numerical: number of effects that are fitted in full because they are the likeliest with the file's
 derivatives. A wrong derivative hides such an effect from the fit in which all are free."""
 _SYMMETRIC = float(np.log(2.0))
@@ -79,7 +79,7 @@ class PitchFlight:
             near = problem.within(ERROR_IF_RIGHT)
             tight = Screen(near, fit(near, plain.point, plain.noise, iterations=4))
             others = [variant for variant in table if variant.effect not in seen]
-            chosen += likeliest(tight.quick_fits(others), _AT_THE_FILE)
+            chosen += likeliest(tight.quick_fits(others), AT_THE_FILE)
         fits = [(one.variant, fit(loose, one.point, one.noise, iterations=8)) for one in chosen]
         fits = [(variant, made) for variant, made in fits if np.isfinite(made.cost)]
         heat = temperature(problem, min((plain, *(made for _, made in fits)), key=lambda made: made.cost))

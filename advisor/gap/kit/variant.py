@@ -43,10 +43,6 @@ class Variant:
     """Prior standard deviation of each parameter about zero; empty for a flat prior."""
     is_nuisance: bool = False
     """Whether the parameters are nuisance parameters, which are part of every model and never named."""
-    twin: Callable[[FloatArray, Sequence["Variant"], float], FloatArray] | None = None
-    """For an effect that derivatives imitate exactly: the change of all shared parameters, shape (k,), per
-    unit of size at equal motion. Arguments are derivatives, effects in the model and reference speed. Such an
-    effect is fitted with the aircraft file's derivatives held within their tolerance."""
     likewise: "tuple[Variant, ...]" = ()
     """Alternative descriptions, so similar that the full fit alone decides."""
     sets: bool = False

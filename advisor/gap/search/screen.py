@@ -8,7 +8,6 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.neighbourhood import Neighbourhood, SimulatedPoint
-from advisor.gap.fitting.prior import derivative_scale
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.kit.variant import Variant
 
@@ -97,11 +96,8 @@ class Screen:
     def _descend(self, variant: Variant, start: tuple[float, ...]) -> _Descent:
         problem = self.problem
         sides = None if variant.sides is None else variant.sides[1]
-        if variant.twin is not None and problem.prior_derivatives is not None:
-            point = self._at_the_files(variant)
-        else:
-            resting = None if sides is None else np.zeros(len(problem.flights))
-            point = self.fitted.point.with_effect(variant, start, resting)
+        resting = None if sides is None else np.zeros(len(problem.flights))
+        point = self.fitted.point.with_effect(variant, start, resting)
         if sides is not None:
             point = self.around.choose_sides(point, sides)
         here, most = yield point
@@ -127,14 +123,3 @@ class Screen:
             if gained < max(0.5, 1e-3 * (self.fitted.cost - here.cost)):
                 break
         return Screened(here.point.effects[-1], here.point, here.cost, here.noise)
-
-    def _at_the_files(self, variant: Variant) -> SearchPoint:
-        """Return the point of equal motion with the effect, as near to the file's derivatives as possible."""
-        plain, prior = self.fitted.point, self.problem.prior_derivatives
-        assert variant.twin is not None
-        assert prior is not None
-        per_unit = variant.twin(plain.derivatives, plain.effects, self.problem.flights.reference_m_s)
-        scale = derivative_scale(prior)
-        change, missed = per_unit[: len(prior)] / scale, (prior - plain.derivatives) / scale
-        value = float(np.clip(change @ missed / (change @ change), *variant.bounds[0]))
-        return plain.moved(plain.shared + value * per_unit, plain.own).with_effect(variant, (value,))

@@ -7,11 +7,13 @@ the air speed is an indicated one in thin air.
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from advisor.gap.candidates.nuisances import TRUE_AIR_SPEED
 from advisor.gap.decision import SIGMAS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.fitting.uncertainty import effective_samples, shared_std
+from advisor.gap.fitting.uncertainty import colour_of, covariance_of
 from advisor.gap.uncatalogued.weight_check import WeightReading
 from advisor.words.quantiles import NORMAL_95
 
@@ -64,8 +66,7 @@ def airspeed_scale_of(problem: EffectProblem, fitted: EffectFit) -> AirspeedScal
     point, scale = fitted.point, airspeed_excess(fitted)
     if not scale:
         return None
-    k = point.effects.index(TRUE_AIR_SPEED)
-    std = float(
-        shared_std(problem, fitted, effective_samples(problem, fitted.innovations))[point.place(k)][0]
-    )
+    at = point.place(point.effects.index(TRUE_AIR_SPEED)).start
+    known = covariance_of(problem, fitted, colour_of(problem, fitted))
+    std = float(np.sqrt(known[at, at]))
     return AirspeedScale(scale, std) if abs(scale) > max(_REPORTED, SIGMAS * std) else None

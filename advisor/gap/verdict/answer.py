@@ -17,9 +17,9 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import sole_informative_maneuver
 from advisor.gap.fitting.measure import file_model_of, whole_gap
 from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.fitting.uncertainty import covariance_of
 from advisor.gap.foresight.foresee import unseen_effects
 from advisor.gap.inference.diagnose import Inference
-from advisor.gap.inference.evidence import covariance_of
 from advisor.gap.inference.findings import Added, Circumstances, Findings, Model, Unexplained
 from advisor.gap.inference.laws import sentence_of_law
 from advisor.gap.inference.pitch import PitchModel

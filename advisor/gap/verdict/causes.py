@@ -11,8 +11,8 @@ from advisor.gap.candidates.distinguish import imitations, way_to_distinguish
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.fitting.uncertainty import covariance_of
 from advisor.gap.inference.diagnose import Inference
-from advisor.gap.inference.evidence import covariance_of
 from advisor.gap.inference.findings import Findings
 from advisor.gap.inference.pitch import PitchModel
 from advisor.gap.inference.posterior import Posterior, stated_as

@@ -8,10 +8,12 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.measure import file_model_of, whole_gap
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.fitting.uncertainty import covariance, effective_samples
+from advisor.gap.fitting.uncertainty import colour_of, covariance_of
 from advisor.gap.foresight.foresee import unseen_effects
 from advisor.gap.inference.diagnose import floor_of
+from advisor.gap.inference.evidence import FlightProblem
 from advisor.gap.inference.findings import Findings, Model, Unexplained
 from advisor.gap.inference.residual import residual_of
 from advisor.gap.result import VISIBLE, Diagnosis, GapVerdict, Where, ranked
@@ -26,6 +28,9 @@ from advisor.gap.verdict.numbers import (
     traces_of,
 )
 from advisor.gap.verdict.text import sentence_of, sentence_of_one_maneuver
+
+_FIXED = 0.1
+"""Numerical: tolerance of derivatives that stay at the file's, over that of right ones."""
 
 
 def answer_of_one(
@@ -44,7 +49,7 @@ def answer_of_one(
         unexplained = _located(problem, baseline)
     e = Findings(problem, (Model(baseline, held_out),), unexplained, None, floor, file_model, None, None)
     gap = gap_numbers(problem, floor, before, held_out)
-    known = covariance(problem, baseline, effective_samples(problem, baseline.innovations))
+    known = covariance_of(problem, baseline, colour_of(problem, baseline))
     where = Where("force_equation", 0.0, ())
     if unexplained is not None:
         where = Where(unexplained.block, unexplained.share, unexplained.ranking)
@@ -72,7 +77,8 @@ def _located(problem: EffectProblem, baseline: EffectFit) -> Unexplained:
     as_filed = baseline
     if problem.prior_derivatives is not None:
         file = replace(baseline.point, derivatives=problem.prior_derivatives)
-        as_filed = fit(replace(problem, derivatives_fixed=True), file, baseline.noise)
+        fixed = FlightProblem.of(problem, baseline).within(_FIXED * ERROR_IF_RIGHT)
+        as_filed = fit(fixed, file, baseline.noise)
     blocks = residual_of(problem, as_filed, 1.0).blocks
     ranking = ranked(blocks)
     return Unexplained(ranking[0][0], blocks[ranking[0][0]], ranking)

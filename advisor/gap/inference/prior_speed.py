@@ -7,10 +7,13 @@ last. Derivatives of the trim speed can then be off by some per cent, all by the
 import numpy as np
 
 from advisor.aircraft.reference import SPEED_EXPONENTS
+from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
-from advisor.gap.fitting.prior import distance_of
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG, prior_precision
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.fitting.uncertainty import covariance, distance_from_file, effective_samples
+from advisor.gap.fitting.uncertainty import colour_of, covariance_of
+from advisor.gap.inference.explanation import Evidence
+from advisor.gap.inference.marginal import Prior, marginal
 from advisor.gap.simulator.layout import DERIVATIVES, SPEED
 
 _POWERS = np.array([float(SPEED_EXPONENTS[name]) for name in DERIVATIVES])
@@ -28,16 +31,31 @@ def prior_speed(problem: EffectProblem, baseline: EffectFit) -> float | None:
     None where they may be right at the mean speed of the manoeuvres, or are wrong at every speed.
     """
     flights, prior = problem.flights, problem.prior_derivatives
-    if prior is None or not flights.speed_measured or not distance_from_file(problem, baseline).is_off:
+    if prior is None or not flights.speed_measured:
+        return None
+    n = len(prior)
+    found = baseline.point.derivatives
+    known = covariance_of(problem, baseline, colour_of(problem, baseline))[:n, :n]
+    here = evidence_of_file(found, known, prior)
+    if here.right >= here.wrong:
         return None
     flown = np.concatenate([flight.slow[SPEED] for flight in flights.flights]) / flights.reference_m_s
     lowest, highest = max(np.min(flown), 1.0 - _FARTHEST), min(np.max(flown), 1.0 + _FARTHEST)
-    n = len(prior)
-    known = covariance(problem, baseline, effective_samples(problem, baseline.innovations))[:n, :n]
     shares = np.linspace(lowest, highest, _TRIED)
-    off = [distance_of(baseline.point.derivatives, known, prior * share**-_POWERS) for share in shares]
-    right, wrong = [d.log_right for d in off], [d.log_wrong for d in off]
+    each = [evidence_of_file(found, known, prior * share**-_POWERS) for share in shares]
     # Any speed that was flown is alike likely, for right and for wrong derivatives.
-    if np.logaddexp.reduce(wrong) > np.logaddexp.reduce(right):
+    if np.logaddexp.reduce([one.wrong for one in each]) > np.logaddexp.reduce([one.right for one in each]):
         return None
-    return float(shares[int(np.argmax(right))] * flights.reference_m_s)
+    return float(shares[int(np.argmax([one.right for one in each]))] * flights.reference_m_s)
+
+
+def evidence_of_file(derivatives: FloatArray, known: FloatArray, prior: FloatArray) -> Evidence:
+    """Return the evidence for right and for wrong derivatives of a file, (6,).
+
+    ``derivatives`` (6,) and ``known`` (6, 6) are fitted ones with their covariance.
+    """
+    right, wrong = (
+        Prior(prior_precision(prior, tolerance), prior - derivatives)
+        for tolerance in (ERROR_IF_RIGHT, ERROR_IF_WRONG)
+    )
+    return marginal(0.0, np.asarray(np.linalg.inv(known)), np.zeros(len(prior)), right, wrong)

@@ -1,0 +1,53 @@
+"""Change of the outputs by another setting, at the derivatives of a fit.
+
+A surface that moves otherwise is a disturbance of its control, whose linear response is known. A late or
+scaled reading is the fitted output read otherwise. Everything else is simulated.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.model.lateral import LATERAL
+from advisor.side_gap.disturbance import STEP_S, answered
+from advisor.side_gap.fit import Fit, outputs
+from advisor.side_gap.setting import COMMAND, PROPELLED, PROPELLER, Flown, Setting, deflection
+
+
+def changes_by(fit: Fit, flown: Flown, of: str, settings: Sequence[Setting]) -> FloatArray:
+    """Return the change (settings, N) of the outputs by settings that differ at one control or output."""
+    control = PROPELLED if of == PROPELLER[0] else of
+    if control in LATERAL.inputs:
+        parts = [_by_surface(fit, flown, m, control, settings) for m in range(len(flown))]
+        return np.vstack(parts).T
+    return np.array([_read_otherwise(fit, flown, of, setting) for setting in settings])
+
+
+def _by_surface(fit: Fit, flown: Flown, m: int, control: str, settings: Sequence[Setting]) -> FloatArray:
+    """Return the change (n, settings) of the rows of a manoeuvre by other deflections of a control."""
+    stamps = fit.assembly.t[fit.assembly.owner == m]
+    t = np.arange(np.min(stamps), np.max(stamps) + STEP_S, STEP_S)
+    moves = np.zeros((len(t), len(settings)))
+    if control in flown.problem.records[m].inputs:
+        now = fit.point.setting
+        late = t - now[COMMAND][m]
+        moves += np.column_stack([deflection(flown, m, control, one).at(late) for one in settings])
+        moves -= deflection(flown, m, control, now).at(late)[:, None]
+    return answered(fit, flown, m, control, t, moves)
+
+
+def _read_otherwise(fit: Fit, flown: Flown, of: str, setting: Setting) -> FloatArray:
+    """Return the change (N,) of the outputs by late stamps or a scale of a reading, or by an arm."""
+    now = fit.point.setting
+    late, scale, arm = (
+        setting.get((of, e), np.zeros(1))[0] - now.get((of, e), np.zeros(1))[0]
+        for e in ("skew_s", "scale", "arm_m")
+    )
+    if arm:
+        return outputs(flown, fit.point._replace(setting=setting)) - fit.fitted
+    change = np.zeros(len(fit.fitted))
+    for rows in (named[of] for named in fit.assembly.rows):
+        t, y = fit.assembly.t[rows], fit.fitted[rows]
+        change[rows] = (1.0 + scale) * np.interp(t - late, t, y) - y
+    return change
