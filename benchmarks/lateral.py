@@ -140,7 +140,7 @@ def rows_of(known: Known, folder: Path) -> Iterator[str]:
     if state.model is None:
         yield f"| {name_of_row} | no joint estimate | | | | |"
         return
-    estimate = state.model.estimate
+    estimate = state.model
     for name, (truth, tolerance) in known.truth.items():
         if name in MODES:
             mode = getattr(state.model.modes, MODES[name])

@@ -8,6 +8,9 @@ from advisor.aircraft.key import Key
 
 PARAMETERS = ("Z_0", "Z_alpha", "Z_q", "Z_delta_e", "M_0", "M_alpha", "M_q", "M_delta_e")
 """Names of the eight parameters θ, Eq. (3), in the order of every vector of parameters in this program."""
+SIDE_PARAMETERS = tuple(f"{y}_{x}" for y in "YLN" for x in ("beta", "p", "r", "delta_a", "delta_r"))
+"""Names of the fifteen derivatives of roll and yaw, in the order of every vector of theirs."""
+_OF_SIDE_MOMENTS = {"0": 2, "beta": 2, "p": 1, "r": 1, "delta_a": 2, "delta_r": 2}
 SPEED_EXPONENTS: Mapping[str, int] = {
     "Z_0": 1,
     "Z_alpha": 1,
@@ -17,13 +20,14 @@ SPEED_EXPONENTS: Mapping[str, int] = {
     "M_alpha": 2,
     "M_q": 1,
     "M_delta_e": 2,
+    **{f"Y_{x}": power - 1 for x, power in _OF_SIDE_MOMENTS.items()},
+    **{f"{y}_{x}": power for y in "LN" for x, power in _OF_SIDE_MOMENTS.items()},
 }
-"""Power of the air speed with which each parameter grows at constant density.
+"""Power of the air speed with which each parameter of either axis grows at constant density.
 
-Z = -ρVS·C_L/(2m) and M = ρV²Sc·C_m/(2I_yy); a rate derivative carries another c/(2V).
+Z = -ρVS·C_L/(2m) and M = ρV²Sc·C_m/(2I_yy); a rate derivative carries another c/(2V). Y is as Z, with L and N
+as M.
 """
-SIDE_PARAMETERS = tuple(f"{y}_{x}" for y in "YLN" for x in ("beta", "p", "r", "delta_a", "delta_r"))
-"""Names of the fifteen derivatives of roll and yaw, in the order of every vector of theirs."""
 
 
 @dataclass(frozen=True)

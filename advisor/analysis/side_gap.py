@@ -90,7 +90,7 @@ def _identified(log: Path, aircraft: Aircraft) -> Aircraft:
     if not log.is_file():
         raise ConfigurationError(f"--simulator log:{log}: there is no such file; name the simulator's log.")
     flown = accepted_of(read_whole([log], aircraft, no_marks=True, axis="lateral").state)
-    found = answered(estimate_lateral(flown, aircraft)).estimate
+    found = answered(estimate_lateral(flown, aircraft))
     return with_derivatives(aircraft, found, found.airspeed_m_s)
 
 

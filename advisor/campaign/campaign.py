@@ -1,10 +1,11 @@
 """The flight test as a pure state machine: columns of messages in, events and a state out."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.campaign.axis_campaign import AxisCampaign
 from advisor.campaign.elevator import ElevatorCampaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.instruments import side_signs, together, with_fit
@@ -12,7 +13,7 @@ from advisor.campaign.journal import Journal
 from advisor.campaign.late_limits import recount
 from advisor.campaign.lateral import LateralCampaign
 from advisor.campaign.running_estimate import Settled, Settling
-from advisor.campaign.state import OF_ELEVATOR, CampaignState, JudgedLateral, JudgedManeuver, WholeFlights
+from advisor.campaign.state import OF_ELEVATOR, AxisName, CampaignState, JudgedManeuver, WholeFlights
 from advisor.decision.crew_plan import CrewPlan, crew_plan
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import (
@@ -38,6 +39,11 @@ from advisor.process.parts import Parts
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock
 
+_OF: Mapping[AxisName, str] = {"pitch": "", "lateral": "roll and yaw, "}
+"""Axis to the words before the number of its manoeuvre."""
+_TEST_OF: Mapping[AxisName, str] = {"pitch": "", "lateral": "roll and yaw: "}
+"""Axis to the words before the decision on its test."""
+
 
 @dataclass(frozen=True, slots=True)
 class ManeuverJudged:
@@ -47,19 +53,10 @@ class ManeuverJudged:
     flight_test: FlightTestVerdict
     plan: CrewPlan | None = None
     """Plan of both axes; None where only one of them has been flown."""
+    axis: AxisName = "pitch"
 
 
-@dataclass(frozen=True, slots=True)
-class LateralJudged:
-    """A manoeuvre of aileron or rudder was estimated and judged, and their test was decided anew."""
-
-    judged: JudgedLateral
-    flight_test: FlightTestVerdict
-    plan: CrewPlan | None = None
-    """Plan of both axes; None where only one of them has been flown."""
-
-
-CampaignEvent = FlightEvent | ManeuverJudged | LateralJudged
+CampaignEvent = FlightEvent | ManeuverJudged
 
 
 class Campaign:
@@ -224,13 +221,13 @@ class Campaign:
             return found
         return [problem for problem in found if problem.code not in OF_ELEVATOR]
 
-    def exclude(self, number: int, because: str) -> None:
-        """Exclude a manoeuvre from every decision, and decide anew on all later manoeuvres."""
-        self._decide_by_hand(number, because)
+    def exclude(self, number: int, because: str, axis: AxisName = "pitch") -> None:
+        """Exclude a manoeuvre of an axis from every decision, and decide anew on all later manoeuvres."""
+        self._decide_by_hand(number, because, axis)
 
-    def include(self, number: int) -> None:
+    def include(self, number: int, axis: AxisName = "pitch") -> None:
         """Include an excluded manoeuvre again."""
-        self._decide_by_hand(number, None)
+        self._decide_by_hand(number, None, axis)
 
     def mark(self, text: str) -> None:
         """Set a mark in the event log at the newest vehicle time."""
@@ -260,23 +257,23 @@ class Campaign:
         """Write a sentence from outside, such as what a link reports, into the event log."""
         self._journal.write(sentence, self._stream.now_s)
 
-    def note(self, number: int, text: str) -> None:
-        """Write a note on a manoeuvre."""
-        self.by_hand = self.by_hand.noting(self._numbered(number), text)
-        self._journal.write(f"note on manoeuvre {number}: {text}", self._stream.now_s)
-        self._elevator.note(number, text)
+    def note(self, number: int, text: str, axis: AxisName = "pitch") -> None:
+        """Write a note on a manoeuvre of an axis."""
+        half = self._half(axis)
+        self.by_hand = self.by_hand.noting(half.numbered(number).maneuver, text)
+        self._journal.write(f"note on {_OF[axis]}manoeuvre {number}: {text}", self._stream.now_s)
+        half.note(number, text)
 
-    def _decide_by_hand(self, number: int, because: str | None) -> None:
-        self.by_hand = self.by_hand.excluding(self._numbered(number), because)
+    def _decide_by_hand(self, number: int, because: str | None, axis: AxisName) -> None:
+        half = self._half(axis)
+        self.by_hand = self.by_hand.excluding(half.numbered(number).maneuver, because)
         what = "included again" if because is None else f"excluded: {because}"
-        self._journal.write(f"manoeuvre {number} {what}", self._stream.now_s)
-        self._elevator.exclude(number, because)
+        self._journal.write(f"{_OF[axis]}manoeuvre {number} {what}", self._stream.now_s)
+        half.exclude(number, because)
 
-    def _numbered(self, number: int) -> Maneuver:
-        return self._judged(number).maneuver
-
-    def _judged(self, number: int) -> JudgedManeuver:
-        return next(judged for judged in self._elevator.judged if judged.maneuver.number == number)
+    def _half(self, axis: AxisName) -> AxisCampaign:
+        """Return the campaign of an axis."""
+        return self._lateral if axis == "lateral" and self._lateral is not None else self._elevator
 
     def _take(self, events: Sequence[FlightEvent]) -> list[CampaignEvent]:
         told: list[CampaignEvent] = []
@@ -287,9 +284,9 @@ class Campaign:
                 case ModeChanged(mode, at_s):
                     self._whole_flights.change_mode(self.power_on, at_s, mode)
                 case ManeuverFlown(maneuver):
-                    told.append(self._judge(maneuver))
-                case SideManeuverFlown(maneuver):
-                    told += self._judge_lateral(maneuver)
+                    told.append(self._judge(self._elevator, maneuver, "pitch"))
+                case SideManeuverFlown(maneuver) if self._lateral is not None:
+                    told.append(self._judge(self._lateral, maneuver, "lateral"))
                 case Activity():
                     joined = event.joined(self._activity[-1]) if self._activity else None
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
@@ -304,14 +301,17 @@ class Campaign:
                 self._tell(happened)
         return told
 
-    def _judge(self, maneuver: Maneuver) -> ManeuverJudged:
+    def _judge(
+        self, half: ElevatorCampaign | LateralCampaign, maneuver: Maneuver, axis: AxisName
+    ) -> ManeuverJudged:
         """Judge a manoeuvre that has just been flown, and write its verdict and the flight test's."""
-        self._elevator.take(maneuver, self.by_hand)
-        judged, span = self._elevator.judged[-1], maneuver.span
-        verdict = f"manoeuvre {maneuver.number} ({clock(span.start_s)}): {judged.verdict.sentence}"
-        self._journal.write_of_past(verdict, span.end_s)
-        self._journal.write_of_past(self._elevator.flight_test.sentence, span.end_s)
-        return ManeuverJudged(judged, self._elevator.flight_test, self._plan)
+        half.take(maneuver, self.by_hand)
+        span, judged = maneuver.span, half.judged[-1]
+        which = f", {span.kind}" if axis == "lateral" else ""
+        verdict = f"{_OF[axis]}manoeuvre {maneuver.number} ({clock(span.start_s)}{which})"
+        self._journal.write_of_past(f"{verdict}: {judged.verdict.sentence}", span.end_s)
+        self._journal.write_of_past(f"{_TEST_OF[axis]}{half.flight_test.sentence}", span.end_s)
+        return ManeuverJudged(judged, half.flight_test, self._plan, axis)
 
     @property
     def _plan(self) -> CrewPlan | None:
@@ -324,17 +324,6 @@ class Campaign:
     def _side_maneuvers(self) -> tuple[Maneuver, ...]:
         """Lateral manoeuvres, where they were asked for."""
         return self._lateral.maneuvers if self._lateral is not None else ()
-
-    def _judge_lateral(self, maneuver: Maneuver) -> list[LateralJudged]:
-        """Estimate and judge a lateral manoeuvre that has just been flown, where that was asked for."""
-        if self._lateral is None:
-            return []
-        told = LateralJudged(self._lateral.take(maneuver), self._lateral.flight_test, self._plan)
-        span = maneuver.span
-        called = f"roll and yaw, manoeuvre {maneuver.number} ({clock(span.start_s)}, {span.kind})"
-        self._journal.write_of_past(f"{called}: {told.judged.verdict.sentence}", span.end_s)
-        self._journal.write_of_past(f"roll and yaw: {told.flight_test.sentence}", span.end_s)
-        return [told]
 
     def _note_down(self, notice: Notice) -> None:
         """Keep the notices about marks and about the reader for the report."""
@@ -353,14 +342,16 @@ class Campaign:
             f"it counts once{better}",
             maneuver.span.end_s,
         )
-        known = self._judged(maneuver.number).excluded_because
+        known = self._elevator.numbered(maneuver.number).excluded_because
         because = known if known is not None else self.by_hand.excluded_because(maneuver)
         if not event.takes_place:
             if because != known:
                 self._elevator.exclude(maneuver.number, because)
             return []
         self._elevator.take_better(maneuver, because)
-        return [ManeuverJudged(self._judged(maneuver.number), self._elevator.flight_test, self._plan)]
+        return [
+            ManeuverJudged(self._elevator.numbered(maneuver.number), self._elevator.flight_test, self._plan)
+        ]
 
     def _count_anew(self, event: ElevatorRescaled) -> list[CampaignEvent]:
         """Count earlier manoeuvres by a limit that is heard late, so that no two scales are pooled."""

@@ -1,43 +1,28 @@
 """The elevator's half of a campaign: its manoeuvres, their estimates and verdicts, and the joint estimate."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
 from functools import partial
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.campaign.axis_campaign import AxisCampaign, Flown
 from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.instruments import as_known_by
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.late_limits import Recount
 from advisor.campaign.learning import learnt as learnt_from
 from advisor.campaign.learning import may_learn, of_another_power_on, told
-from advisor.campaign.single_maneuver import assess, failed, objection
+from advisor.campaign.single_maneuver import assess, failed
 from advisor.campaign.state import JudgedManeuver
-from advisor.decision.course import CriterionCourse
 from advisor.decision.heard import Heard
 from advisor.decision.history import CandidateManeuver
-from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
-from advisor.decision.verdict import ManeuverVerdict
+from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.process.parts import FailedPart, Parts
+from advisor.oem.estimate import Estimate
+from advisor.process.parts import Parts
 
 
-@dataclass(slots=True)
-class _Flown:
-    """A manoeuvre, its examination, and what an engineer noted on it."""
-
-    maneuver: Maneuver
-    examined: CandidateManeuver
-    notes: tuple[str, ...]
-
-    def exclude(self, because: str | None) -> None:
-        """Exclude the manoeuvre for a reason; None: the manoeuvre counts."""
-        self.examined = replace(self.examined, excluded_because=because)
-
-
-class ElevatorCampaign:
+class ElevatorCampaign(AxisCampaign):
     """Estimates and judges manoeuvres of the elevator as they come, and learns from them of the instruments.
 
     Parameters
@@ -51,31 +36,19 @@ class ElevatorCampaign:
     """
 
     def __init__(self, aircraft: Aircraft, say: Callable[[str], object], parts: Parts) -> None:
-        self._aircraft = aircraft
-        self._parts = parts
+        super().__init__("pitch", aircraft, aircraft.campaign, parts)
         self.learnt = aircraft
         """The crew's aircraft with what the manoeuvres have told of the instruments."""
         self._told_by: set[tuple[int, int]] = set()
         self._say = say
-        self._flown: list[_Flown] = []
         self._together = Together(aircraft)
-        self._course = CriterionCourse(aircraft.campaign)
-        self._heard: list[Heard] = []
-        self._ended = False
-        self.judged: tuple[JudgedManeuver, ...] = ()
-        """Manoeuvres in the order flown, each with its estimate and verdict."""
-        self.flight_test = flight_test((), aircraft.campaign, aircraft, self._course)
-        """Whether the test may stop, and the next manoeuvre."""
 
     def take(self, maneuver: Maneuver, by_hand: ByHand) -> None:
         """Estimate and judge a manoeuvre that has just been flown, and decide anew whether to stop."""
-        flown = _Flown(maneuver, self._assess(maneuver), by_hand.notes_on(maneuver))
-        flown.exclude(by_hand.excluded_because(maneuver))
-        self._flown.append(flown)
+        self._add(maneuver, self._assess(maneuver), by_hand)
         self._blame_instruments(maneuver)
         self.decide()
-        usable = [i for i, one in enumerate(self._flown) if one.examined.usable]
-        self._heard.append(Heard.of(self.flight_test, usable))
+        self._hear()
 
     def take_better(self, maneuver: Maneuver, because: str | None) -> None:
         """Take another record of a manoeuvre in the former one's place; exclude it for a given reason."""
@@ -91,36 +64,10 @@ class ElevatorCampaign:
             flown.exclude(flown.examined.excluded_because or again.heard)
         self.decide()
 
-    def exclude(self, number: int, because: str | None) -> None:
-        """Exclude a manoeuvre from every decision for a reason; None: include the manoeuvre again."""
-        self._of(number).exclude(because)
-        self.decide()
-
-    def note(self, number: int, text: str) -> None:
-        """Add a note on a manoeuvre."""
-        flown = self._of(number)
-        flown.notes += (text,)
-        self._judge()
-
-    def finish(self) -> None:
-        """Take the end of the flight, after which the joint estimate is over all accepted manoeuvres."""
-        self._ended = True
-        self.decide()
-
     def decide(self) -> None:
         """Judge all manoeuvres, and examine them again where they have told more of the instruments."""
         self._judge()
         self._parts.make("pitch, instruments told by the manoeuvres", self._learn, lambda _: None)
-
-    @property
-    def maneuvers(self) -> tuple[Maneuver, ...]:
-        """Manoeuvres in the order flown."""
-        return tuple(flown.maneuver for flown in self._flown)
-
-    @property
-    def estimates(self) -> tuple[Estimate | NoEstimate, ...]:
-        """Estimates of the single manoeuvres."""
-        return tuple(flown.examined.estimate for flown in self._flown)
 
     @property
     def joined(self) -> Sequence[JudgedManeuver]:
@@ -136,16 +83,13 @@ class ElevatorCampaign:
             "pitch, joint estimate", lambda: self._together.estimate(joined), lambda _: None
         )
 
-    def _of(self, number: int) -> _Flown:
-        return next(flown for flown in self._flown if flown.maneuver.number == number)
-
     def _replace(self, maneuver: Maneuver) -> None:
         """Examine a manoeuvre in the place of the one with its number."""
         flown = self._of(maneuver.number)
         flown.maneuver = maneuver
         self._examine(flown)
 
-    def _examine(self, flown: _Flown) -> None:
+    def _examine(self, flown: Flown) -> None:
         """Estimate and examine a manoeuvre again. Its exclusion holds."""
         because = flown.examined.excluded_because
         flown.examined = self._assess(flown.maneuver)
@@ -167,41 +111,8 @@ class ElevatorCampaign:
             if known is not flown.maneuver:
                 self._replace(known)
 
-    def _judge(self) -> None:
-        """Judge the manoeuvres and the flight test; leave all unjudged where a fault ends that."""
-        self._parts.make("pitch, verdicts", self._judged, self._unjudged)
-
-    def _unjudged(self, part: FailedPart) -> None:
-        """Accept no manoeuvre, and go on."""
-        why = objection(part)
-        verdict = ManeuverVerdict(False, why.text, (why,), {})
-        self.judged = tuple(
-            JudgedManeuver(
-                one.maneuver, one.examined.estimate, verdict, one.examined.excluded_because, one.notes
-            )
-            for one in self._flown
-        )
-        self.flight_test = flight_test((), self._aircraft.campaign, self._aircraft)
-
-    def _judged(self) -> None:
-        """Judge the manoeuvres and the flight test from the examinations."""
-        plan = self._aircraft.campaign
-        history = [flown.examined for flown in self._flown]
-        verdicts = judge_campaign(history, plan, self._course)
-        self.judged = tuple(
-            JudgedManeuver(
-                flown.maneuver, flown.examined.estimate, verdict, flown.examined.excluded_because, flown.notes
-            )
-            for flown, verdict in zip(self._flown, verdicts, strict=True)
-        )
-        # An exclusion by hand decides all anew: a replay with the file of decisions equals the flight.
-        excluded = any(one.excluded_because is not None for one in history)
-        heard = () if excluded else self._heard
-        self.flight_test = flight_test(history, plan, self._aircraft, self._course, heard)
-
-    @property
-    def _accepted(self) -> Sequence[JudgedManeuver]:
-        return [judged for judged in self.judged if judged.verdict.accepted]
+    def _decided(self, history: Sequence[CandidateManeuver], heard: Sequence[Heard]) -> FlightTestVerdict:
+        return flight_test(history, self._plan, self._aircraft, self._course, heard)
 
     @property
     def _of_lag(self) -> Estimate | None:

@@ -74,10 +74,10 @@ def side_signs(model: LateralEstimate | None, aircraft: Aircraft) -> tuple[Instr
     """
     found = []
     for control, name, moves in (("aileron", "L_delta_a", "rolls"), ("rudder", "N_delta_r", "yaws")):
-        if model is None or name in model.estimate.not_identifiable:
+        if model is None or name in model.not_identifiable:
             continue
-        value = model.estimate.value(name)
-        half = NORMAL_95 * float(model.estimate.std[model.estimate.names.index(name)])
+        value = model.value(name)
+        half = NORMAL_95 * float(model.std[model.names.index(name)])
         if not half < abs(value):
             continue
         stated = getattr(aircraft, control).calibration is not None

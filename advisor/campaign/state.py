@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 from statistics import median
+from typing import Literal
 
 from advisor.decision.crew_plan import CrewPlan, crew_plan
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
@@ -20,21 +21,28 @@ from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.process.parts import FailedPart
 from advisor.words.problems import Problem
 
+AxisName = Literal["pitch", "lateral"]
+"""Axis whose manoeuvres are numbered by themselves."""
+
 
 @dataclass(frozen=True, slots=True)
-class JudgedLateral:
-    """One lateral manoeuvre, its estimate and the verdict on it."""
+class JudgedManeuver:
+    """One manoeuvre, its estimate and the verdict on it."""
 
     maneuver: Maneuver
-    estimate: LateralEstimate | NoEstimate
+    estimate: Estimate | NoEstimate
     verdict: ManeuverVerdict
+    excluded_because: str | None = None
+    """Reason for which an engineer excluded the manoeuvre; None: the manoeuvre counts."""
+    notes: tuple[str, ...] = ()
+    """Notes of the engineer on the manoeuvre."""
 
 
 @dataclass(frozen=True, slots=True)
 class LateralState:
     """State of the lateral half of a campaign."""
 
-    maneuvers: tuple[JudgedLateral, ...]
+    maneuvers: tuple[JudgedManeuver, ...]
     flight_test: FlightTestVerdict
     model: LateralEstimate | None
     """Joint estimate: over the newest accepted manoeuvres in flight, over all of them after the end."""
@@ -85,19 +93,6 @@ class WholeFlights:
             modes = self._modes if power_on == self._power_on else ()
             self._newest = WholeFlight(courses(), modes)
         return self._newest
-
-
-@dataclass(frozen=True, slots=True)
-class JudgedManeuver:
-    """One manoeuvre, its estimate and the verdict on it."""
-
-    maneuver: Maneuver
-    estimate: Estimate | NoEstimate
-    verdict: ManeuverVerdict
-    excluded_because: str | None = None
-    """Reason for which an engineer excluded the manoeuvre; None: the manoeuvre counts."""
-    notes: tuple[str, ...] = ()
-    """Notes of the engineer on the manoeuvre."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -184,11 +184,11 @@ def _source(earlier: Sequence[Path], link: "KeptLink") -> "Source":
 
 
 def _announce(link: "KeptLink", event: object) -> None:
-    from advisor.campaign.campaign import LateralJudged, ManeuverJudged
+    from advisor.campaign.campaign import ManeuverJudged
 
-    if isinstance(event, ManeuverJudged | LateralJudged):
+    if isinstance(event, ManeuverJudged):
         verdict, plan = event.flight_test, event.plan
-        axis = "roll and yaw" if isinstance(event, LateralJudged) else ""
+        axis = "roll and yaw" if event.axis == "lateral" else ""
         stop = verdict.sentence if verdict.decision == "stop" else ""
         stop, about = (stop, axis) if plan is None else (plan.announced, plan.announced)
         link.judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop, axis, about)

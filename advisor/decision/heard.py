@@ -5,6 +5,7 @@ crew has heard stays. The faces also show the criterion by the newest estimates.
 """
 
 from collections.abc import Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 
 from advisor.decision.verdict import FlightTestVerdict, Remaining, RuleProgress
@@ -38,6 +39,12 @@ class Heard:
 def first_stop(heard: Sequence[Heard], rule: str) -> int | None:
     """Return the number of manoeuvres at the first stop of a rule that a crew has heard; None without one."""
     return next((n for n, one in enumerate(heard, start=1) if rule in one.stops), None)
+
+
+def stays(heard: Sequence[Heard], rule: str, usable: AbstractSet[int]) -> bool:
+    """Return whether a stop that the crew has heard still rests on manoeuvres that are ``usable``."""
+    stopped = first_stop(heard, rule)
+    return stopped is not None and heard[stopped - 1].usable <= usable
 
 
 def as_heard(found: RuleProgress, rule: str, heard: Sequence[Heard]) -> RuleProgress:

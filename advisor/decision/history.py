@@ -31,6 +31,9 @@ class CandidateManeuver:
     servo: Servo = field(default_factory=Servo)
     """Servo between command and surface, as the estimate uses it."""
 
+    responses: tuple[str, ...] = ("alpha", "q")
+    """Outputs that show the response to the input."""
+
     @property
     def usable(self) -> Estimate | None:
         """Estimate of a manoeuvre that a rule may judge. None: excluded, rejected or not estimated."""

@@ -125,12 +125,13 @@ def _why_accepted(flown: CandidateManeuver, rule: Rule, result: RuleResult) -> s
         compared = "the first to compare others with"
     else:
         compared = _of_limit(flown.estimate.cost, result.limit)
-    return f"good manoeuvre, {_explained(flown.estimate)}{compared}"
+    return f"good manoeuvre, {_explained(flown.estimate, flown.responses)}{compared}"
 
 
-def _explained(estimate: Estimate) -> str:
+def _explained(estimate: Estimate, responses: Sequence[str]) -> str:
     """Return a clause on the share of the motion that the model explains; empty without a fit."""
-    share = min(fit.r2 for name, fit in estimate.fits[0].items() if name in ("alpha", "q"))
+    fits = estimate.fits[0] if estimate.fits else {}
+    share = min((fit.r2 for name, fit in fits.items() if name in responses), default=0.0)
     # Cut, not rounded: 100 % is printed for an exact fit only.
     return f"the model explains {floor(1000.0 * share) / 10.0:.1f} % of it; " if share > 0.0 else ""
 

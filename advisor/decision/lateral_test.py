@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 from advisor.aircraft.aircraft import Aircraft, Rule
 from advisor.decision.advice import ENOUGH
-from advisor.decision.heard import Heard, first_stop
+from advisor.decision.heard import Heard, first_stop, stays
 from advisor.decision.lateral_advice import FlownInput, next_lateral
 from advisor.decision.tolerance import SHARE
 from advisor.decision.verdict import INFORMATION_LIMIT_PERCENT, FlightTestVerdict, NextInput, RuleProgress
@@ -38,12 +38,11 @@ def shares_of(joint: LateralEstimate | None, tolerance_percent: float) -> Mappin
     shares = dict.fromkeys(JUDGED, math.inf)
     if joint is None:
         return shares
-    estimate = joint.estimate
     for name, control in JUDGED.items():
-        k = estimate.names.index(name)
-        size = 0.01 * SHARE * tolerance_percent * abs(float(estimate.theta[k]))
-        if control in joint.flown and name not in estimate.not_identifiable and size > 0.0:
-            shares[name] = 100.0 * NORMAL_95 * float(estimate.std[k]) / size
+        k = joint.names.index(name)
+        size = 0.01 * SHARE * tolerance_percent * abs(float(joint.theta[k]))
+        if control in joint.flown and name not in joint.not_identifiable and size > 0.0:
+            shares[name] = 100.0 * NORMAL_95 * float(joint.std[k]) / size
     return shares
 
 
@@ -75,7 +74,10 @@ def lateral_flight_test(
     holds = worst < INFORMATION_LIMIT_PERCENT and not _flown_fewer_than(CHECKED, accepted)
     now = worst if math.isfinite(worst) else None
     told = tuple(one.percent.get(_RULE) for one in heard)
-    stopped_at = first_stop(heard, _RULE) or (len(history) if holds else None)
+    now_usable = {i for i, one in enumerate(history) if one is not None}
+    stopped_at = len(history) if holds else None
+    if stays(heard, _RULE, now_usable):
+        stopped_at = first_stop(heard, _RULE)
     stop = stopped_at is not None
     return FlightTestVerdict(
         rule=_RULE,

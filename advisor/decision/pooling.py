@@ -7,7 +7,7 @@ data, only estimates and covariances, so that every decision of a campaign is qu
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from math import nan
 from typing import NamedTuple
 
@@ -23,46 +23,52 @@ INTERCEPTS = (PARAMETERS.index("Z_0"), PARAMETERS.index("M_0"))
 """Indices of Z_0 and M_0 in θ. Trim and speed differ between manoeuvres, so each has its own Z_0 and M_0."""
 DERIVATIVES = tuple(k for k in range(len(PARAMETERS)) if k not in INTERCEPTS)
 
-_D, _C = list(DERIVATIVES), list(INTERCEPTS)
-_DD, _CC, _CD, _DC = np.ix_(_D, _D), np.ix_(_C, _C), np.ix_(_C, _D), np.ix_(_D, _C)
-_SPEED_POWER = np.array([SPEED_EXPONENTS[name] for name in PARAMETERS], dtype=float)
+
+@cache
+def _places(names: tuple[str, ...]) -> tuple[list[int], list[int]]:
+    """Return the places of the derivatives and of the intercepts among the parameters of an axis."""
+    intercepts = [k for k, name in enumerate(names) if name.endswith("_0")]
+    return [k for k in range(len(names)) if k not in intercepts], intercepts
 
 
 class Shared(NamedTuple):
-    """Mean and covariance of the six derivatives, which manoeuvres share, in the order of ``DERIVATIVES``."""
+    """Mean and covariance of the d derivatives of an axis, which manoeuvres share."""
 
     theta: FloatArray
-    """Mean, shape (6,)."""
+    """Mean, shape (d,)."""
     covariance: FloatArray
-    """Covariance, shape (6, 6). Infinite on the diagonal for an unknown derivative."""
+    """Covariance, shape (d, d). Infinite on the diagonal for an unknown derivative."""
 
 
 @dataclass(frozen=True)
 class Posterior:
-    """Mean and covariance of θ."""
+    """Mean and covariance of the p parameters of an axis."""
 
     theta: FloatArray
-    """Mean, shape (8,), in the order of ``PARAMETERS``."""
+    """Mean, shape (p,), in the order of ``names``."""
     covariance: FloatArray
-    """Covariance for given instruments, shape (8, 8). Infinite on the diagonal for an unknown parameter."""
+    """Covariance for given instruments, shape (p, p). Infinite on the diagonal for an unknown parameter."""
     common: FloatArray = field(default_factory=lambda: np.zeros((len(PARAMETERS), len(PARAMETERS))))
-    """Covariance by the errors of given instruments, which all estimates share, shape (8, 8)."""
+    """Covariance by the errors of given instruments, which all estimates share, shape (p, p)."""
     alpha_rad: tuple[float, float] = (nan, nan)
     """Lowest and highest measured angle of attack of the manoeuvre, rad. NaN where not measured."""
+    names: tuple[str, ...] = PARAMETERS
+    """Names of the parameters. Those that end in ``_0`` are intercepts, which are each manoeuvre's own."""
 
     @property
     def std(self) -> FloatArray:
-        """Standard deviations with both parts of the error, shape (8,)."""
+        """Standard deviations with both parts of the error, shape (p,)."""
         return np.sqrt(np.diag(self.covariance) + np.diag(self.common))
 
     @cached_property
     def shared(self) -> Shared:
         """Mean and covariance of the derivatives alone."""
-        return Shared(self.theta[_D], self.covariance[_DD])
+        derivatives, _ = _places(self.names)
+        return Shared(self.theta[derivatives], self.covariance[np.ix_(derivatives, derivatives)])
 
     @cached_property
     def information(self) -> FloatArray:
-        """Information about the derivatives, shape (6, 6). Zero for an unknown derivative."""
+        """Information about the derivatives, shape (d, d). Zero for an unknown derivative."""
         return information_of(self.shared.covariance)
 
 
@@ -79,7 +85,7 @@ def posteriors_at_one_speed(estimates: Sequence[Estimate]) -> list[Posterior]:
     scale, values = _at_one_speed(estimates)
     factors = _widening_by_colour(estimates) * scale[:, :, None] * scale[:, None, :]
     return [
-        Posterior(value, e.own_covariance_cr * factor, e.common * np.outer(s, s), _alpha_of(e))
+        Posterior(value, e.own_covariance_cr * factor, e.common * np.outer(s, s), _alpha_of(e), e.names)
         for e, value, factor, s in zip(estimates, values, factors, scale, strict=True)
     ]
 
@@ -91,20 +97,19 @@ def _alpha_of(estimate: Estimate) -> tuple[float, float]:
 
 
 def values_at_one_speed(estimates: Sequence[Estimate]) -> FloatArray:
-    """Return the means of ``posteriors_at_one_speed``, shape (n, 8)."""
+    """Return the means of ``posteriors_at_one_speed``, shape (n, p)."""
     return _at_one_speed(estimates)[1]
 
 
 def _at_one_speed(estimates: Sequence[Estimate]) -> tuple[FloatArray, FloatArray]:
-    """Return (n, 8) factors on each estimate's parameters, without gravity's part, and (n, 8) parameters."""
-    theta = np.array([e.theta for e in estimates])
+    """Return (n, p) factors on each estimate's parameters, without gravity's part, and (n, p) parameters."""
+    theta, names = np.array([e.theta for e in estimates]), estimates[0].names
     reference = common_airspeed(estimates)
     if reference is None:
         return np.ones_like(theta), theta
     speeds = np.array([e.airspeed_m_s for e in estimates])[:, None]
-    gravity = np.zeros(len(PARAMETERS))
-    gravity[PARAMETERS.index("Z_0")] = GRAVITY_M_S2
-    scale = (reference / speeds) ** _SPEED_POWER
+    gravity = np.array([GRAVITY_M_S2 if name == "Z_0" else 0.0 for name in names])
+    scale = (reference / speeds) ** np.array([SPEED_EXPONENTS[name] for name in names], dtype=float)
     return scale, (theta - gravity / speeds) * scale + gravity / reference
 
 
@@ -115,7 +120,7 @@ def common_airspeed(estimates: Sequence[Estimate]) -> float | None:
 
 
 def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
-    """Return an (8, 8) factor on the Cramér-Rao bounds: the squared median of corrected to plain errors."""
+    """Return a (p, p) factor on the Cramér-Rao bounds: the squared median of corrected to plain errors."""
     plain = np.sqrt(np.array([np.diag(e.own_covariance_cr) for e in estimates]))
     corrected = np.sqrt(np.array([np.diag(e.own_covariance) for e in estimates]))
     usable = np.isfinite(plain) & np.isfinite(corrected) & (plain > 0.0)
@@ -130,10 +135,10 @@ def pool_shared(posteriors: Sequence[Posterior]) -> Shared:
 
 
 def pool(posteriors: Sequence[Posterior]) -> Posterior:
-    """Return the information-weighted mean of several estimates, each with its own Z_0 and M_0.
+    """Return the information-weighted mean of several estimates, each with its own intercepts.
 
-    The six derivatives are shared. Z_0 and M_0 of the result are means over the manoeuvres. Each manoeuvre's
-    own pair is first corrected for the others' information on its derivatives. No further estimate averages
+    The derivatives are shared. Intercepts of the result are means over the manoeuvres. Each manoeuvre's own
+    ones are first corrected for the others' information on its derivatives. No further estimate averages
     out the error by the instruments, which all estimates share.
 
     Parameters
@@ -141,21 +146,22 @@ def pool(posteriors: Sequence[Posterior]) -> Posterior:
     posteriors
         At least one estimate.
     """
-    shared = pool_shared(posteriors)
+    shared, names = pool_shared(posteriors), posteriors[0].names
+    d, c = _places(names)
     n, values = len(posteriors), np.array([posterior.theta for posterior in posteriors])
     covariances = np.array([posterior.covariance for posterior in posteriors])
-    cross = _finite(covariances[:, _CD[0], _CD[1]])
-    each = cross @ information_of(covariances[:, _DD[0], _DD[1]])
-    apart = _finite(shared.theta - values[:, _D])
+    cross = _finite(covariances[:, c][:, :, d])
+    each = cross @ information_of(covariances[:, d][:, :, d])
+    apart = _finite(shared.theta - values[:, d])
     gain = each.mean(axis=0)
-    own = np.sum(covariances[:, _CC[0], _CC[1]] - each @ np.swapaxes(cross, 1, 2), axis=0) / n**2
-    theta, covariance = np.empty(len(PARAMETERS)), np.empty((len(PARAMETERS), len(PARAMETERS)))
+    own = np.sum(covariances[:, c][:, :, c] - each @ np.swapaxes(cross, 1, 2), axis=0) / n**2
+    theta, covariance = np.empty(len(names)), np.empty((len(names), len(names)))
     known = _finite(shared.covariance)
-    theta[_D], theta[_C] = shared.theta, np.mean(values[:, _C] + np.einsum("nij,nj->ni", each, apart), axis=0)
-    covariance[_DD], covariance[_CC] = shared.covariance, own + gain @ known @ gain.T
-    covariance[_CD] = gain @ known
-    covariance[_DC] = covariance[_CD].T
-    return Posterior(theta, covariance, posteriors[-1].common)
+    theta[d], theta[c] = shared.theta, np.mean(values[:, c] + np.einsum("nij,nj->ni", each, apart), axis=0)
+    covariance[np.ix_(d, d)], covariance[np.ix_(c, c)] = shared.covariance, own + gain @ known @ gain.T
+    covariance[np.ix_(c, d)] = gain @ known
+    covariance[np.ix_(d, c)] = (gain @ known).T
+    return Posterior(theta, covariance, posteriors[-1].common, names=names)
 
 
 def disagreement(one: Shared, other: Shared) -> tuple[float, int]:
@@ -205,11 +211,11 @@ class _Summed:
     """
 
     centre: FloatArray
-    """(6,) origin of d; 0 for an unknown derivative."""
+    """(d,) origin of the differences; 0 for an unknown derivative."""
     information: FloatArray
-    """(n, 6, 6) Iᵢ."""
+    """(n, d, d) Iᵢ."""
     pull: FloatArray
-    """(n, 6) Iᵢdᵢ."""
+    """(n, d) Iᵢdᵢ."""
     own: FloatArray
     """(n,) dᵢᵀIᵢdᵢ."""
     known: FloatArray
@@ -217,10 +223,11 @@ class _Summed:
 
     @classmethod
     def of(cls, posteriors: Sequence[Posterior]) -> "_Summed":
+        d, _ = _places(posteriors[0].names)
         information = information_of(
-            np.array([posterior.covariance for posterior in posteriors])[:, _DD[0], _DD[1]]
+            np.array([posterior.covariance for posterior in posteriors])[:, d][:, :, d]
         )
-        theta = _finite(np.array([posterior.theta for posterior in posteriors])[:, _D])
+        theta = _finite(np.array([posterior.theta for posterior in posteriors])[:, d])
         total, weighted = information.sum(axis=0), np.einsum("nij,nj->i", information, theta)
         centre = _finite(covariance_of(total)) @ weighted
         apart = theta - centre

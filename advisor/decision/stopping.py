@@ -9,7 +9,7 @@ from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Rule
 from advisor.decision.advice import next_input
 from advisor.decision.change import find_change
 from advisor.decision.course import CriterionCourse
-from advisor.decision.heard import Heard, as_heard, first_stop, spoken_after
+from advisor.decision.heard import Heard, as_heard, spoken_after, stays
 from advisor.decision.history import CandidateManeuver, estimates_of, nothing_tested, usable_ones
 from advisor.decision.information import evidence, sentence
 from advisor.decision.judge import accepted_estimates, results_of
@@ -54,7 +54,8 @@ def flight_test(
     known = course.known(usable) if usable else None
     change = find_change(history)
     changed = change.sentence if change is not None and change.confirmed else ""
-    stop = chosen.holds or (not changed and _stays(history, plan.rule, heard))
+    now = {i for i, flown in enumerate(history) if flown.usable}
+    stop = chosen.holds or (not changed and stays(heard, plan.rule, now))
     said = nothing_tested(history)
     if stop and not chosen.holds:
         said = (
@@ -79,13 +80,6 @@ def flight_test(
         warnings=warnings(history, chosen, change, course),
         evidence=evidence(known) if known else (),
     )
-
-
-def _stays(history: Sequence[CandidateManeuver], rule: Rule, heard: Sequence[Heard]) -> bool:
-    """Return whether a stop that the crew has heard still rests on usable manoeuvres."""
-    stopped = first_stop(heard, rule)
-    now = {i for i, flown in enumerate(history) if flown.usable}
-    return stopped is not None and heard[stopped - 1].usable <= now
 
 
 def progress(

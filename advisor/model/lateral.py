@@ -15,30 +15,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.aircraft.reference import SIDE_PARAMETERS, SPEED_EXPONENTS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis import CONSTANT, Axis, Term
 
 _FACTORS = {"beta": "beta", "p": "p", "r": "r", "delta_a": "aileron", "delta_r": "rudder"}
-_POWERS = {
-    "Y": {"beta": 1, "p": 0, "r": 0, "delta_a": 1, "delta_r": 1},
-    "L": {"beta": 2, "p": 1, "r": 1, "delta_a": 2, "delta_r": 2},
-    "N": {"beta": 2, "p": 1, "r": 1, "delta_a": 2, "delta_r": 2},
-}
 _STATES = {"Y": "beta", "L": "p", "N": "r"}
+
+
+def _term(name: str, factor: str) -> Term:
+    return Term(name, _STATES[name[0]], factor, SPEED_EXPONENTS[name])
+
 
 LATERAL = Axis(
     states=("beta", "p", "r", "bank"),
     inputs=("aileron", "rudder"),
     outputs=("p", "r", "bank", "a_y", "beta"),
-    shared=tuple(
-        Term(f"{letter}_{name}", _STATES[letter], _FACTORS[name], power)
-        for letter, powers in _POWERS.items()
-        for name, power in powers.items()
-    ),
-    constants=tuple(
-        Term(f"{letter}_0", _STATES[letter], CONSTANT, _POWERS[letter]["beta"]) for letter in _STATES
-    ),
+    shared=tuple(_term(name, _FACTORS[name[2:]]) for name in SIDE_PARAMETERS),
+    constants=tuple(_term(f"{letter}_0", CONSTANT) for letter in _STATES),
     biases=("p", "a_y"),
 )
 """The lateral axis. A bias of r or φ cannot be told from the constants of trim."""

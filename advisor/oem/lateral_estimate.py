@@ -3,6 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from advisor.aircraft.reference import SIDE_PARAMETERS
+from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
 from advisor.oem.flying_qualities import Quality
 
@@ -22,12 +26,11 @@ class LateralModes:
     left_out: Mapping[str, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
-class LateralEstimate:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class LateralEstimate(Estimate):
     """The lateral derivatives from one manoeuvre, or from several together, with the modes."""
 
-    estimate: Estimate
-    """Derivatives, in the order of ``LATERAL``."""
+    common: FloatArray = field(default_factory=lambda: np.zeros((len(SIDE_PARAMETERS),) * 2))
     modes: LateralModes
     nuisances: Mapping[str, tuple[float, float]]
     """Lag or delay by name, to its value and standard deviation, s."""

@@ -16,7 +16,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.oem.between import widened_by_scatter
-from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import channel_fits
 from advisor.oem.flying_qualities import Quality
 from advisor.oem.identifiability import correlated
@@ -116,7 +116,8 @@ def _reported(solution: LateralSolution) -> LateralEstimate:
     problem = solution.problem
     told = lateral_not_identifiable(solution)
     bound, covariance = solution.covariance_cr[:N, :N], solution.widened[:N, :N]
-    estimate = Estimate(
+    errors = Errors(solution.covariance[:N, :N], solution.contributions[:, :N], solution.systematic[:N, :N])
+    return LateralEstimate(
         theta=solution.theta,
         covariance_cr=bound,
         covariance=covariance,
@@ -130,12 +131,11 @@ def _reported(solution: LateralSolution) -> LateralEstimate:
         servo_lag_s=max((servo.lag_s for servo in problem.servos.values()), default=0.0),
         prediction=prediction_band(solution.assembly, solution, solution.widened),
         names=LATERAL.names.reported,
+        modes=lateral_modes(solution.theta, errors, _trim(solution)),
+        nuisances=solution.nuisances,
+        flown=tuple(name for name in LATERAL.inputs if problem.flies(name)),
+        scales_with_speed=problem.reference_airspeed_m_s is not None,
     )
-    errors = Errors(solution.covariance[:N, :N], solution.contributions[:, :N], solution.systematic[:N, :N])
-    modes = lateral_modes(solution.theta, errors, _trim(solution))
-    flown = tuple(name for name in LATERAL.inputs if problem.flies(name))
-    scales = problem.reference_airspeed_m_s is not None
-    return LateralEstimate(estimate, modes, solution.nuisances, flown, scales)
 
 
 def _airspeed(solution: LateralSolution) -> float:

@@ -38,8 +38,8 @@ def predicted_lateral(
         return prepared
     problem = _as_in(prepared, model, aircraft)
     assembly = assemble_lateral(problem)
-    noise = {name: fit.noise for name, fit in model.estimate.fits[0].items()}
-    chosen = model.estimate.theta if theta is None else theta
+    noise = {name: fit.noise for name, fit in model.fits[0].items()}
+    chosen = model.theta if theta is None else theta
     fitted = _refitted(assembly, problem, chosen, noise)
     return {
         name: ChannelFit(name, assembly.t[rows], assembly.z[rows], fitted[rows], noise[name])
@@ -49,12 +49,12 @@ def predicted_lateral(
 
 def _as_in(problem: LateralProblem, model: LateralEstimate, aircraft: Aircraft) -> LateralProblem:
     """Return the problem with the model's speed, outputs and instruments."""
-    outputs = model.estimate.fits[0]
+    outputs = model.fits[0]
     (record,) = problem.records
     kept = {name: signal for name, signal in record.outputs.items() if name in outputs}
     problem = replace(problem, records=(replace(record, outputs=kept),))
     if model.scales_with_speed:
-        problem = replace(problem, reference_airspeed_m_s=model.estimate.airspeed_m_s)
+        problem = replace(problem, reference_airspeed_m_s=model.airspeed_m_s)
     for x in nuisances_of(problem, aircraft):
         if x.name in model.nuisances:
             problem = x.write(problem, model.nuisances[x.name][0])

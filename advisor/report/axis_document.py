@@ -2,13 +2,13 @@
 
 from typing import Any
 
-from advisor.campaign.state import JudgedLateral, JudgedManeuver
+from advisor.campaign.state import JudgedManeuver
 from advisor.oem.estimate import Estimate
 from advisor.words.plain import picked, plain
 from advisor.words.quantiles import NORMAL_95
 
 
-def flown(judged: JudgedManeuver | JudgedLateral) -> dict[str, Any]:
+def flown(judged: JudgedManeuver) -> dict[str, Any]:
     """Return the times of a manoeuvre, its input, and its verdict."""
     span, verdict = judged.maneuver.span, judged.verdict
     return {
@@ -20,6 +20,7 @@ def flown(judged: JudgedManeuver | JudgedLateral) -> dict[str, Any]:
         "closed_by": span.closed_by,
         "verdict": "accepted" if verdict.accepted else "rejected",
         **picked(verdict, "sentence reasons cautions rules"),
+        **picked(judged, "excluded_because notes"),
     }
 
 

@@ -125,7 +125,6 @@ def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
     return {
         **picked(judged.maneuver, "number boot mode"),
         **flown(judged),
-        **picked(judged, "excluded_because notes"),
         **fitted(estimate),
         "estimates": parameters(judged.estimate),
         "outputs": list(estimate.outputs) if estimate else [],

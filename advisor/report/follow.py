@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from advisor.campaign.campaign import Campaign, CampaignEvent, LateralJudged, ManeuverJudged
+from advisor.campaign.campaign import Campaign, CampaignEvent, ManeuverJudged
 from advisor.campaign.state import CampaignState
 from advisor.decision.crew_plan import CrewPlan
 from advisor.decision.verdict import FlightTestVerdict
@@ -75,10 +75,10 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
                 say(f"NO DATA: {problem}")
         case DataAgain():
             say("DATA AGAIN: what arrives can serve.")
-        case ManeuverJudged(judged, verdict, plan):
+        case ManeuverJudged(judged, verdict, plan, "pitch"):
             say(maneuver_line(judged))
             _say_decision(verdict, plan, say)
-        case LateralJudged(judged, verdict, plan):
+        case ManeuverJudged(judged, verdict, plan):
             say(f"{maneuver_line(judged, ROOM)}  (roll and yaw)")
             _say_decision(verdict, plan, say)
 

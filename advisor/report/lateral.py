@@ -5,7 +5,7 @@ from functools import partial
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.state import JudgedLateral, LateralState
+from advisor.campaign.state import JudgedManeuver, LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.estimate import Estimate
@@ -39,22 +39,22 @@ def lateral_document(state: LateralState, aircraft: Aircraft) -> dict[str, Any]:
         "modes": _modes(model.modes) if model else None,
         "levels": levels_document(levels_of(state)),
         "qualification": tests_document(tests_of(state, aircraft)),
-        "not_identifiable": dict(model.estimate.not_identifiable) if model else {},
+        "not_identifiable": dict(model.not_identifiable) if model else {},
         "estimate_from": list(state.estimate_from),
     }
 
 
-def _maneuver(judged: JudgedLateral) -> dict[str, Any]:
+def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
     found = judged.estimate if isinstance(judged.estimate, LateralEstimate) else None
     told = flown(judged)
     del told["record_from_boot_s"]
     return {
         **picked(judged.maneuver, "number flight boot mode"),
         **told,
-        **fitted(found.estimate if found else None),
-        "estimates": _told(found.estimate) if found else None,
+        **fitted(found),
+        "estimates": _told(found) if found else None,
         "modes": _modes(found.modes) if found else None,
-        "not_identifiable": dict(found.estimate.not_identifiable) if found else {},
+        "not_identifiable": dict(found.not_identifiable) if found else {},
     }
 
 
@@ -67,8 +67,8 @@ def _model(model: LateralEstimate | None) -> dict[str, Any] | None:
     if model is None:
         return None
     return {
-        **_told(model.estimate),
-        "reference_airspeed_m_s": plain(model.estimate.airspeed_m_s),
+        **_told(model),
+        "reference_airspeed_m_s": plain(model.airspeed_m_s),
         "instruments": {
             name: {"value": plain(value), "std": plain(std)} for name, (value, std) in model.nuisances.items()
         },
@@ -104,11 +104,10 @@ def lateral_results(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
 
 
 def _model_lines(model: LateralEstimate) -> Iterator[str]:
-    estimate = model.estimate
-    for row in (estimated_parameter(name, estimate, {}) for name in estimate.names):
+    for row in (estimated_parameter(name, model, {}) for name in model.names):
         if not row.reason:
             yield f"  {row.name:<6} {row.cell:>20} {row.unit}"
-    for text, names in untold(estimate).items():
+    for text, names in untold(model).items():
         yield f"  not identifiable: {', '.join(names)} ({text})"
     yield from (f"  {one.name:<18} {one.sentence}" for one in mode_facts(model.modes))
     for mode, text in model.modes.left_out.items():

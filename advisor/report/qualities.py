@@ -8,7 +8,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS, Reference
-from advisor.campaign.state import CampaignState, JudgedLateral, LateralState
+from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.decision.lateral_levels import GROUPS, LateralLevels, lateral_levels
 from advisor.decision.lateral_levels import SOURCE as LATERAL_SOURCE
 from advisor.decision.lateral_qualification import LateralTest, lateral_qualification
@@ -173,12 +173,12 @@ def tests_of(state: LateralState, aircraft: Aircraft) -> tuple[LateralTest, ...]
     joined = [one for one in state.maneuvers if one.maneuver.number in state.estimate_from]
     rolled = [one for one in joined if one.maneuver.span.kind.startswith(("aileron", "bank"))]
     tests = lateral_qualification(
-        model.estimate.theta,
+        model.theta,
         np.array([stated.get(name, 0.0) for name in SIDE_PARAMETERS]),
-        trim_of([one.maneuver for one in joined], model.estimate.airspeed_m_s or np.nan),
+        trim_of([one.maneuver for one in joined], model.airspeed_m_s or np.nan),
         *_step(rolled),
     )
-    if rolled and "L_delta_a" not in model.estimate.not_identifiable:
+    if rolled and "L_delta_a" not in model.not_identifiable:
         return tests
     return tuple(one for one in tests if one.entry != "2.d.2")
 
@@ -199,7 +199,7 @@ def _mean(joined: Sequence[Maneuver], name: str, otherwise: float) -> float:
     return float(np.mean([np.mean(y) for y in found])) if found else otherwise
 
 
-def _step(rolled: list[JudgedLateral]) -> tuple[float, float]:
+def _step(rolled: list[JudgedManeuver]) -> tuple[float, float]:
     """Return size and length of the largest step of the aileron that was flown, rad and s."""
     steps = [
         (abs(level), after - onset)

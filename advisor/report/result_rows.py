@@ -3,13 +3,13 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from advisor.campaign.state import JudgedLateral, JudgedManeuver
+from advisor.campaign.state import JudgedManeuver
 from advisor.flight.signals.track import ChannelStatus
 from advisor.report.table import Table, digits
 from advisor.words.vehicle_time import clock
 
 
-def maneuver_line(judged: JudgedManeuver | JudgedLateral, room: int = 15) -> str:
+def maneuver_line(judged: JudgedManeuver, room: int = 15) -> str:
     """Return one line for a verdict: number, time, input in ``room`` columns, verdict and reason."""
     span, verdict = judged.maneuver.span, judged.verdict
     at, mark = clock(span.start_s), "✓" if verdict.accepted else "✗"

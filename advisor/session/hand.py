@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 from advisor.campaign.hand_decisions import ByHand
-from advisor.campaign.state import CampaignState
+from advisor.campaign.state import AxisName, CampaignState
 from advisor.flight.signals.messages import Columns
 from advisor.words.problems import Problem
 
@@ -31,10 +31,10 @@ class CampaignLike(Protocol):
     def finish(self) -> Sequence[object]:
         """Take the end of the stream, and judge open manoeuvres."""
 
-    def exclude(self, number: int, because: str) -> None:
+    def exclude(self, number: int, because: str, axis: AxisName = "pitch") -> None:
         """Exclude a manoeuvre from every decision."""
 
-    def include(self, number: int) -> None:
+    def include(self, number: int, axis: AxisName = "pitch") -> None:
         """Include an excluded manoeuvre again."""
 
     def mark(self, text: str) -> None:
@@ -49,7 +49,7 @@ class CampaignLike(Protocol):
     def log(self, sentence: str) -> None:
         """Write a sentence into the event log at the present moment."""
 
-    def note(self, number: int, text: str) -> None:
+    def note(self, number: int, text: str, axis: AxisName = "pitch") -> None:
         """Add a note to a manoeuvre."""
 
 
@@ -66,20 +66,24 @@ class HandDecision:
     """Reason, note or name of the moment."""
     number: int = 0
     """Number of the manoeuvre. 0 for a decision on the present moment."""
+    axis: AxisName = "pitch"
+    """Axis of the manoeuvre."""
 
     def due(self, state: CampaignState) -> bool:
         """Return whether the flight has reached the subject of the decision."""
-        return self.number == 0 or any(judged.maneuver.number == self.number for judged in state.maneuvers)
+        side = state.lateral.maneuvers if state.lateral is not None else ()
+        flown = side if self.axis == "lateral" else state.maneuvers
+        return self.number == 0 or any(judged.maneuver.number == self.number for judged in flown)
 
     def apply(self, campaign: CampaignLike) -> None:
         """Apply the decision to the campaign, which recomputes every dependent decision."""
         if self.verb == "exclude":
-            campaign.exclude(self.number, self.text)
+            campaign.exclude(self.number, self.text, self.axis)
         elif self.verb == "include":
-            campaign.include(self.number)
-            campaign.note(self.number, f"included again: {self.text}")
+            campaign.include(self.number, self.axis)
+            campaign.note(self.number, f"included again: {self.text}", self.axis)
         elif self.verb == "note":
-            campaign.note(self.number, self.text)
+            campaign.note(self.number, self.text, self.axis)
         elif self.verb == "mark":
             campaign.mark(self.text)
         elif self.verb == "begin":

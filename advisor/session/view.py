@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.state import OF_ELEVATOR, CampaignState, JudgedLateral, JudgedManeuver, LateralState
+from advisor.campaign.state import OF_ELEVATOR, CampaignState, JudgedManeuver, LateralState
 from advisor.decision.crew_plan import CrewPlan
 from advisor.decision.verdict import FlightTestVerdict, limit_percent
-from advisor.oem.estimate import NoEstimate
 from advisor.session.source import LinkHealth, Playback, Tempo
 from advisor.words.problems import Problem
 
@@ -117,15 +116,8 @@ _IN_THE_AIR: dict[str, Any] = {"flying": None, "settling": None, "readable": Fal
 
 def _parts(lateral: LateralState) -> dict[str, Any]:
     return {
-        "maneuvers": tuple(map(_judged, lateral.maneuvers)),
+        "maneuvers": lateral.maneuvers,
         "flight_test": lateral.flight_test,
-        "model": lateral.model.estimate if lateral.model is not None else None,
+        "model": lateral.model,
         "estimate_from": lateral.estimate_from,
     }
-
-
-def _judged(one: JudgedLateral) -> JudgedManeuver:
-    found = one.estimate
-    return JudgedManeuver(
-        one.maneuver, found if isinstance(found, NoEstimate) else found.estimate, one.verdict
-    )

@@ -47,13 +47,12 @@ def compare_side(
     model = estimate_lateral(maneuvers, aircraft)
     if isinstance(model, NoEstimate):
         return model
-    estimate = model.estimate
     stated = tuple(
         ComparedDerivative(name, aircraft.model[name], Value(float(value), float(std)))
-        for name, value, std in zip(SIDE_PARAMETERS, estimate.theta, estimate.std, strict=True)
-        if name in aircraft.model and name not in estimate.not_identifiable
+        for name, value, std in zip(SIDE_PARAMETERS, model.theta, model.std, strict=True)
+        if name in aircraft.model and name not in model.not_identifiable
     )
-    case = case_of(maneuvers, aircraft, estimate.theta)
+    case = case_of(maneuvers, aircraft, model.theta)
     diagnosis = None if isinstance(case, NoEstimate) else diagnose_side(case, prior)
     answer = diagnosis.verdict if diagnosis else None
     verdict = answer if stated or answer in ("effect", "unknown") else None
@@ -64,7 +63,7 @@ def compare_side(
         as_sure(sentence, diagnosis.answers) if verdict and diagnosis else sentence,
         stated,
         {name: Value(*told) for name, told in model.nuisances.items()},
-        estimate.not_identifiable,
+        model.not_identifiable,
         tuple(m.number for m in maneuvers),
         diagnosis,
     )

@@ -90,11 +90,11 @@ def _flyer(
             np.column_stack([np.ones(len(speed)), (speed / reference) ** 2, segment.commands["throttle"]])
         )
     thrust = np.linalg.lstsq(np.concatenate(rows), np.concatenate(left), rcond=None)[0]
-    ratio = reference / (side.estimate.airspeed_m_s or reference)
+    ratio = reference / (side.airspeed_m_s or reference)
     powers = {"beta": 2, "p": 1, "r": 1, "delta_a": 2, "delta_r": 2}
     scaled = {
         name: float(value) * ratio ** (powers[name[2:]] - (name[0] == "Y"))
-        for name, value in zip(side.estimate.names, side.estimate.theta, strict=True)
+        for name, value in zip(side.names, side.theta, strict=True)
     }
     lags = {name: side.nuisances.get(f"{name}_lag_s", (0.0, 0.0))[0] for name in ("aileron", "rudder")}
     return Flyer(
@@ -104,7 +104,7 @@ def _flyer(
         reference,
         {**lags, "elevator": pitch.servo_lag_s},
         turned,
-        (*pitch.not_identifiable, *side.estimate.not_identifiable),
+        (*pitch.not_identifiable, *side.not_identifiable),
     )
 
 

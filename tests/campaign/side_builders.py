@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.state import JudgedLateral, LateralState
+from advisor.campaign.state import JudgedManeuver, LateralState
 from advisor.decision.lateral_test import lateral_flight_test
 from advisor.decision.verdict import ManeuverVerdict, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.model.lateral import LATERAL, Trim
-from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.oem.estimate import ChannelFit
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_estimator import Errors, lateral_modes
 from tests.oem.lateral_builders import JET, vector
@@ -25,14 +25,12 @@ def estimate(*flown, percent=2.0, untold=None, fits=()):
     """Return an estimate of the jet with equal relative errors."""
     std = 0.01 * percent * np.maximum(np.abs(vector(JET)), 0.1)
     covariance = np.diag(std**2)
-    found = Estimate(
+    return LateralEstimate(
         theta=vector(JET), covariance_cr=covariance, covariance=covariance, cost=1e-9, fits=fits,
         iterations=3, not_identifiable=untold or {}, correlated=(), condition=1.0, airspeed_m_s=130.0,
-        names=LATERAL.names.reported,
+        names=LATERAL.names.reported, nuisances={}, flown=flown,
+        modes=lateral_modes(vector(JET), Errors(covariance, np.zeros((1, 15))), Trim(130.0)),
     )  # fmt: skip
-    return LateralEstimate(
-        found, lateral_modes(vector(JET), Errors(covariance, np.zeros((1, 15))), Trim(130.0)), {}, flown
-    )
 
 
 def judged(number, control, *, accepted=True):
@@ -55,7 +53,9 @@ def judged(number, control, *, accepted=True):
     verdict = ManeuverVerdict(accepted, "accepted", (), {})
     if not accepted:
         verdict = replace(verdict, sentence=f"REPEAT: {_BANKED.text}", reasons=(_BANKED,))
-    return JudgedLateral(Maneuver(number, 0, span, channels, "MANUAL"), estimate(control, fits=fits), verdict)
+    return JudgedManeuver(
+        Maneuver(number, 0, span, channels, "MANUAL"), estimate(control, fits=fits), verdict
+    )
 
 
 def state(*maneuvers, aircraft=AIRCRAFT, model=None):

@@ -176,10 +176,10 @@ def test_a_specific_force_that_stands_still_is_named_and_nothing_is_computed_fro
 def lateral(aileron: float) -> LateralEstimate:
     """A joint estimate of the jet whose aileron rolls with this moment, known to 2 %."""
     found = side_builders.estimate("aileron", "rudder")
-    k = found.estimate.names.index("L_delta_a")
-    theta = found.estimate.theta.copy()
+    k = found.names.index("L_delta_a")
+    theta = found.theta.copy()
     theta[k] = aileron
-    return replace(found, estimate=replace(found.estimate, theta=theta))
+    return replace(found, theta=theta)
 
 
 def test_without_a_calibration_the_sign_of_the_aileron_is_said_to_be_taken() -> None:

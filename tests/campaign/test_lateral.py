@@ -14,6 +14,7 @@ from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.parameters import filter_delay_s
 from advisor.report.facts.decision import lateral_decision
 from advisor.report.lateral import lateral_document, lateral_lines
+from advisor.session.hand import HandDecision
 from tests.flight.columns import Wire, heartbeat, plane_parameters
 from tests.oem.lateral_builders import JET, flown, steps
 
@@ -94,7 +95,7 @@ def test_both_doublets_are_found_named_and_accepted(state):
 
 
 def test_the_joint_estimate_has_the_truth_in_its_intervals(state):
-    estimate = state.model.estimate
+    estimate = state.model
     for name in ("L_p", "L_delta_a", "N_beta", "N_delta_r", "L_beta"):
         off = estimate.value(name) - JET[name]
         assert abs(off) < 3.0 * estimate.std[estimate.names.index(name)], name
@@ -105,7 +106,7 @@ def test_a_derivative_is_told_or_not_identifiable_and_never_both(state):
     document = lateral_document(state, AIRCRAFT)
     told = set(document["model"]) - {"reference_airspeed_m_s", "instruments"}
     assert told.isdisjoint(document["not_identifiable"])
-    assert told | set(document["not_identifiable"]) == set(state.model.estimate.names)
+    assert told | set(document["not_identifiable"]) == set(state.model.names)
     assert document["modes"]["dutch_roll"]["omega"]["value"] == pytest.approx(1.81, rel=0.03)
 
 
@@ -118,7 +119,7 @@ def test_the_text_says_every_verdict_and_the_decision(state):
 def test_the_result_does_not_depend_on_the_batches(both, state):
     live = ended(both, batches=60)
     assert [one.maneuver.span for one in live.maneuvers] == [one.maneuver.span for one in state.maneuvers]
-    np.testing.assert_array_equal(live.model.estimate.theta, state.model.estimate.theta)
+    np.testing.assert_array_equal(live.model.theta, state.model.theta)
 
 
 def test_without_a_rudder_input_the_advice_is_a_rudder_doublet():
@@ -228,3 +229,19 @@ def by_the_file(both):
 
 def test_outputs_of_the_file_need_no_parameters(by_the_file):
     assert len(by_the_file.maneuvers) == 2
+
+
+def test_a_decision_by_hand_on_roll_and_yaw_leaves_pitch_alone(both):
+    campaign = Campaign(AIRCRAFT, lateral=True)
+    campaign.feed(both.columns(list(range(len(both)))))
+    campaign.finish()
+    decision = HandDecision("exclude", "gust", 2, "lateral")
+    assert decision.due(campaign.state)
+    decision.apply(campaign)
+    HandDecision("note", "rough air", 1, "lateral").apply(campaign)
+    first, second = lateral_document(campaign.state.lateral, AIRCRAFT)["maneuvers"]
+    assert (first["excluded_because"], first["notes"]) == (None, ["rough air"])
+    assert (second["excluded_because"], second["verdict"]) == ("gust", "rejected")
+    assert campaign.state.lateral.estimate_from == (1,)
+    assert not HandDecision("exclude", "gust", 2).due(campaign.state)
+    assert "roll and yaw, manoeuvre 2 excluded: gust" in " ".join(campaign.state.notices)

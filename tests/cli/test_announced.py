@@ -2,7 +2,7 @@
 
 from types import SimpleNamespace
 
-from advisor.campaign.campaign import LateralJudged, ManeuverJudged
+from advisor.campaign.campaign import ManeuverJudged
 from advisor.cli.live import _announce
 from advisor.decision.crew_plan import crew_plan
 from advisor.decision.verdict import FlightTestVerdict
@@ -14,14 +14,14 @@ COMPLETE = FlightTestVerdict("information", "stop", "TEST COMPLETE: all is known
 
 def heard(*flown: tuple[str, FlightTestVerdict, FlightTestVerdict | None]) -> list[str]:
     """Return the texts after manoeuvres, each with its axis and with both verdicts after it."""
-    announcer, numbers, texts = Announcer(), {"pitch": 0, "side": 0}, []
+    announcer, numbers, texts = Announcer(), {"pitch": 0, "lateral": 0}, []
     for axis, pitch, side in flown:
         numbers[axis] += 1
         judged = SimpleNamespace(
             maneuver=SimpleNamespace(number=numbers[axis]), verdict=SimpleNamespace(sentence="accepted")
         )
         plan = None if side is None else crew_plan(pitch, side)
-        event = ManeuverJudged(judged, pitch, plan) if axis == "pitch" else LateralJudged(judged, side, plan)
+        event = ManeuverJudged(judged, pitch if axis == "pitch" else side, plan, axis)
         _announce(announcer, event)
     while messages := announcer.speak((1, 1), 0.0):
         texts.append("".join(message.text for message in messages))
@@ -29,7 +29,7 @@ def heard(*flown: tuple[str, FlightTestVerdict, FlightTestVerdict | None]) -> li
 
 
 def test_with_roll_and_yaw_open_pitch_alone_is_no_test_complete():
-    assert heard(("pitch", OPEN, OPEN), ("pitch", COMPLETE, OPEN), ("side", COMPLETE, COMPLETE)) == [
+    assert heard(("pitch", OPEN, OPEN), ("pitch", COMPLETE, OPEN), ("lateral", COMPLETE, COMPLETE)) == [
         "@1 accepted",
         "@Pitch is complete, roll and yaw are open. (2 accepted)",
         "@TEST COMPLETE: Pitch is complete, roll and yaw are complete. (roll and yaw 1 accepted)",
@@ -44,7 +44,7 @@ def test_a_flight_of_pitch_alone_hears_its_verdict_once():
 
 
 def test_roll_and_yaw_that_begin_after_pitch_is_complete_are_heard_as_open():
-    assert heard(("pitch", COMPLETE, None), ("side", COMPLETE, OPEN), ("side", COMPLETE, COMPLETE)) == [
+    assert heard(("pitch", COMPLETE, None), ("lateral", COMPLETE, OPEN), ("lateral", COMPLETE, COMPLETE)) == [
         "@TEST COMPLETE: all is known. (1 accepted)",
         "@Pitch is complete, roll and yaw are open. (roll and yaw 1 accepted)",
         "@TEST COMPLETE: Pitch is complete, roll and yaw are complete. (roll and yaw 2 accepted)",

@@ -4,7 +4,6 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.heard import Heard
 from advisor.decision.lateral_test import lateral_flight_test
 from advisor.model.lateral import LATERAL, Trim
-from advisor.oem.estimate import Estimate
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_estimator import Errors, lateral_modes
 from tests.oem.lateral_builders import JET, vector
@@ -18,14 +17,12 @@ def told(*flown, percent=2.0, off=0.0):
     truth."""
     std = 0.01 * percent * np.maximum(np.abs(vector(JET)), 0.1)
     covariance = np.diag(std**2)
-    estimate = Estimate(
+    return LateralEstimate(
         theta=vector(JET) + off * std, covariance_cr=covariance, covariance=covariance, cost=1e-9, fits=(),
         iterations=3, not_identifiable={}, correlated=(), condition=1.0, airspeed_m_s=130.0,
-        names=LATERAL.names.reported,
+        names=LATERAL.names.reported, nuisances={}, flown=flown,
+        modes=lateral_modes(vector(JET), Errors(covariance, np.zeros((1, 15))), Trim(130.0)),
     )  # fmt: skip
-    return LateralEstimate(
-        estimate, lateral_modes(vector(JET), Errors(covariance, np.zeros((1, 15))), Trim(130.0)), {}, flown
-    )
 
 
 def test_aileron_and_rudder_within_their_tolerance_and_checked_stop_the_test():

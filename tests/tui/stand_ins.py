@@ -7,7 +7,7 @@ from queue import Empty, SimpleQueue
 import numpy as np
 
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
-from advisor.campaign.state import CampaignState, JudgedManeuver
+from advisor.campaign.state import AxisName, CampaignState, JudgedManeuver
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.messages import Columns
@@ -83,11 +83,11 @@ class StagedCampaign:
         self.calls.append(("finish",))
         return []
 
-    def exclude(self, number: int, because: str) -> None:
+    def exclude(self, number: int, because: str, axis: AxisName = "pitch") -> None:
         self.calls.append(("exclude", number, because))
         self.by_hand = self.by_hand.excluding(self._flown(number), because)
 
-    def include(self, number: int) -> None:
+    def include(self, number: int, axis: AxisName = "pitch") -> None:
         self.calls.append(("include", number))
         self.by_hand = self.by_hand.excluding(self._flown(number), None)
 
@@ -103,7 +103,7 @@ class StagedCampaign:
         self.by_hand = self.by_hand.marking(Mark(self._marking_since_s, self.state.now_s))
         self._marking_since_s = None
 
-    def note(self, number: int, text: str) -> None:
+    def note(self, number: int, text: str, axis: AxisName = "pitch") -> None:
         self.calls.append(("note", number, text))
         self.by_hand = self.by_hand.noting(self._flown(number), text)
 

@@ -36,10 +36,11 @@ COUPLING = 0.2
 """Largest root mean square of the moments p·q and q·r, over that of the angular accelerations."""
 _USUAL_PERIOD_S = 2.0
 """Period of the Dutch roll where no estimate gives one, s. Small aircraft have 1.8 s, jets 3.5 s."""
-_RESPONSES = {
+RESPONSES = {
     "aileron": Response("p", "roll rate", "deg/s", "aileron"),
     "rudder": Response("r", "yaw rate", "deg/s", "rudder"),
 }
+"""Control to the output that shows its response."""
 _DETERMINED = {"aileron": ("L_p", "L_delta_a"), "rudder": ("N_beta", "N_r", "N_delta_r")}
 """Control to the derivatives that its test determines."""
 _TRIMMING = Reason(
@@ -62,7 +63,7 @@ def judge_lateral(
     estimate
         Estimate from this manoeuvre alone, or the reason for its absence.
     """
-    controls = [name for name in _RESPONSES if name in maneuver.channels]
+    controls = [name for name in RESPONSES if name in maneuver.channels]
     outside = banked(maneuver, max(BANK_DEG, aircraft.limits.bank_deg), "less aileron, or shorter")
     for name in controls:
         outside += saturated(maneuver, name, getattr(aircraft, name).ends_deg)
@@ -71,7 +72,7 @@ def judge_lateral(
     x = Examined(
         maneuver,
         aircraft,
-        estimate if isinstance(estimate, NoEstimate) else estimate.estimate,
+        estimate,
         _period_s(estimate),
         needed=(*controls, "p", "r", "bank"),
         responses=(),
@@ -80,18 +81,17 @@ def judge_lateral(
         outside=(*outside, *_pitching(maneuver)),
     )
     if isinstance(estimate, NoEstimate):
-        return objections(x) or (Reason(estimate.code, estimate.text, math.nan, math.nan),)
-    told = estimate.estimate
+        return objections(x)
     # A record that ends within its input tells no free motion, however narrow its intervals are.
     informing = () if is_broken_off(maneuver.span) else estimate.flown
     return objections(
         replace(
             x,
-            responses=tuple(_RESPONSES[name] for name in estimate.flown),
+            responses=tuple(RESPONSES[name] for name in estimate.flown),
             determined=tuple(k for name in estimate.flown for k in _DETERMINED[name]),
-            bands=tuple(_RESPONSES[name].output for name in informing),
+            bands=tuple(RESPONSES[name].output for name in informing),
             modes_alone=_modes_alone(maneuver, estimate)
-            if set(told.not_identifiable) == set(told.names)
+            if set(estimate.not_identifiable) == set(estimate.names)
             else None,
         )
     )

@@ -167,23 +167,22 @@ def _lag_of(estimate: Estimate, aircraft: Aircraft) -> float:
 def side_flown(lateral: LateralState | None, aircraft: Aircraft) -> SideModel | None:
     """Return roll and yaw as the accepted manoeuvres tell them; None where they tell no force."""
     model = lateral.model if lateral is not None else None
-    if lateral is None or model is None or model.estimate.airspeed_m_s is None:
+    if lateral is None or model is None or model.airspeed_m_s is None:
         return None
-    if WITHOUT_FORCE in model.estimate.not_identifiable.values():
+    if WITHOUT_FORCE in model.not_identifiable.values():
         return None
     joined = [one.maneuver for one in lateral.maneuvers if one.maneuver.number in lateral.estimate_from]
     air = air_flown(joined, aircraft.reference.air_temperature_c)
-    return side_of(model, trim_of(joined, model.estimate.airspeed_m_s), air, aircraft)
+    return side_of(model, trim_of(joined, model.airspeed_m_s), air, aircraft)
 
 
 def side_of(found: LateralEstimate, trim: Trim, air: AirData, aircraft: Aircraft) -> SideModel:
     """Return roll and yaw of an estimate, with the air speed and the servos that its fit found."""
-    estimate = found.estimate
-    told = zip(SIDE_PARAMETERS, estimate.theta.tolist(), estimate.std.tolist(), strict=True)
+    told = zip(SIDE_PARAMETERS, found.theta.tolist(), found.std.tolist(), strict=True)
     excess, _ = found.nuisances.get("airspeed_excess", (0.0, 0.0))
     return SideModel(
-        {name: Value(value, std) for name, value, std in told if name not in estimate.not_identifiable},
-        estimate.not_identifiable,
+        {name: Value(value, std) for name, value, std in told if name not in found.not_identifiable},
+        found.not_identifiable,
         trim,
         replace(air, excess=excess),
         {name: _servo(found, name, aircraft) for name in LATERAL.inputs},

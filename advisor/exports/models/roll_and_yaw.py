@@ -129,22 +129,19 @@ def prove_side(
     refuse_unimproved(first.verdict in IMPROVING, first.sentence, len(fitted))
     behind = behind_found(first.diagnosis, aircraft)
     plain, found = (_flown(estimate_lateral(fitted, one)) for one in (aircraft, behind))
-    given = np.array(
-        [aircraft.model.get(n, x) for n, x in zip(SIDE_PARAMETERS, plain.estimate.theta, strict=True)]
-    )
+    given = np.array([aircraft.model.get(n, x) for n, x in zip(SIDE_PARAMETERS, plain.theta, strict=True)])
     by_maneuver = tuple(
-        (m.number, _gap(m, plain, aircraft, given), _gap(m, found, behind, found.estimate.theta))
-        for m in kept
+        (m.number, _gap(m, plain, aircraft, given), _gap(m, found, behind, found.theta)) for m in kept
     )
-    speed = found.estimate.airspeed_m_s
+    speed = found.airspeed_m_s
     read = None if speed is None else air_flown(fitted).read_speed(speed)
-    second = _flown(compare_side(kept, with_derivatives(behind, found.estimate, read), prior))
+    second = _flown(compare_side(kept, with_derivatives(behind, found, read), prior))
     present = [one.name for one in (first.diagnosis.causes if first.diagnosis else ()) if one.cause.present]
     return Proof(
         maneuvers=tuple(m.number for m in kept),
         before=float(np.mean([before for _, before, _ in by_maneuver])),
         after=float(np.mean([after for _, _, after in by_maneuver])),
-        floor={name: fit.noise for name, fit in found.estimate.fits[0].items()},
+        floor={name: fit.noise for name, fit in found.fits[0].items()},
         by_maneuver=by_maneuver,
         first=" + ".join(present) or str(first.verdict),
         second=second.verdict,

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from statistics import fmean
-from typing import Literal, TypeVar
+from typing import Literal
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from advisor.campaign.state import JudgedLateral, JudgedManeuver
+from advisor.campaign.state import JudgedManeuver
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
@@ -29,7 +29,6 @@ _FEW = 8
 """Most small pictures that stand four across. More stand six across, so that thirty fill one page."""
 Size = Literal["quarter", "sixth"]
 Fitted = tuple[JudgedManeuver, Estimate]
-Judged = TypeVar("Judged", JudgedManeuver, JudgedLateral)
 
 
 def fits(content: Content) -> Section:
@@ -56,12 +55,12 @@ def _blocks(content: Content) -> Iterator[Block]:
         yield Gallery(tuple(_small(size, *one) for one in small))
 
 
-def by_fit(fitted: Iterable[tuple[Judged, Estimate]]) -> list[tuple[Judged, Estimate]]:
+def by_fit(fitted: Iterable[Fitted]) -> list[Fitted]:
     """Return manoeuvres in the order of the mean share of the motion that their fit explains."""
     return sorted(fitted, key=lambda one: fmean(fit.r2 for fit in one[1].fits[0].values()))
 
 
-def caption_of(judged: JudgedManeuver | JudgedLateral, estimate: Estimate) -> str:
+def caption_of(judged: JudgedManeuver, estimate: Estimate) -> str:
     """Return a manoeuvre's number and input, and the share of each output that its fit explains."""
     told = ", ".join(f"{CHANNELS[fit.name].symbol} R² {fit.r2:.3f}" for fit in estimate.fits[0].values())
     return f"Manoeuvre {judged.maneuver.number}, {judged.maneuver.span.kind}: {told}."

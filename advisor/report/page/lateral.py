@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.campaign.state import CampaignState, JudgedLateral, LateralState
+from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.decision.lateral_levels import GROUPS, SOURCE
 from advisor.decision.lateral_qualification import LateralTest
 from advisor.model.lateral import LATERAL
@@ -59,15 +59,15 @@ def derivatives(state: LateralState, model: LateralEstimate, prior: Mapping[str,
     """Return the table of the joint estimate under this name, which is unique on a page."""
     return joint_of(
         name,
-        joint_source(state.estimate_from, f" at {model.estimate.airspeed_m_s:.1f} m/s"),
-        [estimated_parameter(one, model.estimate, prior) for one in SIDE_PARAMETERS],
+        joint_source(state.estimate_from, f" at {model.airspeed_m_s:.1f} m/s"),
+        [estimated_parameter(one, model, prior) for one in SIDE_PARAMETERS],
         " L and N hold the products of inertia.",
     )
 
 
 def _untold(model: LateralEstimate) -> list[str]:
     """Return one sentence for each reason why derivatives and modes are not told."""
-    reasons = untold(model.estimate).items()
+    reasons = untold(model).items()
     told = [f"Not identifiable: {', '.join(names)}; {reason}." for reason, names in reasons]
     return told + [f"No {MODE_NAMES[mode]} mode: {why}." for mode, why in model.modes.left_out.items()]
 
@@ -126,14 +126,14 @@ _MOST = 6
 def lateral_fits(state: LateralState) -> Iterator[Block]:
     """Return the fits of the accepted manoeuvres: the worst and the best one, then others as room allows."""
     found = ((one, one.estimate) for one in state.maneuvers if one.verdict.accepted)
-    in_order = by_fit((one, e.estimate) for one, e in found if isinstance(e, LateralEstimate))
+    in_order = by_fit((one, e) for one, e in found if isinstance(e, LateralEstimate))
     if in_order:
         yield Paragraph(_EXPLAINED)
         kept = [*in_order[:1], *reversed(in_order[1:])][:_MOST]
         yield Gallery(tuple(_figure(*one) for one in sorted(kept, key=lambda one: one[0].maneuver.number)))
 
 
-def _figure(judged: JudgedLateral, estimate: Estimate) -> Figure:
+def _figure(judged: JudgedManeuver, estimate: Estimate) -> Figure:
     maneuver, outputs = judged.maneuver, tuple(estimate.fits[0].values())
     inputs = {name: maneuver.channels[name] for name in LATERAL.inputs if name in maneuver.channels}
     size = 3.6, 0.7 + 0.85 * (len(inputs) + len(outputs))

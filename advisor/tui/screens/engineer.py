@@ -6,6 +6,7 @@ from textual.app import ComposeResult
 from textual.containers import Container
 from textual.events import Resize
 
+from advisor.campaign.state import AxisName
 from advisor.session.hand import HandDecision, Verb
 from advisor.session.view import View
 from advisor.tui import keys
@@ -42,8 +43,6 @@ _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
     "middle": (Fit, Residuals, Correlation, Courses, Qualities, WholeFlightPane, GapPane, LateralPane),
     "right": (Live, Criterion, Channels, EventLogPane),
 }
-_OF_ELEVATOR = ("exclude", "note")
-"""Actions on manoeuvres of the elevator alone."""
 _WIDE, _MEDIUM = (160, 42), (110, 30)
 _LOW = 7
 """Rows of the manoeuvres above a pane that stands alone."""
@@ -70,8 +69,8 @@ saves them into a file next to the log or the recording, and its plots as a pict
 is offered the files instead.
 
 **r** shows roll and yaw in the panes of manoeuvres, verdict, fit and criterion, and the elevator again.
-The pane **y** has the derivatives and modes of roll and yaw. **x** and **n** work on the elevator's
-manoeuvres alone.
+The pane **y** has the derivatives and modes of roll and yaw. **x** and **n** work on the manoeuvres that
+are shown.
 """
 
     def __init__(self) -> None:
@@ -158,10 +157,6 @@ manoeuvres alone.
         alone = narrow and self._chosen not in _COLUMNS["left"]
         self.query_one("#left").styles.height = _LOW if alone else "1fr"
 
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer decisions by hand for the elevator's manoeuvres alone."""
-        return action not in _OF_ELEVATOR or self._view is None or self._view.elevator is None
-
     def pane_in_front(self) -> Pane:
         """Return the pane that has the focus, else the one chosen last."""
         around = self.focused.ancestors_with_self if self.focused else ()
@@ -186,7 +181,8 @@ manoeuvres alone.
         self._ask("note", judged.maneuver.number, f"Note on manoeuvre {judged.maneuver.number}:")
 
     def _ask(self, verb: Verb, number: int, question: str) -> None:
-        self.ask(question, lambda text: self._decided(HandDecision(verb, text, number)))
+        shown: AxisName = "pitch" if self._view is None or self._view.elevator is None else "lateral"
+        self.ask(question, lambda text: self._decided(HandDecision(verb, text, number, shown)))
 
     def _decided(self, decision: HandDecision) -> None:
         """Pass the decision on, and show a message. The table follows once all is computed anew."""

@@ -74,9 +74,9 @@ def believed(own, **factors):
     )
     found = estimate("aileron", "rudder")
     covariance = np.diag((1e-3 * np.maximum(np.abs(theta), 1e-3)) ** 2)
-    told = replace(found.estimate, theta=theta, covariance=covariance, airspeed_m_s=ASKED.airspeed_m_s)
+    told = replace(found, theta=theta, covariance=covariance, airspeed_m_s=ASKED.airspeed_m_s)
     trim = Trim(ASKED.airspeed_m_s, 0.03, 0.03)
-    return side_of(replace(found, estimate=told), trim, air_at(ASKED.height_m), Aircraft())
+    return side_of(told, trim, air_at(ASKED.height_m), Aircraft())
 
 
 CHANGED = {

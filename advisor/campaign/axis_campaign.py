@@ -1,0 +1,149 @@
+"""One axis of a campaign: its manoeuvres, their verdicts, and what a hand decides on them."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan
+from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.single_maneuver import objection
+from advisor.campaign.state import JudgedManeuver
+from advisor.decision.course import CriterionCourse
+from advisor.decision.heard import Heard
+from advisor.decision.history import CandidateManeuver
+from advisor.decision.judge import judge_campaign
+from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.process.parts import FailedPart, Parts
+
+
+@dataclass(slots=True)
+class Flown:
+    """A manoeuvre, its examination, and what an engineer noted on it."""
+
+    maneuver: Maneuver
+    examined: CandidateManeuver
+    notes: tuple[str, ...]
+
+    def exclude(self, because: str | None) -> None:
+        """Exclude the manoeuvre for a reason; None: the manoeuvre counts."""
+        self.examined = replace(self.examined, excluded_because=because)
+
+    def judged(self, verdict: ManeuverVerdict) -> JudgedManeuver:
+        """Return the manoeuvre with its verdict."""
+        examined = self.examined
+        return JudgedManeuver(
+            self.maneuver, examined.estimate, verdict, examined.excluded_because, self.notes
+        )
+
+
+class AxisCampaign(ABC):
+    """Judges the manoeuvres of one axis, and decides whether its test may stop.
+
+    Parameters
+    ----------
+    axis
+        Name of the axis in the names of its parts.
+    aircraft
+        The crew's aircraft file.
+    plan
+        Plan by which the axis is judged.
+    parts
+        Makes manoeuvres, verdicts and the joint estimate, each of which may fail alone.
+    """
+
+    def __init__(self, axis: str, aircraft: Aircraft, plan: CampaignPlan, parts: Parts) -> None:
+        self._axis = axis
+        self._aircraft = aircraft
+        self._plan = plan
+        self._parts = parts
+        self._flown: list[Flown] = []
+        self._course = CriterionCourse(plan)
+        self._heard: list[Heard] = []
+        self._ended = False
+        self.judged: tuple[JudgedManeuver, ...] = ()
+        """Manoeuvres in the order flown, each with its estimate and verdict."""
+        self.flight_test = self._decided((), ())
+        """Whether the test may stop, and the next manoeuvre."""
+
+    @abstractmethod
+    def _decided(self, history: Sequence[CandidateManeuver], heard: Sequence[Heard]) -> FlightTestVerdict:
+        """Return whether the test may stop, from examined and ``judged`` manoeuvres."""
+
+    def decide(self) -> None:
+        """Judge all manoeuvres, and decide anew whether to stop."""
+        self._judge()
+
+    def exclude(self, number: int, because: str | None) -> None:
+        """Exclude a manoeuvre from every decision for a reason; None: include the manoeuvre again."""
+        self._of(number).exclude(because)
+        self.decide()
+
+    def note(self, number: int, text: str) -> None:
+        """Add a note on a manoeuvre."""
+        self._of(number).notes += (text,)
+        self._judge()
+
+    def finish(self) -> None:
+        """Take the end of the flight, after which the joint estimate is over all accepted manoeuvres."""
+        self._ended = True
+        self.decide()
+
+    @property
+    def maneuvers(self) -> tuple[Maneuver, ...]:
+        """Manoeuvres in the order flown."""
+        return tuple(flown.maneuver for flown in self._flown)
+
+    @property
+    def estimates(self) -> tuple[Estimate | NoEstimate, ...]:
+        """Estimates of the single manoeuvres."""
+        return tuple(flown.examined.estimate for flown in self._flown)
+
+    def numbered(self, number: int) -> JudgedManeuver:
+        """Return the judged manoeuvre with a number."""
+        return next(judged for judged in self.judged if judged.maneuver.number == number)
+
+    def _add(self, maneuver: Maneuver, examined: CandidateManeuver, by_hand: ByHand) -> None:
+        """Take a manoeuvre that has just been flown, with what a hand has decided on it."""
+        flown = Flown(maneuver, examined, by_hand.notes_on(maneuver))
+        flown.exclude(by_hand.excluded_because(maneuver))
+        self._flown.append(flown)
+
+    def _hear(self) -> None:
+        """Keep what the crew hears after the newest manoeuvre."""
+        usable = [i for i, one in enumerate(self._flown) if one.examined.usable]
+        self._heard.append(Heard.of(self.flight_test, usable))
+
+    def _of(self, number: int) -> Flown:
+        return next(flown for flown in self._flown if flown.maneuver.number == number)
+
+    @property
+    def _accepted(self) -> Sequence[JudgedManeuver]:
+        return [judged for judged in self.judged if judged.verdict.accepted]
+
+    @property
+    def _still_heard(self) -> Sequence[Heard]:
+        """What the crew has heard; nothing after an exclusion by hand, which decides all anew."""
+        excluded = any(one.examined.excluded_because is not None for one in self._flown)
+        return () if excluded else self._heard
+
+    def _judge(self) -> None:
+        """Judge the manoeuvres and the flight test; leave all unjudged where a fault ends that."""
+        self._parts.make(f"{self._axis}, verdicts", self._judged, self._unjudged)
+
+    def _judged(self) -> None:
+        """Judge the manoeuvres and the flight test from the examinations."""
+        history = [flown.examined for flown in self._flown]
+        verdicts = judge_campaign(history, self._plan, self._course)
+        self.judged = tuple(
+            flown.judged(verdict) for flown, verdict in zip(self._flown, verdicts, strict=True)
+        )
+        self.flight_test = self._decided(history, self._still_heard)
+
+    def _unjudged(self, part: FailedPart) -> None:
+        """Accept no manoeuvre, and go on."""
+        why = objection(part)
+        verdict = ManeuverVerdict(False, why.text, (why,), {})
+        self.judged = tuple(one.judged(verdict) for one in self._flown)
+        self.flight_test = self._decided((), ())
