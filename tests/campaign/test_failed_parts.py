@@ -5,8 +5,8 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.whole_flights import read_whole
+from advisor.campaign import axis_campaign, elevator, joint_estimate, lateral
 from advisor.campaign import campaign as whole_campaign
-from advisor.campaign import elevator, joint_estimate, lateral
 from advisor.report.document import analysis_document
 from tests.campaign.test_lateral import ended, wired
 from tests.flights import FOUR, recorded
@@ -63,7 +63,7 @@ def test_a_joint_estimate_that_fails_leaves_the_verdicts(monkeypatch):
 
 
 def test_verdicts_that_fail_accept_nothing(monkeypatch):
-    monkeypatch.setattr(elevator, "judge_campaign", broken)
+    monkeypatch.setattr(axis_campaign, "judge_campaign", broken)
     document = analysed()
     assert parts_of(document) == ["pitch, verdicts"]
     assert {one["verdict"] for one in document["maneuvers"]} == {"rejected"}
