@@ -26,7 +26,7 @@ from advisor.side_gap.fit import Fit, N
 from advisor.side_gap.flight import SideFlight, SideModel
 from advisor.side_gap.gusts import coloured_likelihood
 from advisor.side_gap.laws import side_laws
-from advisor.side_gap.models import Case, base_of
+from advisor.side_gap.models import Case, base_of, free_near
 from advisor.words.certainty import Answers
 
 PEAKS = ("p", "r")
@@ -139,7 +139,9 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> Sid
     """
     first = case.fit(case.begin, case.natural)
     plain = first and case.fit(first.point, first.free, share=share_of(first))
-    as_given = plain and case.fit(plain.point._replace(theta=case.theta), plain.free, ERROR_IF_RIGHT * 1e-3)
+    as_given = plain and case.fit(
+        plain.point._replace(theta=case.theta), free_near(case, plain), ERROR_IF_RIGHT * 1e-3
+    )
     if plain is None or as_given is None:
         return None
     table = list(side_effects(case.flown))

@@ -16,17 +16,10 @@ from advisor.gap.inference.sizes import natural_share
 from advisor.gap.inference.stage import Pairs, Stage, likeliest, within_model_error
 from advisor.side_gap.disturbance import courses_of
 from advisor.side_gap.effects import SideEffect
-from advisor.side_gap.evidence import (
-    Gain,
-    gain_of,
-    information_of,
-    posterior_of,
-    share_of,
-    squares_of,
-)
+from advisor.side_gap.evidence import Gain, gain_of, information_of, posterior_of, share_of, squares_of
 from advisor.side_gap.fit import Fit, Free, Known
 from advisor.side_gap.gusts import Gusts, coloured_likelihood, side_gusts
-from advisor.side_gap.models import Case, free_with
+from advisor.side_gap.models import Case, free_near, free_with
 from advisor.side_gap.residual import residual_of
 from advisor.side_gap.starts import Starts
 
@@ -95,12 +88,12 @@ class SideFlight:
         starts = Starts(self.case, plain, table)
         of_laws = Starts(self.case, plain, _beside(base, self.laws)).of_each
         chosen = [*likeliest(starts.of_each, most), *likeliest(of_laws, LAWS)]
-        near = self.case.fit(plain.point, plain.free, ERROR_IF_RIGHT, share) if self.is_stated else None
-        if near is not None:
-            seen = {one.name for one in chosen}
-            others = [effect for effect in table if effect.name not in seen]
-            tight = Starts(self.case, near, others, ERROR_IF_RIGHT)
-            chosen += likeliest(tight.of_each, AT_THE_FILE)
+        near = self.is_stated and self.case.fit(
+            plain.point, free_near(self.case, plain), ERROR_IF_RIGHT, share
+        )
+        if near:
+            others = [effect for effect in table if effect.name not in {one.name for one in chosen}]
+            chosen += likeliest(Starts(self.case, near, others, ERROR_IF_RIGHT).of_each, AT_THE_FILE)
         everyone = [replace(self._model(None, plain, plain, share), starts=starts)]
         for one in chosen:
             fit = self.case.fit(one.point, free_with(self.case, one.effect, plain), share=share)
@@ -113,7 +106,8 @@ class SideFlight:
         Where they are the likelier ones already, the fit is near enough for the quadratic expansion.
         """
         share, near = heat**-0.5, one.evidence.right > one.evidence.wrong
-        made = None if near else self.case.fit(one.fit.point, one.fit.free, ERROR_IF_RIGHT, share)
+        free = one.fit.free if one.effect is not None else free_near(self.case, one.fit)
+        made = None if near else self.case.fit(one.fit.point, free, ERROR_IF_RIGHT, share)
         if made is None:
             return None
         return replace(self._model(one.effect, made, plain.fit, share), starts=one.starts)

@@ -103,16 +103,9 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
 
 
 def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
-    """Return the free numbers of a model with an effect, which replaces a natural number at its place.
-
-    The natural numbers keep the derivatives of the plain fit; those of an effect found before do not."""
+    """Return the free numbers of a model with an effect, which replaces a natural number at its place."""
     variant = effect.variant
-    natural = {one.place for one in case.natural}
-    kept = [
-        one._replace(column=plain.slopes[:, k] if one.place in natural else None)
-        for k, one in enumerate(plain.free)
-        if one.place not in effect.places
-    ]
+    kept = [one for one in free_near(case, plain) if one.place not in effect.places]
     columns = [None] * len(effect.places) if effect.columns is None else effect.columns.T
     base = base_of(case, effect)
     numbers = zip(effect.places, effect.std, variant.steps, variant.bounds, base, columns, strict=True)
@@ -121,6 +114,18 @@ def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
         for place, std, step, (low, high), at, column in numbers
     ]
     return (*kept, *own)
+
+
+def free_near(case: Case, plain: Fit) -> tuple[Free, ...]:
+    """Return the free numbers of a model near the plain one.
+
+    The natural numbers keep the derivatives of the plain fit; those of an effect found before do not.
+    """
+    natural = {one.place for one in case.natural}
+    return tuple(
+        one._replace(column=plain.slopes[:, k] if one.place in natural else None)
+        for k, one in enumerate(plain.free)
+    )
 
 
 def base_of(case: Case, effect: SideEffect) -> FloatArray:

@@ -8,9 +8,10 @@ from scipy.optimize import nnls
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
+from advisor.model.lateral import LATERAL
 from advisor.side_gap.change import changes_by
 from advisor.side_gap.effects import SideEffect
-from advisor.side_gap.fit import Fit, N, Point
+from advisor.side_gap.fit import Fit, N, Point, outputs
 from advisor.side_gap.models import Case, base_of
 from advisor.side_gap.setting import moved_to
 
@@ -80,9 +81,21 @@ class Starts:
             if one.place in effect.places
         )
         if not saved:
-            return min(self._each(effect), key=lambda start: start.cost, default=None)
+            tangent = [self._tangent(effect)] if effect.of in LATERAL.outputs else []
+            return min([*tangent, *self._each(effect)], key=lambda start: start.cost, default=None)
         cost = self._cost + float(self._begin @ self._begin) - saved
         return Start(effect, cost, plain.point, np.zeros(len(self._begin)), saved)
+
+    def _tangent(self, effect: SideEffect) -> Start:
+        """Return the start of a late or scaled reading by the slope of the outputs.
+
+        All other clocks may be late too. Together they move by as much without a residual, but only in small
+        steps do they all count as linear.
+        """
+        point, step = self._plain.point, np.array(effect.variant.steps)
+        setting = moved_to(point.setting, effect.places, base_of(self._case, effect) + step)
+        moved = outputs(self._case.flown, point._replace(setting=setting))
+        return self._linear(effect, (moved - self._plain.fitted)[:, None] / step)
 
     def _linear(self, effect: SideEffect, columns: FloatArray) -> Start:
         """Return the best start of an effect whose outputs are linear in its numbers."""
@@ -92,7 +105,7 @@ class Starts:
         way = ways @ values
         left = self._begin - way
         point, cost = self._plain.point, self._cost + float(left @ left + prior @ values**2)
-        setting = moved_to(point.setting, effect.places, values)
+        setting = moved_to(point.setting, effect.places, base_of(self._case, effect) + values)
         return Start(effect, cost, point._replace(setting=setting), way)
 
     def _each(self, effect: SideEffect) -> Iterator[Start]:

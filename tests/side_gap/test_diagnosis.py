@@ -186,17 +186,17 @@ def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_a
     monkeypatch.setattr(
         SideFlight, "_model", lambda *_: SideModel(**dict.fromkeys(SideModel.__dataclass_fields__))
     )
-    case = SimpleNamespace(stated=(), fit=lambda at, free, **_: again.extend(free) or fit)
+    case = SimpleNamespace(stated=(), natural=(), fit=lambda at, free, **_: again.extend(free) or fit)
     SideFlight(case, fit, []).explained(SimpleNamespace(fit=fit, effect=None), 3)
     assert [one.column for one in again] == [None]
 
 
 @pytest.mark.parametrize(("right", "wrong", "fitted"), [(5.0, 0.0, False), (0.0, 5.0, True)])
 def test_a_model_is_fitted_at_the_files_derivatives_only_where_others_are_likelier(right, wrong, fitted):
-    found = SimpleNamespace(point=None, free=None)
+    found = SimpleNamespace(point=None, free=())
     one = SimpleNamespace(evidence=Evidence(right, wrong), fit=found, effect=None, starts=None)
     again = []
-    case = SimpleNamespace(fit=lambda *given: again.append(given))
+    case = SimpleNamespace(natural=(), fit=lambda *given: again.append(given))
     assert SideFlight(case, None, []).at_the_files(one, None, 1.0) is None
     assert bool(again) is fitted
 

@@ -7,6 +7,7 @@ import pytest
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.side_gap.disturbance import courses_of
+from advisor.side_gap.effects import side_effects
 from advisor.side_gap.fit import fitted
 from advisor.side_gap.gusts import coloured_likelihood, side_gusts
 from advisor.side_gap.laws import side_laws
@@ -142,3 +143,20 @@ def test_a_bent_reading_is_the_square_and_the_cube_of_the_reading(case, flight):
     share = p / most
     assert law.columns[rows, 0] == pytest.approx(share * np.abs(share), abs=0.03)
     assert law.columns[rows, 1] == pytest.approx(share**3, abs=0.03)
+
+
+def test_a_late_roll_rate_promises_as_much_as_an_early_yaw_rate_where_all_other_clocks_are_free(case):
+    """A plain fit puts the lateness of one rate onto all other clocks."""
+    late = [
+        replace(
+            record,
+            outputs={**record.outputs, "p": record.outputs["p"]._replace(t=record.outputs["p"].t + 0.045)},
+        )
+        for record in case.flown.problem.records
+    ]
+    flown = replace(case.flown, problem=replace(case.flown.problem, records=tuple(late)))
+    case = replace(case, flown=flown)
+    plain = case.fit(case.begin, case.natural)
+    table = [one for one in side_effects(flown) if one.name.startswith("late_")]
+    promised = {one.name: one.price + 2.0 * plain.likelihood for one in Starts(case, plain, table).of_each}
+    assert promised["late_roll_rate_stamps"] < 0.8 * promised["late_yaw_rate_stamps"] < 0.0

@@ -41,7 +41,6 @@ class Weighting:
 class Filters:
     """Kalman filters for moving air or coloured instruments, one for every manoeuvre."""
 
-    airs: tuple[AirModel, ...]
     gains: tuple[Gains, ...]
     order: tuple[np.ndarray, ...]
     """Per manoeuvre: indices of the stacked rows in order of time."""
@@ -83,7 +82,7 @@ def filters_for(
         # Every manoeuvre has its own initial states in the fit, so none are left to the filter.
         gains.append(gains_of(t, channel, system, airs[i], 0.0, extra[i][order], arms))
         orders.append(order)
-    return Filters(tuple(airs), tuple(gains), tuple(orders))
+    return Filters(tuple(gains), tuple(orders))
 
 
 def rows_in_time(

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-from advisor.gap.alternative import Kind
 from advisor.words.problems import ConfigurationError
 
 
@@ -14,10 +13,6 @@ class FieldPrior:
     parameters: float
     effect: float
     unknown: float
-
-    def of(self, kind: Kind) -> float:
-        """Return the share of a kind of alternative; effects of the air count as effects."""
-        return float(getattr(self, {"air": "effect"}.get(kind, kind)))
 
 
 FIELD = FieldPrior(none=0.4, parameters=0.2, effect=0.3, unknown=0.1)
