@@ -119,6 +119,10 @@ class AxisCampaign(ABC):
         return next(flown for flown in self._flown if flown.maneuver.number == number)
 
     @property
+    def _examinations(self) -> Sequence[CandidateManeuver]:
+        return [flown.examined for flown in self._flown]
+
+    @property
     def _accepted(self) -> Sequence[JudgedManeuver]:
         return [judged for judged in self.judged if judged.verdict.accepted]
 
@@ -134,7 +138,7 @@ class AxisCampaign(ABC):
 
     def _judged(self) -> None:
         """Judge the manoeuvres and the flight test from the examinations."""
-        history = [flown.examined for flown in self._flown]
+        history = self._examinations
         verdicts = judge_campaign(history, self._plan, self._course)
         self.judged = tuple(
             flown.judged(verdict) for flown, verdict in zip(self._flown, verdicts, strict=True)

@@ -10,6 +10,7 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.single_maneuver import failed, untold
 from advisor.campaign.state import JudgedManeuver, LateralState
 from advisor.decision.axes.lateral import RESPONSES, judge_lateral
+from advisor.decision.change import find_change
 from advisor.decision.heard import Heard
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.lateral_advice import FlownInput
@@ -97,7 +98,9 @@ class LateralCampaign(AxisCampaign):
         """Return the decision by a joint estimate."""
         return self._parts.make(
             "lateral, stop or continue",
-            lambda: lateral_flight_test(self._told, joint, self._aircraft, self._inputs, heard),
+            lambda: lateral_flight_test(
+                self._told, joint, self._aircraft, self._inputs, heard, find_change(self._examinations)
+            ),
             lambda _: lateral_flight_test([], None, self._aircraft),
         )
 

@@ -2,8 +2,8 @@
 
 Noise moves every estimate by as much as its interval says. A poor manoeuvre moves one estimate. A change
 moves all later estimates equally. So the manoeuvres before and after every possible moment are pooled and
-compared, in a likelihood-ratio test for one change point. The test covers the six derivatives, because Z_0
-and M_0 move with the trim anyway.
+compared, in a likelihood-ratio test for one change point. The test covers the derivatives, because Z_0 and
+M_0 move with the trim anyway.
 """
 
 from collections.abc import Sequence
@@ -12,15 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri
 
-from advisor.aircraft.reference import PARAMETERS
+from advisor.aircraft.reference import SIDE_PARAMETERS, SPEED_EXPONENTS
 from advisor.decision.consistency import outliers
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.inverses import information_of
 from advisor.decision.pooling import (
-    DERIVATIVES,
     Pooled,
     Posterior,
     Shared,
+    derivatives_of,
     disagreement,
     pooled,
     pooled_on_both_sides,
@@ -89,10 +89,11 @@ def find_change(history: Sequence[CandidateManeuver]) -> Change | None:
     first, second = splits[k]
     k += 2
     widening = _widening(first, second)
-    moved = _moved(first.shared, second.shared, widening)
+    names = derivatives_of(posteriors[0].names)
+    moved = _moved(first.shared, second.shared, widening, names)
     if not moved or _back_to_normal(first, posteriors[k:]):
         return None
-    looks_like = _simplest_cause(first.shared, second.shared, widening)
+    looks_like = _simplest_cause(first, second, names)
     return _told(numbers[k - 1], numbers[k], len(posteriors) > k + 1, moved, looks_like)
 
 
@@ -119,46 +120,69 @@ def _back_to_normal(before: Pooled, after: Sequence[Posterior]) -> bool:
     return with_old < with_new or pooled(after).inconsistency > with_old + float(chdtri(dof, CONSISTENCY))
 
 
-def _moved(before: Shared, after: Shared, widening: float) -> tuple[Moved, ...]:
+def _kinematics(names: Sequence[str]) -> FloatArray:
+    """Return what the equation of each derivative adds to it: 1 for the pitch rate's in α̇."""
+    return np.array([1.0 if name == "Z_q" else 0.0 for name in names])
+
+
+def _moved(before: Shared, after: Shared, widening: float, names: Sequence[str]) -> tuple[Moved, ...]:
     found = []
-    names = [PARAMETERS[k] for k in DERIVATIVES]
-    for k, (name, value) in enumerate(zip(names, before.theta, strict=True)):
-        difference = after.theta[k] - value
+    for k, (name, value) in enumerate(zip(names, before.theta + _kinematics(names), strict=True)):
+        difference = after.theta[k] - before.theta[k]
         std = np.sqrt(widening * (before.covariance[k, k] + after.covariance[k, k]))
-        size = abs(value + (1.0 if name == "Z_q" else 0.0))
+        size = abs(value)
         if 0.0 < LEAST_SIGMA * std < abs(difference) and 0.0 < LEAST_SHARE * size < abs(difference):
             percent = 100.0 * difference / size * np.sign(value)
             found.append(Moved(name, float(percent), float(difference / std)))
     return tuple(sorted(found, key=lambda m: -abs(m.sigma)))
 
 
-# Each cause multiplies the coefficients Z_α, 1 + Z_q, Z_δe, M_α, M_q, M_δe by powers of one factor. Shifts of
-# the aircraft come first, then elevator and air, last an instrument that reads (1 + k) times the truth
-# (substitute the reading in Eqs. (1) and (2)).
-_CAUSES = {
-    "a shift of the centre of gravity": (0, 0, 0, 1, 0, 0),
-    "a loss or gain of lift, as from ice on the wing": (1, 0, 0, 0, 0, 0),
-    "weaker lift, stiffness and control together, as from ice on wing and tail": (1, 0, 1, 1, 0, 1),
-    "another mass": (1, 0, 1, 1, 1, 1),
-    "a loss of the elevator's moment": (0, 0, 0, 0, 0, 1),
-    "the elevator's effectiveness or its calibration": (0, 0, 1, 0, 0, 1),
-    "another air speed than recorded": (1, 0, 1, 2, 1, 2),
-    "the scale of the angle of attack": (0, 1, 1, -1, 0, 0),
-    "the scale of the pitch rate": (0, -1, 0, 1, 0, 1),
-}
+# Each cause multiplies coefficients by powers of one factor, and 1 + Z_q in the place of Z_q. Shifts of the
+# aircraft come first, then controls and air. An instrument reads (1 + k) times the truth (substitute the
+# reading in the equations of motion).
+_CAUSES = (
+    ("a shift of the centre of gravity", {"M_alpha": 1}),
+    ("a loss or gain of lift, as from ice on the wing", {"Z_alpha": 1}),
+    (
+        "weaker lift, stiffness and control together, as from ice on wing and tail",
+        {"Z_alpha": 1, "Z_delta_e": 1, "M_alpha": 1, "M_delta_e": 1},
+    ),
+    ("another mass", {"Z_alpha": 1, "Z_delta_e": 1, "M_alpha": 1, "M_q": 1, "M_delta_e": 1}),
+    ("a loss of the elevator's moment", {"M_delta_e": 1}),
+    ("the elevator's effectiveness or its calibration", {"Z_delta_e": 1, "M_delta_e": 1}),
+    ("the scale of the angle of attack", {"Z_q": 1, "Z_delta_e": 1, "M_alpha": -1}),
+    ("the scale of the pitch rate", {"Z_q": -1, "M_alpha": 1, "M_delta_e": 1}),
+    ("another stability in yaw, as from a shift of the centre of gravity", {"N_beta": 1}),
+    ("a smaller or larger fin", {"Y_beta": 1, "N_beta": 1, "N_r": 1}),
+    (
+        "another moment of inertia in roll, as from tanks in the wing",
+        {name: 1 for name in SIDE_PARAMETERS if name.startswith("L")},
+    ),
+    ("the aileron's effectiveness or its calibration", {f"{y}_delta_a": 1 for y in "YLN"}),
+    ("the rudder's effectiveness or its calibration", {f"{y}_delta_r": 1 for y in "YLN"}),
+    ("another air speed than recorded", SPEED_EXPONENTS),
+)
+"""Cause of a change to the powers of its factor by derivative, of either axis."""
 
 
-def _simplest_cause(before: Shared, after: Shared, widening: float) -> str:
-    """Return the simplest cause that explains the differences of all six derivatives; empty without one."""
-    misfits = {name: _misfit(before, after, np.array(powers, float)) for name, powers in _CAUSES.items()}
-    best = min(misfits, key=lambda name: misfits[name])
-    return best if misfits[best] < widening * float(chdtri(len(DERIVATIVES) - 1, CONSISTENCY)) else ""
+def _simplest_cause(before: Pooled, after: Pooled, names: Sequence[str]) -> str:
+    """Return the simplest cause that explains the differences of all derivatives; empty without one."""
+    known = int(np.sum(np.isfinite(before.shared.theta + after.shared.theta)))
+    one = _kinematics(names)
+    misfits = {
+        cause: _misfit(before.shared, after.shared, np.array([powers.get(n, 0) for n in names], float), one)
+        for cause, powers in _CAUSES
+        if any(name in powers for name in names)
+    }
+    best = min(misfits, key=lambda cause: misfits[cause])
+    limit = _widening(before, after) * float(chdtri(max(known - 1, 1), CONSISTENCY))
+    return best if misfits[best] < limit else ""
 
 
-def _misfit(before: Shared, after: Shared, powers: FloatArray) -> float:
+def _misfit(before: Shared, after: Shared, powers: FloatArray, one: FloatArray) -> float:
     """Return the χ² that remains when ``before`` is multiplied by the best factor to these powers."""
-    one = np.array([1.0 if PARAMETERS[k] == "Z_q" else 0.0 for k in DERIVATIVES])
-    start, target = before.theta + one, after.theta + one
+    known = np.isfinite(before.theta + after.theta)
+    start, target = (np.where(known, side.theta + one, 0.0) for side in (before, after))
     uneven = np.diag((UNEVEN * target) ** 2)
     exponent = 0.0
     for _ in range(20):

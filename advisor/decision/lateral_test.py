@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 
 from advisor.aircraft.aircraft import Aircraft, Rule
 from advisor.decision.advice import ENOUGH
+from advisor.decision.change import Change
 from advisor.decision.heard import Heard, first_stop, stays
 from advisor.decision.lateral_advice import FlownInput, next_lateral
 from advisor.decision.tolerance import SHARE
@@ -52,6 +53,7 @@ def lateral_flight_test(
     aircraft: Aircraft,
     flown: Sequence[FlownInput] = (),
     heard: Sequence[Heard] = (),
+    change: Change | None = None,
 ) -> FlightTestVerdict:
     """Return whether the lateral test may stop, and the next input.
 
@@ -67,6 +69,8 @@ def lateral_flight_test(
         Inputs of all manoeuvres, accepted or not.
     heard
         What the crew heard after each earlier manoeuvre. A stop that the crew has heard stays.
+    change
+        Change of the aircraft between manoeuvres, which ends a stop; None where noise explains all.
     """
     accepted = [one for one in history if one is not None]
     shares = shares_of(joint, aircraft.campaign.tolerance_percent)
@@ -76,13 +80,17 @@ def lateral_flight_test(
     told = tuple(one.percent.get(_RULE) for one in heard)
     now_usable = {i for i, one in enumerate(history) if one is not None}
     stopped_at = len(history) if holds else None
-    if stays(heard, _RULE, now_usable):
+    changed = change.sentence if change is not None and change.confirmed else ""
+    if not changed and stays(heard, _RULE, now_usable):
         stopped_at = first_stop(heard, _RULE)
     stop = stopped_at is not None
+    said = _sentence(shares, accepted, stopped_at, holds) if history else NOT_FLOWN
+    if changed and not stop and first_stop(heard, _RULE) is not None:
+        said = f"CONTINUE: {changed}"
     return FlightTestVerdict(
         rule=_RULE,
         decision="stop" if stop else "continue",
-        sentence=_sentence(shares, accepted, stopped_at, holds) if history else NOT_FLOWN,
+        sentence=said,
         criterion_percent=now,
         limit_percent=INFORMATION_LIMIT_PERCENT,
         stopped_at=stopped_at,
@@ -97,6 +105,7 @@ def lateral_flight_test(
             )
         },
         next=ENOUGH if stop else _next(shares, accepted, flown, aircraft),
+        warnings=() if change is None else (change.sentence,),
     )
 
 

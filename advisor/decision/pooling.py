@@ -31,6 +31,11 @@ def _places(names: tuple[str, ...]) -> tuple[list[int], list[int]]:
     return [k for k in range(len(names)) if k not in intercepts], intercepts
 
 
+def derivatives_of(names: tuple[str, ...]) -> list[str]:
+    """Return the names of the derivatives among the parameters of an axis."""
+    return [names[k] for k in _places(names)[0]]
+
+
 class Shared(NamedTuple):
     """Mean and covariance of the d derivatives of an axis, which manoeuvres share."""
 
@@ -78,15 +83,17 @@ def posteriors_at_one_speed(estimates: Sequence[Estimate]) -> list[Posterior]:
     Each parameter scales with its power of V (``SPEED_EXPONENTS``); gravity's part g/V of Z_0 is treated
     separately. Estimates at one speed, or without a speed, are unchanged. The colour of the residuals comes
     from instruments and air, which the manoeuvres share. So the factor on the Cramér-Rao bounds is the median
-    over the manoeuvres, which is steadier than each manoeuvre's own.
+    over the manoeuvres, which is steadier than each manoeuvre's own. Tests of aileron and rudder share none.
     """
     if not estimates:
         return []
     scale, values = _at_one_speed(estimates)
-    factors = _widening_by_colour(estimates) * scale[:, :, None] * scale[:, None, :]
+    powers = scale[:, :, None] * scale[:, None, :]
     return [
-        Posterior(value, e.own_covariance_cr * factor, e.common * np.outer(s, s), _alpha_of(e), e.names)
-        for e, value, factor, s in zip(estimates, values, factors, scale, strict=True)
+        Posterior(value, covariance * power, e.common * power, _alpha_of(e), e.names)
+        for e, value, covariance, power in zip(
+            estimates, values, _covariances(estimates), powers, strict=True
+        )
     ]
 
 
@@ -119,14 +126,16 @@ def common_airspeed(estimates: Sequence[Estimate]) -> float | None:
     return float(np.mean(known)) if known and len(known) == len(estimates) else None
 
 
-def _widening_by_colour(estimates: Sequence[Estimate]) -> FloatArray:
-    """Return a (p, p) factor on the Cramér-Rao bounds: the squared median of corrected to plain errors."""
+def _covariances(estimates: Sequence[Estimate]) -> FloatArray:
+    """Return (n, p, p) covariances for given instruments, with the colour of the residuals."""
+    if not estimates[0].COLOUR_IS_SHARED:
+        return np.array([e.own_covariance for e in estimates])
     plain = np.sqrt(np.array([np.diag(e.own_covariance_cr) for e in estimates]))
     corrected = np.sqrt(np.array([np.diag(e.own_covariance) for e in estimates]))
     usable = np.isfinite(plain) & np.isfinite(corrected) & (plain > 0.0)
     ratio = np.divide(corrected, plain, out=np.ones_like(plain), where=usable)
     median = np.median(ratio, axis=0)
-    return np.outer(median, median)
+    return np.array([e.own_covariance_cr * np.outer(median, median) for e in estimates])
 
 
 def pool_shared(posteriors: Sequence[Posterior]) -> Shared:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import nan
+from typing import ClassVar
 
 import numpy as np
 
@@ -77,6 +78,9 @@ class Estimate:
 
     Estimates, fits and channels are equal where they are one object: == of arrays has no single truth.
     """
+
+    COLOUR_IS_SHARED: ClassVar[bool] = True
+    """Whether residuals of all manoeuvres of one flight have one colour."""
 
     theta: FloatArray
     """Shape (8,), in the order of ``names``. In a joint estimate Z_0 and M_0 are means over manoeuvres."""

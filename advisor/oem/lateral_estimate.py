@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 
@@ -29,6 +30,8 @@ class LateralModes:
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class LateralEstimate(Estimate):
     """The lateral derivatives from one manoeuvre, or from several together, with the modes."""
+
+    COLOUR_IS_SHARED: ClassVar[bool] = False
 
     common: FloatArray = field(default_factory=lambda: np.zeros((len(SIDE_PARAMETERS),) * 2))
     modes: LateralModes

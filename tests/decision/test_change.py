@@ -1,16 +1,21 @@
 """Something changed: told apart from noise and from a poor manoeuvre."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import CampaignPlan
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan
 from advisor.bundled.study.flying import Scene, fly_named, respond
 from advisor.decision.change import find_change
+from advisor.decision.heard import Heard
 from advisor.decision.history import CandidateManeuver
+from advisor.decision.lateral_test import lateral_flight_test
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import Reason
 from advisor.flight.signals.messages import FloatArray
 from sim.linear import ShortPeriod
+from tests.campaign.side_builders import estimate as side_estimate
 from tests.decision.campaigns import THETA, drawn, estimate, with_change
 
 
@@ -141,3 +146,44 @@ def test_manoeuvres_are_numbered_as_flown_even_with_unusable_ones_between(rng: n
     change = find_change([before[0], spoilt, *before[1:], *after])
     assert change is not None
     assert change.after == 4
+
+
+def of_side(rng: np.random.Generator, control: str, **factors: float) -> CandidateManeuver:
+    """A manoeuvre of aileron or rudder, with noise, by the jet whose derivatives have these factors."""
+    sound = side_estimate(control, percent=2.0)
+    names, std = sound.names, np.sqrt(np.diag(sound.covariance))
+    theta = sound.theta * [factors.get(name, 1.0) for name in names]
+    return CandidateManeuver(replace(sound, theta=theta + std * rng.standard_normal(len(std))))
+
+
+def test_a_weaker_aileron_is_found_in_roll_and_yaw_with_its_cause(rng: np.random.Generator) -> None:
+    weaker = {f"{letter}_delta_a": 0.7 for letter in "YLN"}
+    history = [of_side(rng, control) for control in ("aileron", "rudder", "aileron")]
+    history += [of_side(rng, control, **weaker) for control in ("rudder", "aileron")]
+    change = find_change(history)
+    assert change is not None
+    assert (change.after, change.confirmed) == (3, True)
+    moved = {one.parameter: one.percent for one in change.moved}
+    assert moved["L_delta_a"] == pytest.approx(-30.0, abs=4.0)
+    assert set(moved) <= set(weaker)
+    assert change.looks_like == "the aileron's effectiveness or its calibration"
+
+
+def test_noise_alone_is_no_change_in_roll_and_yaw(rng: np.random.Generator) -> None:
+    alarms = [find_change([of_side(rng, c) for c in ("aileron", "rudder") * 3]) for _ in range(30)]
+    assert not any(alarms)
+
+
+def test_a_change_ends_the_stop_of_roll_and_yaw_and_is_said(rng: np.random.Generator) -> None:
+    history = [of_side(rng, control) for control in ("aileron", "rudder", "aileron", "rudder")]
+    both = side_estimate("aileron", "rudder", percent=2.0)
+    estimates = [one.estimate for one in history]
+    heard = [Heard.of(lateral_flight_test(estimates, both, Aircraft()))]
+    weaker = {f"{letter}_delta_a": 0.7 for letter in "YLN"}
+    change = find_change([*history, *(of_side(rng, c, **weaker) for c in ("aileron", "rudder"))])
+    poor = side_estimate("aileron", "rudder", percent=60.0)
+    verdict = lateral_flight_test(estimates, poor, Aircraft(), (), heard, change)
+    assert verdict.decision == "continue"
+    assert verdict.sentence.startswith("CONTINUE: Something changed after manoeuvre 4: L_δa")
+    assert verdict.warnings == (change.sentence,)
+    assert lateral_flight_test(estimates, poor, Aircraft(), (), heard).decision == "stop"

@@ -45,7 +45,8 @@ def _is_told(state: LateralState) -> bool:
 
 
 def lateral_decision(state: LateralState) -> Iterator[str]:
-    """Yield stop or continue of roll and yaw, and the next input."""
+    """Yield stop or continue of roll and yaw, the next input, and warnings."""
     yield f"Roll and yaw: {state.flight_test.sentence}"
+    yield from (f"{INDENT}warning: {warning}" for warning in state.flight_test.warnings)
     if state.maneuvers and state.flight_test.next is not None:
         yield f"{INDENT}{state.flight_test.next.advice}"
