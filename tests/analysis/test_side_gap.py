@@ -64,7 +64,7 @@ def test_a_simulator_that_refuses_is_closed_too(compared, monkeypatch):
 
 def test_the_derivatives_of_a_simulators_log_are_its_numbers(compared, monkeypatch, tmp_path):
     found = SimpleNamespace(theta=np.arange(15.0), not_identifiable={"Y_beta": "still"}, airspeed_m_s=30.0)
-    monkeypatch.setattr(side_gap, "estimate_lateral", lambda *_: SimpleNamespace(estimate=found))
+    monkeypatch.setattr(side_gap, "estimate_lateral", lambda *_: found)
     log = tmp_path / "simulated.tlog"
     log.touch()
     side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator=f"log:{log}"))

@@ -54,8 +54,7 @@ def told(untold=(), band=0.05, noise=1e-4):
     error = noise * np.random.default_rng(3).standard_normal(len(T))
     fits = ({name: ChannelFit(name, T, yaw.y + error, yaw.y, noise) for name in ("p", "r")},)
     whole = estimate("rudder", untold=dict.fromkeys(untold, "collinear"), fits=fits)
-    known = replace(whole.estimate, prediction={"p": band, "r": band})
-    return replace(whole, estimate=known)
+    return replace(whole, prediction={"p": band, "r": band})
 
 
 def codes(record, found):
