@@ -97,7 +97,7 @@ def _without(content: Any, locations: list[tuple[int | str, ...]]) -> Any:
 
 
 def _take_out(section: dict[Any, Any], location: Sequence[int | str]) -> None:
-    """Remove the innermost key that a location names. Its neighbours stay, for they may be wrong, too."""
+    """Remove the innermost key that a location names. Neighbours stay: they may be wrong, too."""
     key, *inside = location
     within = section.get(key)
     if isinstance(within, dict) and inside and inside[0] in within:

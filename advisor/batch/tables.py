@@ -75,7 +75,8 @@ def aircraft_of(flight: Analyzed) -> str:
 def names_of(flights: Sequence[Analyzed]) -> dict[str, str]:
     """Return each aircraft's identity to its name for people.
 
-    Aircraft that share a name have their identity in brackets behind the name. Nameless ones show it alone.
+    Aircraft that share a name have their identity in brackets behind the name. Nameless aircraft show their
+    identity alone.
     """
     names = {aircraft_of(flight): flight.aircraft_name for flight in flights}
     often = Counter(names.values())

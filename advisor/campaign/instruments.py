@@ -50,9 +50,9 @@ def with_fit(
     by_motion
         Findings without aerodynamics.
     model
-        Joint estimate over the accepted manoeuvres. It tells what estimates use.
+        Joint estimate over the accepted manoeuvres. Its findings say what estimates use.
     single
-        Estimates of all manoeuvres. They tell what refuses them.
+        Estimates of all manoeuvres. Their findings say what refuses manoeuvres.
     aircraft
         Aircraft file, with which the estimates were made.
     """
@@ -70,7 +70,8 @@ def side_signs(model: LateralEstimate | None, aircraft: Aircraft) -> tuple[Instr
     """Return in which direction a positive aileron rolls and a positive rudder yaws, where the motion tells.
 
     The definition is left. Without a calibration nothing states the direction; the derivatives then have the
-    sign that the parameters of the outputs give. They stay in the log's sign where the motion contradicts it.
+    sign that the parameters of the outputs give. The channels keep the log's sign where the motion
+    contradicts that sign.
     """
     found = []
     for control, name, moves in (("aileron", "L_delta_a", "rolls"), ("rudder", "N_delta_r", "yaws")):

@@ -1,4 +1,4 @@
-"""Limits of the elevator that are heard after manoeuvres: these are counted anew, or left out by name."""
+"""Limits of the elevator that arrive after manoeuvres, which are judged anew or named as left out."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,8 @@
 """The instruments, identified during a campaign and used in every later estimate.
 
-They are estimated from all accepted manoeuvres together. Single estimates, verdicts and criteria take them as
-given, with their errors (``oem.found``). A servo's lag that the crew leaves open must be known to a tenth.
+Unknown instruments are estimated from all accepted manoeuvres together. Single estimates, verdicts and
+criteria take them as given, with their errors (``oem.found``). A servo's lag that the crew leaves open must
+be known to a tenth.
 """
 
 import numpy as np

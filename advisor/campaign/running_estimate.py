@@ -20,7 +20,7 @@ from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.following import Follower
 
 REFRESH_S = 0.2
-"""Vehicle time between two estimates, s. Eyes follow no faster."""
+"""Vehicle time between two estimates, s. Readers do not follow numbers that change faster."""
 SPAN_S = 0.5
 """Further response over which the standard deviations are compared, s."""
 GAIN = 0.01

@@ -53,7 +53,7 @@ def _servo(estimated: Estimate | NoEstimate, aircraft: Aircraft) -> Servo:
 
 
 def cautions_of(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: Aircraft) -> list[str]:
-    """Return cautions for the reader of an estimate. They have no effect on the verdict."""
+    """Return cautions for the reader of an estimate. Cautions have no effect on the verdict."""
     cautions = list(maneuver.data_notes)
     if maneuver.span.closed_by in MARKED.values():
         cautions.append(maneuver.span.closed_by)

@@ -153,7 +153,8 @@ class CampaignState:
     lateral: LateralState | None = None
     """Lateral half of the campaign. None where it was not asked for."""
     activity: tuple[Activity, ...] = ()
-    """Movements of the elevator that were no test inputs, oldest first. Similar neighbours are one entry."""
+    """Movements of the elevator that were no test inputs, oldest first. Similar ones in a row are one
+    entry."""
     failed: tuple[FailedPart, ...] = ()
     """Parts that a fault of the advisor ended."""
 

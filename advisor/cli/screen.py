@@ -74,7 +74,7 @@ def advise(
         Marks of the command line.
     kept
         Reads the decisions by hand since the start, for a source that can be read again from its
-        beginning. Such a source survives the death of the estimating process.
+        beginning. A picklable source survives the death of the estimating process.
     names
         Names of the campaign's logs, in their order.
     logs

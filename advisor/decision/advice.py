@@ -134,8 +134,9 @@ def best_input(
     Parameters
     ----------
     measured_std
-        (8,) standard deviations of the last manoeuvre's estimate. Their causes (coloured residuals,
-        further outputs) persist in the next manoeuvre. The prediction supplies the ratio between inputs.
+        (8,) standard deviations of the last manoeuvre's estimate. The causes of such errors (coloured
+        residuals, further outputs) persist in the next manoeuvre. The prediction supplies the ratio between
+        inputs.
     distance_to_stop
         Covariance of the next manoeuvre's errors to a measure of the distance to the stop.
     """

@@ -112,7 +112,8 @@ def _widening(before: Pooled, after: Pooled) -> float:
 
 
 def _back_to_normal(before: Pooled, after: Sequence[Posterior]) -> bool:
-    """Return whether the newest manoeuvre agrees with those before the change. The others were then poor."""
+    """Return whether the newest manoeuvre agrees with those before the change. Those after the change were
+    then poor."""
     if len(after) < 2:
         return False
     with_old, dof = disagreement(before.shared, after[-1].shared)

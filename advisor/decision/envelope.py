@@ -170,7 +170,7 @@ def banked(maneuver: Maneuver, limit: float, mend: str = "fly it wings level") -
 
 
 def above(code: str, value: float, limit: float, text: str, digits: int = 0) -> list[Reason]:
-    """Return a reason where a value exceeds its limit. Both stand in the ``{}`` of its text."""
+    """Return a reason where a value exceeds its limit. Its text has ``{}`` for value and limit."""
     if value <= limit:
         return []
     return [Reason(code, text.format(*distinct_texts(value, limit, digits)), value, limit)]

@@ -61,7 +61,8 @@ class Knowledge:
     left_out: tuple[int, ...]
     """Indices of manoeuvres that contradict all the others."""
     not_identifiable: Mapping[str, str]
-    """Parameter to the reason for which no manoeuvre identifies it. Its small error is then no knowledge."""
+    """Parameter to the reason for which no manoeuvre identifies it. Small errors of such parameters are no
+    knowledge."""
 
     @property
     def predicted(self) -> bool:

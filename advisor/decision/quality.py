@@ -1,8 +1,8 @@
 """Objections to a manoeuvre itself, before any rule compares it with others.
 
 The checks run in this order: complete data, sound instruments, within the model, long enough, rich enough,
-well explained. The first reason is the one that the crew can act on. Its consequences come after it. One walk
-examines every axis; what an axis asks is data (``decision.axes``).
+well explained. The first reason is the one that the crew can act on. Consequences of the first reason come
+after it. One walk examines every axis; what an axis asks is data (``decision.axes``).
 
 Richness is information, not amplitude: the precision with which the estimate from this manoeuvre alone
 predicts the response to its own input. Moving air, a slow channel, a missing vane or a gentle input all
@@ -78,7 +78,7 @@ class Examined:
     needed: tuple[str, ...]
     """Channels without which nothing can be said."""
     responses: tuple[Response, ...]
-    """Responses of the controls that were flown; the first one of each control is its rate."""
+    """Channels that respond to the controls flown. Each control's own rate comes first."""
     determined: tuple[str, ...]
     """Derivatives that a test of these controls determines."""
     bands: tuple[str, ...]

@@ -22,7 +22,7 @@ square root of the stiffness. M_delta_e scales the whole response, so that the p
 M_delta_e more closely.
 """
 LEAST = 1e-12
-"""Least tolerance, in any unit. Data without noise would give zero."""
+"""Least tolerance, in any unit. Data without noise would give a tolerance of zero."""
 
 
 def tolerances(theta: FloatArray, prediction: Prediction, plan: CampaignPlan) -> FloatArray:

@@ -80,7 +80,7 @@ class Examination:
     assumed: Assumed
     """Model and noise behind the expected errors and the demands on rates."""
     instruments: tuple[InstrumentFinding, ...] = ()
-    """Contradictions of the instruments. Each is a limit, too."""
+    """Contradictions of the instruments. Each contradiction is a limit, too."""
     airspeed_m_s: tuple[float, float] | None = None
     """Lowest and highest air speed in flight, m/s. None: no air speed arrives, or nothing flies."""
     notes: tuple[str, ...] = ()

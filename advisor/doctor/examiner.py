@@ -210,8 +210,8 @@ class Examiner:
         return paced
 
     def _surveyed(self, message: str) -> str:
-        """Return the name of a message in the survey. For servos, the last bank completes a sample of the
-        elevator."""
+        """Return the name of a message in the survey. Of the messages with servo outputs, that of the last
+        outputs completes a sample of the elevator."""
         elevator = self._stream.elevator
         if message != "SERVO_OUTPUT_RAW" or not isinstance(elevator, Surface):
             return message

@@ -65,7 +65,7 @@ def diagnose(
     ----------
     maneuvers
         Manoeuvres of the segmenter, with elevator, α and pitch rate. A single manoeuvre shows where the gap
-        lies. It shows no cause, because no manoeuvre remains for the hold-out.
+        lies. One manoeuvre shows no cause, because no manoeuvre remains for the hold-out.
     aircraft
         The aircraft file: the simulator's model of today.
     holdout

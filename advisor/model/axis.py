@@ -68,7 +68,7 @@ class Axis:
 
     @cached_property
     def names(self) -> Names:
-        """Names of outputs and parameters. The local ones are constants, initial states and biases."""
+        """Names of outputs and parameters. Local parameters are constants, initial states and biases."""
         derivatives = tuple(term.name for term in self.shared)
         local = (
             *(term.name for term in self.constants),

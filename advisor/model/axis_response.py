@@ -1,9 +1,9 @@
 """The model of any axis solved on the union of all stamps, with exact sensitivities.
 
 The classical Runge-Kutta method solves the states. The sensitivities are carried with the exponential of the
-matrix in the middle of each step, and Simpson's rule for their forcing. Both are of fourth order. The inputs
-are linear (or held) between their stamps. Speed, attitude and angle of attack are constant over a step. The
-short period has a closed form of its own (``response``).
+matrix in the middle of each step, and Simpson's rule for their forcing. Both methods are of fourth order. The
+inputs are linear (or held) between their stamps. Speed, attitude and angle of attack are constant over a
+step. The short period has a closed form of its own (``response``).
 """
 
 import math
@@ -16,9 +16,10 @@ from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 REACH = 0.25
-"""Largest product of a step and the largest row sum of the matrix. Its error is below 1e-5 of the states."""
+"""Largest product of a step and the largest row sum of the matrix. A step then errs by less than 1e-5 of the
+states."""
 MOST_PARTS = 16
-"""Most parts of a step: rates of 200 1/s at 50 Hz. A search that asks for faster ones has gone astray."""
+"""Most parts of a step: rates of 200 1/s at 50 Hz. A search that asks for faster modes has gone astray."""
 LARGEST = 1e9
 """Sum of the states' sizes at which the model has run away."""
 

@@ -14,7 +14,7 @@ from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 BY_VANE, BY_ACCELEROMETER, BY_ALPHA_DELAY = 0, 1, 2
-"""Columns of the vane's arm, the accelerometer's arm and the delay of the angle of attack."""
+"""Columns of the sensitivities by the vane's arm, the accelerometer's arm and the delay of α."""
 N_READING = 3
 """Number of columns by instruments that read the motion; those by changes of the input follow."""
 

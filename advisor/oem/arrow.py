@@ -2,7 +2,7 @@
 
 The derivatives are shared by all manoeuvres, and each manoeuvre has its own nuisance parameters. These are
 eliminated manoeuvre by manoeuvre, so the work grows linearly with their number. The compiled functions serve
-small systems in a search. LAPACK serves the larger ones, and those with bounds.
+small systems in a search. LAPACK serves larger systems, and systems with bounds.
 """
 
 import numpy as np

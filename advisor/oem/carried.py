@@ -31,7 +31,7 @@ LONGEST_PROMISE = 2.0
 samples. Nine of ten updated estimates then lie within 0.17 standard deviations of the complete ones (the
 first manoeuvre of ``logs/arduplane-calm.tlog``)."""
 REST_S = 2.0
-"""Length in s of the command before the new samples that is kept. Servos have forgotten earlier ones."""
+"""Length in s of the command before the new samples that is kept. Servos have forgotten earlier movements."""
 NEARLY_SINGULAR = 1e12
 """Largest sum of variances, each relative to that of the parameter alone, for a well-conditioned matrix.
 Round-off decides above it."""

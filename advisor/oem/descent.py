@@ -32,8 +32,8 @@ from advisor.oem.rows import Laid
 from advisor.oem.solution import RUNS_AWAY
 
 SETTLED = 1e-3
-"""Promised change of -2 log of the posterior at which a search ends. It moves no parameter by more than 0.03
-of its standard deviation."""
+"""Promised change of -2 log of the posterior at which a search ends. Such a decrease moves no parameter by
+more than 0.03 of its standard deviation."""
 
 
 class Response(NamedTuple):
@@ -229,7 +229,8 @@ def descended(
     begin: tuple[FloatArray, FloatArray],
     most: int = MOST_ITERATIONS,
 ) -> Fit | NoEstimate:
-    """Return the fit with the least -2 log of the posterior near a start. Its status says how it was found.
+    """Return the fit with the least -2 log of the posterior near a start. The fit's status says how the
+    search ended.
 
     Parameters
     ----------

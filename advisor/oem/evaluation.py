@@ -35,7 +35,7 @@ class Evaluated:
     modes: FloatArray | None = None
     """(p + k, p + k) second moment of another mode of the posterior about this one, by its probability."""
     extra: Extra | None = None
-    """The e >= k additional parameters, such as the times of edges."""
+    """Additional parameters, such as the times of edges: e of them, at least k."""
 
     @property
     def fitted(self) -> FloatArray:

@@ -51,7 +51,7 @@ class Quality:
 
     @property
     def ci95(self) -> tuple[float, float]:
-        """Both ends of the 95 % interval."""
+        """Lower and upper end of the 95 % interval."""
         return self.value - NORMAL_95 * self.std, self.value + NORMAL_95 * self.std
 
 

@@ -2,9 +2,9 @@
 
 One manoeuvre hardly tells a servo's lag from M_q and M_δe. All manoeuvres of a power-on share their
 instruments and tell them well. So the joint estimate tells the instruments, and each manoeuvre's estimate
-takes them as given. The error of that estimate has two parts. One part is the manoeuvre's own, for given
-instruments. The other part comes from the errors of the instruments, and all manoeuvres have it in common.
-Further manoeuvres average out the first part alone.
+takes them as given. The error of an instrument's estimate has two parts. One part is the manoeuvre's own, for
+given instruments. The other part comes from the errors of the instruments, and all manoeuvres have it in
+common. Further manoeuvres average out the first part alone.
 """
 
 from dataclasses import dataclass, fields

@@ -94,7 +94,7 @@ class Instrument:
     def at_end(self, problem: OutputErrorProblem, std: float) -> bool:
         """Return whether the value, with its standard deviation, reaches an end of the range of the search.
 
-        Such a value is no estimate.
+        A value at the end of its range is no estimate.
         """
         value = self.read(problem)
         return not self.lowest + self.resolution < value < self.highest - NORMAL_95 * std
@@ -141,7 +141,7 @@ STEADY_MOMENT = Instrument(
     lambda problem: Prior(problem.steady_moment_rad, STEADY_MOMENT_RAD),
 )
 OF_ALPHA = ("vane_arm_m", "alpha_delay_s")
-"""Instruments of the angle of attack. They change Z_α, Z_q and Z_δe."""
+"""Instruments of the angle of attack. Instruments of α change Z_α, Z_q and Z_δe."""
 BY_NAME: Mapping[InstrumentName, Instrument] = {
     x.name: x for x in (SERVO_LAG, COMMAND_DELAY, VANE_ARM, ALPHA_DELAY, ACCELEROMETER_ARM, STEADY_MOMENT)
 }

@@ -63,7 +63,7 @@ def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
 
 
 def _folder() -> Path | None:
-    """Return the folder of the mark, by numba's choice of the folder for machine code; None without one."""
+    """Return numba's folder for machine code, in which a mark says that all is compiled; None without one."""
     from platformdirs import user_cache_path
 
     given = os.environ.get("NUMBA_CACHE_DIR")

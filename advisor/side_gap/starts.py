@@ -109,8 +109,7 @@ class Starts:
         return Start(effect, cost, point._replace(setting=setting), way)
 
     def _each(self, effect: SideEffect) -> Iterator[Start]:
-        """Yield every start of an effect. Along the way from no effect to a start the outputs count as
-        linear."""
+        """Yield every start of an effect. The outputs count as linear in an effect's size up to its start."""
         case, point = self._case, self._plain.point
         place, sides = effect.sides or (("", ""), (0.0,))
         base = base_of(case, effect)

@@ -51,7 +51,7 @@ def from_log(
             f"--simulator log:{path}: a log ends with {', '.join(_SUFFIXES)}; name such a file."
         )
     if not path.is_file():
-        raise ConfigurationError(f"--simulator log:{path}: there is no such file; name the simulator's log.")
+        raise UnusableInputError("no_such_file", f"There is no file {path}.", "Name the simulator's log.")
     servo = replace(aircraft.elevator, lag_s=None, delay_s=None)
     unknown = replace(
         aircraft, model={}, effects={}, elevator=servo, airspeed_m_s=None, reference_airspeed_m_s=None

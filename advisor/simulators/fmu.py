@@ -41,7 +41,7 @@ def make_fmu(file: str, aircraft: Aircraft) -> Isolated:
     """
     path = Path(file)
     if not path.is_file():
-        raise ConfigurationError(f"fmu: {file or 'nothing'} is no file: give the path of an .fmu.")
+        raise UnusableInputError("no_such_file", f"There is no file {file}.", "Give the path of an .fmu.")
     if aircraft.fmu is None:
         raise ConfigurationError(
             f"fmu: the aircraft file does not say what {path.name} calls its variables: add a section fmu:"

@@ -16,7 +16,7 @@ from advisor.simulators.protocol import State as Motion
 from advisor.words.problems import UnusableInputError
 
 _THRUST_SHARE = 0.01
-"""Largest force along the path that helps the trim, over the weight, with which it counts as trimmed."""
+"""Largest force along the flight path, over the weight, of a state that counts as trimmed."""
 _MOTION = ("alpha", "q", "theta", "a_z", "airspeed_m_s", "height_m", "a_x", "bank", "r", "p", "a_y", "beta")
 """Series of a replay."""
 _SHOWN = 6

@@ -93,7 +93,8 @@ def find_model(name: str) -> Path:
     if name.endswith(".xml") or os.sep in name or "/" in name:
         path = Path(name)
         if not path.is_file():
-            raise ConfigurationError(f"jsbsim: {name} is no file: give the path of the model's XML.")
+            fix = "Give the path of the model's XML."
+            raise UnusableInputError("no_such_file", f"There is no file {name}.", fix)
         return path.resolve()
     found = importlib.util.find_spec("jsbsim")
     if found is None or found.origin is None:

@@ -28,7 +28,7 @@ class Garbage:
         gc.unfreeze()
 
     def collect_if_due(self) -> None:
-        """Collect where enough new objects exist."""
+        """Collect garbage once enough new objects exist."""
         new, lots, _ = gc.get_count()
         if lots >= _LOTS:
             gc.collect()

@@ -217,7 +217,7 @@ def test_a_file_that_is_no_fmu_is_one_sentence(tmp_path: Path) -> None:
         archive.writestr("readme", "nothing")
     with pytest.raises(ConfigurationError, match=r"x.fmu is no FMU: .*modelDescription.xml"):
         make_fmu(str(file), Aircraft(fmu=NAMES))
-    with pytest.raises(ConfigurationError, match="is no file"):
+    with pytest.raises(UnusableInputError, match="Give the path of an"):
         make_fmu(str(tmp_path / "y.fmu"), Aircraft(fmu=NAMES))
 
 

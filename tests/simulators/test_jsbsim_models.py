@@ -132,7 +132,7 @@ def test_a_file_that_is_no_model_is_one_sentence(tmp_path: Path, content: bytes,
 
 
 def test_a_path_that_is_no_file_is_one_sentence(tmp_path: Path) -> None:
-    with pytest.raises(ConfigurationError, match="is no file: give the path of the model's XML"):
+    with pytest.raises(UnusableInputError, match="Give the path of the model's XML"):
         make_jsbsim(str(tmp_path / "none.xml"), Aircraft())
 
 

@@ -109,7 +109,7 @@ class RuleOutcome:
     theta: FloatArray
     """(8,) parameters reported at the stop, or at the campaign's end."""
     tolerance: FloatArray
-    """(8,) tolerances of the rule ``information`` at that time. NaN under the other rules."""
+    """(8,) tolerances of the rule ``information`` at that time. NaN under the paper's rules."""
     history_percent: tuple[float | None, ...]
     """Criterion after each manoeuvre; for ``information`` up to the stop."""
     rejected: int

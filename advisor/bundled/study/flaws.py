@@ -16,7 +16,7 @@ NOISE_PERCENT = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Flaws:
-    """Both flaws in numbers."""
+    """Both flaws of the paper's rules in numbers."""
 
     thrown_away_percent: float
     """Share of equally good manoeuvres, after the first, that Eq. (11) rejects."""

@@ -1,6 +1,6 @@
 """Figures that the paper prints, and other readings of its rules, compared by their reproduction of Table 1.
 
-The first reading of each list is the advisor's. The others exist only here.
+The first reading of each list is the advisor's. The other readings exist only in the study.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -37,7 +37,7 @@ def heading(campaigns: int, scene: Scene, reading: NoiseReading) -> list[str]:
         ),
         *wrapped(
             "The paper's rules are continuous (Eqs. 10 and 12) and separate (Eqs. 11 and 12); "
-            "on real flights information decides."
+            "on real flights the rule information decides."
         ),
         "",
     ]
@@ -127,7 +127,7 @@ def flaws(found: Flaws) -> list[str]:
 
 
 def readings(results: Iterable[ReadingResult]) -> list[str]:
-    """Return lines on other readings of the paper."""
+    """Return lines on the results by other readings of the paper's rules."""
     lines = wrapped(
         "Other readings of the rules: the median number of manoeuvres that the rule needs, the share of "
         "campaigns that never stop, and the share that stops at the paper's number"

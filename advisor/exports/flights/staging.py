@@ -12,7 +12,7 @@ from advisor.words.problems import ConfigurationError
 
 @contextmanager
 def staged(folder: Path, inputs: Sequence[Path] = ()) -> Iterator[Path]:
-    """Yield a temporary folder. Its files get their names below ``folder`` when the block succeeds.
+    """Yield a temporary folder. Files of the block get their names below ``folder`` when the block succeeds.
 
     Files with equal names are replaced. After any failure, everything below ``folder`` is unchanged.
 

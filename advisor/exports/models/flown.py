@@ -42,7 +42,7 @@ class SideModel:
     untold: Mapping[str, str]
     """Each other derivative with the reason for which it is not known."""
     trim: Trim
-    """Trimmed flight. Its air speed is of the kind that ``air`` knows."""
+    """Trimmed flight. The air speed of the trim is of the kind that ``air`` knows."""
     air: AirData = STILL_AIR
     servos: Mapping[str, ExportedServo] = field(default_factory=dict)
     """Servo of the aileron and of the rudder."""

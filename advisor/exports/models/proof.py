@@ -52,7 +52,7 @@ class Proof:
     second: str | None
     """Verdict on the improved simulator."""
     sentence: str
-    """Sentence of that verdict."""
+    """Sentence of the verdict on the improved simulator."""
     not_carried: tuple[str, ...] = ()
     """Parts of the improvement that the simulator cannot take."""
     taken_back: tuple[str, ...] = ()

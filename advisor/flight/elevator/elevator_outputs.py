@@ -76,7 +76,7 @@ def _as_given(output: int, calibration: Pairs | None, wiring: Wiring, why: str) 
         return _uncalibrated(Part(output, wiring.scale(output)), why, wiring)
     said = (
         f"Output {output} is one half of a mixed {mixed} pair, calibrated as an elevator in the aircraft "
-        "file. Its part for the other axis counts as elevator as well."
+        "file. The part of such an output for the other axis counts as elevator as well."
     )
     return Surface((Part(output, Calibration(calibration)),), True, said if mixed else "")
 

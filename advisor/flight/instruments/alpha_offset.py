@@ -65,7 +65,7 @@ def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
 
 
 def mean_offset(offsets: Sequence[AlphaOffset]) -> AlphaOffset:
-    """Return one offset for the aircraft from those of its manoeuvres. Unknown ones do not count."""
+    """Return one offset for the aircraft from those of its manoeuvres. Unknown offsets do not count."""
     told = [o for o in offsets if np.isfinite(o.rad)]
     if not told:
         return UNKNOWN

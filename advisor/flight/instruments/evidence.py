@@ -31,8 +31,8 @@ COMPUTED_WIDTH = 0.03
 """Standard deviation of the scale of an angle of attack that an autopilot computes from attitude and
 velocity, as a share. Wind and magnetic heading err by that much."""
 _LATEST_COMPUTED_S = 0.05
-"""Longest delay, s, of an angle of attack that an autopilot computes. Those on record are 20 to 35 ms late. A
-later one may be a vane's, ahead of the centre of gravity."""
+"""Longest delay, s, of an angle of attack that an autopilot computes. Computed angles of attack on record are
+20 to 35 ms late. A later one may be a vane's, ahead of the centre of gravity."""
 _LONGEST_GAP_S = 0.5
 """Longest gap, s, across which a rate is integrated."""
 _FEWEST_SAMPLES = 20
@@ -48,7 +48,7 @@ _YAW_SHARE = 0.5
 """Largest share of the yaw rate in the pitch angle's rate, by root mean squares. Above it the yaw rate
 decides the result."""
 _LARGEST_ALPHA_RAD = radians(30.0)
-"""Largest angle of attack, rad, at which a short period is flown. Every wing has stalled there."""
+"""Largest angle of attack, rad, at which a short period is flown. Beyond it every wing has stalled."""
 _STEP = 0.05
 """Step of the scale of α by which delays and air speed are differentiated, as a share."""
 

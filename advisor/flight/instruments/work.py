@@ -27,7 +27,7 @@ PLAIN = {
 
 @dataclass(frozen=True, slots=True)
 class Examined:
-    """Result of an examination."""
+    """Result of an examination of one record's instruments."""
 
     channels: Mapping[str, Channel]
     """Channels with the errors removed that are marked as used in ``findings``."""

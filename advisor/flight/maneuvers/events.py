@@ -10,7 +10,7 @@ from advisor.words.printable import printable
 from advisor.words.problems import Problem
 
 _SOON_S = 30.0
-"""Largest time between similar movements that are listed as one, s. Nobody reads lists of corrections."""
+"""Largest time between similar movements that are listed as one, s. A crew reads no list of corrections."""
 
 
 READER_NOTICE = "log_reader"

@@ -22,7 +22,7 @@ _WAVERING = 0.2
 multisine has gentle parts of its own."""
 _LEAVES = (0.2, 0.35)
 """Least and greatest departure of the elevator that ends a free response, as shares of the amplitude. Between
-them the departure is five standard deviations of the rest."""
+the two limits the departure is five standard deviations of the elevator at rest."""
 _LEAVING_S = (1.0, 0.15)
 """Part of a rest that is tested for stillness, s before the elevator leaves. The last moment may belong to
 the next movement."""

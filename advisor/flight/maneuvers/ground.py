@@ -23,7 +23,7 @@ _FRESH_S = 5.0
 STANDING_M_S = 3.0
 """Least speed over ground of a moving aircraft, m/s. A receiver at rest shows less than 1."""
 WINDY_M_S = 12.0
-"""Largest air speed that wind alone may cause on a parked aircraft, m/s. A larger one counts as flight."""
+"""Largest air speed that wind alone may cause on a parked aircraft, m/s. Faster air counts as flight."""
 NEAR_GROUND_M = 3.0
 """Height over the place of take-off at which a standing aircraft counts as landed, m."""
 _STILL_RAD_S = radians(1.0)

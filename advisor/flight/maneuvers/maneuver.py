@@ -38,7 +38,7 @@ class Span:
     """Extent of a manoeuvre in the stream of elevator samples, as the segmenter found it."""
 
     record_from_s: float
-    """First stamp of the record, s. It begins with a lead-in before the first step, for the fit."""
+    """First stamp of the record, s. The record begins with a lead-in before the first step, for the fit."""
     start_s: float
     """Onset of the first elevator step, s."""
     last_step_s: float

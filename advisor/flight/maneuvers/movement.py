@@ -67,7 +67,7 @@ BAND = 0.3
 """Distance from trim, as a share of the amplitude, within which a movement counts as at trim."""
 _RETURNED = 0.45
 """Largest distance between the rest after and the rest before, as a share of the amplitude, that counts as a
-return to trim. A farther rest is a step."""
+return to trim. A rest farther from trim is a step."""
 _LEAVING = 0.1
 """Departure from trim, as a share of the amplitude, with which a movement begins."""
 _EDGE_S = 0.6
@@ -75,7 +75,7 @@ _EDGE_S = 0.6
 _LEAST_LEVEL = 0.4
 """Least lobe of a pattern of steps, as a share of its largest lobe."""
 _TIMING = 0.45
-"""Tolerance of the durations of a 3-2-1-1, in units of time. Hand-flown ones differ by a third."""
+"""Tolerance of the durations of a 3-2-1-1, in units of time. Steps flown by hand differ by a third."""
 _ON_LEVEL = 0.4
 """Least share of its time that an input of steps spends on its levels. Steps whose edges take half of their
 time spend half on levels, multisines a third."""
@@ -93,9 +93,9 @@ class Movement:
     last_step_s: float
     """Onset of the last step, s: back to trim, or to the level of the following rest."""
     over_s: float
-    """Time at which the elevator reaches that rest, s."""
+    """Time at which the elevator comes to rest after the movement, s."""
     trim: float
-    """Level of that rest, rad."""
+    """Level of the elevator's rest after the movement, rad."""
     amplitude: float
     """Largest deviation from the levels before and after, rad."""
     quiet: float
@@ -162,7 +162,7 @@ def _steps(
     level
         Level of the rest at the end, rad from trim; 0 after a return.
     arrival_s
-        Time at which the elevator reaches that rest, s.
+        Time at which the elevator comes to rest after the movement, s.
     """
     first, last = extent
     out = np.flatnonzero(np.abs(d[first : last + 1]) > BAND * amplitude) + first

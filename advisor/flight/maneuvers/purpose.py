@@ -25,8 +25,8 @@ from advisor.flight.vehicle.modes import closes_pitch_loop, has_an_errand, hover
 from advisor.words.digits import distinct_texts
 
 LEAST_PITCH_RATE_DEG_S = 1.0
-"""Least answer of the pitch rate to a test input, deg/s. Smaller ones drown in light turbulence. The gentlest
-test input on record has 1.3 (a jet); a correction between inputs of another jet has 0.7."""
+"""Least answer of the pitch rate to a test input, deg/s. Smaller pitch rates drown in light turbulence. The
+gentlest test input on record has 1.3 (a jet); a correction between inputs of another jet has 0.7."""
 LARGEST_ERROR = 0.3
 """Largest relative standard error of the elevator's effect on the pitch rate; 0.3 is significant at 2 %. Test
 inputs on record have 0.01 to 0.12 in calm air and 0.16 in gusts of 0.5 m/s. Where only the external input

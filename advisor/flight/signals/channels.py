@@ -123,7 +123,7 @@ GIVEN_AIRSPEED = "airspeed_m_s of the aircraft file"
 GIVEN_HEIGHT = "reference.height_m of the aircraft file"
 """Source of a pressure altitude of the aircraft file."""
 TRUE_AIRSPEED = "VFR_HUD.true_airspeed"
-"""Source of a true air speed that the autopilot has logged next to the calibrated one. No link carries it."""
+"""Source of a true air speed that the autopilot has logged next to the calibrated one. Links carry none."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,7 +57,7 @@ class BootClock:
 
     @property
     def newest_s(self) -> float:
-        """Newest confirmed stamp, s since boot. NaN before the first."""
+        """Newest confirmed stamp, s since boot. NaN before the first stamp."""
         return float("nan") if self._newest_ms is None else self._newest_ms * _MS
 
     def advance(self, time_boot_ms: IntArray) -> MasterStamps:

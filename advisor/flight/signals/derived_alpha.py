@@ -57,7 +57,7 @@ class DerivedAlpha:
 
     @property
     def newest_s(self) -> float:
-        """Newest stamp, s since boot."""
+        """Older one of the newest stamps of climb rate and pitch angle, s since boot."""
         return min(track.newest_s for track in (self._track("climb_rate"), self._track("theta")) if track)
 
     @property

@@ -28,7 +28,8 @@ class Columns:
     order: IntArray
     """Shape (n,). Arrival index in the whole stream: strictly increasing over all types."""
     arrival_s: FloatArray
-    """Shape (n,). Host time of arrival, seconds since 1970. It gives an order and never enters dynamics."""
+    """Shape (n,). Host time of arrival, seconds since 1970. Arrival gives an order and never enters
+    dynamics."""
     fields: Mapping[str, NDArray[Any]]
     """Field name to raw values, shape (n,) or (n, k), in the units of the message definition.
     Text fields are arrays of ``bytes`` (NumPy kind ``S``)."""

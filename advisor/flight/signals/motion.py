@@ -18,7 +18,7 @@ def channel_at(name: str, t: FloatArray, channels: Mapping[str, Channel]) -> Flo
 def gravity_in_plane(theta: FloatArray, bank: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return gravity in the aircraft's plane of symmetry: the direction of up, and the size.
 
-    In a bank the other component pulls sideways. Along the path gravity is −size · sin(up − α), across it
+    In a bank gravity also pulls sideways. Along the path gravity is −size · sin(up − α), across it
     size · cos(up − α). With level wings ``up`` is the pitch angle.
 
     Parameters

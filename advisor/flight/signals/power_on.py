@@ -9,7 +9,7 @@ from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.flight.signals.record import Channel
 
 MOST = 600
-"""Most stretches, about as many as a terminal has dots across. With more, two neighbours become one."""
+"""Most stretches, about as many as a terminal has dots across. With more, two neighbours are joined."""
 _FIRST_S = 0.25
 """Length of a stretch at the begin, s: half a step of the quickest input that a crew flies."""
 

@@ -6,7 +6,7 @@ from advisor.flight.signals.messages import FloatArray
 
 
 class Samples:
-    """Samples in the order of their stamps. The oldest are dropped.
+    """Samples in the order of their stamps. The oldest samples are dropped.
 
     Parameters
     ----------

@@ -14,8 +14,8 @@ from advisor.flight.signals.track import SHOWN_WHOLE, ChannelStatus, Track
 from advisor.flight.signals.true_airspeed import AS_GROUND_SPEED, AS_REPORTED, true_airspeed
 
 _AIR_S = 10.0
-"""Margin around a stretch within which pressure and height tell the density of the air, s. They may come once
-in a few seconds."""
+"""Margin around a stretch within which pressure and height tell the density of the air, s. Pressure and
+height may come once in a few seconds."""
 
 
 class Tracks:

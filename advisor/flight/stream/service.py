@@ -51,7 +51,7 @@ class Service:
         self.problems: tuple[Problem, ...] = ()
         """Reasons for which the stream cannot serve now; empty when it can, or is not yet known."""
         self.serves = False
-        """Whether the newest judgement found no problem, and none is reported. False before the first."""
+        """Whether the newest judgement found no problem, and none is reported. False before any judgement."""
 
     def begin(self) -> None:
         """Begin another vehicle or another power-on, and forget the earlier messages."""

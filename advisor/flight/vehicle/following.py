@@ -2,7 +2,8 @@
 
 The first vehicle heard is followed. A vehicle that falls silent, or has no elevator, is left for the only
 other vehicle that sends and has an elevator. A vehicle that has served for a while is kept, however long it
-is silent. Its flight test must not end in that of another aircraft. If several qualify, the crew is asked.
+is silent. The flight test of one aircraft must not end in that of another aircraft. If several qualify, the
+crew is asked.
 """
 
 from collections.abc import Callable, Sequence

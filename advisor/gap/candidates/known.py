@@ -1,7 +1,7 @@
 """Effects that the simulator under diagnosis has already, as its aircraft file states.
 
-They are part of every model. A file that ``advisor gap`` improved is therefore judged as it flies, and a
-diagnosis finds the rest of the gap.
+Known effects are part of every model. A file that ``advisor gap`` improved is therefore judged as it flies,
+and a diagnosis finds the rest of the gap.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence

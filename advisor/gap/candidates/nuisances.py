@@ -13,8 +13,8 @@ low-pass of 20 Hz, delays by 11 ms."""
 _REACH = 2.0
 """Largest delay of an autopilot's filters, in standard deviations of the prior."""
 _OWN_FILTER_S = 0.045
-"""Prior standard deviation of the lag of an angle of attack that an autopilot computes, s. Such angles are 20
-to 90 ms late."""
+"""Prior standard deviation of the lag of an angle of attack that an autopilot computes, s. Angles of attack
+that an autopilot filters are 20 to 90 ms late."""
 
 LOOP = Variant(
     "latency", "input", ("latency_s",), ((0.001,),), (5e-4,), ((-0.004, 0.005),), 0.0,

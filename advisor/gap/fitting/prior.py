@@ -1,8 +1,8 @@
 """The aircraft file as prior of the derivatives.
 
 Either the simulator's derivatives are right and an effect is missing, or they are off by tens of per cent.
-Both cases have equal prior probability. Where the data leave a choice, such as a dead band or less elevator
-power, the explanation that keeps the file's derivatives is likelier.
+Right and wrong derivatives have equal prior probability. Where the data leave a choice, such as a dead band
+or less elevator power, the explanation that keeps the file's derivatives is likelier.
 """
 
 import numpy as np

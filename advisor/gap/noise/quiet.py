@@ -35,7 +35,7 @@ _MARGIN = 1.2
 """Least ratio of the log likelihood that moving air explains to that of any other block, for a gust. A change
 of mass looks like moving air too."""
 _NO_LESS = 0.98
-"""Numerical: least weight of a sample with which its stamp counts as exact."""
+"""Numerical: weight of a sample above which the fit takes the sample's stamp as exact."""
 _NONE_OF_PEAK = 1e-9
 """Numerical: white noise over the channel's peak that stands for no noise at all; avoids a division by
 zero."""

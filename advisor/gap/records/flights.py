@@ -112,7 +112,7 @@ class PreparedManeuvers:
     alpha_is_derived: bool
     """Whether α is an autopilot's estimate from inertial sensors, which sees no gust, and not a vane's."""
     alpha_is_smoothed: bool
-    """Whether α was filtered before it was stored. Its roughness then says nothing about its errors."""
+    """Whether α was filtered before it was stored. Roughness then says nothing about errors."""
     has: frozenset[str]
     """Slow channels of all manoeuvres: airspeed (which may read nothing), a_x, bank, throttle, height,
     climb_rate."""

@@ -51,7 +51,7 @@ class LinkStatistics:
     """Time since the vehicle was last heard."""
     reconnects: int = 0
     newest_s: float = math.nan
-    """Host time of the newest record, seconds since 1970. NaN before the first record."""
+    """Host time of the newest record, seconds since 1970. NaN before the first record arrives."""
     bank_rad: float = math.nan
     """Bank of the vehicle by its newest ATTITUDE, rad. NaN before the first."""
     airspeed_m_s: float = math.nan

@@ -196,7 +196,7 @@ class LinkProcess:
 
 
 def end(running: RunningLink) -> None:
-    """End a link that runs alone. Its recording is whole afterwards."""
+    """End a link that runs alone. The recording of an ended link is whole."""
     with contextlib.suppress(OSError, EOFError):
         connection = running.door.open()
         _ask_to_stop(connection)

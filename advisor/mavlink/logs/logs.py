@@ -28,7 +28,7 @@ def open_log(
     ----------
     path : Path
     wanted : iterable of str, optional
-        Names of the messages to return. Default: all defined messages.
+        Names of the messages to return. Default: all that MAVLink defines.
     scanner : FrameScanner, optional
         Scanner for a tlog, in place of one made with ``wanted``, for the sake of its statistics.
 

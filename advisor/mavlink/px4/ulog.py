@@ -107,7 +107,7 @@ class WholeFile(io.BufferedReader):
     """A file in which a read beyond the end fails, unless nothing is left.
 
     Where damaged definitions lead pyulog 1.3 beyond the end, pyulog steps back by the bytes it wanted to
-    read, not by those it got. It would never arrive.
+    read, not by those it got. Its search would then never end.
     """
 
     def read(self, size: int | None = -1, /) -> bytes:
@@ -127,7 +127,7 @@ def read_ulog(path: Path, wanted: Iterable[str] | None = None, starts_at: int = 
     wanted
         Names of the messages to return. Default: all.
     starts_at
-        Bytes before the log.
+        Bytes of the file in front of the log.
 
     Raises
     ------

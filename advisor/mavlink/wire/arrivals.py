@@ -31,7 +31,7 @@ _STEADY_US = 1_000_000
 _STEP = 16
 """Largest step of sequence numbers to a path's next packet, with short losses among them."""
 _MOST_NEW = 64
-"""Most packets in a row that only a late path brings. More of them make it the first path."""
+"""Most packets in a row that only a late path brings. More new packets make the late path the first path."""
 _BACK = 192
 """Least step of sequence numbers (modulo 256) that shows a packet out of order."""
 

@@ -105,6 +105,6 @@ class Plot(Widget):
         return self._painting
 
     def _inks(self, base: Style) -> list[Style]:
-        """Look the theme's colours up. Component classes would be looked up at every change of focus."""
+        """Look up the colours of the theme. Component classes would be looked up at every change of focus."""
         colours = self.app.theme_variables
         return [base + Style(color=colours[f"ink-{ink}"], bold=ink in _BOLD) for ink in INKS]

@@ -15,7 +15,7 @@ class Mends:
     """
 
     names: ClassVar[Mapping[str, str]] = {}
-    """Message to the name under which users of this record know its values, where the names differ."""
+    """Message of MAVLink to its name in this kind of log, where the names differ."""
 
     def called(self, message: str) -> str:
         """Return the name under which users of this record know the values of a message."""

@@ -6,8 +6,8 @@ added where there is no term or where the terms do not reach the value. A functi
 would turn the sign.
 
 The curves of effects are those of the aircraft file. Squares and cubes are of α or of the elevator; a
-moment is by the rate of α. They count from ``about_rad`` or else from the trim. All are proportional to the
-dynamic pressure.
+moment is by the rate of α. The terms count from ``about_rad`` or else from the trim. All are proportional to
+the dynamic pressure.
 """
 
 import math

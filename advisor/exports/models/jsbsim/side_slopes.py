@@ -38,9 +38,10 @@ class SideSlopes:
     """Measured slopes of roll and yaw in one condition."""
 
     derivatives: dict[str, float]
-    """The fifteen derivatives in SI. Those of a control are per radian of its property."""
+    """The fifteen derivatives in SI. Derivatives by a control are per radian of the control's property."""
     signs: dict[str, float]
-    """Control to the sign of its property. It is positive where a positive property turns to the left."""
+    """Control to the sign of its property. The sign is positive where a positive property turns to the
+    left."""
     turning: list[list[float]]
     """(2, 2) roll and yaw acceleration by roll and yaw moment, 1/(slug·ft²)."""
     momentum: float

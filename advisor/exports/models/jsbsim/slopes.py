@@ -54,7 +54,7 @@ class Slopes:
     """Measured slopes of a JSBSim aircraft in one condition."""
 
     derivatives: dict[str, float]
-    """The six derivatives in SI. Those of the elevator are per unit of its property."""
+    """The six derivatives in SI. Derivatives by the elevator are per unit of the elevator's property."""
     shares: dict[str, list[float]]
     """Function of the model to its slopes by α, q and elevator, lbs or lbs·ft."""
     trim: dict[str, float]
