@@ -4,7 +4,7 @@ The whole search is repeated on the other manoeuvres. A cross-validated fit alon
 seen all manoeuvres passes its luck for shrink (Varma and Simon 2006).
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +14,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.nuisances import PROPELLER
 from advisor.gap.diagnose import Examined, examine
+from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import shrink_interval, whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
@@ -21,6 +22,8 @@ from advisor.gap.fitting.refit import own_refitted
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.kit.variant import Variant
 from advisor.gap.result import Diagnosis, Shrink, spelled
+from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.gap.verdict.causes import parameters_of
 from advisor.gap.verdict.holdout_numbers import over_maneuvers, with_offset
 from advisor.gap.verdict.statements import in_simulator
 from advisor.gap.verdict.text import answers_of, sentence_of
@@ -35,11 +38,15 @@ _OFFSET = "alpha_bias"
 
 @dataclass(frozen=True)
 class UnseenManeuvers:
-    """Manoeuvres kept apart, and the diagnosis of all others."""
+    """Manoeuvres kept apart, and an answer that has not seen them."""
 
     kept: tuple[int, ...]
     """Indices of the manoeuvres kept apart, in the problem of the whole diagnosis."""
     found: Examined
+    """Diagnosis of the others. Where their answer is another one: that of all manoeuvres, with derivatives
+    and sizes fitted without those kept apart."""
+    alone: Diagnosis
+    """Diagnosis of the others."""
 
 
 def kept_apart(n: int, holdout: int | None) -> tuple[int, ...]:
@@ -83,7 +90,34 @@ def unseen_of(
         return None
     apart = {numbers[i] for i in kept}
     others = [m for m in maneuvers if m.number in numbers and m.number not in apart]
-    return UnseenManeuvers(kept, examine(others, aircraft, prior=prior))
+    found = examine(others, aircraft, prior=prior)
+    same = _finding(found.diagnosis) == _finding(whole.diagnosis)
+    return UnseenManeuvers(kept, found if same else sized_without(whole, apart), found.diagnosis)
+
+
+def sized_without(found: Examined, apart: Collection[int]) -> Examined:
+    """Return a diagnosis with derivatives and sizes of effects from fits without some manoeuvres.
+
+    The effects themselves are those that all manoeuvres tell. ``apart`` has the numbers of the manoeuvres
+    that the fits leave out.
+    """
+    problem, diagnosis = found.findings.problem, found.diagnosis
+    out = [i for i, flight in enumerate(problem.flights.flights) if flight.number in apart]
+    models = tuple(
+        replace(one, fitted=fit(problem, one.fitted.point, one.fitted.noise, aside=out))
+        for one in found.findings.models
+    )
+    point = models[-1].fitted.point
+    slopes = zip(DERIVATIVES, point.derivatives.tolist(), strict=True)
+    effects = {effect: dict(sizes) for effect, sizes in diagnosis.effects.items()}
+    for variant, values in zip(point.effects, point.values, strict=True):
+        effect = "thrust_moment" if variant == PROPELLER else variant.effect
+        if effect in effects:
+            sizes = parameters_of(variant, values, np.zeros(len(values)))
+            effects[effect] |= {name: size.value for name, size in sizes.items()}
+    model = {name: replace(diagnosis.model[name], value=value) for name, value in slopes}
+    sized = replace(diagnosis, model={**diagnosis.model, **model}, effects=effects)
+    return replace(found, diagnosis=sized, findings=replace(found.findings, models=models))
 
 
 def as_changed(unseen: UnseenManeuvers, whole: Examined) -> SearchPoint:
@@ -221,12 +255,12 @@ def shrink_on(whole: Examined, unseen: UnseenManeuvers, before: HeldOut, after: 
 
 def other_finding(whole: Diagnosis, unseen: UnseenManeuvers | None) -> tuple[str, ...]:
     """Return a sentence where the search without the manoeuvres kept apart has found something else."""
-    if unseen is None or _finding(whole) == _finding(unseen.found.diagnosis):
+    if unseen is None or _finding(whole) == _finding(unseen.alone):
         return ()
-    kept = {*whole.maneuvers} - {*unseen.found.diagnosis.maneuvers}
+    kept = {*whole.maneuvers} - {*unseen.alone.maneuvers}
     return (
-        f"Without manoeuvre {', '.join(map(str, sorted(kept)))} the search finds "
-        f"{_finding(unseen.found.diagnosis)} instead, and the shrink is that finding's: fly more manoeuvres.",
+        f"Without manoeuvre {', '.join(map(str, sorted(kept)))} the search finds {_finding(unseen.alone)} "
+        "instead. The shrink is that of the answer, with sizes fitted without them: fly more manoeuvres.",
     )
 
 

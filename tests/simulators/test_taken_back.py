@@ -63,7 +63,7 @@ def answer(*named: str, in_turn: tuple[float, ...] = ()) -> Examined:
 
 def taken(gaps: dict[int, float], *named: str, given: float = 659.0):
     """Return the diagnosis without what is worse, where each number of effects has a gap."""
-    unseen = UnseenManeuvers((1,), answer(*named))
+    unseen = UnseenManeuvers((1,), answer(*named), answer(*named).diagnosis)
     return without_worse(answer(*named), unseen, lambda u: Measured(given, gaps[len(u.found.named)]))
 
 
@@ -135,5 +135,5 @@ def test_a_step_between_two_manoeuvres_comes_when_all_manoeuvres_say(told_by_oth
         return SimpleNamespace(findings=findings, diagnosis=changes)
 
     kept = (0,) if told_by_others else (2,)
-    changed = as_changed(UnseenManeuvers(kept, with_step(2)), with_step(1))
+    changed = as_changed(UnseenManeuvers(kept, with_step(2), with_step(2).diagnosis), with_step(1))
     assert (changed.effects[0] is steps[1]) == since_whole

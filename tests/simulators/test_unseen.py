@@ -29,10 +29,11 @@ def test_a_third_is_kept_apart_unless_too_few_remain_for_a_search(flown, holdout
 
 def test_the_search_never_meets_the_manoeuvres_kept_apart(monkeypatch):
     seen = []
-    monkeypatch.setattr(unseen, "examine", lambda maneuvers, *_, **__: seen.extend(maneuvers))
+    told = SimpleNamespace(diagnosis=SimpleNamespace(verdict="none", causes=[]))
+    monkeypatch.setattr(unseen, "examine", lambda maneuvers, *_, **__: seen.extend(maneuvers) or told)
     numbered = [SimpleNamespace(number=n) for n in range(1, 7)]
     problem = SimpleNamespace(flights=SimpleNamespace(flights=numbered))
-    whole = SimpleNamespace(findings=SimpleNamespace(problem=problem))
+    whole = SimpleNamespace(findings=SimpleNamespace(problem=problem), diagnosis=told.diagnosis)
     unusable = SimpleNamespace(number=9)
     found = unseen.unseen_of(whole, [*numbered, unusable], Aircraft(), None)
     assert found.kept == (1, 4)
@@ -60,7 +61,7 @@ def test_another_finding_without_the_manoeuvres_kept_apart_is_said():
     whole = told("transport_delay", maneuvers=(1, 2, 3, 4))
 
     def without(found):
-        return unseen.other_finding(whole, SimpleNamespace(found=SimpleNamespace(diagnosis=found)))
+        return unseen.other_finding(whole, SimpleNamespace(alone=found))
 
     assert without(told("transport_delay")) == unseen.other_finding(whole, None) == ()
     assert without(told("actuator_backlash"))[0].startswith(

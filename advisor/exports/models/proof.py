@@ -16,16 +16,17 @@ from advisor.aircraft_file.read import parse_aircraft
 from advisor.analysis.gap import GapFlights, compare_flown, named_simulator
 from advisor.exports.models.flown import FlownModel, file_of, improved_model
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
-from advisor.exports.models.proved_finding import NUMBERS, as_it_ended, sized_without, without
+from advisor.exports.models.proved_finding import NUMBERS, as_it_ended, without
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.known import less_of_the_servo, together
+from advisor.gap.diagnose import Examined
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis, spelled
 from advisor.simulators.compare import Compared
 from advisor.simulators.contradicted import contradicted
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.taken_back import taken_back_said, unused
-from advisor.simulators.unseen import percent_of
+from advisor.simulators.unseen import percent_of, sized_without
 from advisor.words.problems import UnusableInputError
 
 Progress = Callable[[str, float], None]
@@ -125,7 +126,8 @@ def prove(
     found, alone = first.diagnosis, ""
     if fresh is None and not found.improves and whole is not None and whole.findings is not None:
         alone = found.sentence
-        found = sized_without(whole.diagnosis, whole.findings, [m.number for m in kept.maneuvers])
+        examined = Examined(whole.diagnosis, whole.findings)
+        found = sized_without(examined, [m.number for m in kept.maneuvers]).diagnosis
     refuse_unimproved(found.improves, alone or found.sentence, len(fitted.maneuvers))
     if fresh is None:
         found = as_it_ended(found, fitted.maneuvers, first.aircraft)

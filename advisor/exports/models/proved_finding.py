@@ -1,6 +1,6 @@
 """Findings of a diagnosis for the manoeuvres that prove them: later ones, unseen ones, and parts alone."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,14 +9,10 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import changes_in, lasting
-from advisor.gap.candidates.nuisances import PROPELLER
-from advisor.gap.fitting.fit import fit
-from advisor.gap.inference.findings import Findings
 from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Diagnosis
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
-from advisor.gap.verdict.causes import parameters_of
 
 NUMBERS = "the fitted numbers"
 
@@ -49,29 +45,3 @@ def without(found: Diagnosis, part: str, given: Mapping[str, float]) -> Diagnosi
         effects={effect: sizes for effect, sizes in found.effects.items() if effect != part},
         causes=tuple(replace(c, present=c.present and c.effect != part) for c in found.causes),
     )
-
-
-def sized_without(found: Diagnosis, findings: Findings, kept: Collection[int]) -> Diagnosis:
-    """Return a diagnosis with derivatives and sizes of effects from a fit without some manoeuvres.
-
-    The effects themselves are those that all manoeuvres tell.
-
-    Parameters
-    ----------
-    findings
-        Findings behind the diagnosis.
-    kept
-        Numbers of the manoeuvres that the fit leaves out.
-    """
-    problem, fitted = findings.problem, findings.last.fitted
-    out = [i for i, flight in enumerate(problem.flights.flights) if flight.number in kept]
-    point = fit(problem, fitted.point, fitted.noise, aside=out).point
-    slopes = zip(DERIVATIVES, point.derivatives.tolist(), strict=True)
-    effects = {effect: dict(sizes) for effect, sizes in found.effects.items()}
-    for variant, values in zip(point.effects, point.values, strict=True):
-        effect = "thrust_moment" if variant == PROPELLER else variant.effect
-        if effect in effects:
-            sizes = parameters_of(variant, values, np.zeros(len(values)))
-            effects[effect] |= {name: size.value for name, size in sizes.items()}
-    model = {name: replace(found.model[name], value=value) for name, value in slopes}
-    return replace(found, model={**found.model, **model}, effects=effects)

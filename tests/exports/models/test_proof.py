@@ -9,14 +9,17 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import GapFlights
 from advisor.exports.models import proof
-from advisor.exports.models.proved_finding import as_it_ended, sized_without
+from advisor.exports.models.proved_finding import as_it_ended
+from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.inference.findings import Findings, Model
 from advisor.gap.kit.between import breaks
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Value
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, NUISANCES
 from advisor.simulators.compare import Compared
+from advisor.simulators.unseen import sized_without
 from advisor.words.problems import UnusableInputError
 from tests.exports.models.test_orders import found
 from tests.simulators.nonlinear import flown
@@ -148,8 +151,8 @@ def test_few_manoeuvres_without_an_answer_fly_the_answer_of_all_with_their_own_s
         verdict = "unknown" if len(numbers) == 4 else "none"
         return Compared(answer(0.1 if late else 6.0, verdict, numbers), aircraft)
 
-    def sized_without(found, findings, kept):
-        sized.append((findings, kept))
+    def sized_without(found, kept):
+        sized.append((found.findings, kept))
         return found
 
     monkeypatch.setattr(proof, "compare_flown", compared)
@@ -178,9 +181,10 @@ def test_sizes_are_those_of_a_fit_that_has_not_seen_the_manoeuvres_kept_apart(ke
         return problem, fit(problem, start)
 
     problem, whole = fitted([*others, strange])
-    findings = SimpleNamespace(problem=problem, last=SimpleNamespace(fitted=whole))
+    plain = Model(whole, None)
+    findings = Findings(problem, (plain,), None, None, np.ones(1), None, None, None)
     model = dict.fromkeys(DERIVATIVES, Value(0.0, 0.1))
-    sized = sized_without(found(model=model, effects={}), findings, kept)
+    sized = sized_without(Examined(found(model=model, effects={}), findings), kept).diagnosis
     _, alone = fitted(others)
     told = sized.model["M_delta_e"].value
     assert (told == pytest.approx(alone.point.derivatives[5], rel=0.1)) == bool(kept)
