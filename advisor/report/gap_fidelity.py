@@ -48,7 +48,7 @@ def peaks(traces: Sequence[Trace]) -> str:
             for name in ("before", "after")
         )
         said.append(f"{quantity.symbol} {before:.2g} → {after:.2g} {quantity.unit}")
-    return f"peak error of {', of '.join(said)}" if said else ""
+    return f"peak error of {', of '.join(said)}"
 
 
 def yardsticks(d: Diagnosis) -> Iterator[RenderableType]:

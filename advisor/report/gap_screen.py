@@ -135,8 +135,8 @@ def _answer(d: Diagnosis) -> Iterator[Text]:
         yield Text(sure)
     if d.verdict == "parameters":
         yield from (Text(f"  {line}") for line in changes(d.derivatives))
-    if d.verdict not in ("none", "untested") and (told := peaks(d.traces)):
-        yield Text(told)
+    if d.verdict not in ("none", "untested") and d.gap.after != d.gap.before and d.traces:
+        yield Text(peaks(d.traces))
     yield from (Text(f"! {limit}") for limit in limits_of(d))
 
 

@@ -3,10 +3,9 @@
 import json
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from io import StringIO
-from itertools import pairwise
 from math import degrees
 from pathlib import Path
 from typing import Any
@@ -67,7 +66,7 @@ def of_the_documents(analysis: Document, gap: Document, doctor: Document) -> Nam
     for name, channel in analysis["log"]["channels"].items():
         yield f"rate of {name}", f"{channel['rate_hz']:.1f}"
     yield "decision", analysis["flight_test"]["sentence"]
-    yield "advice", analysis["flight_test"]["next"]["advice"].removeprefix("next: ")
+    yield from of_advice((analysis["plan"] or {}).get("next") or analysis["flight_test"]["next"]["advice"])
     if analysis["flight_test"]["criterion_percent"] is not None:
         yield "criterion", f"{analysis['flight_test']['criterion_percent']:.1f}"
     yield "verdict", f"{gap['title']}: {gap['sentence']}"
@@ -76,7 +75,8 @@ def of_the_documents(analysis: Document, gap: Document, doctor: Document) -> Nam
     by_name: dict[str, float] = defaultdict(float)
     for one in gap["evidence"]:
         by_name[one["name"]] += one["probability"]
-    yield "probability", f"{100.0 * max(by_name.values()):.0f}"
+    if by_name:
+        yield "probability", f"{min(100.0 * max(by_name.values()), 99.0):.0f}"  # never 100
     if gap["shrink"] is not None:
         yield "shrink", f"{gap['shrink']['percent']:.1f}"
     if analysis["model"] is not None:
@@ -114,12 +114,12 @@ def of_the_terminal(reported: Reported) -> Named:
     yield from (("air speed of the derivatives", one) for one in re.findall(SPEED, text))
     for name, rate in re.findall(r"^(\w+) +\S+ +\w+ +([\d.]+) +[\d.]+$", text, re.MULTILINE):
         yield f"rate of {name}", rate
-    decision, advice, *_ = text.splitlines()
-    yield "decision", decision[2:]
-    yield from of_advice(advice)
+    yield "decision", text.splitlines()[0][2:]
+    yield from of_decisions(text.splitlines())
     rule = reported.analysis["flight_test"]["rule"]
-    for now in re.findall(rf"^rule {rule} .*criterion %: .*?([\d.]+)$", text, re.MULTILINE):
-        yield "criterion", now
+    newest = r"(?:\n +by the newest estimates .*?([\d.]+) %: .*)?$"
+    for heard, now in re.findall(rf"^rule {rule} .*criterion %: .*?([\d.]+){newest}", text, re.MULTILINE):
+        yield "criterion", now or heard
     yield from (("lag to enter, s", one) for one in re.findall(LAG, text))
     yield from of_the_box(gap)
 
@@ -131,11 +131,24 @@ SPEED = r"(?:Joint estimate.*|Flying qualities) at ([\d.]+) m/s"
 def of_the_box(text: str) -> Named:
     lines = [line.strip("│ ") for line in text.splitlines()]
     title = lines[0].strip("╭╮─ ")
-    sure = next(k for k, line in enumerate(lines) if line.startswith("Probability"))
-    yield "verdict", f"{title}: {' '.join(lines[1:sure])}"
-    yield "probability", re.findall(r"(\d+) %", lines[sure])[0]
+    ends = next(k for k, line in enumerate(lines) if re.match(r"Probability|peak error|!|╰", line))
+    yield "verdict", f"{title}: {' '.join(lines[1:ends])}"
+    yield from of_a_probability(lines)
     yield from of_a_size(text)
     yield from (("shrink", one) for one in re.findall(r"^([\d.−-]+) % less \(95", text, re.MULTILINE))
+
+
+def of_a_probability(lines: Iterable[str]) -> Named:
+    for line in lines:
+        if said := re.match(r"Probability by the evidence: \D+(\d+) %", line):
+            yield "probability", said[1]
+
+
+def of_decisions(lines: Sequence[str]) -> Named:
+    """The advice after the plan of both axes, or else after stop or continue."""
+    leads = [k for k, line in enumerate(lines) if line.startswith("Both axes: ")]
+    leads += [k for k, line in enumerate(lines) if line[:1] in ("■", "▶")]
+    yield from of_advice(lines[leads[0] + 1])
 
 
 def of_advice(line: str) -> Named:
@@ -153,10 +166,8 @@ def of_the_page(reported: Reported) -> Named:
     for row in page.tables.get("joint", [])[1:]:
         yield row[0], row[1]
     yield from (("air speed of the derivatives", one) for one in re.findall(SPEED, page.text))
-    for said, advice in pairwise(page.paragraphs):
-        if said[0] in "■▶":
-            yield "decision", said[2:]
-            yield from of_advice(advice)
+    yield from (("decision", said[2:]) for said in page.paragraphs if said[0] in "■▶")
+    yield from of_decisions(page.paragraphs)
     for name, cell, *_ in page.tables.get("instruments", ()):
         if name.startswith("servo lag"):
             yield "servo lag, ms", cell
@@ -164,9 +175,7 @@ def of_the_page(reported: Reported) -> Named:
         yield f"rate of {name}", rate
     yield from (("criterion", one) for one in re.findall(r"its criterion is ([\d.]+) %", page.text))
     yield from (("verdict", one) for one in page.paragraphs if one.startswith(f"{reported.gap['title']}: "))
-    yield from (
-        ("probability", one) for one in re.findall(r"Probability by the evidence: \D+(\d+) %", page.text)
-    )
+    yield from of_a_probability(page.paragraphs)
     yield from of_a_size(page.text)
     yield from (("shrink", one) for one in re.findall(r" ([\d.−-]+) % less \(95 %: ", page.text))
 
@@ -190,7 +199,7 @@ async def of_the_screen(reported: Reported) -> list[tuple[str, str]]:
             percent = float(now[1]) * state.flight_test.limit_percent / 100.0
             found.append(("criterion", f"{percent:.{len(now[1].partition('.')[2])}f}"))
     rows = [text for _, text in answer_rows(reported.gap)]
-    found += [("verdict", rows[0]), ("probability", re.findall(r"(\d+) %", rows[1])[0])]
+    found += [("verdict", rows[0]), *of_a_probability(rows)]
     found += [("shrink", one) for row in rows for one in re.findall(r"^([\d.−-]+) % less", row)]
     found += [one for row in rows for one in of_a_size(row)]
     return found
