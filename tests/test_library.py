@@ -14,7 +14,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.state import CampaignState
-from advisor.oem.found import with_found
+from advisor.oem.known_instruments import with_found
 from advisor.report.gap_document import gap_document
 from tests.conftest import Advisor
 from tests.flights import SHIPPED, TWO, recorded

@@ -92,7 +92,7 @@ def _recorded(
         if stream.vehicle is not None and (foreign := one_aircraft.refuse(name, stream.vehicle)):
             problems = [foreign]
         elif stream.vehicle is not None:
-            notes.append(one_aircraft.doubt(name, stream.vehicle))
+            notes.append(one_aircraft.other_system(name, stream.vehicle))
         if isinstance(stream.elevator, Surface):
             notes.append(one_aircraft.doubt_elevator(name, stream.elevator))
         wrong += [Problem(p.code, f"{name}: {p.text}", p.fix) for p in problems]

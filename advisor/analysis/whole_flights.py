@@ -43,7 +43,7 @@ class WholeFlights:
     def said(self) -> list[str]:
         """Sentences on the order of the logs and on logs that do not count."""
         problems = [p.about(self.names[flight]) for flight, several in self.left_out.items() for p in several]
-        failed = [part.told for part in self.state.failed]
+        failed = [part.sentence for part in self.state.failed]
         return [*([self.order_said] if self.order_said else []), *problems, *failed]
 
     @property

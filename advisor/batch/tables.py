@@ -12,7 +12,7 @@ from advisor import __version__
 from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.trend import ChangeOverFlights, change_over_flights, lying_apart
-from advisor.exports.flights.found import PARAMETER_UNITS
+from advisor.exports.flights.findings import PARAMETER_UNITS
 from advisor.exports.flights.table import Column, Dataset, FlightTable, counts, numbers, texts, truths
 from advisor.oem.estimate import Estimate
 from advisor.words.quantities import SIDE_PARAMETERS

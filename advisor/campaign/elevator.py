@@ -9,8 +9,8 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.instruments import as_known_by
 from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.late_limits import Recount
+from advisor.campaign.learning import lag_said, may_learn, of_another_power_on
 from advisor.campaign.learning import learnt as learnt_from
-from advisor.campaign.learning import may_learn, of_another_power_on, told
 from advisor.campaign.single_maneuver import assess, failed
 from advisor.campaign.state import JudgedManeuver
 from advisor.decision.heard import Heard
@@ -136,6 +136,6 @@ class ElevatorCampaign(AxisCampaign):
         self.learnt, self._told_by = learnt, told_by
         for flown in self._flown:
             self._examine(flown)
-        if sentence := told(learnt):
+        if sentence := lag_said(learnt):
             self._say(sentence)
         self._judge()

@@ -1,16 +1,16 @@
 """The instruments, identified during a campaign and used in every later estimate.
 
 Unknown instruments are estimated from all accepted manoeuvres together. Single estimates, verdicts and
-criteria take them as given, with their errors (``oem.found``). A servo's lag that the crew leaves open must
-be known to a tenth.
+criteria take them as given, with their errors (``oem.known_instruments``). A servo's lag that the crew leaves
+open must be known to a tenth.
 """
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.oem.estimate import Estimate
-from advisor.oem.found import FoundInstruments, found_of, with_found
 from advisor.oem.instruments import knows_the_lag
+from advisor.oem.known_instruments import FoundInstruments, found_of, with_found
 
 CONTRADICTS = 3.0
 """Difference between two estimates of a derivative, in standard deviations, that counts as contradiction."""
@@ -76,7 +76,7 @@ def of_another_power_on(aircraft: Aircraft) -> Aircraft:
     return aircraft if found is None else with_found(aircraft, found.without("command_delay_s"))
 
 
-def told(aircraft: Aircraft) -> str:
+def lag_said(aircraft: Aircraft) -> str:
     """Return the event log's sentence about the lag that every estimate uses now; empty without a lag."""
     found, stated = found_of(aircraft), aircraft.elevator.lag_s
     lag_s = None if found is None else found.value("servo_lag_s")

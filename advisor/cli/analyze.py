@@ -86,7 +86,7 @@ def command(
     said = [series.order_said] if series.order_said else []
     for flight, problems in sorted(left_out.items()):
         said += [problem.about(series.names[flight]) for problem in problems]
-    said += [part.told for part in (state.failed if state else ())]
+    said += [part.sentence for part in (state.failed if state else ())]
     if as_json:
         from advisor.report.document import analysis_document
 

@@ -88,7 +88,7 @@ def command(
         return 0
     with staged(out, inputs) as stage:
         tables = tuple(name for name in chosen if name not in models)
-        said = [part.told for part in (write_formats(dataset(flights), stage, tables) if tables else ())]
+        said = [part.sentence for part in (write_formats(dataset(flights), stage, tables) if tables else ())]
         if models:
             from advisor.exports.models.write import write_models
 

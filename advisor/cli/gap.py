@@ -231,7 +231,7 @@ def compared_or_code(part: str, compare: "Callable[[], Found]", as_json: bool) -
     else:
         if not isinstance(found, FailedPart):
             return found
-        told, document, code = found.told, gap_document(None, failed=(found,)), 0
+        told, document, code = found.sentence, gap_document(None, failed=(found,)), 0
     if as_json:
         click.echo(json.dumps(document, indent=1))
     click.echo(told, err=True)

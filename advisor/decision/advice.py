@@ -50,7 +50,7 @@ def next_input(
         return _first_input(aircraft)
     if conditions is None:
         return NextInput(f"next: {mend or _same_but_better(history[-1])}", None)
-    known = course.known(usable_ones(history))
+    known = course.knowledge(usable_ones(history))
     choice = None if mend else _choose(conditions, known, plan)
     chosen = choice[0] if choice else None
     spoken = chosen.spoken(conditions.travel_rad) if chosen else mend or "the same again"
@@ -76,7 +76,7 @@ def forecast(history: Sequence[CandidateManeuver], course: CriterionCourse) -> R
     """Return the number of further manoeuvres of a crew that flies on as it has flown, whatever the advice
     is. At least one manoeuvre of ``history`` is usable."""
     plan, usable = course.plan, usable_ones(history)
-    known = course.known(usable)
+    known = course.knowledge(usable)
     odds = odds_of(history, course)
     as_flown = errors_as_flown(usable, known.widening)
     if plan.rule == "information":

@@ -60,7 +60,7 @@ def find_conditions(
     _, estimate, last = flown[-1]
     fits = estimate.fits[0]
     span, elevator = last.span, last.channels["elevator"]
-    theta = course.known(usable_ones(history)).posterior.theta
+    theta = course.knowledge(usable_ones(history)).posterior.theta
     trim = trim_of(last)
     travel = travel_of(aircraft, trim)
     largest_seen = max(_excursion(m, e) for m, e, _ in flown)

@@ -48,7 +48,7 @@ class CriterionCourse:
             self._follow(usable)
         return self._standings[n - 1]
 
-    def known(self, usable: Sequence[CandidateManeuver]) -> Knowledge:
+    def knowledge(self, usable: Sequence[CandidateManeuver]) -> Knowledge:
         """Return the knowledge after at least one usable manoeuvre. The newest result is kept."""
         if self._known is None or not same(self._known[0], usable):
             self._known = list(usable), knowledge(usable, self.plan)
@@ -59,7 +59,7 @@ class CriterionCourse:
         kept = next((k for k, (mine, theirs) in pairs if mine is not theirs), len(self._flown))
         del self._flown[kept:], self._standings[kept:]
         for k in range(kept, len(usable)):
-            known = self.known(usable[: k + 1])
+            known = self.knowledge(usable[: k + 1])
             self._flown.append(usable[k])
             self._standings.append(Standing(known.percent, known.sufficient, known.predicted))
 

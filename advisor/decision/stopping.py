@@ -51,7 +51,7 @@ def flight_test(
     chosen = by_rule[plan.rule]
     criterion = chosen.now_percent
     usable = usable_ones(history)
-    known = course.known(usable) if usable else None
+    known = course.knowledge(usable) if usable else None
     change = find_change(history)
     changed = change.sentence if change is not None and change.confirmed else ""
     now = {i for i, flown in enumerate(history) if flown.usable}
@@ -113,7 +113,7 @@ def progress(
     )  # fmt: skip
     if rule != "information" or not taken:
         return found
-    known = course.known(taken)
+    known = course.knowledge(taken)
     shares = {name: _finite(100.0 * share) for name, share in known.share.items()}
     return replace(
         found,

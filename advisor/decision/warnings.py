@@ -50,7 +50,7 @@ def _left_out(history: Sequence[CandidateManeuver], course: CriterionCourse) -> 
     numbers = [i for i, flown in enumerate(history, start=1) if flown.usable]
     if not numbers:
         return []
-    names = [str(numbers[k]) for k in course.known(usable_ones(history)).left_out]
+    names = [str(numbers[k]) for k in course.knowledge(usable_ones(history)).left_out]
     return [f"Manoeuvre {', '.join(names)} contradicts all the others and is left out."] if names else []
 
 

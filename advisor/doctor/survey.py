@@ -11,7 +11,7 @@ from advisor.flight.signals.channels import stamps
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.messages import Columns, FloatArray, cut
 from advisor.flight.vehicle.vehicle import Vehicle
-from advisor.words.vehicle_time import between
+from advisor.words.vehicle_time import stretch
 
 # The field whose change shows that a message brings a new value.
 _TELLING = {
@@ -195,7 +195,7 @@ class Survey:
         """Sentences on the stretches in which the autopilot wrote nothing into its own log."""
         because = " (LOG_DISARMED 0)" if self._carrier == "dataflash" else ""
         return [
-            f"The autopilot logged nothing from {between(p.start_s, p.end_s)} since power-on, as it may "
+            f"The autopilot logged nothing from {stretch(p.start_s, p.end_s)} since power-on, as it may "
             f"while disarmed{because}: no link was lost."
             for p in self._pauses()
         ]

@@ -24,7 +24,7 @@ from advisor.oem.prepare import Prepared
 from advisor.oem.prior import precision
 from advisor.oem.rows import STAMP_S, Measurements, Piece, Signal, events_of, lay_rows, padded
 from advisor.oem.solution import Solution, noise_floor, reported
-from advisor.oem.sums import Sums
+from advisor.oem.weighted_sums import Sums
 
 LONGEST_PROMISE = 2.0
 """Largest change of -2 log likelihood that a step may promise. Beyond it the model is solved again over all

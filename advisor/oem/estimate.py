@@ -9,7 +9,7 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
-from advisor.oem.found import FoundInstruments, InstrumentName
+from advisor.oem.known_instruments import FoundInstruments, InstrumentName
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,10 +64,10 @@ class InstrumentEstimate:
     """Standard deviation of ``value``, corrected for coloured residuals."""
     stated: float | None = None
     """Value in the aircraft file. None: the file states none."""
-    told: float = nan
+    unstated_value: float = nan
     """Value that the data tell without the statement; NaN without a statement."""
-    told_std: float = nan
-    """Standard deviation of ``told``, corrected for coloured residuals."""
+    unstated_std: float = nan
+    """Standard deviation of ``unstated_value``, corrected for coloured residuals."""
     contradicts: bool = False
     """Whether the data exclude the stated value; ``value`` is then theirs."""
 

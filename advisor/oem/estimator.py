@@ -12,11 +12,11 @@ from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
 from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
 from advisor.oem.filter_error import filter_error, moving_air
-from advisor.oem.found import FoundInstruments, found_of
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.identifiability import correlated, not_identifiable
 from advisor.oem.instrument_fit import Identified, InstrumentFit, fit_instruments, refreshed
 from advisor.oem.instruments import COMMAND_DELAY, knows_the_lag, unknown_instruments
+from advisor.oem.known_instruments import FoundInstruments, found_of
 from advisor.oem.notes import notes
 from advisor.oem.prediction import prediction_band
 from advisor.oem.prepare import Prepared, prepare

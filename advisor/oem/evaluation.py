@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.oem.between import widened_by_scatter
 from advisor.oem.covariance import Coloured, Influence, coloured, colours_of, cramer_rao, influence, widening
 from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import Optimum
 from advisor.oem.model_error import model_error
 from advisor.oem.rows import Laid
+from advisor.oem.scatter_between import widened_by_scatter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,9 +11,9 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.instrument_finding import InstrumentFinding, Quantity
 from advisor.oem.estimate import Estimate, InstrumentEstimate
-from advisor.oem.found import InstrumentName
 from advisor.oem.instrument_fit import CONTRADICTS
 from advisor.oem.instruments import KNOWN_TO
+from advisor.oem.known_instruments import InstrumentName
 from advisor.words.quantiles import NORMAL_95
 
 _PLACES: dict[str, tuple[str, Quantity, str]] = {
@@ -42,7 +42,7 @@ def findings_of(estimate: Estimate, aircraft: Aircraft) -> tuple[InstrumentFindi
 def _finding(x: InstrumentEstimate, aircraft: Aircraft) -> InstrumentFinding:
     channel, quantity, _ = _PLACES[x.name]
     stated = aircraft.elevator.delay_s if x.name == "command_delay_s" else x.stated
-    value, std = (x.value, x.std) if x.stated is None else (x.told, x.told_std)
+    value, std = (x.value, x.std) if x.stated is None else (x.unstated_value, x.unstated_std)
     worth = x.contradicts or (x.stated is None and std < KNOWN_TO * abs(value))
     return InstrumentFinding(
         channel,

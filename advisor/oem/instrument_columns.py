@@ -17,7 +17,7 @@ from advisor.model.input_response import (
     InputChange,
     respond_to_change,
 )
-from advisor.oem.found import InstrumentName
+from advisor.oem.known_instruments import InstrumentName
 from advisor.oem.problem import Assembly, OutputErrorProblem, Record, steady_share
 from advisor.oem.rows import padded
 

@@ -206,7 +206,7 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
             kept.append(one)
         elif x.known_to * abs(x.stated) > 0.0:
             # A statement is trusted no better than the data confirm it.
-            width = max(x.known_to * abs(x.stated), abs(found.told - x.stated))
+            width = max(x.known_to * abs(x.stated), abs(found.unstated_value - x.stated))
             kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, width, share))))
         else:
             problem = x.write(problem, x.stated)

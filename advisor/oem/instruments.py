@@ -24,8 +24,8 @@ from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import InstrumentEstimate
 from advisor.oem.extra import Extra, Prior
-from advisor.oem.found import FoundInstruments, InstrumentName, found_of
 from advisor.oem.instrument_columns import instrument_columns
+from advisor.oem.known_instruments import FoundInstruments, InstrumentName, found_of
 from advisor.oem.problem import Assembly, OutputErrorProblem
 from advisor.words.quantiles import NORMAL_95
 

@@ -15,7 +15,6 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import LATERAL, Trim, modes_of, state_matrix
-from advisor.oem.between import widened_by_scatter
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import channel_fits
 from advisor.oem.flying_qualities import Quality
@@ -25,6 +24,7 @@ from advisor.oem.lateral_instruments import nuisances_of
 from advisor.oem.lateral_prepare import prepare_lateral
 from advisor.oem.lateral_solution import LateralSolution, N, lateral_not_identifiable, solve_lateral
 from advisor.oem.prediction import prediction_band
+from advisor.oem.scatter_between import widened_by_scatter
 
 _STATES = len(LATERAL.states)
 

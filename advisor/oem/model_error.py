@@ -13,10 +13,10 @@ import numpy as np
 from scipy.special import chdtri
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.oem.between import CHANCE
 from advisor.oem.colour import Colour
 from advisor.oem.extra import Extra
 from advisor.oem.rows import Laid
+from advisor.oem.scatter_between import CHANCE
 from advisor.oem.whitening import Whitening
 
 WIDTH_S, WEIGHTS = 0.2, 8

@@ -6,10 +6,10 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.oem.correlation import HIGH_CORRELATION
 from advisor.oem.findings import line_of, value_in_words
-from advisor.oem.found import found_of
 from advisor.oem.identifiability import correlated
 from advisor.oem.instrument_fit import CONTRADICTS, Identified
 from advisor.oem.instruments import KNOWN_TO
+from advisor.oem.known_instruments import found_of
 from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
 from advisor.oem.solution import Solution

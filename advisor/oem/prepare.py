@@ -18,8 +18,8 @@ from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, infer, lacking
 from advisor.oem.alpha_use import has as _has
 from advisor.oem.coefficients import scales
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.found import found_of
 from advisor.oem.instruments import as_found
+from advisor.oem.known_instruments import found_of
 from advisor.oem.lost_input import restored
 from advisor.oem.prior import COEFFICIENT_STD
 from advisor.oem.problem import OutputErrorProblem, Record

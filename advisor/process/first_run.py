@@ -23,9 +23,9 @@ def _called(module: str, function: str) -> Callable[[], None]:
 
 
 KERNELS: Stages = {
-    "log readers": _called("advisor.mavlink.logs.warm", "warm_up"),
-    "estimator": _called("advisor.oem.warm", "warm"),
-    "diagnosis": _called("advisor.gap.warm", "warm_up"),
+    "log readers": _called("advisor.mavlink.logs.precompile", "warm_up"),
+    "estimator": _called("advisor.oem.precompile", "warm"),
+    "diagnosis": _called("advisor.gap.precompile", "warm_up"),
 }
 
 

@@ -46,7 +46,7 @@ class FailedPart:
         return {"code": problem.code, "part": self.part, "text": problem.text, "fix": problem.fix}
 
     @property
-    def told(self) -> str:
+    def sentence(self) -> str:
         """Sentence for people, and the traceback where ``ADVISOR_TRACEBACK`` asks for one."""
         wanted = self.trace and os.environ.get("ADVISOR_TRACEBACK")
         return f"{self.problem}\n{self.trace}" if wanted else str(self.problem)

@@ -52,7 +52,7 @@ def follow(
         _say(event, say)
     state = campaign.state
     for part in state.failed:
-        say(part.told)
+        say(part.sentence)
     return state
 
 

@@ -148,7 +148,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> Sid
     flight = SideFlight(case, plain, table, list(side_laws(case, plain)))
     found = decided(flight, first_stage(flight), prior, lambda rows: [_named_air(row) for row in rows])
     told = weighed(found.posteriors[0])
-    unseen_by = squares_of(plain, information_of(plain, 1.0), case.known(ERROR_IF_WRONG, plain.free))
+    unseen_by = squares_of(plain, information_of(plain, 1.0), case.prior_of(ERROR_IF_WRONG, plain.free))
     return SideDiagnosis(
         evidence=told.evidence, why=told.why, answer=told.answer, rival=told.rival, decisions=told.decisions,
         causes=tuple(_causes(case, found, as_given))[:listed],
@@ -206,7 +206,7 @@ def _cause(
     """Return an effect with its sizes in a fit that has the effect."""
     effect = tried.effect
     assert effect is not None
-    mean, covariance = posterior_of(fit, information_of(fit, share), case.known(tolerance, fit.free))
+    mean, covariance = posterior_of(fit, information_of(fit, share), case.prior_of(tolerance, fit.free))
     places = [one.place for one in fit.free]
     at = [N + places.index(place) for place in effect.places]
     sizes = mean[at] - base_of(case, effect)

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.oem.between import widened_by_scatter
 from advisor.oem.covariance import Coloured, coloured, colours_of, cramer_rao, influence, widening
 from advisor.oem.evaluation import contributions_of
+from advisor.oem.scatter_between import widened_by_scatter
 from advisor.side_gap.fit import Fit, Known
 
 

@@ -159,7 +159,7 @@ class SideFlight:
         return Stage(first, tuple(others), (), stage.heat)
 
     def _wide(self, fit: Fit) -> Known:
-        return self.case.known(ERROR_IF_WRONG, fit.free)
+        return self.case.prior_of(ERROR_IF_WRONG, fit.free)
 
     def _blown(self, one: SideModel, gusts: Gusts) -> SideModel:
         """Return an explanation in side gusts."""
@@ -173,7 +173,7 @@ class SideFlight:
     ) -> Iterator[Evidence]:
         """Yield the evidence of a fit, and that with as little of its effect as every aircraft has."""
         for free in (fit.free, _narrowed(fit.free, effect)):
-            priors = (self.case.known(tolerance, free).prior(fit.values) for tolerance in _TOLERANCES)
+            priors = (self.case.prior_of(tolerance, free).prior(fit.values) for tolerance in _TOLERANCES)
             yield marginal(likelihood, matrix, gradient, *priors)
 
     def _model(self, effect: SideEffect | None, fit: Fit, plain: Fit, share: float) -> SideModel:
@@ -195,7 +195,7 @@ class SideFlight:
         if effect.sides is not None:
             extra -= len(self.case.flown) * np.log(len(effect.sides[1]))
         was = squares_of(plain, information_of(plain, share), self._wide(plain))
-        now = squares_of(fit, told, self.case.known(model.tolerance, fit.free))
+        now = squares_of(fit, told, self.case.prior_of(model.tolerance, fit.free))
         counts = np.bincount(fit.assembly.channel, minlength=len(fit.noise)).astype(float)
         gain = gain_of(was.held_out, now.held_out, counts, share)
         unseen = min(gain.total - gain_of(was.in_fit, now.in_fit, counts, share).total, 0.0)

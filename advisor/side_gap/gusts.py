@@ -89,7 +89,7 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | 
         noise, angle, memory_s = model(x)
         # Knots are equally far apart everywhere: a shorter manoeuvre has the first part of the factor.
         root = _root(max((one.knots for one in sums), key=len), angle, memory_s)
-        parts = [one.told(noise, root[: len(one.knots), : len(one.knots)]) for one in sums]
+        parts = [one.weighed(noise, root[: len(one.knots), : len(one.knots)]) for one in sums]
         return sum(cost for cost, _ in parts), np.sum([inner for _, inner in parts], axis=0)
 
     def cost(x: FloatArray) -> float:
@@ -172,7 +172,7 @@ class _Sums(NamedTuple):
             np.array([gust.T @ gust for _, gust in parts]),
         )
 
-    def told(self, noise: FloatArray, root: FloatArray) -> tuple[float, FloatArray]:
+    def weighed(self, noise: FloatArray, root: FloatArray) -> tuple[float, FloatArray]:
         """Return the log determinant of the covariance, and the products (k, k) weighed by its inverse.
 
         White noise has standard deviations (outputs,); the gusts' covariance has a factor (knots, knots).

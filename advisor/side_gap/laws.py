@@ -42,7 +42,7 @@ def side_laws(case: Case, fit: Fit) -> Iterator[SideEffect]:
             places = tuple((of, entry) for entry in law.entries or law.names)
             yield SideEffect(of, law, places, of_range(law), {law.effect: f"{of} {law.effect}"})
     motions = [_motion(fit, m) for m in range(len(case.flown))]
-    sizes = case.known(1.0, ()).precision ** -0.5
+    sizes = case.prior_of(1.0, ()).precision ** -0.5
     slopes = {(term.state, term.factor): x for term, x in zip(LATERAL.shared, sizes, strict=True)}
     for block in (*filter(problem.flies, LATERAL.inputs), *(b for b in SENSORS if b in motions[0])):
         yield from _curves(case, fit, motions, block, {block: 1.0})

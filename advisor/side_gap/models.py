@@ -46,7 +46,7 @@ class Case:
     begin: Point
     """Start of the plain fit."""
 
-    def known(self, tolerance: float, free: Sequence[Free], share: float = 1.0) -> Known:
+    def prior_of(self, tolerance: float, free: Sequence[Free], share: float = 1.0) -> Known:
         """Return the prior of derivatives, of relative error ``tolerance`` where stated, and of numbers.
 
         ``share`` is that of white noise among coloured residuals, by which the fit weighs a prior.
@@ -63,7 +63,7 @@ class Case:
         self, at: Point, free: Sequence[Free], tolerance: float = ERROR_IF_WRONG, share: float = 1.0
     ) -> Fit | None:
         """Return the fit from a start, with stated derivatives of this relative error."""
-        return fitted(self.flown, at, free, self.known(tolerance, free, share))
+        return fitted(self.flown, at, free, self.prior_of(tolerance, free, share))
 
 
 def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray) -> Case | NoEstimate:

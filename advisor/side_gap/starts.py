@@ -49,7 +49,7 @@ class Starts:
         self, case: Case, plain: Fit, table: Sequence[SideEffect], tolerance: float = ERROR_IF_WRONG
     ) -> None:
         self._case, self._plain = case, plain
-        known = case.known(tolerance, plain.free)
+        known = case.prior_of(tolerance, plain.free)
         self._columns = plain.columns * plain.weight[:, None]
         self._information = self._columns.T @ self._columns + np.diag(known.precision)
         own = plain.assembly.free[plain.assembly.free >= N]

@@ -25,6 +25,6 @@ def clock(seconds: float) -> str:
     return f"{'-' if seconds < 0.0 and (minutes or tenths) else ''}{minutes}:{tenths / 10.0:04.1f}"
 
 
-def between(start_s: float, end_s: float) -> str:
+def stretch(start_s: float, end_s: float) -> str:
     """Write a stretch of vehicle time, s since power-on: ``3:07.5 to 3:19.0``."""
     return f"{clock(start_s)} to {clock(end_s)}"

@@ -17,7 +17,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.mavlink.logs.logs import open_log
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate_jointly
-from advisor.oem.found import FoundInstruments, with_found
+from advisor.oem.known_instruments import FoundInstruments, with_found
 from sim.scenario import Scenario
 from tests.flights import TWO, recorded
 

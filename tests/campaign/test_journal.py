@@ -8,7 +8,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.journal import Journal
 from advisor.flight.maneuvers.events import FlightBegan, ModeChanged, Rebooted, VehicleFound, VehicleSaid
-from advisor.flight.vehicle.pieces import between
+from advisor.flight.vehicle.pieces import rows_between
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.mavlink.logs.logs import open_log
 from tests.flights import TWO, recorded
@@ -87,7 +87,7 @@ def _logged(log: Path, rows: int | None) -> tuple[str, ...]:
             continue
         past = max(int(c.order[-1]) for c in batch) + 1
         for first in range(0, past, rows):
-            campaign.feed(between(batch, first, first + rows))
+            campaign.feed(rows_between(batch, first, first + rows))
     campaign.finish()
     return campaign.state.notices
 

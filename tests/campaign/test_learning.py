@@ -7,9 +7,9 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.campaign.learning import learnt, of_another_power_on, told
+from advisor.campaign.learning import lag_said, learnt, of_another_power_on
 from advisor.oem.estimate import InstrumentEstimate
-from advisor.oem.found import FoundInstruments, found_of, with_found
+from advisor.oem.known_instruments import FoundInstruments, found_of, with_found
 from tests.decision.campaigns import estimate
 
 
@@ -19,8 +19,10 @@ def found(lag_s, std_s, delay_s=0.0, delay_std_s=0.002):
 
 
 def with_lag(lag_s, std_s, **changed):
-    told = (InstrumentEstimate("servo_lag_s", lag_s, std_s),)
-    return replace(estimate(), instruments=told, servo_lag_s=lag_s, found=found(lag_s, std_s), **changed)
+    instruments = (InstrumentEstimate("servo_lag_s", lag_s, std_s),)
+    return replace(
+        estimate(), instruments=instruments, servo_lag_s=lag_s, found=found(lag_s, std_s), **changed
+    )
 
 
 def lag_of(aircraft):
@@ -56,14 +58,14 @@ def test_a_lag_that_the_crew_gives_stands_while_the_data_do_not_exclude_it():
 def test_a_lag_that_the_data_tell_takes_the_place_of_an_excluded_one():
     now = learnt(GIVEN, against(0.14, 0.22, 0.004, contradicts=True))
     assert lag_of(now) == 0.22
-    assert "0.220 s, against 0.140 s in elevator.lag_s" in told(now)
+    assert "0.220 s, against 0.140 s in elevator.lag_s" in lag_said(now)
 
 
 def test_the_crew_s_lag_returns_when_later_manoeuvres_agree_with_it():
     misled = learnt(GIVEN, against(0.14, 0.22, 0.004, contradicts=True))
     back = learnt(misled, against(0.14, 0.15, 0.01, contradicts=False))
     assert lag_of(back) == pytest.approx(0.14)
-    assert "as elevator.lag_s says" in told(back)
+    assert "as elevator.lag_s says" in lag_said(back)
 
 
 def test_a_surer_value_of_the_same_lag_is_news():

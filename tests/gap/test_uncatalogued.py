@@ -11,7 +11,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.sensors import Alpha
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.prior import ERROR_IF_WRONG, prior_precision
-from advisor.gap.kit.between import shift_moments
+from advisor.gap.kit.changes_between import shift_moments
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.smoothness import is_filtered, is_smoothed
 from advisor.gap.simulator.layout import ENTRIES, INDEX

@@ -13,7 +13,7 @@ from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import report
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.solution import Solution, solve
-from advisor.oem.sums import Sums
+from advisor.oem.weighted_sums import Sums
 from tests.oem.builders import JET, flown
 
 AIRCRAFT = Aircraft(elevator=Elevator(lag_s=0.1))

@@ -44,7 +44,9 @@ def test_a_lag_that_nobody_states_comes_with_the_line_for_the_file():
 
 
 def test_a_late_command_is_held_against_the_stated_delay():
-    told = InstrumentEstimate("command_delay_s", 0.3, 0.001, told=0.3, told_std=0.001, contradicts=True)
+    told = InstrumentEstimate(
+        "command_delay_s", 0.3, 0.001, unstated_value=0.3, unstated_std=0.001, contradicts=True
+    )
     found = only(told, Aircraft(elevator=Elevator(delay_s=0.05)))
     assert found.text == "the command acts 0.250 s later than elevator.delay_s says"
     assert found.fix == "elevator: {delay_s: 0.300}"

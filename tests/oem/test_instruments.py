@@ -169,7 +169,7 @@ def test_a_stated_lag_that_the_data_confirm_stays_and_its_width_is_in_the_interv
     found = estimate(flight, Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=lag_s)))
     lag = found.instrument("servo_lag_s")
     assert not lag.contradicts
-    assert abs(lag.told - lag_s) < 3.0 * lag.told_std
+    assert abs(lag.unstated_value - lag_s) < 3.0 * lag.unstated_std
     assert lag.std <= 0.1 * lag_s
     assert abs(found.value("M_delta_e") - UAV[7]) < 3.0 * found.std[7]
 

@@ -5,8 +5,8 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.oem.between import widened_by_scatter
 from advisor.oem.estimator import estimate, estimate_jointly
+from advisor.oem.scatter_between import widened_by_scatter
 from tests.oem.builders import UAV, flown
 
 KNOWN = Aircraft(elevator=Elevator(lag_s=0.0))

@@ -41,9 +41,9 @@ def test_another_fault_is_not_hidden():
 def test_the_traceback_is_told_on_request_only(monkeypatch):
     made = attempt("part", failing(IndexError("x")))
     monkeypatch.delenv("ADVISOR_TRACEBACK", raising=False)
-    assert "Traceback" not in made.told
+    assert "Traceback" not in made.sentence
     monkeypatch.setenv("ADVISOR_TRACEBACK", "1")
-    assert "Traceback" in made.told
+    assert "Traceback" in made.sentence
 
 
 def test_a_part_that_is_made_again_has_not_failed_and_is_told_once():

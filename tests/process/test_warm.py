@@ -12,9 +12,9 @@ import gc, io, sys
 from contextlib import redirect_stdout
 from numba.core.dispatcher import Dispatcher
 from advisor.cli.group import advisor
-from advisor.gap.warm import warm_up as gap
-from advisor.mavlink.logs.warm import warm_up as mavlink
-from advisor.oem.warm import warm as oem
+from advisor.gap.precompile import warm_up as gap
+from advisor.mavlink.logs.precompile import warm_up as mavlink
+from advisor.oem.precompile import warm as oem
 
 def compiled():
     return {f"{d.py_func.__module__}.{d.__name__}{s}" for d in gc.get_objects() if isinstance(d, Dispatcher)

@@ -30,8 +30,8 @@ def case():
 @pytest.fixture(scope="module")
 def flight(case):
     """Return a fit with the true derivatives, and what gusts change in its manoeuvres."""
-    fit = fitted(case.flown, case.begin, case.natural, case.known(1e-6, case.natural), rounds=1)
-    return fit, courses_of(fit, case.flown), case.known(0.3, fit.free)
+    fit = fitted(case.flown, case.begin, case.natural, case.prior_of(1e-6, case.natural), rounds=1)
+    return fit, courses_of(fit, case.flown), case.prior_of(0.3, fit.free)
 
 
 def with_residual(fit, residual):

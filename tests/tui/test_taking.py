@@ -13,8 +13,8 @@ from advisor.session.source import Tempo
 from advisor.session.view import view_before_first
 from advisor.tui.panes.courses import Courses
 from advisor.tui.panes.fit import Fit
-from advisor.tui.rows import TableRows
 from advisor.tui.settings import Settings
+from advisor.tui.table_rows import TableRows
 from advisor.tui.taking import log_of
 from tests.tui import flights
 from tests.tui.stage import Stage, stage

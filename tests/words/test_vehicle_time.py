@@ -6,7 +6,7 @@ import pytest
 
 from advisor.cli.options import parse_mark
 from advisor.words.problems import ConfigurationError
-from advisor.words.vehicle_time import between, clock
+from advisor.words.vehicle_time import clock, stretch
 
 
 @pytest.mark.parametrize(
@@ -25,7 +25,7 @@ def test_a_time_reads_as_minutes_and_seconds(seconds: float, text: str):
 
 
 def test_a_stretch_reads_as_its_two_ends():
-    assert between(187.5, 199.0) == "3:07.5 to 3:19.0"
+    assert stretch(187.5, 199.0) == "3:07.5 to 3:19.0"
 
 
 @pytest.mark.parametrize("text", ["80.4:93", "1:20.4:1:33", "+80.4:+93", "+1:20.4:+1:33.0"])

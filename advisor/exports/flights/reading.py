@@ -8,7 +8,7 @@ import numpy as np
 
 from advisor import __version__
 from advisor.analysis.whole_flights import WholeFlights
-from advisor.exports.flights.found import estimates, maneuvers, residuals
+from advisor.exports.flights.findings import estimates, maneuvers, residuals
 from advisor.exports.flights.table import Column, Dataset, FlightTable, Recording, counts, numbers, texts
 from advisor.flight.maneuvers.segmentation import GAP_S, MANY_INTERVALS
 from advisor.flight.signals.messages import FloatArray

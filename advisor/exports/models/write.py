@@ -76,7 +76,7 @@ def carry_out(orders: Sequence[ExportOrder], model: FlownModel) -> list[ExportOu
 def _outcome(order: ExportOrder, carry: Callable[[], ExportOutcome]) -> ExportOutcome:
     try:
         made = attempt(f"export {order.format}", carry)
-        return ExportOutcome(order, problem=made.told) if isinstance(made, FailedPart) else made
+        return ExportOutcome(order, problem=made.sentence) if isinstance(made, FailedPart) else made
     except ConfigurationError as error:
         return ExportOutcome(order, problem=str(error))
     except OSError as error:

@@ -151,7 +151,7 @@ def without_calibration(parts: tuple[Part, ...], begin: str, derivatives: str, w
     derivatives
         Derivatives that the scale divides.
     """
-    doubts = tuple(doubt for n in _numbers(parts) if (doubt := wiring.doubt(n)) is not None)
+    doubts = tuple(doubt for n in _numbers(parts) if (doubt := wiring.limits_problem(n)) is not None)
     limits = "assumed limits" if doubts else wiring.words.limits
     said = f"{begin} scaled by {limits} as full travel of 25 deg, so {derivatives} are per assumed degree."
     return Surface(parts, False, " ".join([said, *map(str, doubts)]), doubts)

@@ -21,8 +21,7 @@ from advisor.flight.instruments.evidence import (
     rate_moves_alpha,
     speed_against_force,
 )
-from advisor.flight.instruments.measured import ANY, Evidence, Measured, Weighed, weigh
-from advisor.flight.instruments.work import (
+from advisor.flight.instruments.examined import (
     ALLOWED,
     FILTER_S,
     PLAIN,
@@ -35,6 +34,7 @@ from advisor.flight.instruments.work import (
     hold_clocks,
     with_error,
 )
+from advisor.flight.instruments.measured import ANY, Evidence, Measured, Weighed, weigh
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 

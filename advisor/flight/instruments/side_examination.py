@@ -22,8 +22,8 @@ from advisor.flight.instruments.examination import (
     hold_rate,
     stated_force_unit,
 )
+from advisor.flight.instruments.examined import PLAIN, SIGMAS, Examined, Work, hold_clocks, with_error
 from advisor.flight.instruments.measured import ANY, AS_STATED, EXCLUDED, Evidence, Measured, weigh
-from advisor.flight.instruments.work import PLAIN, SIGMAS, Examined, Work, hold_clocks, with_error
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import channel_at
 from advisor.flight.signals.record import Channel

@@ -14,7 +14,7 @@ from advisor.flight.maneuvers.events import Notice
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 from advisor.words.problems import Problem
-from advisor.words.vehicle_time import between, clock
+from advisor.words.vehicle_time import clock, stretch
 
 Marker = Literal["hand", "switch", "text", "system id"]
 
@@ -225,7 +225,7 @@ class Marks:
     def _refused(self, mark: Mark) -> Notice | None:
         """Return the reason for which a mark that has just ended cannot be used; None for a usable mark."""
         length_s = mark.end_s - mark.start_s
-        where = f"The mark from {between(mark.start_s, mark.end_s)}"
+        where = f"The mark from {stretch(mark.start_s, mark.end_s)}"
         if not 0.0 < length_s <= LONGEST_S:
             most = f"is {length_s:.1f} s long: a mark lasts more than 0 and at most {LONGEST_S:.0f} s."
             return Notice("mark_length", f"{where} {most}")

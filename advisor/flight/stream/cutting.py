@@ -254,7 +254,7 @@ class Cutting:
         for name in UNITS:
             channel = self._whole(name, span, up_to_order)
             if channel is not None:
-                sound = repaired(counted_once(self._who.known(channel)))
+                sound = repaired(counted_once(self._who.identified(channel)))
                 channels[name] = sound.channel
                 notes += sound.said
         return channels, notes

@@ -59,7 +59,7 @@ def power_on(
         Accepted stamps of the vehicle's clock.
     """
     found = {name: tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
-    channels = {name: who.known(c) for name, c in found.items() if c is not None}
+    channels = {name: who.identified(c) for name, c in found.items() if c is not None}
     if is_backwards and "elevator" in channels:
         channels["elevator"] = replace(channels["elevator"], y=-channels["elevator"].y)
     heard = [(master.order, master.t) for master in clock if len(master.t)]

@@ -225,7 +225,7 @@ class Flights:
         self._foreign = self._one_aircraft.refuse(self.name, vehicle)
         if self._foreign is not None:
             yield Notice(self._foreign.code, f"{self.name}: {self._foreign}")
-        elif said := self._one_aircraft.doubt(self.name, vehicle):
+        elif said := self._one_aircraft.other_system(self.name, vehicle):
             self._notes.append(said)
             yield Notice("other_system", said)
 

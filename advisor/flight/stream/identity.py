@@ -109,7 +109,7 @@ class Identity:
             return "simulated"
         return "derived" if self.vehicle.autopilot == "ardupilot" else "unknown"
 
-    def known(self, channel: Channel) -> Channel:
+    def identified(self, channel: Channel) -> Channel:
         """Return a channel with its provenance and with the known delay of the autopilot's filters."""
         vehicle, provenance = self.vehicle, self.provenance(channel.source, channel.provenance)
         if vehicle is None:

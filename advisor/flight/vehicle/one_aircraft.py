@@ -38,7 +38,7 @@ class OneAircraft:
             "Give the logs of one aircraft only.",
         )
 
-    def doubt(self, name: str, vehicle: Vehicle) -> str:
+    def other_system(self, name: str, vehicle: Vehicle) -> str:
         """Return a sentence where the vehicle's system id differs from the first flight's, else ""."""
         first_name, first = self._vehicle = self._vehicle or (name, vehicle)
         if vehicle.system == first.system:

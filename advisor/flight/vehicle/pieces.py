@@ -39,7 +39,7 @@ def pieces(columns: Sequence[Columns], by_second: bool = False) -> Iterator[list
         cuts.update(_seconds(filled))
     edges = sorted(cuts)
     for a, b in pairwise(edges):
-        yield between(filled, a, b)
+        yield rows_between(filled, a, b)
 
 
 def _seconds(columns: Sequence[Columns]) -> list[int]:
@@ -51,7 +51,7 @@ def _seconds(columns: Sequence[Columns]) -> list[int]:
     return [int(n) for n in order[rows][begins]]
 
 
-def between(columns: Sequence[Columns], first: int, past: int) -> list[Columns]:
+def rows_between(columns: Sequence[Columns], first: int, past: int) -> list[Columns]:
     """Return the rows with ``first <= order < past``, without types that have no such row."""
     found = []
     for c in columns:
@@ -117,4 +117,4 @@ def by_boot(
     for number, (a, b) in zip(boots.tolist(), pairwise(edges), strict=True):
         believed = (ticks.boot == number) & np.isfinite(ticks.t)
         master = Master(number, attitude.order[believed], ticks.t[believed])
-        yield between(columns, a, b) if len(boots) > 1 else list(columns), master
+        yield rows_between(columns, a, b) if len(boots) > 1 else list(columns), master

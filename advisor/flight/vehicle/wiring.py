@@ -135,7 +135,7 @@ class Wiring:
         """Return the scale of output ``n``, with ArduPilot's defaults for unknown parameters."""
         return self.scales.get(n, Scale())
 
-    def doubt(self, n: int) -> Problem | None:
+    def limits_problem(self, n: int) -> Problem | None:
         """Return the problem of the assumed limits of output ``n``; None where parameters state them."""
         if n in self.scales:
             return self.doubts.get(n)

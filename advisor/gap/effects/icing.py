@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.kit.between import steps_in
+from advisor.gap.kit.changes_between import steps_in
 from advisor.gap.kit.effect import ANY, Effect, Need
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.kit.between import ONSET, divide, ramps_and_steps, steps_in
+from advisor.gap.kit.changes_between import ONSET, divide, ramps_and_steps, steps_in
 from advisor.gap.kit.effect import ANY, Effect, Need
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers

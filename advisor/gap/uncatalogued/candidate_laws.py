@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.kit.between import steps_in
+from advisor.gap.kit.changes_between import steps_in
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import FILTER, INDEX, OUTPUTS

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from advisor.flight.signals.messages import IntArray
 from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.equivalent import latest
-from advisor.words.vehicle_time import between, clock
+from advisor.words.vehicle_time import clock, stretch
 
 BoolArray = NDArray[np.bool_]
 
@@ -151,7 +151,7 @@ def _changes(table: RecordTable, quantity: str) -> list[Said]:
 
 
 def _silence(one: Silence, quantity: str) -> Said:
-    when = between(one.begin_us / 1e6, one.end_us / 1e6)
+    when = stretch(one.begin_us / 1e6, one.end_us / 1e6)
     return Said(
         one.order, one.end_us, f"{quantity}: no sensor was healthy from {when} and none is used there"
     )

@@ -14,8 +14,8 @@ from advisor.mavlink.px4.px4_topics import (
     best,
     first,
     published_us,
-    rows,
     sampled_us,
+    samples_of,
 )
 from advisor.mavlink.records.equivalent import air_data, latest
 
@@ -53,14 +53,16 @@ def air(topics: Topics) -> tuple[list[TimedMessages], list[str]]:
 def _airspeed(topics: Topics) -> tuple[Speed | None, list[str]]:
     """Return the faster of the validated air speed and its sensor's, while the autopilot accepts a sensor."""
     validated, raw = first(topics, "airspeed_validated"), topics.get("airspeed", [])
-    measured = [] if validated is None else [rows(validated, _is_measured(validated))]
-    sensor = _joined([rows(topic, _is_believed(topic, k, validated)) for k, topic in enumerate(raw, start=1)])
+    measured = [] if validated is None else [samples_of(validated, _is_measured(validated))]
+    sensor = _joined(
+        [samples_of(topic, _is_believed(topic, k, validated)) for k, topic in enumerate(raw, start=1)]
+    )
     if sensor is not None:
         measured.append(sensor)
     chosen = best(topic for topic in measured if len(topic["timestamp"]))
     if chosen is not None:
         return _calibrated(chosen, validated), []
-    estimated = None if validated is None else rows(validated, np.isfinite(validated[_CALIBRATED]))
+    estimated = None if validated is None else samples_of(validated, np.isfinite(validated[_CALIBRATED]))
     if estimated is not None and len(estimated["timestamp"]):
         return _calibrated(estimated, validated), [_STANDS_IN]
     return (_calibrated(raw[0], validated), [_REFUSED]) if raw else (None, [])
@@ -125,7 +127,7 @@ def _climb(topics: Topics) -> Series | None:
     local, globally = first(topics, "vehicle_local_position"), first(topics, "vehicle_global_position")
     if local is not None:
         valid = local["v_z_valid"] > 0 if "v_z_valid" in local else np.ones(len(local["vz"]), dtype=np.bool_)
-        local = rows(local, valid)
+        local = samples_of(local, valid)
     chosen = best(topic for topic in (local, globally) if topic is not None and len(topic["timestamp"]))
     if chosen is None:
         return None

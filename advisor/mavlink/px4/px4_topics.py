@@ -96,7 +96,7 @@ def vector(topic: Topic, name: str, size: int) -> FloatArray:
     return np.array([topic[f"{name}[{i}]"] for i in range(size)], dtype=np.float64)
 
 
-def rows(topic: Topic, which: NDArray[np.bool_]) -> Topic:
+def samples_of(topic: Topic, which: NDArray[np.bool_]) -> Topic:
     """Return some samples of a topic."""
     return {name: values[which] for name, values in topic.items()}
 

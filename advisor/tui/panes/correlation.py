@@ -14,7 +14,7 @@ from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.estimate import Estimate
 from advisor.session.view import View
 from advisor.tui.panes.pane import Pane
-from advisor.tui.rows import TableRows
+from advisor.tui.table_rows import TableRows
 from advisor.words.digits import signed
 from advisor.words.quantities import PARAMETERS
 

@@ -13,7 +13,7 @@ from advisor.session.view import View
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Level, Series
 from advisor.tui.plot.widget import Plot
-from advisor.tui.rows import TableRows
+from advisor.tui.table_rows import TableRows
 from advisor.words.quantities import PARAMETERS
 
 _MANY = 4

@@ -24,7 +24,7 @@ from advisor.tui.panes.fit_charts import (
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.widget import Plot
 from advisor.tui.plot.window import Sight, Window
-from advisor.tui.rows import TableRows
+from advisor.tui.table_rows import TableRows
 from advisor.words.digits import signed
 
 _ROWS_FOR_ONE = 11

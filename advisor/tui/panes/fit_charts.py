@@ -9,7 +9,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import LATERAL
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.tui.plot.chart import Chart, Ink, Mark, Series
-from advisor.tui.rows import TableRows
+from advisor.tui.table_rows import TableRows
 from advisor.words.quantities import channel
 
 OUTPUTS = ("alpha", "q", "a_z", "theta")

@@ -13,7 +13,7 @@ from advisor.tui.panes.lines import Labelled, Lines, Part
 from advisor.tui.panes.pane import TextPane
 from advisor.words.digits import distinct_texts, signed
 from advisor.words.quantities import channel
-from advisor.words.vehicle_time import between
+from advisor.words.vehicle_time import stretch
 
 
 def symbol_and_word(judged: JudgedManeuver) -> tuple[str, str]:
@@ -97,7 +97,7 @@ def _rows(judged: JudgedManeuver, of: str) -> list[Labelled]:
         (f"{symbol} ", f"{word}  manoeuvre {judged.maneuver.number}{of}: {without_word(verdict.sentence)}"),
         (
             "  ",
-            f"flown {between(span.start_s, span.end_s)} since power-on, mode {judged.maneuver.mode or '-'}",
+            f"flown {stretch(span.start_s, span.end_s)} since power-on, mode {judged.maneuver.mode or '-'}",
         ),
     ]
     if judged.excluded_because:

@@ -9,7 +9,7 @@ from textual.widgets import DataTable
 
 from advisor.tui.panes.lines import HangingLines, Labelled, Lines, Part
 from advisor.tui.plot.widget import Plot
-from advisor.tui.rows import TableRows, rows_of_charts
+from advisor.tui.table_rows import TableRows, rows_of_charts
 
 
 class Pane(Part, Vertical):

@@ -13,7 +13,7 @@ from advisor.tui.panes.fit_charts import OUTPUTS
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Level, Series
 from advisor.tui.plot.widget import Plot
-from advisor.tui.rows import TableRows
+from advisor.tui.table_rows import TableRows
 from advisor.words.quantities import channel
 
 _LAGS_SHARE = 4

@@ -14,7 +14,7 @@ from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.inference.findings import Findings, Model
-from advisor.gap.kit.between import breaks
+from advisor.gap.kit.changes_between import breaks
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Value
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, NUISANCES

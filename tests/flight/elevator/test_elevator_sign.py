@@ -12,7 +12,7 @@ from advisor.analysis.gap import maneuvers_of
 from advisor.flight.elevator.elevator_sign import SAID, ElevatorSign, answers_backwards, turned
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.stream.stream import FlightStream
-from advisor.flight.vehicle.pieces import between
+from advisor.flight.vehicle.pieces import rows_between
 from advisor.mavlink.logs.logs import open_log
 from tests.flights import TWO, recorded
 from tests.gap.generator import Setup, fly
@@ -57,7 +57,7 @@ def test_what_is_being_flown_is_turned_as_soon_as_the_sense_is_known():
         edges = np.linspace(0, max(int(c.order[-1]) for c in batch) + 1, 80).astype(int)
         parts = []
         for first, past in pairwise(edges.tolist()):
-            stream.feed(between(batch, first, past))
+            stream.feed(rows_between(batch, first, past))
             flying = stream.so_far()
             if flying is not None and stream.maneuvers:
                 parts.append(flying.channels["elevator"].y)

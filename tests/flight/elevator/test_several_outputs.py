@@ -17,7 +17,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.record import Channel
 from advisor.flight.stream.stream import FlightStream
-from advisor.flight.vehicle.pieces import between
+from advisor.flight.vehicle.pieces import rows_between
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
 from tests.flight.wiring import Pulse, flown, wired
@@ -159,7 +159,7 @@ def test_what_the_elevator_is_made_of_is_said(kind: str) -> None:
 
 def test_before_the_aircraft_has_answered_it_is_said_that_nothing_is_known() -> None:
     stream = FlightStream(listed(ElevatorOutput(1), ElevatorOutput(2)))
-    stream.feed(between(next(wired(ELEVONS, {}, flight())), 0, 20_000))
+    stream.feed(rows_between(next(wired(ELEVONS, {}, flight())), 0, 20_000))
     assert "Nothing says which way outputs 1 and 2 move the nose" in stream.elevator_notes[1]
 
 
@@ -180,7 +180,7 @@ def test_live_and_replay_see_the_same_elevator(kind: str) -> None:
         past = max(int(c.order[-1]) for c in batch) + 1
         edges = np.linspace(0, past, 300).astype(int).tolist()
         for a, b in pairwise(edges):
-            events += stream.feed(between(batch, a, b))
+            events += stream.feed(rows_between(batch, a, b))
     events += stream.finish()
     mine = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
     found = estimated(kind).maneuvers

@@ -129,13 +129,13 @@ def test_a_log_with_a_broken_value_of_a_parameter_is_read(tmp_path: Path) -> Non
 
 def test_a_log_is_read_message_by_message_as_in_one_batch(tmp_path: Path) -> None:
     from advisor.flight.stream.stream import FlightStream
-    from advisor.flight.vehicle.pieces import between
+    from advisor.flight.vehicle.pieces import rows_between
 
     columns = [c for batch in open_log(log().write(tmp_path)) for c in batch]
     past = max(int(c.order[-1]) for c in columns) + 1
     whole, parts = (FlightStream(Aircraft(elevator=ELEVATOR)) for _ in range(2))
     (one,) = [e for e in [*whole.feed(columns), *whole.finish()] if isinstance(e, ManeuverFlown)]
-    events = [e for at in range(0, past, 97) for e in parts.feed(between(columns, at, at + 97))]
+    events = [e for at in range(0, past, 97) for e in parts.feed(rows_between(columns, at, at + 97))]
     (other,) = [e for e in [*events, *parts.finish()] if isinstance(e, ManeuverFlown)]
     assert one.maneuver.span == other.maneuver.span
     for name, channel in one.maneuver.channels.items():

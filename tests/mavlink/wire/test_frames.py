@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.logs.warm import warm_up
+from advisor.mavlink.logs.precompile import warm_up
 from advisor.mavlink.records.record_scan import scan_records
 from advisor.mavlink.wire.definitions import DEFINITIONS
 from advisor.mavlink.wire.frames import FrameScanner

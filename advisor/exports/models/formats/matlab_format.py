@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
-from advisor.exports.flights.found import PARAMETER_UNITS
+from advisor.exports.flights.findings import PARAMETER_UNITS
 from advisor.exports.models.exported import Exported, commented, effects_beside
 from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.formats import ModelFormat

@@ -1,4 +1,4 @@
-"""Compile the kernels of the gap diagnosis once, so that no user waits: ``python -m advisor.gap.warm``."""
+"""Compile the kernels of the diagnosis once, before a user waits: ``python -m advisor.gap.precompile``."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Compile the estimator once, so that no pilot waits for it: ``python -m advisor.oem.warm``.
+"""Compile the estimator once, so that no pilot waits for it: ``python -m advisor.oem.precompile``.
 
 The compiled code is kept next to the modules (or where ``NUMBA_CACHE_DIR`` says). Every later start loads it
 in a fraction of a second.

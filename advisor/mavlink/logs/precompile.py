@@ -1,4 +1,4 @@
-"""Compile the log readers once: ``python -m advisor.mavlink.logs.warm``, when installing.
+"""Compile the log readers once: ``python -m advisor.mavlink.logs.precompile``, when installing.
 
 numba keeps its machine code next to the modules, so that later starts only load it.
 """

@@ -9,7 +9,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.oem import evaluation
 from advisor.oem.estimator import estimate, estimate_jointly, lag_is_unknown
-from advisor.oem.found import FoundInstruments, found_of, with_found
+from advisor.oem.known_instruments import FoundInstruments, found_of, with_found
 from tests.oem.test_instruments import SPEED, equipped
 
 OPEN = Aircraft(airspeed_m_s=SPEED)
