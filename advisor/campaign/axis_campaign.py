@@ -128,7 +128,7 @@ class AxisCampaign(ABC):
 
     @property
     def _still_heard(self) -> Sequence[Heard]:
-        """What the crew has heard; nothing after an exclusion by hand, which decides all anew."""
+        """Criteria that the crew has heard; none after an exclusion by hand, which decides all anew."""
         excluded = any(one.examined.excluded_because is not None for one in self._flown)
         return () if excluded else self._heard
 

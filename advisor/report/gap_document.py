@@ -12,6 +12,7 @@ from advisor.gap.verdict.text import answers_of, in_words, limits_of, title_of
 from advisor.process.parts import FailedPart
 from advisor.report.facts.gap import changed, grown_said, shrink_said, size_of_gap, where_said
 from advisor.report.facts.reasons import heading, how_sure
+from advisor.report.facts.sizes import sizes_of
 from advisor.words.certainty import is_decided
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
@@ -139,7 +140,7 @@ def _as_logged(samples: FloatArray) -> list[float]:
 
 def _cause(c: Cause) -> dict[str, Any]:
     said = picked(c, "effect block probability parameters cannot_be_told_from tell_apart_by gap_after")
-    return {**said, "in_model": c.present}
+    return {**said, "text": ", ".join(sizes_of(c.parameters)), "in_model": c.present}
 
 
 def _evidence(one: AlternativeEvidence) -> dict[str, Any]:

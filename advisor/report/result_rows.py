@@ -1,10 +1,13 @@
 """Rows of results, one model for terminal, page and panes: manoeuvres, channels and messages."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from advisor.campaign.state import JudgedManeuver
+from advisor.aircraft.reference import PARAMETERS
+from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.signals.track import ChannelStatus
+from advisor.report.facts.estimates import EstimatedParameter, estimated_parameter, joint_source
+from advisor.report.qualities import reference_speed
 from advisor.report.table import Table, digits
 from advisor.words.vehicle_time import clock
 
@@ -14,6 +17,40 @@ def maneuver_line(judged: JudgedManeuver, room: int = 15) -> str:
     span, verdict = judged.maneuver.span, judged.verdict
     at, mark = clock(span.start_s), "✓" if verdict.accepted else "✗"
     return f"{judged.maneuver.number:2d}  {at:>7}  {span.kind:<{room}}  {mark} {verdict.sentence}"
+
+
+def joint_table(state: CampaignState, prior: Mapping[str, float]) -> Table | None:
+    """Return the joint estimate of pitch against the simulator's model; None where nothing is accepted."""
+    if state.model is None:
+        return None
+    rows = [estimated_parameter(name, state.model, prior) for name in PARAMETERS]
+    return joint_of("joint", joint_source(state.estimate_from, reference_speed(state)), rows, reasons=True)
+
+
+def joint_of(
+    name: str,
+    source: str,
+    rows: Iterable[EstimatedParameter],
+    more: str = "",
+    *,
+    reasons: bool = False,
+) -> Table:
+    """Return the table ``name`` of a joint estimate; ``more`` follows the sentence above the table."""
+    return Table(
+        name, f"{source}; ± is half the 95 % interval.{more}",
+        ("parameter", "estimate ± 95 %", "± 95 % if white", "simulator", "unit"),
+        tuple(
+            (
+                row.name,
+                f"– ({row.reason})" if row.reason and reasons else row.cell,
+                "–" if row.reason else f"{row.half_if_white:.2g}",
+                row.prior_cell,
+                row.unit,
+            )
+            for row in rows
+        ),
+        frozenset({1, 2, 3}),
+    )  # fmt: skip
 
 
 def channel_table(name: str, caption: str, channels: Mapping[str, ChannelStatus]) -> Table:

@@ -4,22 +4,17 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 
 from rich.console import Console, ConsoleOptions, RenderResult
-from rich.table import Table
 from rich.text import Text
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
-from advisor.oem.estimate import Estimate
-from advisor.report import table as report_table
 from advisor.report.facts.decision import INDENT, decisions
-from advisor.report.facts.estimates import EstimatedParameter, estimated_parameter, joint_source
+from advisor.report.facts.gap import counted
 from advisor.report.lateral import lateral_lines
-from advisor.report.qualities import coefficients_of, qualities_of, quality_lines, reference_speed
-from advisor.report.result_rows import channel_table, maneuver_line
-from advisor.words.digits import decimals_for, signed
+from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
+from advisor.report.result_rows import channel_table, joint_table, maneuver_line
 from advisor.words.vehicle_time import CLOCK, clock
 
 
@@ -40,22 +35,7 @@ def caution_lines(maneuvers: Sequence[JudgedManeuver]) -> list[str]:
     for judged in maneuvers:
         for caution in judged.verdict.cautions:
             numbers.setdefault(caution, []).append(judged.maneuver.number)
-    return [f"[{_listed(on)}] {caution}" for caution, on in numbers.items()]
-
-
-def _listed(numbers: Sequence[int]) -> str:
-    whole = len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1
-    return f"{numbers[0]}-{numbers[-1]}" if whole else ", ".join(map(str, numbers))
-
-
-def parameter_cells(row: EstimatedParameter) -> tuple[str, ...]:
-    """Return the cells of one parameter: symbol, value, intervals, the simulator's value, unit or reason."""
-    known = "" if row.prior is None else row.prior_cell
-    if row.reason:
-        return row.name, "–", "", "", known, row.reason
-    decimals = decimals_for(row.half)
-    numbers = signed(row.value, decimals), signed(row.half, decimals), f"{row.half_if_white:.2g}"
-    return row.name, *numbers, known, row.unit
+    return [f"[{counted(on)}] {caution}" for caution, on in numbers.items()]
 
 
 class AnalysisText:
@@ -99,8 +79,9 @@ class AnalysisText:
         yield Text()
         yield from (Text(line, style="dim") for line in caution_lines(self.state.maneuvers))
         yield Text()
-        if self.state.model is not None:
-            yield self._parameters(self.state.model)
+        joint = joint_table(self.state, self.aircraft.model)
+        if self.state.model is not None and joint is not None:
+            yield joint.on_console(joint.caption)
             yield from (Text(f"note: {note}") for note in self.state.model.notes)
             yield Text()
             yield from self._qualities()
@@ -135,15 +116,6 @@ class AnalysisText:
             if len(self.files) > 1:
                 yield Text(f"{self.files[flight]}:", style="bold")
             yield from (line for _, line in here)
-
-    def _parameters(self, model: Estimate) -> Table:
-        source = joint_source(self.state.estimate_from, reference_speed(self.state))
-        rows = (estimated_parameter(name, model, self.aircraft.model) for name in PARAMETERS)
-        head = ("parameter", "estimate", "± 95 %", "± 95 % if white", "simulator", "unit")
-        table = report_table.Table(
-            "joint", "", head, tuple(map(parameter_cells, rows)), frozenset({1, 2, 3, 4})
-        )
-        return table.on_console(source)
 
     def _qualities(self) -> Iterator[Text]:
         reference = self.aircraft.reference

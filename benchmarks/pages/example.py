@@ -65,7 +65,7 @@ EXAMPLES: Sequence[Example] = (
     Example(
         "analyze logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml",
         {
-            "analyze-maneuvers": [Part(until="arduplane-calm.tlog"), Part(" 1 ", "[1-7] angle of attack")],
+            "analyze-maneuvers": [Part(until="arduplane-calm.tlog"), Part(" 1 ", "[1 to 7] angle of attack")],
             "analyze-estimate": [Part("Joint estimate", "note:")],
             "analyze-qualities": [Part("Flying qualities", "  static margin")],
             "analyze-rules": [Part("rule continuous")],

@@ -106,8 +106,8 @@ def of_an_assistant(reported: Reported) -> Named:
 def of_the_terminal(reported: Reported) -> Named:
     text, gap, doctor = (reported.printed[name] for name in ("analyze", "gap", "doctor"))
     for quantity in QUANTITIES.values():
-        if found := re.search(rf"^{quantity.symbol} +(\S+) +(\S+) ", text, re.MULTILINE):
-            yield quantity.symbol, f"{found[1]} ± {found[2]}"
+        if found := re.search(rf"^{quantity.symbol} +(\S+ ± \S+) ", text, re.MULTILINE):
+            yield quantity.symbol, found[1]
         expected = re.search(rf"^  {quantity.symbol} +± (\S+)", doctor, re.MULTILINE)
         assert expected is not None
         yield f"expected error of {quantity.symbol}", expected[1]

@@ -1,21 +1,15 @@
 """The estimates with their intervals: joint estimate against the file's model, and each manoeuvre."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from matplotlib.figure import Figure as Drawing
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.oem.estimate import Estimate
-from advisor.report.facts.estimates import (
-    EstimatedParameter,
-    estimated_parameter,
-    instrument_facts,
-    joint_source,
-)
+from advisor.report.facts.estimates import EstimatedParameter, estimated_parameter, instrument_facts
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, ORANGE, picture
-from advisor.report.qualities import reference_speed
 from advisor.report.table import Table
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 
@@ -56,42 +50,6 @@ def _blocks(content: Content) -> Iterator[Block]:
         ("no.", *(QUANTITIES[name].label for name in PARAMETERS)),
         tuple((number, *(_narrow(row.cell) for row in rows.values())) for number, rows in alone.items()),
         frozenset(range(len(PARAMETERS) + 1)),
-    )  # fmt: skip
-
-
-def joint_table(content: Content) -> Table | None:
-    """Return the joint estimate against the simulator's model; None where nothing is accepted."""
-    model = content.state.model
-    if model is None:
-        return None
-    rows = [estimated_parameter(name, model, content.aircraft.model) for name in PARAMETERS]
-    source = joint_source(content.state.estimate_from, reference_speed(content.state))
-    return joint_of("joint", source, rows, with_reasons=True)
-
-
-def joint_of(
-    name: str,
-    source: str,
-    rows: Iterable[EstimatedParameter],
-    more: str = "",
-    *,
-    with_reasons: bool = False,
-) -> Table:
-    """Return the table ``name`` of a joint estimate; ``more`` follows the sentence above the table."""
-    return Table(
-        name, f"{source}; ± is half the 95 % interval.{more}",
-        ("parameter", "estimate ± 95 %", "± 95 % if white", "simulator", "unit"),
-        tuple(
-            (
-                row.name,
-                f"– ({row.reason})" if row.reason and with_reasons else row.cell,
-                "–" if row.reason else f"{row.half_if_white:.2g}",
-                row.prior_cell,
-                row.unit,
-            )
-            for row in rows
-        ),
-        frozenset({1, 2, 3}),
     )  # fmt: skip
 
 

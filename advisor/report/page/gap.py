@@ -1,15 +1,14 @@
 """The sim-to-real gap, where requested: verdict, size, steps, causes."""
 
 from collections.abc import Iterator, Mapping
-from math import nan
 from typing import Any
 
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FuncFormatter
 
-from advisor.gap.result import Value, spelled
+from advisor.gap.result import spelled
 from advisor.report.facts.reasons import in_percent, is_shown, weighed
-from advisor.report.facts.sizes import WORSE, marked, short, sizes_of
+from advisor.report.facts.sizes import WORSE, marked, short
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Verbatim, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
@@ -108,20 +107,14 @@ def _channel(name: str, size: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _cause(cause: Mapping[str, Any], before: float) -> tuple[str, ...]:
-    known = {name: one for name, one in cause["parameters"].items() if one["value"] is not None}
-    sizes = {name: Value(one["value"], _or_nan(one["std"])) for name, one in known.items()}
     after = cause["gap_after"]
     return (
         spelled(cause["effect"]),
         in_percent(cause["probability"]),
-        ", ".join(sizes_of(sizes)),
+        cause["text"],
         "–" if after is None else marked(after, before),
         ", ".join(map(spelled, cause["cannot_be_told_from"])) or "–",
     )
-
-
-def _or_nan(value: float | None) -> float:
-    return nan if value is None else value
 
 
 def _paint(drawing: Drawing, rows: list[tuple[str, float]]) -> None:

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content
-from advisor.report.page.estimates import joint_table
 from advisor.report.page.gap import answer
 from advisor.report.page.gap_picture import caption, gap_picture
 from advisor.report.page.lateral import decided, derivatives
+from advisor.report.result_rows import joint_table
 from advisor.report.table import Table
 
 _GLANCE = 4
@@ -37,7 +37,7 @@ def _blocks(content: Content) -> Iterator[Block]:
             f"decides: {_criterion(verdict['criterion_percent'], verdict['limit_percent'])}."
         )
     yield from listing([f"Warning: {warning}" for warning in verdict["warnings"]])
-    joint = joint_table(content)
+    joint = joint_table(content.state, content.aircraft.model)
     if joint is not None:
         yield joint
     found = content.gap

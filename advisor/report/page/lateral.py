@@ -15,10 +15,10 @@ from advisor.report.facts.estimates import estimated_parameter, joint_source, un
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import picture
-from advisor.report.page.estimates import joint_of
 from advisor.report.page.fits import by_fit, caption_of, paint_rows
 from advisor.report.page.maneuvers import HEAD, maneuver_row
 from advisor.report.qualities import MODE_NAMES, levels_of, mode_facts, tests_of
+from advisor.report.result_rows import joint_of
 from advisor.report.table import Table
 from advisor.words.vehicle_time import CLOCK
 
