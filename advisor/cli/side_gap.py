@@ -19,7 +19,7 @@ from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of
 from advisor.cli.stages import Stages
 from advisor.exports.models.proof import Proof
-from advisor.exports.models.roll_and_yaw import improved_side, prove_side
+from advisor.exports.models.roll_and_yaw import improved_side, prove_side, stays_of_side
 from advisor.exports.models.write import ExportOrder
 from advisor.gap.inference.prior import FIELD, FieldPrior, field_prior
 from advisor.gap.result import IMPROVING
@@ -59,11 +59,12 @@ def compare_lateral(
         )
     if isinstance(compared, int):
         return compared
+    proof = proof_of(proving, partial(_prove, asked, compared, shares))
+    compared = stays_of_side(compared, proof)
     found = compared.gap
     improves = found.verdict in IMPROVING
     written = write_improved(out, improves, lambda: replace(improved_side(compared), pitch=None))
     outcomes = write_exports(orders, partial(improved_side, compared))
-    proof = proof_of(proving, partial(_prove, asked, compared, shares))
     if as_json:
         lateral = side_gap_document(found) | {"improved_model": str(out) if written else None}
         lateral |= proof_document(proof)

@@ -57,7 +57,7 @@ def compare_side(
     answer = diagnosis.verdict if diagnosis else None
     verdict = answer if stated or answer in ("effect", "unknown") else None
     acts = diagnosis if verdict in ("effect", "unknown") else None
-    sentence = acts.sentence if acts else _sentence(verdict, stated)
+    sentence = acts.sentence if acts else sentence_of_side(verdict, stated)
     return SideGap(
         verdict,
         as_sure(sentence, diagnosis.answers) if verdict and diagnosis else sentence,
@@ -69,7 +69,8 @@ def compare_side(
     )
 
 
-def _sentence(verdict: str | None, derivatives: Sequence[ComparedDerivative]) -> str:
+def sentence_of_side(verdict: str | None, derivatives: Sequence[ComparedDerivative]) -> str:
+    """Return the sentence of an answer without an effect."""
     if verdict is None:
         return (
             "The aircraft file states no derivative of roll and yaw that the flight tells: give model.L_p "

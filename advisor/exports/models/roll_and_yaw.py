@@ -14,13 +14,16 @@ from advisor.analysis.whole_flights import read_whole
 from advisor.exports.models.flown import FlownModel, SideModel, flown_model, side_flown, side_of
 from advisor.exports.models.improvement import ExportedServo, servo_of
 from advisor.exports.models.proof import Proof, parted, refuse_unimproved
+from advisor.exports.models.proved_finding import NUMBERS
 from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.events import SideManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.stream.stream import FlightStream
+from advisor.gap.alternative import Alternative
 from advisor.gap.effects import EFFECTS
+from advisor.gap.inference.posterior import PARAMETERS
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import IMPROVING
 from advisor.mavlink.logs.whole import read_whole_log
@@ -29,8 +32,11 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_estimator import estimate_lateral
 from advisor.oem.lateral_prediction import predicted_lateral
-from advisor.side_gap.comparison import compare_side
+from advisor.side_gap.comparison import compare_side, sentence_of_side
 from advisor.side_gap.diagnosis import SideDiagnosis
+from advisor.simulators.contradicted import with_share
+from advisor.simulators.taken_back import taken_back_said, unused
+from advisor.words.certainty import as_sure
 from advisor.words.problems import UnusableInputError
 
 _Found = TypeVar("_Found")
@@ -130,23 +136,67 @@ def prove_side(
     behind = behind_found(first.diagnosis, aircraft)
     plain, found = (_flown(estimate_lateral(fitted, one)) for one in (aircraft, behind))
     given = np.array([aircraft.model.get(n, x) for n, x in zip(SIDE_PARAMETERS, plain.theta, strict=True)])
-    by_maneuver = tuple(
-        (m.number, _gap(m, plain, aircraft, given), _gap(m, found, behind, found.theta)) for m in kept
+    present = tuple(
+        one.name for one in (first.diagnosis.causes if first.diagnosis else ()) if one.cause.present
     )
-    speed = found.airspeed_m_s
-    read = None if speed is None else air_flown(fitted).read_speed(speed)
-    second = _flown(compare_side(kept, with_derivatives(behind, found, read), prior))
-    present = [one.name for one in (first.diagnosis.causes if first.diagnosis else ()) if one.cause.present]
+
+    def flown(model: LateralEstimate, against: Aircraft, theta: FloatArray) -> list[float]:
+        return [_gap(m, model, against, theta) for m in kept]
+
+    before, every = flown(plain, aircraft, given), flown(found, behind, found.theta)
+    after: list[float] = every
+    stays: tuple[LateralEstimate, Aircraft] | None = (found, behind)
+    taken: tuple[str, ...] = ()
+    if np.mean(every) >= np.mean(before):
+        by_numbers = flown(plain, aircraft, plain.theta)
+        none = before, None, (*present, NUMBERS)
+        tried = [none, (by_numbers, (plain, aircraft), present)] if present else [none]
+        after, stays, taken = min(tried, key=lambda one: float(np.mean(one[0])))
+    improved = aircraft
+    if stays is not None:
+        speed = stays[0].airspeed_m_s
+        read = None if speed is None else air_flown(fitted).read_speed(speed)
+        improved = with_derivatives(stays[1], stays[0], read)
+    second = _flown(compare_side(kept, improved, prior))
     return Proof(
         maneuvers=tuple(m.number for m in kept),
-        before=float(np.mean([before for _, before, _ in by_maneuver])),
-        after=float(np.mean([after for _, _, after in by_maneuver])),
+        before=float(np.mean(before)),
+        after=float(np.mean(after)),
         floor={name: fit.noise for name, fit in found.fits[0].items()},
-        by_maneuver=by_maneuver,
+        by_maneuver=tuple((m.number, b, a) for m, b, a in zip(kept, before, after, strict=True)),
         first=" + ".join(present) or str(first.verdict),
         second=second.verdict,
         sentence=second.sentence,
+        taken_back=taken,
+        gap_with_them=float(np.mean(every)) if taken else None,
     )
+
+
+def stays_of_side(compared: SideCompared, proof: Proof | None) -> SideCompared:
+    """Return a comparison without the parts that a proof took back, which its sentence names.
+
+    The probability of an effect goes to the numbers, where they stay, or else to the unknown in its place.
+    """
+    gap, d = compared.gap, compared.gap.diagnosis
+    if proof is None or proof.gap_with_them is None or d is None or d.answer is None:
+        return compared
+    words = [one.replace("_", " ") for one in proof.taken_back]
+    said = taken_back_said(words, unused(proof.maneuvers), proof.gap_with_them, proof.after)
+    stays = PARAMETERS
+    if NUMBERS in proof.taken_back:
+        axis = {"Y": "side_force", "L": "rolling_moment", "N": "yawing_moment"}
+        wrong = [axis[one.name[0]] for one in gap.derivatives if one.differs]
+        place = d.causes[0].block if d.answer.is_effect and d.causes else next(iter(wrong), "rolling_moment")
+        stays = Alternative("unknown", "unknown", place)
+    share = sum(one.probability for one in d.evidence if one.alternative == d.answer)
+    evidence = with_share([one for one in d.evidence if one.alternative != d.answer], stays, share)
+    causes = tuple(replace(one, cause=replace(one.cause, present=False)) for one in d.causes)
+    d = replace(d, evidence=evidence, answer=stays, causes=causes, why=(), rival="", decisions=())
+    derivatives = gap.derivatives if stays == PARAMETERS else ()
+    lead = sentence_of_side(d.verdict, derivatives) if stays == PARAMETERS else d.sentence
+    sentence = f"{as_sure(lead, d.answers)} {said}"
+    found = replace(gap, verdict=d.verdict, sentence=sentence, derivatives=derivatives, diagnosis=d)
+    return replace(compared, gap=found)
 
 
 def _gap(maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: FloatArray) -> float:

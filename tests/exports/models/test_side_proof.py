@@ -1,16 +1,73 @@
 """``advisor gap --axis lateral --prove``: roll and yaw of the improved simulator on unseen manoeuvres."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.analysis.side_gap import SideCompared
-from advisor.exports.models.roll_and_yaw import prove_side
+from advisor.exports.models import roll_and_yaw
+from advisor.exports.models.proof import Proof
+from advisor.exports.models.proved_finding import NUMBERS
+from advisor.exports.models.roll_and_yaw import prove_side, stays_of_side
+from advisor.side_gap.comparison import SideGap
 from tests.oem.lateral_builders import JET
 from tests.side_gap.test_comparison import AIRCRAFT, TRUE, maneuvers
+from tests.side_gap.test_diagnosis import FOUND
 
 OFF = {"L_delta_a": 0.6 * JET["L_delta_a"], "N_delta_r": 1.5 * JET["N_delta_r"]}
 WEAK = replace(AIRCRAFT, model=TRUE | OFF)
+
+
+PROOF = Proof(
+    maneuvers=(2, 3), before=2.0, after=1.0, floor={}, by_maneuver=(), first="x", second="none", sentence="",
+    not_carried=(), taken_back=("aileron_actuator_backlash",), gap_with_them=3.0,
+)  # fmt: skip
+
+
+def stays(*taken: str) -> SideGap:
+    compared = SideCompared(FOUND, None, AIRCRAFT, (), AIRCRAFT)  # type: ignore[arg-type]
+    return stays_of_side(compared, replace(PROOF, taken_back=taken)).gap
+
+
+def test_an_effect_that_raises_the_gap_of_the_proof_gives_its_probability_to_the_numbers():
+    found = stays("aileron_actuator_backlash")
+    assert found.verdict == "parameters"
+    assert found.diagnosis.probabilities.parameters == pytest.approx(0.75)
+    assert not any(one.cause.present for one in found.diagnosis.causes)
+    assert found.sentence.endswith(
+        "Taken back: aileron actuator backlash, with which the gap is 3 instead of 1 on manoeuvres 2, 3, "
+        "which no fit has used."
+    )
+
+
+def test_where_the_numbers_raise_it_as_well_the_cause_is_unknown_in_the_place_of_the_effect():
+    found = stays("aileron_actuator_backlash", NUMBERS)
+    assert found.verdict == "unknown"
+    assert found.diagnosis.where.block == "aileron"
+    assert "Taken back: aileron actuator backlash and the fitted numbers," in found.sentence
+
+
+@pytest.mark.parametrize(("after", "taken"), [(0.5, ()), (3.0, (NUMBERS,))])
+def test_numbers_with_which_the_gap_grows_on_the_proof_are_taken_back(monkeypatch, after, taken):
+    """Manoeuvres of an estimate that says nothing: the gap before is 2."""
+    model = SimpleNamespace(theta=np.ones(15), fits=({},), airspeed_m_s=None)
+    plain = SideGap("parameters", "", (), {}, {}, (1, 2), None)
+    asked = []
+    monkeypatch.setattr(roll_and_yaw, "estimate_lateral", lambda *_: model)
+    monkeypatch.setattr(roll_and_yaw, "compare_side", lambda _, one, __: asked.append(one) or plain)
+    monkeypatch.setattr(roll_and_yaw, "with_derivatives", lambda *_: "improved")
+    monkeypatch.setattr(
+        roll_and_yaw, "_gap", lambda _, __, ___, theta: after if np.all(theta == 1.0) else 2.0
+    )
+    flown = [SimpleNamespace(number=n) for n in range(1, 7)]
+    aircraft = replace(AIRCRAFT, model=dict.fromkeys(SIDE_PARAMETERS, 7.0))
+    made = prove_side(SideCompared(None, None, aircraft, flown, aircraft))  # type: ignore[arg-type]
+    assert made.taken_back == taken
+    assert made.after == min(after, 2.0)
+    assert (asked[-1] == "improved") == (not taken)
 
 
 @pytest.fixture(scope="module")
