@@ -47,7 +47,7 @@ def confusion_sentence(c: Cause) -> str:
     others = [spelled(name) for name in c.cannot_be_told_from]
     listed = others[0] if len(others) == 1 else f"{', '.join(others[:-1])} or {others[-1]}"
     way = f" To tell them apart, {c.tell_apart_by}." if c.tell_apart_by else ""
-    return f"{_capital(spelled(c.effect))} cannot be told from {listed} here.{way}"
+    return f"{spelled(c.effect).capitalize()} cannot be told from {listed} here.{way}"
 
 
 def unseen(effects: Sequence[Unseen]) -> Table:
@@ -83,10 +83,6 @@ def _table(causes: Sequence[Cause], before: float) -> Table:
             marked(c.gap_after, before),
         )  # fmt: skip
     return table
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 def why_of(d: Weighed) -> Iterator[RenderableType]:

@@ -66,7 +66,8 @@ class GapScreen:
         yield Panel(Group(*_answer(d)), title=title_of(d), title_align="left")
         yield _numbers(d)
         if d.verdict not in ("none", "untested"):
-            yield Panel(Group(*_picture(d)), title=_where(d), title_align="left")
+            where = f"where: {where_said(d.where)}" if d.verdict in ("effect", "unknown") else "where"
+            yield Panel(Group(*_picture(d)), title=where, title_align="left")
         if self.everything:
             yield from self._course()
         if d.causes:
@@ -113,7 +114,7 @@ class GapScreen:
     def _limits(self) -> Iterator[RenderableType]:
         """Yield the notes, and the effects that the flight cannot show."""
         yield ""
-        yield from map(_note, _notes(self.diagnosis))
+        yield from (_hanging("·", Text(note)) for note in _notes(self.diagnosis))
         if self.diagnosis.cannot_see:
             yield ""
             yield Text("This flight could not show (→ what would):", style="bold")
@@ -148,12 +149,9 @@ def _notes(d: Diagnosis) -> list[str]:
 
 def _numbered(steps: Sequence[GapStep], width: int) -> Iterator[RenderableType]:
     for number, step in enumerate(steps, start=1):
-        table = Table.grid(padding=(0, 1))
-        table.add_row(f"{number}.", Text(step.text))
-        if step.command:
-            lines = "\n".join(command_lines(step.command, width - len(f"{number}. ")))
-            table.add_row("", Text(lines, style="bold", no_wrap=True, overflow="ignore"))
-        yield table
+        lines = "\n".join(command_lines(step.command, width - len(f"{number}. "))) if step.command else ""
+        command = Text(lines, style="bold", no_wrap=True, overflow="ignore")
+        yield _hanging(f"{number}.", Text(step.text), *([command] if lines else []))
 
 
 def command_lines(command: str, width: int) -> list[str]:
@@ -169,10 +167,11 @@ def command_lines(command: str, width: int) -> list[str]:
     return lines
 
 
-def _note(text: str) -> Table:
-    """Return a note whose further lines are aligned below its first."""
+def _hanging(mark: str, *lines: Text) -> Table:
+    """Return lines that are aligned behind a mark."""
     table = Table.grid(padding=(0, 1))
-    table.add_row("·", Text(text))
+    for line in lines:
+        table.add_row(mark if line is lines[0] else "", line)
     return table
 
 
@@ -185,10 +184,6 @@ def _numbers(d: Diagnosis) -> Text:
     if grown := grown_said(d):
         lines.append(f"{WORSE} {grown}")
     return Text("\n".join(lines))
-
-
-def _where(d: Diagnosis) -> str:
-    return f"where: {where_said(d.where)}" if d.verdict in ("effect", "unknown") else "where"
 
 
 def _picture(d: Diagnosis) -> Iterator[RenderableType]:

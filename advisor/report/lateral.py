@@ -107,11 +107,8 @@ def _model_lines(model: LateralEstimate) -> Iterator[str]:
     for row in (estimated_parameter(name, model, {}) for name in model.names):
         if not row.reason:
             yield f"  {row.name:<6} {row.cell:>20} {row.unit}"
-    for text, names in untold(model).items():
-        yield f"  not identifiable: {', '.join(names)} ({text})"
+    yield from (f"  {line}" for line in untold(model))
     yield from (f"  {one.name:<18} {one.sentence}" for one in mode_facts(model.modes))
-    for mode, text in model.modes.left_out.items():
-        yield f"  no {mode.replace('_', ' ')}: {text}"
 
 
 def _quality_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:

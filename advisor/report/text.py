@@ -25,8 +25,7 @@ def activity_line(activity: Activity) -> str:
 
 def instrument_lines(found: Iterable[InstrumentFinding]) -> list[str]:
     """Return each contradiction of an instrument with its remedy."""
-    told = [f for f in found if f.contradicts]
-    return [f"{'!' if f.used else '✗'} {f.sentence}. -> {f.fix}." for f in told]
+    return [f"{'!' if f.used else '✗'} {f.sentence}. -> {f.fix}." for f in found if f.contradicts]
 
 
 def caution_lines(maneuvers: Sequence[JudgedManeuver]) -> list[str]:

@@ -37,9 +37,7 @@ def contradicted(diagnosis: Diagnosis, removed: float) -> Diagnosis:
         present = []
     gone = [cause for cause in d.causes if cause.effect == given_up.name]
     causes = tuple(replace(c, present=c in present) for c in d.causes if c not in gone)
-    left = [one for one in d.evidence if one.alternative != given_up]
-    share = sum(one.probability for one in d.evidence if one.alternative == given_up)
-    evidence = with_share(left, stays, share) if d.evidence else ()
+    evidence = handed_over(d.evidence, given_up, stays)
     d = answered_by(d, evidence, stays)
     unknown, flown = d.verdict == "unknown", d.in_simulator
     d = replace(
@@ -51,6 +49,15 @@ def contradicted(diagnosis: Diagnosis, removed: float) -> Diagnosis:
     closest = (*gone, *causes) if unknown else causes
     sentence = sentence_of(d.verdict, d.gap, d.where, closest, d.shrink)
     return replace(d, sentence=as_sure(sentence, answers_of(d.evidence)))
+
+
+def handed_over(
+    evidence: Sequence[AlternativeEvidence], given_up: Alternative, stays: Alternative
+) -> tuple[AlternativeEvidence, ...]:
+    """Return the evidence with the probability of an answer that was given up at another alternative."""
+    share = sum(one.probability for one in evidence if one.alternative == given_up)
+    left = [one for one in evidence if one.alternative != given_up]
+    return with_share(left, stays, share) if evidence else ()
 
 
 def with_share(

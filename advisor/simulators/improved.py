@@ -20,7 +20,6 @@ from advisor.simulators.surrogate import Surrogate
 from advisor.simulators.unseen import (
     UnseenManeuvers,
     as_changed,
-    as_given,
     changes_something,
     floor_of,
     percent_of,
@@ -86,7 +85,7 @@ def in_simulator(
     flights = problem.flights.flights
     kept = tuple(range(len(flights))) if unseen is None else unseen.kept
     derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
-    given = as_given(derivatives, whole.findings.last.fitted.point)
+    given = SearchPoint(derivatives, whole.findings.last.fitted.point.own)
     before = predicted(problem, given, floor, kept, unknown_offset(whole.diagnosis, None))
     was = whole_gap(before.mean_square, floor)
     original = _with(problem, [as_flown[f.number].beyond for f in flights], 1.0)

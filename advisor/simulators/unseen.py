@@ -171,11 +171,6 @@ def with_nuisances(point: SearchPoint, unseen: UnseenManeuvers) -> SearchPoint:
     return point
 
 
-def as_given(derivatives: FloatArray, point: SearchPoint) -> SearchPoint:
-    """Return the model of a simulator as given, with its derivatives of shape (6,) and nothing added."""
-    return SearchPoint(derivatives, point.own)
-
-
 def predicted(
     problem: EffectProblem,
     point: SearchPoint,
@@ -228,7 +223,7 @@ def by_the_file(whole: Examined, unseen: UnseenManeuvers) -> ByTheFile:
     """Return the residuals of the aircraft file's model before and after what the other manoeuvres found."""
     diagnosis, problem, floor = whole.diagnosis, whole.findings.problem, floor_of(whole)
     assert problem.prior_derivatives is not None
-    given = as_given(problem.prior_derivatives, whole.findings.last.fitted.point)
+    given = SearchPoint(problem.prior_derivatives, whole.findings.last.fitted.point.own)
     before = after = predicted(problem, given, floor, unseen.kept, unknown_offset(diagnosis, None))
     if changes_something(unseen.found.diagnosis):
         offset = unknown_offset(diagnosis, unseen.found.diagnosis)

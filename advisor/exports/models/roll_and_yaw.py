@@ -34,7 +34,7 @@ from advisor.oem.lateral_estimator import estimate_lateral
 from advisor.oem.lateral_prediction import predicted_lateral
 from advisor.side_gap.comparison import compare_side, sentence_of_side
 from advisor.side_gap.diagnosis import SideDiagnosis
-from advisor.simulators.contradicted import with_share
+from advisor.simulators.contradicted import handed_over
 from advisor.simulators.taken_back import taken_back_said, unused
 from advisor.words.certainty import as_sure
 from advisor.words.problems import UnusableInputError
@@ -184,12 +184,9 @@ def stays_of_side(compared: SideCompared, proof: Proof | None) -> SideCompared:
     said = taken_back_said(words, unused(proof.maneuvers), proof.gap_with_them, proof.after)
     stays = PARAMETERS
     if NUMBERS in proof.taken_back:
-        axis = {"Y": "side_force", "L": "rolling_moment", "N": "yawing_moment"}
-        wrong = [axis[one.name[0]] for one in gap.derivatives if one.differs]
-        place = d.causes[0].block if d.answer.is_effect and d.causes else next(iter(wrong), "rolling_moment")
+        place = d.causes[0].block if d.answer.is_effect and d.causes else "rolling_moment"
         stays = Alternative("unknown", "unknown", place)
-    share = sum(one.probability for one in d.evidence if one.alternative == d.answer)
-    evidence = with_share([one for one in d.evidence if one.alternative != d.answer], stays, share)
+    evidence = handed_over(d.evidence, d.answer, stays)
     causes = tuple(replace(one, cause=replace(one.cause, present=False)) for one in d.causes)
     d = replace(d, evidence=evidence, answer=stays, causes=causes, why=(), rival="", decisions=())
     derivatives = gap.derivatives if stays == PARAMETERS else ()

@@ -30,18 +30,15 @@ def decisions(state: CampaignState, *, pitch: bool = True) -> Iterator[str]:
         yield stop_line(state.flight_test)
         if plan is None:
             yield f"{INDENT}{next_line(state.flight_test)}"
-    if state.lateral is not None and (_is_told(state.lateral) or not state.maneuvers):
-        lead, *advice = lateral_decision(state.lateral)
+    side = state.lateral
+    # Roll and yaw that nobody flew are said only where nothing else was flown, or an output is not known.
+    if side is not None and (side.maneuvers or side.flight_test.next is None or not state.maneuvers):
+        lead, *advice = lateral_decision(side)
         yield lead
         yield from advice if plan is None else ()
     if plan is not None:
         yield f"Both axes: {plan.sentence}"
         yield f"{INDENT}{plan.advice}"
-
-
-def _is_told(state: LateralState) -> bool:
-    """Return whether roll and yaw were tested, or cannot be until an output is known."""
-    return bool(state.maneuvers) or state.flight_test.next is None
 
 
 def lateral_decision(state: LateralState) -> Iterator[str]:

@@ -6,6 +6,7 @@ from math import nan
 
 from advisor.flight.signals.track import ChannelStatus
 from advisor.oem.estimate import Estimate
+from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.report.facts.fact import Fact, fact_of
 from advisor.words.digits import decimals_for, signed
 from advisor.words.quantiles import NORMAL_95
@@ -61,12 +62,13 @@ def joint_source(numbers: Iterable[int], at: str) -> str:
     return f"Joint estimate from manoeuvres {', '.join(map(str, numbers))}{at}"
 
 
-def untold(estimate: Estimate) -> dict[str, list[str]]:
-    """Return each reason for which derivatives are not told, with their symbols."""
+def untold(model: LateralEstimate) -> list[str]:
+    """Return one sentence for each reason why derivatives and modes of roll and yaw are not told."""
     found: dict[str, list[str]] = {}
-    for name, reason in estimate.not_identifiable.items():
+    for name, reason in model.not_identifiable.items():
         found.setdefault(reason, []).append(symbol(name))
-    return found
+    told = [f"Not identifiable: {', '.join(names)}; {reason}." for reason, names in found.items()]
+    return told + [f"No {mode.replace('_', ' ')} mode: {why}." for mode, why in model.modes.left_out.items()]
 
 
 def instrument_facts(estimate: object, channels: Mapping[str, ChannelStatus]) -> list[tuple[Fact, str]]:

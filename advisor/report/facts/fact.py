@@ -1,4 +1,4 @@
-"""A number of a flight as every face states it: name, value, 95 % interval, unit, source."""
+"""A number of a flight as every face states it: name, value, 95 % interval, unit, sentence."""
 
 from dataclasses import dataclass
 from math import isfinite, nan
@@ -14,14 +14,12 @@ class Fact:
     name: str
     """Symbol or name for people: ``M_α``, ``Dutch roll ζ``."""
     value: float = nan
-    """NaN where the source does not tell the number."""
+    """NaN where the flight does not tell the number."""
     half: float = nan
     """Half of the 95 % interval, corrected for coloured residuals; NaN without a value."""
     unit: str = ""
-    source: str = ""
-    """Question that the number answers: the joint estimate, one manoeuvre alone."""
     reason: str = ""
-    """Reason for which the source does not tell the number."""
+    """Reason for which the flight does not tell the number."""
 
     @property
     def is_known(self) -> bool:

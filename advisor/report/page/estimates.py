@@ -15,6 +15,8 @@ from advisor.words.quantities import PARAMETERS as QUANTITIES
 
 _MOST_LABELS = 16
 """Most labels of a forest plot. With more manoeuvres every second one is named, or fewer."""
+_NARROW = "±\N{NO-BREAK SPACE}"
+"""Cells of a narrow table have one place for a line break, before the interval."""
 _TALLEST_IN = 3.2
 """Greatest height of a forest plot, inches, so that thirty manoeuvres fill no page."""
 
@@ -48,14 +50,9 @@ def _blocks(content: Content) -> Iterator[Block]:
     yield Table(
         "by-maneuver", "Estimate of each accepted manoeuvre alone, ± half the 95 % interval.",
         ("no.", *(QUANTITIES[name].label for name in PARAMETERS)),
-        tuple((number, *(_narrow(row.cell) for row in rows.values())) for number, rows in alone.items()),
+        tuple((n, *(one.cell.replace("± ", _NARROW) for one in rows.values())) for n, rows in alone.items()),
         frozenset(range(len(PARAMETERS) + 1)),
     )  # fmt: skip
-
-
-def _narrow(cell: str) -> str:
-    """Return the cell with one place for a line break, before the interval."""
-    return cell.replace("± ", "±\N{NO-BREAK SPACE}")
 
 
 def _forest(

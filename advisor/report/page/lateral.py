@@ -44,7 +44,7 @@ def _blocks(content: Content, state: LateralState) -> Iterator[Block]:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")
         return
     yield derivatives(state, state.model, content.aircraft.model, "lateral-joint")
-    yield from listing(_untold(state.model))
+    yield from listing(untold(state.model))
     yield from _modes(content, state)
     yield from lateral_fits(state)
 
@@ -63,13 +63,6 @@ def derivatives(state: LateralState, model: LateralEstimate, prior: Mapping[str,
         [estimated_parameter(one, model, prior) for one in SIDE_PARAMETERS],
         " L and N hold the products of inertia.",
     )
-
-
-def _untold(model: LateralEstimate) -> list[str]:
-    """Return one sentence for each reason why derivatives and modes are not told."""
-    reasons = untold(model).items()
-    told = [f"Not identifiable: {', '.join(names)}; {reason}." for reason, names in reasons]
-    return told + [f"No {MODE_NAMES[mode]} mode: {why}." for mode, why in model.modes.left_out.items()]
 
 
 def _modes(content: Content, state: LateralState) -> Iterator[Block]:
