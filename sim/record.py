@@ -14,8 +14,8 @@ def write_tlog(flight: Flight, out: BinaryIO) -> int:
     """Fly and write; return the number of messages.
 
     Each record is eight bytes of microseconds since 1970, big-endian, then the frame. The stamps come from
-    simulated time, so that equal scenarios and seeds give equal bytes. Their low two bits number the link and
-    stay 0.
+    simulated time, so that equal scenarios and seeds give equal bytes. The low two bits of a stamp number the
+    link and stay 0.
     """
     packer = mavlink.MAVLink(None, srcSystem=SYSTEM, srcComponent=COMPONENT)
     telemetry = Telemetry(flight)

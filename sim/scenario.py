@@ -66,7 +66,7 @@ class Noise:
     """White or coloured measurement noise, in percent of each output's signal or in SI values.
 
     A percentage gives the standard deviation relative to the output's ``of``: its largest deviation from
-    trim, or its standard deviation. Both are taken from the first manoeuvre, flown without noise.
+    trim, or its standard deviation. Both sizes are taken from the first manoeuvre, flown without noise.
     """
 
     percent: float = 0.0

@@ -23,7 +23,7 @@ class Key:
     example: str = ""
     """Value in YAML for the comment in a new file. Empty: a new file leaves the key out."""
     question: str = ""
-    """Question on the terminal. Empty: never asked."""
+    """Question that `aircraft new` asks on the terminal. Empty: never asked."""
     answer: str = "-"
     """Usual answer to the question; ``-``: not known, left out."""
     cost: str = ""
@@ -33,7 +33,7 @@ class Key:
     positive: bool = False
     """Whether the value must be above 0."""
     within: tuple[float, float] | None = None
-    """Least and largest value."""
+    """Least and largest value of the key."""
     path: str = ""
     """Sections and name, e.g. ``elevator.lag_s``, filled in by :func:`keys_of`."""
     hint: Any = None
@@ -43,7 +43,7 @@ class Key:
 
     @property
     def name(self) -> str:
-        """Last part of the path."""
+        """Last part of the key's path."""
         return self.path.rpartition(".")[2]
 
     @property

@@ -23,7 +23,7 @@ class Lack:
     """One key that is missing, or that contradicts the log."""
 
     key: str
-    """Path of the key."""
+    """Path of the missing key."""
     cost: str
     """Sentence on the cost of the missing key."""
     mend: str

@@ -120,7 +120,7 @@ def _limits(facts: LogFacts, output: int) -> str:
         )
     if output in facts.pulses_us:
         low, high = facts.pulses_us[output]
-        said.append(f"Its pulses in this log reach from {low:.0f} to {high:.0f} us.")
+        said.append(f"The output's pulses in this log reach from {low:.0f} to {high:.0f} us.")
     return " ".join(said)
 
 

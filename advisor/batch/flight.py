@@ -42,7 +42,8 @@ class BatchTask:
 
     @property
     def key(self) -> str:
-        """Key of the result. Equal logs, configurations, decisions by hand and advisors have one key."""
+        """Key under which the result is kept. Equal logs, configurations, decisions by hand and advisors have
+        one key."""
         beside = path_beside(self.log)
         by_hand = beside.read_text(encoding="utf-8", errors="replace") if beside.is_file() else ""
         parts = [__version__, self.sha256, json.dumps(asdict(self.aircraft), sort_keys=True), by_hand]

@@ -50,9 +50,9 @@ def with_fit(
     by_motion
         Findings without aerodynamics.
     model
-        Joint estimate over the accepted manoeuvres. Its findings say what estimates use.
+        Joint estimate over the accepted manoeuvres. The estimate's findings are in use.
     single
-        Estimates of all manoeuvres. Their findings say what refuses manoeuvres.
+        Estimates of all manoeuvres. Findings of single estimates refuse manoeuvres.
     aircraft
         Aircraft file, with which the estimates were made.
     """

@@ -41,7 +41,8 @@ COMMANDS = {
     "locate": "Print where settings and recordings are kept.",
     "completion": "Print what makes a shell complete the advisor's commands.",
 }
-"""Command name to its line in ``advisor --help``. Lines stand here: the help imports no command."""
+"""Command name to its line in ``advisor --help``. The lines stand here, so that the help imports no
+command."""
 
 
 COMPLETION_VARIABLE = "_ADVISOR_COMPLETE"

@@ -20,7 +20,8 @@ from advisor.oem.surface import Servo
 FULL_TRAVEL_RAD = float(np.radians(25.0))
 """Elevator travel either side of trim where no calibration states one, rad."""
 BOLDER = 1.5
-"""Largest ratio of the next input, and of its response, to the largest so far. A build-up has steps."""
+"""Largest ratio of the next input, and of its response, to the largest so far. A build-up of amplitudes has
+steps."""
 LINEAR_RAD = float(np.radians(5.0))
 """Largest deviation of α from trim at which the model is taken as linear, rad, where no limit is given."""
 ALPHA_MARGIN = 0.9

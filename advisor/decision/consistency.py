@@ -37,7 +37,7 @@ class Outlier:
     limit: float
     """Distance that chance exceeds once in a thousand cases."""
     alpha: AlphaApart | None = None
-    """Angle of attack that separates the manoeuvre from the others. None: nothing known does."""
+    """Angle of attack that separates the manoeuvre from the others. None: no angle of attack does."""
 
 
 def outliers(posteriors: Sequence[Posterior]) -> Mapping[int, Outlier]:

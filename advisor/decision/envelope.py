@@ -27,7 +27,7 @@ _LONGEST_GAP = (0.3, 0.2, 1.0)
 _SHORTEST_FREE = 0.75
 """Least free response, in natural periods. Most of one swing is needed to determine the damping."""
 _SHORTEST_STEP = 0.15
-"""Least length of the shortest step, in natural periods. The servo smears shorter steps."""
+"""Least length of the shortest step, in natural periods. A servo smears shorter steps of the elevator."""
 _CUT_SHORT_BY = {
     "gap": ("the telemetry breaks off", "check the link"),
     "end of log": ("the recording ends", "let the recording run on for some seconds"),

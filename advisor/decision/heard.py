@@ -16,13 +16,13 @@ class Heard:
     """Stop criterion of every rule after one manoeuvre, by the estimates of that moment."""
 
     percent: Mapping[str, float | None]
-    """Rule to its criterion. None: no value yet."""
+    """Rule to its stop criterion, per cent. None: no value yet."""
     stops: frozenset[str]
-    """Rules whose criterion held."""
+    """Rules whose stop criterion held."""
     usable: frozenset[int] = frozenset()
     """Positions of the usable manoeuvres among those flown."""
     remaining: Remaining | None = None
-    """Forecast that was spoken."""
+    """Forecast of further manoeuvres that was spoken."""
 
     @classmethod
     def of(cls, verdict: FlightTestVerdict, usable: Sequence[int] = ()) -> "Heard":

@@ -58,7 +58,7 @@ class Posterior:
     alpha_rad: tuple[float, float] = (nan, nan)
     """Lowest and highest measured angle of attack of the manoeuvre, rad. NaN where not measured."""
     names: tuple[str, ...] = PARAMETERS
-    """Names of the parameters. Those that end in ``_0`` are intercepts, which are each manoeuvre's own."""
+    """Names of the parameters. Names that end in ``_0`` are intercepts, which are each manoeuvre's own."""
 
     @property
     def std(self) -> FloatArray:

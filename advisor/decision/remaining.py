@@ -44,7 +44,7 @@ class Odds:
 
 
 MOST = 50
-"""Largest number that is predicted. Beyond it there is no end in sight."""
+"""Largest number of further manoeuvres that is predicted. Beyond it there is no end in sight."""
 _DRAWS = 400
 
 

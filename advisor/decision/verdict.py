@@ -21,7 +21,7 @@ def limit_percent(rule: Rule, plan: CampaignPlan) -> float:
 UNTRUSTED = frozenset({"missing", "frozen"})
 """Codes of reasons for a faulty channel. No other finding from such data is reported."""
 NO_CURE_BY_INPUT = UNTRUSTED | {"rate", "gap", "advisor_down", "clock"}
-"""Codes of reasons that no input remedies. With them, no larger or other input is advised."""
+"""Codes of reasons that no input remedies. With such a reason no other input is advised."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ class RuleProgress:
     hindsight_stopped_at: int | None = None
     """Number of manoeuvres at the first stop in hindsight. None: no stop."""
     holds: bool = False
-    """Whether the criterion holds now."""
+    """Whether the stop criterion holds now."""
 
     @property
     def percent_of_limit(self) -> tuple[float | None, ...]:

@@ -261,8 +261,8 @@ def _carry(
 ) -> None:
     """Write the sensitivities of the outputs.
 
-    Those of the states are advanced by Simpson's rule for the forcing. The derivatives of the rates are those
-    in the middle of each part.
+    Sensitivities of the states are advanced by Simpson's rule for the forcing. The derivatives of the rates
+    are those in the middle of each part.
     """
     place, ratio, step_s = grid.place, grid.ratio, grid.step_s
     linear, sine, turn, bank, yaw = grid.linear, grid.sine, grid.turn, grid.bank, grid.yaw

@@ -20,10 +20,10 @@ from advisor.oem.scatter_between import CHANCE
 from advisor.oem.whitening import Whitening
 
 WIDTH_S, WEIGHTS = 0.2, 8
-"""Numerical: distance between the filter's weights, s, and their number. It is linear between them and holds
-what a rigid aircraft follows, up to 2.5 Hz. Faster errors are those of stamps and edges. Six flights of an
-autopilot set the distance among 0.1, 0.2, 0.3 and 0.4. Of 26 intervals on four other flights 22 hold, 18
-without such errors."""
+"""Numerical: distance between the filter's weights, s, and their number. The filter is linear between weights
+and holds what a rigid aircraft follows, up to 2.5 Hz. Faster errors are those of stamps and edges. Six
+flights of an autopilot set the distance among 0.1, 0.2, 0.3 and 0.4. Of 26 intervals on four other flights 22
+hold, 18 without such errors."""
 _WITNESSES = 3
 """Numerical: least number of manoeuvres that can show an error in common. On an axis with two controls, two
 of three move the same one."""

@@ -126,8 +126,8 @@ def _kinds(steps: FloatArray) -> tuple[FloatArray, Index]:
 def _free(measured: set[str], scaled: bool) -> Index:
     """Return which of the 14 parameters the measured outputs determine.
 
-    Without alpha no output determines the level of the angle of attack, and Z_0 and M_0 absorb any. Its
-    initial value then stays at the start of the search.
+    Without alpha no output determines the level of the angle of attack, and Z_0 and M_0 absorb any. The
+    angle's initial value then stays at the start of the search.
     """
     local = ["Z_0", "M_0", *(["alpha_initial"] if "alpha" in measured else []), "q_initial"]
     if "theta" in measured:

@@ -29,7 +29,7 @@ class Sums:
 
     @classmethod
     def none(cls, parameters: int, colour: Colour) -> "Sums":
-        """Return sums without samples."""
+        """Return the sums over no samples, which are zero."""
         n = parameters
         return cls(colour, np.zeros((n + 1, n + 1)), np.zeros((n, n)), np.zeros(n))
 

@@ -1,7 +1,7 @@
 """Liveness of a process that works for this one, measured by the messages that come from it.
 
 A process can hang without dying: stopped, swapped out, at a disk that does not answer, in a loop without an
-end. No exception tells of that. So the age of the newest message is measured.
+end. No exception tells of that. The supervisor therefore measures the age of the newest message.
 """
 
 from collections.abc import Callable

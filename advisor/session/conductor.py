@@ -28,7 +28,8 @@ class Conductor:
     source : Source
         Source of the data.
     make_campaign : callable
-        Makes a campaign from the decisions by hand. It is called by ``run``, and again for a rewind.
+        Makes a campaign from the decisions by hand. The function is called by ``run``, and again for a
+        rewind.
     by_hand : ByHand
         Earlier decisions by hand.
     """

@@ -27,7 +27,7 @@ class LogPlayer:
     title : str
         Name of the log.
     load : callable
-        Returns the columns of the log. It is called once, in the reading thread.
+        Returns the columns of the log. The function is called once, in the reading thread.
     speed : float
         Multiple of real time. Infinite: as fast as possible.
     wait : callable

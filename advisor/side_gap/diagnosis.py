@@ -96,7 +96,7 @@ class SideDiagnosis(Weighed):
 
     @property
     def verdict(self) -> Kind:
-        """Kind of the answer."""
+        """Kind of the likeliest alternative."""
         assert self.answer is not None
         return "effect" if self.answer.is_effect else self.answer.kind  # type: ignore[return-value]
 

@@ -89,8 +89,8 @@ class Starts:
     def _tangent(self, effect: SideEffect) -> Start:
         """Return the start of a late or scaled reading by the slope of the outputs.
 
-        All other clocks may be late too. Together they move by as much without a residual, but only in small
-        steps do they all count as linear.
+        The clocks of all other channels may be late too. Together they move by as much without a residual,
+        but only in small steps do they all count as linear.
         """
         point, step = self._plain.point, np.array(effect.variant.steps)
         setting = moved_to(point.setting, effect.places, base_of(self._case, effect) + step)

@@ -51,7 +51,7 @@ class Flown:
     after: HeldOut | None
     """Residuals with the effects in the simulator; None where nothing was added, or where it did not fly."""
     gap_after: float
-    """Gap with what the simulator takes of the correction."""
+    """Gap with the part of the correction that the simulator takes."""
 
     @property
     def gap_before(self) -> float:

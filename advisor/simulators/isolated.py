@@ -29,14 +29,15 @@ class Isolated:
 
     The parent imports nothing of the simulator, and receives numbers and text only. The folder in which the
     parent was started stands last on the child's path of modules. What the child prints goes nowhere. The
-    child and all that it starts form a process group, which ends with the simulator. Its memory is limited.
+    child and all that it starts form a process group, which ends with the simulator. The child's memory is
+    limited.
 
     Parameters
     ----------
     make : str
         ``module:name`` of the callable that builds the simulator.
     *arguments
-        Its arguments; each can be pickled.
+        Arguments of ``make``; each can be pickled.
     description : str
         The simulator's name in every sentence.
     speed_limit_s : float

@@ -115,7 +115,8 @@ class Simulator(Protocol):
     Raises
     ------
     advisor.words.problems.UnusableInputError
-        The model does not load, does not trim, or takes longer than its time limit. Each method may raise it.
+        The model does not load, does not trim, or takes longer than its time limit. Each method may raise
+        this error.
     """
 
     @property

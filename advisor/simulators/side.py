@@ -54,7 +54,7 @@ def side_without_difference(
     maneuvers
         Manoeuvres of aileron and rudder.
     aircraft
-        The aircraft file. Its servos act ahead of the simulator; its model is not used.
+        The aircraft file. Servos of the file act ahead of the simulator; its model is not used.
 
     Raises
     ------

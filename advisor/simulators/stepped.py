@@ -55,7 +55,7 @@ class Stepped:
     environment
         The environment.
     description
-        Its name in every sentence.
+        Name of the environment in every sentence.
     dt
         Step, s.
     controls

@@ -8,7 +8,7 @@ from advisor.decision.verdict import NextInput
 _UNIT_COLUMNS = 6
 """Columns of the shortest step, which holds its duration: ``0.4 s``."""
 _LEAD = 3
-"""Columns of trim before the first step and after the last."""
+"""Columns of the drawing at trim, before the first step and after the last."""
 _PULL, _TRIM, _PUSH = 0, 1, 2
 _LEVELS = (_PULL, _TRIM, _PUSH)
 _SIDE_COLUMNS = 6

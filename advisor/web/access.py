@@ -57,7 +57,7 @@ class Access:
     origin: str | None = None
     """Address that browsers see, where a proxy stands before the server. None: no proxy."""
     token: str = field(default_factory=lambda: secrets.token_urlsafe(32), repr=False)
-    """Cookie of a browser that has given the password. Each start of the server has another one."""
+    """Cookie of a browser that has given the password. Each start of the server has another token."""
 
     @property
     def cookie(self) -> str:

@@ -65,9 +65,9 @@ class VaneAhead:
 class BendingMode:
     """A gyro on a fuselage that bends when the elevator loads the tail.
 
-    η̈ + 2ζω η̇ + ω² η = ω² (δ − δ_trim). The gyro turns with the rate of the local slope, q + gain η̇/ω. It
-    also feels ``displacement_gain`` η of the bend itself. An attitude integrated from the gyro contains the
-    local slope, gain η/ω.
+    η̈ + 2ζω η̇ + ω² η = ω² (δ − δ_trim). The gyro turns with the rate of the local slope, q + gain η̇/ω. The
+    gyro also feels ``displacement_gain`` η of the bend itself. An attitude integrated from the gyro contains
+    the local slope, gain η/ω.
     """
 
     def __init__(
@@ -103,5 +103,5 @@ class Transformed:
         self.channel, self.shown = channel, shown
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Show the function of the value."""
+        """Let the channel show the function of the true value."""
         setattr(reading, self.channel, self.shown(getattr(reading, self.channel), motion))

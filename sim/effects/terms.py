@@ -22,7 +22,7 @@ begins (s)."""
 
 
 class MoreMass:
-    """Mass and inertia that change. They divide the moments and all forces except the weight."""
+    """Mass and inertia that change. The factors divide the moments and all forces except the weight."""
 
     def __init__(self, mass: Callable[[float], float], inertia: Callable[[float], float]) -> None:
         self.mass, self.inertia = mass, inertia

@@ -18,7 +18,8 @@ from dataclasses import dataclass
 from typing import Any
 
 NO_ANSWER = "no answer"
-"""Verdict of a case without a usable answer. It is right nowhere, so that silence gains nothing."""
+"""Verdict of a case without a usable answer. An empty answer is right nowhere, so that silence gains
+nothing."""
 QUIET = ("none", None)
 """Verdicts that claim nothing. ``null`` is said where no simulator is given."""
 LEFT_ALONE = ("none", "parameters")

@@ -81,7 +81,7 @@ class SideModel:
 
 @dataclass(frozen=True)
 class FlownModel:
-    """Both axes of a flight. None for an axis without an estimate."""
+    """Pitch, roll and yaw of a flight. None for an axis without an estimate."""
 
     aircraft: Aircraft
     """The aircraft file with its own servos and with the user's simulator."""

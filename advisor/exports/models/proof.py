@@ -184,7 +184,7 @@ def parted(maneuvers: Sequence[Maneuver]) -> tuple[Sequence[Maneuver], Sequence[
     Raises
     ------
     UnusableInputError
-        There are too few.
+        There are too few manoeuvres.
     """
     count = len(maneuvers)
     kept = max(count // 3, LEAST_KEPT)

@@ -143,7 +143,7 @@ def _covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
     """Return the covariance for coloured residuals, plus that of a residual that belongs to the parameters.
 
     An error of an instrument may have the shape of the motion, and a parameter then takes all of the
-    residual. Such a parameter errs by at most ‖r‖·√((JᵀJ)⁻¹). The error is uniform up to this bound.
+    residual. A parameter at its bound errs by at most ‖r‖·√((JᵀJ)⁻¹). The error is uniform up to this bound.
     """
     mistaken = float(residual @ residual) / 3.0 * inverse_information(jacobian)
     return np.asarray(coloured_covariance(jacobian, residual) + mistaken)

@@ -37,7 +37,7 @@ _LONGEST_GAP_S = 0.5
 """Longest gap, s, across which a rate is integrated."""
 _FEWEST_SAMPLES = 20
 _SHORTEST_S = 2.0
-"""Shortest record, s, that tells a mean specific force. There, 1 m/s of climb rate is 5 % of 1 g."""
+"""Shortest record, s, that tells a mean specific force. Over 2 s, 1 m/s of climb rate is 5 % of 1 g."""
 _CLIMB_M_S = 1.0
 """Error of a change of the climb rate, m/s: lag of its filter in a manoeuvre."""
 _ALIGNMENT = 0.02

@@ -44,7 +44,7 @@ class FreeResponse:
     Parameters
     ----------
     movement
-        Movement that has come to rest.
+        Movement of the elevator that has come to rest.
     before
         Level of the elevator before the movement, rad.
     samples

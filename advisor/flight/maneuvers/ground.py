@@ -19,7 +19,7 @@ from advisor.flight.signals.record import Channel
 # MAV_LANDED_STATE, MAVLink common.xml.
 _ON_GROUND, _TAKING_OFF = 1, 3
 _FRESH_S = 5.0
-"""Time for which a statement of the autopilot holds, s. It comes about once a second."""
+"""Time for which a statement of the autopilot holds, s. Statements come about once a second."""
 STANDING_M_S = 3.0
 """Least speed over ground of a moving aircraft, m/s. A receiver at rest shows less than 1."""
 WINDY_M_S = 12.0

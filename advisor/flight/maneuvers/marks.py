@@ -65,7 +65,7 @@ class Switched:
     """Vehicle time, s since boot."""
     by: Marker
     on: bool
-    """Whether a mark begins. False: a mark ends."""
+    """Whether the switch begins a mark. False: a mark ends."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,7 +34,7 @@ _LONGER = (1.5, 3.5)
 
 @dataclass(frozen=True, slots=True)
 class SideMovement:
-    """A movement of one control."""
+    """A movement of aileron or rudder."""
 
     loop: Loop
     span: Span

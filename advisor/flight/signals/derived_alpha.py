@@ -115,7 +115,7 @@ def promised(hud: Columns, airspeed_m_s: float | None) -> IntArray:
     Parameters
     ----------
     hud
-        Messages VFR_HUD. Those of an autopilot's own log may hold the climb rate alone.
+        Messages VFR_HUD. Messages of an autopilot's own log may hold the climb rate alone.
     airspeed_m_s
         Air speed where none is measured, m/s; None: not known.
     """

@@ -101,7 +101,7 @@ class ChannelStatus:
 class Track:
     """Buffer that grows at its end and drops its beginning.
 
-    Late packets are kept, and sorted in when a stretch is cut. Duplicates are dropped there.
+    Late packets are kept, and sorted in when a stretch is cut. Samples that came twice are dropped there.
     """
 
     def __init__(self, name: str, source: str, provenance: str) -> None:

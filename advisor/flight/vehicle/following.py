@@ -148,6 +148,6 @@ class SenderWatch:
         self.seen = Problem(
             "two_senders",
             f"Two vehicles send under system id {system}: their clocks lie {np.median(back):.0f} s apart.",
-            "Give one of them another id (SYSID_THISMAV, MAV_SYSID, MAV_SYS_ID), or take it off the link.",
+            "Give one vehicle another id (SYSID_THISMAV, MAV_SYSID, MAV_SYS_ID), or take it off the link.",
         )
         return self.seen

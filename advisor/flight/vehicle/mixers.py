@@ -87,7 +87,7 @@ PART_SPAN_SPOILERS = _spoilers(
 OUTER_SPOILERS = _pair(
     "outer differential spoiler", {"elevator": 0.5, "aileron": -0.5}, {"elevator": 0.5, "aileron": 0.5}
 )
-"""Outer halves without inner ones. They open for yaw alone, which their mean counts as pitch."""
+"""Outer halves without inner ones. Spoilers open for yaw alone, which their mean counts as pitch."""
 
 ROWS: tuple[Role, ...] = (
     *(ELEVATOR, AILERON, RUDDER, FLAP),

@@ -72,7 +72,8 @@ def _refitted(
     ends: tuple[FloatArray, FloatArray],
     weights: FloatArray,
 ) -> tuple[_Refitted, FloatArray]:
-    """Return the residual at a manoeuvre's own initial state and trim, and their next step, shape (4,).
+    """Return the residual at a manoeuvre's own initial state and trim, and the next step of the two, shape
+    (4,).
 
     Parameters
     ----------

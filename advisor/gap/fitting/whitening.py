@@ -1,8 +1,8 @@
 """Whitening: residuals and sensitivities pass through one filter of the flight's noise before any fit.
 
 Moving air and coloured instruments correlate neighbouring residuals, and least squares gives them too much
-weight. The Kalman filter of ``advisor.oem.innovations`` turns both into white innovations. Fit, screening,
-hold-out and errors are then ordinary least squares.
+weight. The Kalman filter of ``advisor.oem.innovations`` turns residuals and sensitivities into white
+innovations. Fit, screening, hold-out and errors are then ordinary least squares.
 """
 
 from collections.abc import Sequence

@@ -40,7 +40,7 @@ def is_known(maneuvers: Sequence[Maneuver]) -> bool:
 def alpha_by_motion(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> list[Maneuver]:
     """Return the manoeuvres with the angle of attack that the motion implies, where none was measured.
 
-    They are unchanged where the motion lacks a channel to imply one.
+    Manoeuvres are unchanged where the motion lacks a channel to imply an angle.
     """
     replaceable = [m for m in maneuvers if can_do_without(m, aircraft)]
     if not replaceable or not why_not_measured(maneuvers, aircraft):

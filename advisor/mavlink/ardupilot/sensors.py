@@ -34,8 +34,8 @@ def flown(table: RecordTable, health: Collection[str]) -> RecordTable:
 
     Only the fields in ``health`` tell of a sensor's health (:func:`stated_health`).
 
-    ARSP.Pri names the primary sensor. Where that sensor is not both healthy and in use, the lowest-numbered
-    such sensor counts. Without one, the lowest-numbered healthy sensor counts. (ArduPilot's ARSP and IMU.)
+    ARSP.Pri names the primary sensor. Where the primary one is not healthy and in use, the lowest-numbered
+    sensor that is counts. Without one, the lowest-numbered healthy sensor counts. (ArduPilot's ARSP and IMU.)
     """
     if len(table) == 0:
         return table

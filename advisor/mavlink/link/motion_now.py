@@ -9,7 +9,7 @@ _ATTITUDE, _VFR_HUD = 30, 74
 
 
 class MotionNow:
-    """Newest bank and air speed of one system. No estimate delays them."""
+    """Newest bank and air speed of one system. No estimate delays these values."""
 
     def __init__(self) -> None:
         self.bank_rad = self.airspeed_m_s = math.nan

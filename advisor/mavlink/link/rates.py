@@ -42,8 +42,8 @@ class RateRequest(Talker):
     """Requests one rate after the other, waits for each answer, then watches the delivered rates.
 
     MAVLink, command protocol: SET_MESSAGE_INTERVAL (511) in a COMMAND_LONG is answered by a COMMAND_ACK that
-    names no message. So only one request is open at a time. An unanswered one is sent again with a raised
-    confirmation. A refused or unanswered request is repeated after a rest that doubles, see
+    names no message. Only one request is therefore open at a time. An unanswered one is sent again with a
+    raised confirmation. A refused or unanswered request is repeated after a rest that doubles, see
     `advisor.mavlink.link.message_request`. After a reboot everything is requested again. A granted rate that
     falls is requested again at once, a few times, then after rests. At the end every message gets its default
     rate back.

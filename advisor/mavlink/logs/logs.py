@@ -21,7 +21,7 @@ def open_log(
 ) -> Iterator[list[Columns]]:
     """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not.
 
-    The last two hold the autopilot's own records. These become the messages that telemetry would have
+    The last two hold the autopilot's own records. Records become the messages that telemetry would have
     carried, in one batch.
 
     Parameters

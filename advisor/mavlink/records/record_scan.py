@@ -20,7 +20,7 @@ FMT = 0x80
 """Type of the records that define the other types."""
 FMT_LENGTH = 89
 WINDOW_BYTES = 4 << 20
-"""Bytes of a file that are looked at together. Their records take six times as much memory."""
+"""Bytes of a file that are looked at together. Records that are read take six times as much memory."""
 
 Bytes = NDArray[np.uint8]
 

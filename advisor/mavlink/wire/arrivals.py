@@ -50,7 +50,7 @@ PACKET_COLUMNS = 3
 PACKETS = 1 << 15
 """Number of packets remembered: those of ``REPEAT_US`` at 1800 a second."""
 COUNT = 256
-"""Entry of ``newest`` with the number of packets so far. It follows one entry for each sequence number."""
+"""Entry of ``newest`` with the number of packets so far. One entry for each sequence number is before it."""
 
 
 @kernel()

@@ -17,7 +17,7 @@ class Part:
     """Any widget that is shown each new `View`."""
 
     EITHER_AXIS: ClassVar[bool] = False
-    """Whether the part can show roll and yaw. Other parts always show the elevator's axis."""
+    """Whether the part can show roll and yaw. A part that cannot shows the elevator's axis."""
 
     @property
     def wants_showing(self) -> bool:

@@ -27,7 +27,7 @@ class StatusLine(Part, Lines):
     EITHER_AXIS = True
 
     def show(self, view: View) -> None:
-        """Write the line. Its colour follows the link's condition."""
+        """Write the line. The line's colour follows the link's condition."""
         state = view.state
         vehicle = str(state.vehicle) if state.vehicle else "no vehicle yet"
         parts = [

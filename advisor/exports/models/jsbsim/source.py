@@ -39,7 +39,7 @@ class AddedFunction:
     """Value of the property from which the variable counts."""
     power: int = 1
     further: str = ""
-    """Further property that multiplies the function."""
+    """Further property of JSBSim that multiplies the function of a force or moment."""
 
 
 @dataclass(frozen=True)
