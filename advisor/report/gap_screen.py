@@ -38,8 +38,6 @@ _ROUNDS_TO_ALL = 0.995
 _BAR = 40
 _SPEED = "airspeed_variation"
 """Effect that is no step where the simulator already contains the measured speed."""
-_WORTH_SAYING = 0.005
-"""Share below which a number rounds to nothing and is left out."""
 
 
 class GapScreen:
@@ -194,7 +192,7 @@ def _picture(d: Diagnosis) -> Iterator[RenderableType]:
     scores = {
         block: score
         for block, score in d.where.ranking
-        if score >= _WORTH_SAYING and block != guilty and block not in named
+        if round(100.0 * score) > 0 and block != guilty and block not in named
     }
     for row in _PICTURE:
         cells = []

@@ -9,7 +9,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.running_estimate import agrees
+from advisor.campaign.running_estimate import Settling, agrees
 from advisor.campaign.state import CampaignState
 from advisor.mavlink.logs.logs import open_log
 from advisor.session.timeline import Timeline
@@ -77,3 +77,11 @@ def test_agreement_is_judged_at_one_air_speed():
     there = replace(estimate(faster), airspeed_m_s=33.0)
     assert agrees(there, replace(estimate(THETA), airspeed_m_s=30.0))
     assert not agrees(there, replace(estimate(THETA), airspeed_m_s=33.0))
+
+
+@pytest.mark.parametrize(("seconds", "is_enough"), [(0.4, False), (0.5, True)])
+def test_free_response_is_enough_once_it_adds_nothing_for_half_a_second(seconds, is_enough):
+    settling = Settling()
+    for at_s in (10.0, 10.0 + seconds):
+        settling._stds.append((at_s, np.ones(8)))
+    assert (settling._enough(10.0 + seconds) is not None) == is_enough

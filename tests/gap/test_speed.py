@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
-from advisor.gap.records.airspeed import measures_speed
+from advisor.gap.records.airspeed import airspeed_on, measures_speed
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.simulator.layout import HEIGHT, SPEED
@@ -186,3 +187,18 @@ def test_the_files_air_speed_counts_only_where_the_log_has_none():
     assert found.verdict == "none"
     assert found.kinematics.finding == "consistent"
     assert found.reference_airspeed_m_s == pytest.approx(22.0, rel=0.05)
+
+
+@pytest.mark.parametrize(("amplitude_m_s", "follows"), [(0.4, False), (2.0, True)])
+def test_an_air_speed_that_disagrees_with_the_motion_by_more_than_3_percent_is_taken_as_read(
+    amplitude_m_s, follows
+):
+    t = np.arange(0.0, 12.0, 0.05)
+    still = {"a_x": 0.0, "a_z": -9.80665, "theta": 0.0, "alpha": 0.0}
+    reading = 20.0 + amplitude_m_s * np.sin(2.0 * np.pi * t / 3.0)
+    told = {**{name: np.full_like(t, value) for name, value in still.items()}, "airspeed": reading}
+    flown = fly(Setup(maneuvers=1))[0]
+    channels = {name: Channel(name, t, y, "VFR_HUD.airspeed", "measured") for name, y in told.items()}
+    grid = np.arange(0.0, 12.0, 0.005)
+    found = airspeed_on(grid, replace(flown, channels=channels), 0.0)
+    assert (np.ptp(found) > amplitude_m_s) == follows

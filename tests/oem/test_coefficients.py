@@ -56,6 +56,8 @@ def test_missing_geometry_leaves_out_what_needs_it() -> None:
         "C_L_delta_e",
     }
     assert not coefficients(flown(), Reference(mass_kg=10.0), AIR)
+    without_inertia = Reference(mass_kg=10.0, wing_area_m2=0.8, chord_m=0.3)
+    assert set(coefficients(flown(), without_inertia, AIR)) == {"C_L_alpha", "C_L_delta_e"}
 
 
 def test_an_indicated_air_speed_gives_the_coefficients_that_the_true_air_speed_gives() -> None:

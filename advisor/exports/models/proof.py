@@ -77,7 +77,7 @@ class Proof:
         given
             Derivatives of the simulator as given.
         """
-        if not self.taken_back or self.gap_with_them is None:
+        if self.gap_with_them is None:
             return found
         words = [one if one == NUMBERS else spelled(one) for one in self.taken_back]
         said = taken_back_said(words, unused(self.maneuvers), self.gap_with_them, self.after)

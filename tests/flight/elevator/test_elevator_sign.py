@@ -98,3 +98,10 @@ def test_a_manoeuvre_that_tells_nothing_decides_nothing():
 def test_a_diagnosis_knows_what_was_assumed_of_the_elevator():
     (note,) = maneuvers_of([recorded("linear", 1.0, maneuvers=TWO)], Aircraft()).notes
     assert "full travel of 25 deg" in note
+
+
+def test_a_record_without_a_pitch_rate_tells_no_sign():
+    _, (maneuver, *_), _ = flown(Aircraft())
+    assert answers_backwards(maneuver) is not None
+    channels = {name: one for name, one in maneuver.channels.items() if name != "q"}
+    assert answers_backwards(replace(maneuver, channels=channels)) is None

@@ -94,3 +94,13 @@ def test_a_late_bank_is_set_earlier_and_used():
 
 def test_a_late_roll_rate_refuses():
     assert findings(late("p", 0.1))["p_delay_s"].refuses
+
+
+def test_a_vertical_force_of_an_unknown_unit_is_blamed_before_the_side_force():
+    def of_another_unit(channels):
+        bank = channels["bank"]
+        third = np.full(len(bank.t), -9.81 / 3.0)
+        a_z = Channel("a_z", bank.t, third, "RAW_IMU.zacc", "measured")
+        return scaled("a_y", -1.0)({**channels, "a_z": a_z})
+
+    assert list(findings(of_another_unit)) == ["a_z_scale"]

@@ -6,7 +6,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import ManeuverFlown, NoData, Notice, VehicleFound
 from advisor.flight.stream.stream import FlightStream
-from advisor.flight.vehicle.following import FOLLOW
+from advisor.flight.vehicle.following import FOLLOW, SenderWatch
 from tests.flight.columns import Wire, aoa, attitude, fly, heartbeat, hud, plane_parameters, servo, text
 
 START_S = 1000.0
@@ -141,3 +141,14 @@ def test_a_reboot_and_late_packets_are_no_second_vehicle():
     for t in np.arange(START_S + 40.0, START_S + 60.0, 0.05).tolist():
         attitude(wire, t + dice.uniform(0.0, 1.5) * (dice.random() < 0.1), 31.0 + t - START_S)
     assert followed(wire)[3].two_senders is None
+
+
+@pytest.mark.parametrize(("component", "is_second"), [(1, True), (154, False)])
+def test_a_gimbal_that_sends_its_own_attitude_is_no_second_vehicle(component, is_second):
+    wire, watch = Wire(), SenderWatch()
+    for k in range(100):
+        attitude(wire, START_S + 0.1 * k, 50.0 + 0.1 * k)
+        attitude(wire, START_S + 0.1 * k + 0.05, 9000.0 + 0.1 * k, component=component)
+    for number in range(len(wire)):
+        watch.hear(wire.columns([number]), 1)
+    assert (watch.problem(1, START_S + 10.0) is not None) == is_second
