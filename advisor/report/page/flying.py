@@ -166,10 +166,9 @@ def _paint_damping(axes: Axes, damping: Mapping[str, Any]) -> None:
             inside: Range = (limit.damping[0], min(limit.damping[1], top))
             axes.fill_between([column - 0.4, column + 0.4], *inside, facecolor=fill, linewidth=0.0)
             for bound in limit.damping:
-                if bound < top:
-                    axes.plot(
-                        [column - 0.4, column + 0.4], [bound] * 2, color=BLACK, linestyle=line, linewidth=0.8
-                    )
+                axes.plot(
+                    [column - 0.4, column + 0.4], [bound] * 2, color=BLACK, linestyle=line, linewidth=0.8
+                )
     axes.axhspan(low, high, facecolor=BLUE, alpha=0.3, linewidth=0.0)
     axes.axhline(damping["value"], color=BLUE, linewidth=1.2)
     axes.axhline(0.0, color=GREY, linewidth=0.6)
