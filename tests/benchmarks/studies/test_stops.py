@@ -15,15 +15,14 @@ def one(case: Case, campaigns: int = 6) -> Stops:
     return found
 
 
+@pytest.mark.study
 @pytest.mark.parametrize(
     "case",
     [
         Case("white", 5.0),
         Case("white, tight", 5.0, tolerance_percent=1.0),
-        pytest.param(
-            Case("coloured", 2.5, tolerance_percent=2.0, correlation_s=0.2), marks=pytest.mark.study
-        ),
-        pytest.param(Case("lag", 2.5, lag_s=0.14), marks=pytest.mark.study),
+        Case("coloured", 2.5, tolerance_percent=2.0, correlation_s=0.2),
+        Case("lag", 2.5, lag_s=0.14),
     ],
     ids=lambda case: case.name,
 )
