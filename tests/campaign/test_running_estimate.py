@@ -79,9 +79,11 @@ def test_agreement_is_judged_at_one_air_speed():
     assert not agrees(there, replace(estimate(THETA), airspeed_m_s=33.0))
 
 
-@pytest.mark.parametrize(("seconds", "is_enough"), [(0.4, False), (0.5, True)])
-def test_free_response_is_enough_once_it_adds_nothing_for_half_a_second(seconds, is_enough):
+@pytest.mark.parametrize(
+    ("seconds", "gain", "is_enough"),
+    [(0.4, 0.0, False), (0.5, 0.0, True), (0.5, 0.007, True), (0.5, 0.02, False)],
+)
+def test_free_response_is_enough_once_half_a_second_adds_less_than_a_percent(seconds, gain, is_enough):
     settling = Settling()
-    for at_s in (10.0, 10.0 + seconds):
-        settling._stds.append((at_s, np.ones(8)))
+    settling._stds.extend([(10.0, np.ones(8)), (10.0 + seconds, np.full(8, 1.0 - gain))])
     assert (settling._enough(10.0 + seconds) is not None) == is_enough
