@@ -121,6 +121,13 @@ def behind(health: LinkHealth) -> LinkHealth:
 UP_TO_DATE = LinkHealth("good", "400 messages/s.", link=HEARD, read_to_s=1000.0)
 
 
+def test_nothing_is_in_the_air_once_the_log_has_ended() -> None:
+    state = flights.state(5, in_the_air=True)
+    assert flying_in_words(view(state, UP_TO_DATE)).startswith("flown ")
+    ended = view(state, replace(UP_TO_DATE, condition="ended"))
+    assert flying_in_words(ended) == "nothing: the log has ended"
+
+
 def test_the_word_gives_way_to_the_backlog_and_no_old_value_stands_as_new() -> None:
     state = flights.state(5, in_the_air=True)
     assert advise(view(state, UP_TO_DATE)).word != "BEHIND"

@@ -10,6 +10,8 @@ def flying_in_words(view: View) -> str:
     """Return a line on the manoeuvre in the air."""
     if view.health.behind:
         return f"not known: {view.health.behind}"
+    if view.health.condition == "ended":
+        return "nothing: the log has ended"
     marked_s = view.state.marking_since_s
     if marked_s is not None:
         return f"marked by hand for {view.state.now_s - marked_s:.0f} s"

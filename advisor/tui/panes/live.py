@@ -45,7 +45,7 @@ so: recover. Between manoeuvres nothing moves here; the last trace stays.
     def show(self, view: View) -> None:
         """Draw the manoeuvre in the air. Without one, the last trace stays."""
         flying, settling = view.state.flying, view.state.settling
-        if flying is None:
+        if flying is None or view.health.condition == "ended":
             self.subtitle("")
             return
         self.subtitle(f"in the air: manoeuvre {flying.number}")
