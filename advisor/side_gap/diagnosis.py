@@ -16,6 +16,7 @@ from advisor.gap.inference.posterior import NONE, relabelled
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Cause, Value, Where, ranked
 from advisor.gap.search.air import NATURAL_GUST_ANGLE
+from advisor.gap.verdict.causes import MOST_CAUSES
 from advisor.gap.verdict.reasons import weighed
 from advisor.gap.verdict.statements import what
 from advisor.gap.verdict.text import answers_of, place
@@ -127,7 +128,7 @@ class SideDiagnosis(Weighed):
         return ". ".join(one.sentence for one in self.causes if one.cause.present)
 
 
-def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> SideDiagnosis | None:
+def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None:
     """Return the probabilities of all explanations; None where no plain fit exists.
 
     Where one effect is the likeliest explanation, a second one is sought in the model with the first.
@@ -135,7 +136,6 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> Sid
     Parameters
     ----------
     prior : shares of the answers before the flight.
-    listed : number of causes that are returned.
     """
     first = case.fit(case.begin, case.natural)
     plain = first and case.fit(first.point, first.free, share=share_of(first))
@@ -151,7 +151,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD, listed: int = 5) -> Sid
     unseen_by = squares_of(plain, information_of(plain, 1.0), case.prior_of(ERROR_IF_WRONG, plain.free))
     return SideDiagnosis(
         evidence=told.evidence, why=told.why, answer=told.answer, rival=told.rival, decisions=told.decisions,
-        causes=tuple(_causes(case, found, as_given))[:listed],
+        causes=tuple(_causes(case, found, as_given))[:MOST_CAUSES],
         peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain),
         before=_gap(plain, np.asarray(np.bincount(plain.assembly.channel, as_given.residual**2), float)),
         after=_gap(plain, np.sum(unseen_by.held_out, axis=0)) if len(case.flown) > 1 else {},

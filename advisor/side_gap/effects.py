@@ -61,22 +61,12 @@ class SideEffect:
         """Name of the effect in documents: ``aileron_actuator_lag``, ``roll_rate_scale``."""
         return self.named.replace(" ", "_")
 
-    @property
-    def block(self) -> str:
-        """Block of the simulator in which the effect acts."""
-        return block_of(self.of)
-
     def said(self, sentence: str) -> str:
         """Return the pitch axis' sentence in the words of this axis; the control leads where none changes."""
         for old, new in self.words.items():
             if old in sentence:
                 return sentence.replace(old, new)
         return sentence if not self.words else f"{self.of.capitalize()}: {sentence[0].lower()}{sentence[1:]}"
-
-    @property
-    def is_one_sided(self) -> bool:
-        """Whether the first parameter cannot be negative."""
-        return self.variant.bounds[0][0] >= 0.0
 
     @property
     def starts(self) -> tuple[tuple[float, ...], ...]:

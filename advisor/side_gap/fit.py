@@ -108,16 +108,22 @@ def fitted(
 ) -> Fit | None:
     """Return the optimum from a start; None where the model runs away there."""
     at = _at(flown, begin, free, known)
+    if at is None:
+        return None
     for _ in range(rounds):
-        if at is None:
-            return None
-        moved = next(filter(None, _trials(flown, at, known)), None)
+        slopes = _slopes(flown, at)
+        step = _step(at, slopes, known)
+        trials = _trials(flown, at, known, step) if step.promise > SETTLED else iter(())
+        moved = next(filter(None, trials), None)
         if moved is None:
             break
         gain, at = at.cost - moved.cost, moved
         if gain < SETTLED:
             break
-    return None if at is None else _finished(flown, at)
+    # A step that gains so little changes no slope.
+    columns = np.column_stack([at.g[:, :N], slopes])
+    projected, _ = _projected(at, columns, 1.0 / at.noise[at.assembly.channel])
+    return Fit(at.point, at.assembly, tuple(at.free), at.y, at.noise, at.likelihood, projected, slopes, at.g)
 
 
 class _At(NamedTuple):
@@ -144,26 +150,50 @@ def _at(flown: Flown, point: Point, free: Sequence[Free], known: Known) -> _At |
     return _At(point, free, assembly, y, g, noise, -0.5 * minus_twice, cost)
 
 
-def _trials(flown: Flown, at: _At, known: Known) -> Iterator[_At | None]:
-    """Yield points along the Gauss-Newton step, each a quarter as far, that lower the cost; else None."""
-    columns = np.column_stack([at.g[:, :N], _slopes(flown, at)])
+class _Step(NamedTuple):
+    """A Gauss-Newton step, with the linear model that it follows."""
+
+    values: FloatArray
+    """(15 + k,) derivatives and numbers before the step."""
+    change: FloatArray
+    """(15 + k,)"""
+    columns: FloatArray
+    """(N, 15 + k) weighed derivatives of the outputs."""
+    residual: FloatArray
+    """(N,) weighed."""
+    own: list[tuple[slice, FloatArray]]
+    """Rows of each manoeuvre, and the weighed derivatives by its own parameters."""
+    promise: float
+    """Decrease of the cost that the linear model promises."""
+
+
+def _step(at: _At, slopes: FloatArray, known: Known) -> _Step:
+    """Return the step within the bounds of all numbers."""
+    columns = np.column_stack([at.g[:, :N], slopes])
     weight = 1.0 / at.noise[at.assembly.channel]
-    residual = at.assembly.z - at.y
-    projected, bases = _projected(at, columns, weight)
+    residual = weight * (at.assembly.z - at.y)
+    projected, own = _projected(at, columns, weight)
     values = np.concatenate([at.point.theta, _numbers(at.point, at.free)])
     weighed = projected * weight[:, None]
     information = weighed.T @ weighed + np.diag(known.precision)
-    pull = weighed.T @ (weight * residual) + known.precision * (known.mean - values)
+    pull = weighed.T @ residual + known.precision * (known.mean - values)
     low, high = np.array([(-np.inf, np.inf)] * N + [f.bounds for f in at.free]).T
-    step = solved_within(information, pull, low - values, high - values)
+    change = solved_within(information, pull, low - values, high - values)
+    promise = float(2.0 * pull @ change - change @ information @ change)
+    for rows, mine in own:
+        promise += float(residual[rows] @ mine @ np.linalg.lstsq(mine, residual[rows], rcond=None)[0])
+    return _Step(values, change, columns * weight[:, None], residual, own, promise)
+
+
+def _trials(flown: Flown, at: _At, known: Known, step: _Step) -> Iterator[_At | None]:
+    """Yield points along the step, each a quarter as far, that lower the cost; else None."""
     for share in (1.0, 0.25, 0.06):
-        moved = share * step
-        numbers = values[N:] + moved[N:]
-        left = weight * (residual - columns @ moved)
+        moved = share * step.change
+        left = step.residual - step.columns @ moved
         local = at.point.local.copy()
-        own = at.assembly.own - N
-        for m, (rows, mine) in enumerate(bases):
-            local[m, own] += np.linalg.lstsq(mine, left[rows], rcond=None)[0]
+        for m, (rows, mine) in enumerate(step.own):
+            local[m, at.assembly.own - N] += np.linalg.lstsq(mine, left[rows], rcond=None)[0]
+        numbers = (step.values + moved)[N:]
         setting = moved_to(at.point.setting, [f.place for f in at.free], numbers)
         trial = _at(flown, Point(at.point.theta + moved[:N], local, setting), at.free, known)
         yield trial if trial is not None and trial.cost < at.cost else None
@@ -217,9 +247,3 @@ def outputs(flown: Flown, point: Point) -> FloatArray:
 
 def _numbers(point: Point, free: Sequence[Free]) -> FloatArray:
     return np.array([point.setting[f.place][0] if f.place in point.setting else 0.0 for f in free])
-
-
-def _finished(flown: Flown, at: _At) -> Fit:
-    slopes = _slopes(flown, at)
-    projected, _ = _projected(at, np.column_stack([at.g[:, :N], slopes]), 1.0 / at.noise[at.assembly.channel])
-    return Fit(at.point, at.assembly, tuple(at.free), at.y, at.noise, at.likelihood, projected, slopes, at.g)

@@ -15,7 +15,7 @@ from advisor.gap.inference.residual import Residual
 from advisor.gap.inference.sizes import natural_share
 from advisor.gap.inference.stage import Pairs, Stage, likeliest, within_model_error
 from advisor.side_gap.disturbance import courses_of
-from advisor.side_gap.effects import SideEffect
+from advisor.side_gap.effects import SideEffect, block_of
 from advisor.side_gap.evidence import Gain, gain_of, information_of, posterior_of, share_of, squares_of
 from advisor.side_gap.fit import Fit, Free, Known
 from advisor.side_gap.gusts import Gusts, coloured_likelihood, side_gusts
@@ -87,16 +87,18 @@ class SideFlight:
         table = _beside(base, self.table)
         starts = Starts(self.case, plain, table)
         of_laws = Starts(self.case, plain, _beside(base, self.laws)).of_each
-        chosen = [*likeliest(starts.of_each, most), *likeliest(of_laws, LAWS)]
+        chosen = [(one, ERROR_IF_WRONG) for one in likeliest(starts.of_each, most)]
+        chosen += [(one, ERROR_IF_WRONG) for one in likeliest(of_laws, LAWS)]
         near = self.is_stated and self.case.fit(
             plain.point, free_near(self.case, plain), ERROR_IF_RIGHT, share
         )
         if near:
-            others = [effect for effect in table if effect.name not in {one.name for one in chosen}]
-            chosen += likeliest(Starts(self.case, near, others, ERROR_IF_RIGHT).of_each, AT_THE_FILE)
+            others = [effect for effect in table if effect.name not in {one.name for one, _ in chosen}]
+            tight = Starts(self.case, near, others, ERROR_IF_RIGHT).of_each
+            chosen += [(one, ERROR_IF_RIGHT) for one in likeliest(tight, AT_THE_FILE)]
         everyone = [replace(self._model(None, plain, plain, share), starts=starts)]
-        for one in chosen:
-            fit = self.case.fit(one.point, free_with(self.case, one.effect, plain), share=share)
+        for one, tolerance in chosen:
+            fit = self.case.fit(one.point, free_with(self.case, one.effect, plain), tolerance, share)
             everyone += [] if fit is None else [self._model(one.effect, fit, plain, share)]
         return share**-2, everyone
 
@@ -191,7 +193,7 @@ class SideFlight:
         if effect is None:
             return model
         # Half of the prior lies below zero, where the bounds exclude a size.
-        extra = np.log(2.0) if effect.is_one_sided else 0.0
+        extra = np.log(2.0) if effect.variant.bounds[0][0] >= 0.0 else 0.0
         if effect.sides is not None:
             extra -= len(self.case.flown) * np.log(len(effect.sides[1]))
         was = squares_of(plain, information_of(plain, share), self._wide(plain))
@@ -202,7 +204,7 @@ class SideFlight:
         is_law = any(effect is law for law in self.laws)
         answer = LAW if is_law else Alternative("effect", effect.name)
         return replace(
-            model.more(extra + unseen), alternative=replace(answer, block=effect.block), name=effect.name,
+            model.more(extra + unseen), alternative=replace(answer, block=block_of(effect.of)), name=effect.name,
             numbers=effect.variant.names, beyond=extra + unseen, unseen=unseen, gain=gain,
         )  # fmt: skip
 

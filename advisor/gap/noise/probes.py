@@ -60,9 +60,7 @@ class Probe:
     """Share of the weighted residual power that the disturbance explains."""
 
 
-def probe_blocks(
-    problem: EffectProblem, fitted: EffectFit, noise: FloatArray, blocks: Sequence[str] | None = None
-) -> list[Probe]:
+def probe_blocks(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> list[Probe]:
     """Return the disturbance of every block, likeliest first.
 
     With a filter in the problem, the disturbance is one beyond the noise that the filter knows.
@@ -72,10 +70,9 @@ def probe_blocks(
     noise
         Shape (channels,): noise of the innovations, or without a filter that of the instruments alone.
     """
-    wanted = [*DYNAMIC, *SENSOR_CHANNELS] if blocks is None else list(blocks)
     shown = {*problem.channels, *(["air"] if problem.flights.shows_air else [])}
     needed = {**SENSOR_CHANNELS, "air": "air"}
-    there = [block for block in wanted if needed.get(block, "q") in shown]
+    there = [block for block in (*DYNAMIC, *SENSOR_CHANNELS) if needed.get(block, "q") in shown]
     spectra: dict[str, list[FloatArray]] = {block: [] for block in there}
     powers: dict[str, list[FloatArray]] = {block: [] for block in there}
     units: dict[str, float] = {}

@@ -64,23 +64,23 @@ class Screen:
             self.quick_fits(variants), key=lambda s: s.cost + price * len(s.variant.names), default=None
         )
 
-    def quick_fits(self, variants: Sequence[Variant], most: float = 0.0) -> list[Screened]:
+    def quick_fits(self, variants: Sequence[Variant]) -> list[Screened]:
         """Return the best quick fit of each variant over its starts, where one of them leads anywhere.
 
-        ``most`` is a decrease of the cost by something else; variants that promise next to nothing relative
-        to it are not followed.
+        Variants that promise next to nothing relative to the best one are not followed.
         """
         began = [(n, start) for n, variant in enumerate(variants) for start in variant.starts]
-        ended = self._together([self._descend(variants[n], start) for n, start in began], most)
+        ended = self._together([self._descend(variants[n], start) for n, start in began])
         best: dict[int, Screened] = {}
         for (n, _), end in zip(began, ended, strict=True):
             if end is not None and (n not in best or end.cost < best[n].cost):
                 best[n] = end
         return list(best.values())
 
-    def _together(self, descents: Sequence[_Descent], most: float) -> list[Screened | None]:
+    def _together(self, descents: Sequence[_Descent]) -> list[Screened | None]:
         """Follow all descents side by side, so that the next points of many are simulated at once."""
         ended: list[Screened | None] = [None] * len(descents)
+        most = 0.0
         asked = {n: next(descent) for n, descent in enumerate(descents)}
         while asked:
             some = list(asked)[:_AT_ONCE]

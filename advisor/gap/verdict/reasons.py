@@ -7,14 +7,7 @@ from typing import Any
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.alternative import (
-    Alternative,
-    AlternativeEvidence,
-    Column,
-    Contribution,
-    Weighed,
-    together,
-)
+from advisor.gap.alternative import Alternative, AlternativeEvidence, Column, Contribution, Weighed, together
 from advisor.gap.decision import Decision
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import whole_gap
