@@ -204,8 +204,8 @@ class SideFlight:
         is_law = any(effect is law for law in self.laws)
         answer = LAW if is_law else Alternative("effect", effect.name)
         return replace(
-            model.more(extra + unseen), alternative=replace(answer, block=block_of(effect.of)), name=effect.name,
-            numbers=effect.variant.names, beyond=extra + unseen, unseen=unseen, gain=gain,
+            model.more(extra + unseen), alternative=replace(answer, block=block_of(effect.of)),
+            name=effect.name, numbers=effect.variant.names, beyond=extra + unseen, unseen=unseen, gain=gain,
         )  # fmt: skip
 
 
