@@ -187,7 +187,7 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
     vane_m, imu_m = aircraft.alpha.vane_arm_m, aircraft.accelerometer.arm_m
     if vane_m is None and ("a_z" in measured or not problem.alpha_is_computed):
         unknown.append(VANE_ARM.open(problem))
-    elif vane_m is not None and "a_z" in measured:
+    elif "a_z" in measured:
         place = ACCELEROMETER_ARM.open(problem) if imu_m is None else replace(VANE_ARM, stated=vane_m)
         unknown.append(place)
     return tuple(unknown)

@@ -23,7 +23,7 @@ from advisor.flight.instruments.examination import (
     stated_force_unit,
 )
 from advisor.flight.instruments.examined import PLAIN, SIGMAS, Examined, Work, hold_clocks, with_error
-from advisor.flight.instruments.measured import ANY, AS_STATED, EXCLUDED, Evidence, Measured, weigh
+from advisor.flight.instruments.measured import ANY, EXCLUDED, Evidence, Measured, weigh
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import channel_at
 from advisor.flight.signals.record import Channel
@@ -216,7 +216,7 @@ def _side_force_unit(work: Work, told: Evidence) -> None:
     if by_vane is not None and _resolved(by_vane):
         others = {unit: factor for unit, factor in factors.items() if unit != stated}
         weighed = weigh(by_vane, others, _FORCE_WIDTH)
-        if weighed.contradicts and weighed.best != AS_STATED:
+        if weighed.contradicts:
             unit = "an unknown unit" if weighed.best == ANY else weighed.best
             _in_unit(work, stated, unit, by_vane, "the sideslip needs it times")
     elif in_g is not None and _resolved(in_g):
