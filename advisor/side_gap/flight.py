@@ -10,10 +10,10 @@ from advisor.gap.alternative import Alternative
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.inference.explanation import Evidence, Explanation
 from advisor.gap.inference.marginal import marginal
-from advisor.gap.inference.pitch import AT_THE_FILE, LAWS
+from advisor.gap.inference.posterior import UNKNOWN
 from advisor.gap.inference.residual import Residual
 from advisor.gap.inference.sizes import natural_share
-from advisor.gap.inference.stage import Pairs, Stage, likeliest, within_model_error
+from advisor.gap.inference.stage import AT_THE_FILE, LAWS, Pairs, Stage, likeliest, within_model_error
 from advisor.side_gap.disturbance import courses_of
 from advisor.side_gap.effects import SideEffect, block_of
 from advisor.side_gap.evidence import Gain, gain_of, information_of, posterior_of, share_of, squares_of
@@ -24,7 +24,6 @@ from advisor.side_gap.residual import residual_of
 from advisor.side_gap.starts import Starts
 
 _TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
-LAW = Alternative("unknown", "unknown")
 LIKELY = 0.01
 """Probability above which an effect is tried in side gusts and its sizes are stated."""
 
@@ -202,7 +201,7 @@ class SideFlight:
         gain = gain_of(was.held_out, now.held_out, counts, share)
         unseen = min(gain.total - gain_of(was.in_fit, now.in_fit, counts, share).total, 0.0)
         is_law = any(effect is law for law in self.laws)
-        answer = LAW if is_law else Alternative("effect", effect.name)
+        answer = UNKNOWN if is_law else Alternative("effect", effect.name)
         return replace(
             model.more(extra + unseen), alternative=replace(answer, block=block_of(effect.of)),
             name=effect.name, numbers=effect.variant.names, beyond=extra + unseen, unseen=unseen, gain=gain,

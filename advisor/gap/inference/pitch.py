@@ -1,30 +1,24 @@
 """Pitch, as the engine asks for it: fits with an effect, their evidence, and what they leave."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.alternative import Alternative
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.inference.evidence import FlightProblem, evidence_of, log_likelihood, temperature
 from advisor.gap.inference.explanation import Explanation
-from advisor.gap.inference.posterior import stated_as
+from advisor.gap.inference.posterior import UNKNOWN, stated_as
 from advisor.gap.inference.residual import Residual, residual_of
 from advisor.gap.inference.sizes import natural_share
-from advisor.gap.inference.stage import Pairs, Stage, likeliest
+from advisor.gap.inference.stage import AT_THE_FILE, LAWS, Pairs, Stage, likeliest
 from advisor.gap.kit.variant import Variant
 from advisor.gap.search.screen import Screen
 
-LAWS = 2
-"""Numerical: number of laws outside the catalogue that are fitted in full."""
-AT_THE_FILE = 3
-"""Numerical: number of effects that are fitted in full because they are the likeliest with the file's
-derivatives. A wrong derivative hides such an effect from the fit in which all are free."""
 _SYMMETRIC = float(np.log(2.0))
 """Log prior gain, nats, of a number that cannot be negative: its Gaussian prior has half the range."""
 
@@ -129,7 +123,7 @@ class PitchFlight:
         unseen = 0.0 if variant.needs else _lost_unseen(problem, plain, made, held) / heat
         extra = _extra(variant, len(problem.flights)) + unseen
         return PitchModel(
-            alternative=Alternative("unknown", "unknown", variant.block)
+            alternative=replace(UNKNOWN, block=variant.block)
             if any(variant.effect == law.effect for law in self.laws)
             else stated_as(variant.effect),
             name=variant.effect, numbers=variant.names,

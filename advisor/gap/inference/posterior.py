@@ -59,6 +59,8 @@ def stated_as(name: str) -> Alternative:
 
 
 NONE, PARAMETERS = Alternative("none", "none"), Alternative("parameters", "parameters")
+UNKNOWN = Alternative("unknown", "unknown")
+"""Something without a name, in any block."""
 
 
 def rows_of(
@@ -175,7 +177,7 @@ def _with_residual(way: Row[E], residual: Residual, prior: FieldPrior) -> Iterat
             yield replace(way, terms={**way.terms, "residual": as_lacking + float(np.log(0.5 * share))})
             continue
         told = {"prior": way.terms["prior"] + lacking + float(np.log(share)), "residual": as_lacking}
-        yield replace(way, alternative=Alternative("unknown", "unknown", block), terms={**way.terms, **told})
+        yield replace(way, alternative=replace(UNKNOWN, block=block), terms={**way.terms, **told})
 
 
 def posterior_of(rows: Iterable[Row[E]]) -> Posterior[E]:

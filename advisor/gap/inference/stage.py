@@ -8,6 +8,11 @@ from advisor.gap.inference.explanation import E
 from advisor.gap.inference.model_error import most_nats
 from advisor.gap.inference.residual import Residual
 
+LAWS = 2
+"""Numerical: number of laws outside the catalogue that are fitted in full."""
+AT_THE_FILE = 3
+"""Numerical: number of effects that are fitted in full because they are the likeliest with the file's
+derivatives. A wrong derivative hides such an effect from the fit in which all are free."""
 _FORMS = 2
 """Numerical: number of descriptions of one effect that are fitted in full."""
 _REFINED = 120.0
