@@ -32,7 +32,7 @@ EFFECTS = (
 """Folders that describe effects, by their table and their equations."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
-    "lines of code": 6957,
+    "lines of code": 6950,
     "constants": 222,
     "constants that decide": 51,
     "names compared": 11,

@@ -1,7 +1,7 @@
 """Change of the outputs by another setting, at the derivatives of a fit.
 
-A surface that moves otherwise is a disturbance of its control, whose linear response is known. A late or
-scaled reading is the fitted output read otherwise. Everything else is simulated.
+A surface that moves otherwise is a disturbance of its control, whose linear response is known. A late reading
+is the fitted output at another time.
 """
 
 from collections.abc import Sequence
@@ -11,17 +11,16 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.lateral import LATERAL
 from advisor.side_gap.disturbance import STEP_S, answered
-from advisor.side_gap.fit import Fit, outputs
-from advisor.side_gap.setting import COMMAND, PROPELLED, PROPELLER, Flown, Setting, deflection
+from advisor.side_gap.fit import Fit
+from advisor.side_gap.setting import COMMAND, Flown, Setting, deflection
 
 
 def changes_by(fit: Fit, flown: Flown, of: str, settings: Sequence[Setting]) -> FloatArray:
-    """Return the change (settings, N) of the outputs by settings that differ at one control or output."""
-    control = PROPELLED if of == PROPELLER[0] else of
-    if control in LATERAL.inputs:
-        parts = [_by_surface(fit, flown, m, control, settings) for m in range(len(flown))]
+    """Return the change (settings, N) of the outputs by other parts of a servo, or by late stamps."""
+    if of in LATERAL.inputs:
+        parts = [_by_surface(fit, flown, m, of, settings) for m in range(len(flown))]
         return np.vstack(parts).T
-    return np.array([_read_otherwise(fit, flown, of, setting) for setting in settings])
+    return np.array([_read_later(fit, of, setting) for setting in settings]).reshape(-1, len(fit.fitted))
 
 
 def _by_surface(fit: Fit, flown: Flown, m: int, control: str, settings: Sequence[Setting]) -> FloatArray:
@@ -37,17 +36,11 @@ def _by_surface(fit: Fit, flown: Flown, m: int, control: str, settings: Sequence
     return answered(fit, flown, m, control, t, moves)
 
 
-def _read_otherwise(fit: Fit, flown: Flown, of: str, setting: Setting) -> FloatArray:
-    """Return the change (N,) of the outputs by late stamps or a scale of a reading, or by an arm."""
-    now = fit.point.setting
-    late, scale, arm = (
-        setting.get((of, e), np.zeros(1))[0] - now.get((of, e), np.zeros(1))[0]
-        for e in ("skew_s", "scale", "arm_m")
-    )
-    if arm:
-        return outputs(flown, fit.point._replace(setting=setting)) - fit.fitted
+def _read_later(fit: Fit, of: str, setting: Setting) -> FloatArray:
+    """Return the change (N,) of the outputs by late stamps of one."""
+    late, now = (numbers.get((of, "skew_s"), np.zeros(1))[0] for numbers in (setting, fit.point.setting))
     change = np.zeros(len(fit.fitted))
     for rows in (named[of] for named in fit.assembly.rows):
         t, y = fit.assembly.t[rows], fit.fitted[rows]
-        change[rows] = (1.0 + scale) * np.interp(t - late, t, y) - y
+        change[rows] = np.interp(t - late + now, t, y) - y
     return change

@@ -70,9 +70,8 @@ class SideEffect:
 
     @property
     def starts(self) -> tuple[tuple[float, ...], ...]:
-        """Sizes at which a search starts; both signs of the prior's width where the table has only zero."""
-        told = self.variant.starts
-        return told if any(start[0] for start in told) else (self.std, tuple(-s for s in self.std))
+        """Sizes at which a search starts; none where the outputs are linear in the size."""
+        return tuple(start for start in self.variant.starts if start[0])
 
     @property
     def sides(self) -> tuple[Place, tuple[float, ...]] | None:

@@ -20,8 +20,7 @@ from advisor.oem.surface import LONGEST_STEP_S, Servo
 Place = tuple[str, str]
 """Control or output, and the entry of it that a number sets: ``("aileron", "lag_s")``, ``("p", "scale")``."""
 COMMAND = ("command", "delay_s")
-PROPELLER, PROPELLED = ("throttle", "aileron_rad"), "aileron"
-"""Place of the propeller's roll, and the control that rolls as much."""
+PROPELLER = ("throttle", "aileron_rad")
 AIR_SPEED = ("air", "scale")
 """Relative excess of the true over the read air speed."""
 
@@ -91,7 +90,7 @@ def deflection(flown: Flown, m: int, control: str, setting: Setting) -> Signal:
             p[INDEX[entry]] = values[m]
     moved = _deflected(flown.problem.records[m].inputs[control], p)
     throttle, share = flown.throttle[m], setting.get(PROPELLER)
-    if throttle is None or share is None or control != PROPELLED or share[m] == 0.0:
+    if throttle is None or share is None or control != "aileron" or share[m] == 0.0:
         return moved
     t = np.union1d(moved.t, throttle.t)
     return Signal(t, moved.at(t) + share[m] * (throttle.at(t) - throttle.y[0]))

@@ -57,7 +57,7 @@ class Starts:
         self._parts = [plain.assembly.owner == m for m in range(plain.assembly.maneuvers)]
         self._begin = self._without(plain.residual * plain.weight)
         self._cost = -2.0 * plain.likelihood - float(self._begin @ self._begin)
-        self.of_each = [start for effect in table if (start := self._best(effect)) is not None]
+        self.of_each = [self._best(effect) for effect in table]
 
     def together(self, one: Start, other: Start) -> float:
         """Return the price of both effects at once, by the ways to their starts."""
@@ -65,10 +65,8 @@ class Starts:
         count = len(one.effect.places) + len(other.effect.places)
         return self._cost + left - one.saved - other.saved + 2.0 * count
 
-    def _best(self, effect: SideEffect) -> Start | None:
-        """Return the start of an effect that leaves least, by one simulation for each start of the table.
-
-        None where the model runs away at every start.
+    def _best(self, effect: SideEffect) -> Start:
+        """Return the start of an effect that leaves least.
 
         An effect at the place of a natural number starts at that number, and saves what its prior has cost.
         """
@@ -81,16 +79,17 @@ class Starts:
             if one.place in effect.places
         )
         if not saved:
-            tangent = [self._tangent(effect)] if effect.of in LATERAL.outputs else []
-            return min([*tangent, *self._each(effect)], key=lambda start: start.cost, default=None)
+            linear = effect.of in LATERAL.outputs or not effect.starts
+            tangent = [self._tangent(effect)] if linear else []
+            return min([*tangent, *self._each(effect)], key=lambda start: start.cost)
         cost = self._cost + float(self._begin @ self._begin) - saved
         return Start(effect, cost, plain.point, np.zeros(len(self._begin)), saved)
 
     def _tangent(self, effect: SideEffect) -> Start:
-        """Return the start of a late or scaled reading by the slope of the outputs.
+        """Return the start of an effect by the slope of the outputs.
 
-        The clocks of all other channels may be late too. Together they move by as much without a residual,
-        but only in small steps do they all count as linear.
+        Where a reading is late, the clocks of all other channels may be late too. Together they move by as
+        much without a residual, but only in small steps do they all count as linear.
         """
         point, step = self._plain.point, np.array(effect.variant.steps)
         setting = moved_to(point.setting, effect.places, base_of(self._case, effect) + step)
@@ -115,10 +114,10 @@ class Starts:
         base = base_of(case, effect)
         begun = [moved_to(point.setting, effect.places, base + values) for values in effect.starts]
         tried = [moved_to(setting, [place], np.array([side])) for setting in begun for side in sides]
-        changes = changes_by(self._plain, case.flown, effect.of, tried).reshape(len(begun), len(sides), -1)
+        changes = changes_by(self._plain, case.flown, effect.of, tried).reshape(
+            len(begun), len(sides), len(self._begin)
+        )
         for values, setting, changed in zip(effect.starts, begun, changes, strict=True):
-            if not np.all(np.isfinite(changed)):
-                continue
             ways = [self._without(change * self._plain.weight) for change in changed]
             shares = [np.clip(way @ self._begin / (way @ way + 1e-12), *SECANT) for way in ways]
             left = [self._begin - share * way for share, way in zip(shares, ways, strict=True)]
