@@ -24,17 +24,10 @@ def joint_table(state: CampaignState, prior: Mapping[str, float]) -> Table | Non
     if state.model is None:
         return None
     rows = [estimated_parameter(name, state.model, prior) for name in PARAMETERS]
-    return joint_of("joint", joint_source(state.estimate_from, reference_speed(state)), rows, reasons=True)
+    return joint_of("joint", joint_source(state.estimate_from, reference_speed(state)), rows)
 
 
-def joint_of(
-    name: str,
-    source: str,
-    rows: Iterable[EstimatedParameter],
-    more: str = "",
-    *,
-    reasons: bool = False,
-) -> Table:
+def joint_of(name: str, source: str, rows: Iterable[EstimatedParameter], more: str = "") -> Table:
     """Return the table ``name`` of a joint estimate; ``more`` follows the sentence above the table."""
     return Table(
         name, f"{source}; ± is half the 95 % interval.{more}",
@@ -42,7 +35,7 @@ def joint_of(
         tuple(
             (
                 row.name,
-                f"– ({row.reason})" if row.reason and reasons else row.cell,
+                row.cell,
                 "–" if row.reason else f"{row.half_if_white:.2g}",
                 row.prior_cell,
                 row.unit,

@@ -11,6 +11,7 @@ from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.report.facts.decision import INDENT, decisions
+from advisor.report.facts.estimates import untold
 from advisor.report.facts.gap import counted
 from advisor.report.lateral import lateral_lines
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
@@ -81,6 +82,7 @@ class AnalysisText:
         joint = joint_table(self.state, self.aircraft.model)
         if self.state.model is not None and joint is not None:
             yield joint.on_console(joint.caption)
+            yield from map(Text, untold(self.state.model))
             yield from (Text(f"note: {note}") for note in self.state.model.notes)
             yield Text()
             yield from self._qualities()

@@ -62,13 +62,14 @@ def joint_source(numbers: Iterable[int], at: str) -> str:
     return f"Joint estimate from manoeuvres {', '.join(map(str, numbers))}{at}"
 
 
-def untold(model: LateralEstimate) -> list[str]:
-    """Return one sentence for each reason why derivatives and modes of roll and yaw are not told."""
+def untold(estimate: Estimate) -> list[str]:
+    """Return one sentence for each reason why derivatives, and modes of roll and yaw, are not told."""
     found: dict[str, list[str]] = {}
-    for name, reason in model.not_identifiable.items():
+    for name, reason in estimate.not_identifiable.items():
         found.setdefault(reason, []).append(symbol(name))
     told = [f"Not identifiable: {', '.join(names)}; {reason}." for reason, names in found.items()]
-    return told + [f"No {mode.replace('_', ' ')} mode: {why}." for mode, why in model.modes.left_out.items()]
+    left_out = estimate.modes.left_out if isinstance(estimate, LateralEstimate) else {}
+    return told + [f"No {mode.replace('_', ' ')} mode: {why}." for mode, why in left_out.items()]
 
 
 def instrument_facts(estimate: object, channels: Mapping[str, ChannelStatus]) -> list[tuple[Fact, str]]:

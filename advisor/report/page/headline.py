@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from advisor.report.facts.estimates import untold
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content
 from advisor.report.page.gap import answer
@@ -38,8 +39,9 @@ def _blocks(content: Content) -> Iterator[Block]:
         )
     yield from listing([f"Warning: {warning}" for warning in verdict["warnings"]])
     joint = joint_table(content.state, content.aircraft.model)
-    if joint is not None:
+    if joint is not None and content.state.model is not None:
         yield joint
+        yield from listing(untold(content.state.model))
     found = content.gap
     if found is not None and found["usable"]:
         yield from answer(found)
