@@ -7,7 +7,7 @@ from typing import Any
 from advisor.gap.alternative import Weighed
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.verdict.text import title_of_verdict
-from advisor.report.facts.gap import changes
+from advisor.report.facts.gap import changes, counted
 from advisor.report.facts.reasons import how_sure, in_percent
 from advisor.report.facts.sizes import named, sizes_of, with_error
 from advisor.report.gap_document import changed_document, weighed_document
@@ -33,8 +33,8 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
     yield from (f"  {named(name)} {with_error(name, one)}" for name, one in found.instruments.items())
     gap = found.diagnosis
     if gap is not None and gap.after and found.verdict is not None:
-        listed = ", ".join(map(str, found.maneuvers))
-        yield f"Gap on manoeuvres {listed}, each held out in turn, mean square over noise, minus 1:"
+        numbers = counted(found.maneuvers)
+        yield f"Gap on manoeuvres {numbers}, each held out in turn, mean square over noise, minus 1:"
         for name, before in gap.before.items():
             yield f"  {name:<5} {before:8.2f} before, {gap.after[name]:.2f} after"
 
