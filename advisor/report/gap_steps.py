@@ -64,7 +64,8 @@ def next_steps(
         write, proved, formats = _improvement(better, aircraft_file, simulator)
         if written is None:
             command = shlex.join([*read, *write]) if write else ""
-            found.append(GapStep(f"Put into the simulator what it lacks: {what}.{formats}", command))
+            lacks = " what it lacks" if d.verdict == "effect" else ""
+            found.append(GapStep(f"Put into the simulator{lacks}: {what}.{formats}", command))
         prove = shlex.join([*read, *proved])
         found.append(GapStep("Prove the change: the gap must fall to what is printed above.", prove))
     if rival := _against_the_rival(d):

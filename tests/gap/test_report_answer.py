@@ -94,6 +94,15 @@ def test_the_steps_say_what_to_put_how_to_prove_it_and_what_excludes_the_rival()
     assert rival.text == "To exclude actuator lag: log the measured surface position."
 
 
+def test_wrong_numbers_are_put_as_numbers_and_name_the_file_though_a_propeller_belongs_to_the_fit():
+    found = diagnosis(
+        verdict="parameters", derivatives=DERIVATIVES, causes=(), effects={"thrust_moment": {"M_thrust": 0.1}}
+    )
+    put, *_ = next_steps(found, LOGS, "mine.yaml")
+    assert put.text.startswith("Put into the simulator: M_α −44.60 → −34.30 ± 0.71 1/s² (−23 %).")
+    assert put.command.endswith("--out mine-with-fitted-model.yaml")
+
+
 def test_without_a_gap_there_is_nothing_to_put():
     steps = next_steps(diagnosis(verdict="none", causes=()), LOGS, None)
     assert [step.command for step in steps] == [""]
