@@ -6,6 +6,7 @@ import numpy as np
 
 from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import NextInput
+from advisor.session.hand import HandDecision
 from advisor.session.view import SideView
 from advisor.tui.advice import advise
 from advisor.tui.settings import Settings
@@ -58,13 +59,15 @@ async def test_the_fit_has_the_control_that_moved_and_the_outputs_of_the_axis():
         assert "δr [deg]" in here.page()
 
 
-async def test_what_is_decided_by_hand_is_not_offered_for_roll_and_yaw():
+async def test_an_exclusion_by_hand_concerns_the_axis_that_is_shown(monkeypatch):
     async with stage(
         both_axes(judged(1, "aileron")), size=(120, 40), settings=Settings(screen="engineer")
     ) as here:
-        assert here.app.screen.check_action("exclude", ()) is True
-        await here.press("r")
-        assert here.app.screen.check_action("exclude", ()) is False
+        decided = []
+        monkeypatch.setattr(here.app.conductor, "decide", decided.append)
+        await here.press("r", "x", *"gust", "enter")
+        await here.until(lambda: decided)
+        assert decided == [HandDecision("exclude", "gust", 1, "lateral")]
 
 
 async def test_the_pane_of_roll_and_yaw_has_derivatives_modes_and_levels():
