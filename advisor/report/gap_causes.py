@@ -13,7 +13,8 @@ from advisor.gap.alternative import Alternative, Kind, Weighed
 from advisor.gap.decision import Decision
 from advisor.gap.result import Cause, Unseen, spelled
 from advisor.gap.verdict.text import BLOCKS, in_words
-from advisor.report.facts.reasons import heading, in_percent, weighed
+from advisor.report.facts.gap import heading
+from advisor.report.facts.reasons import in_percent, weighed
 from advisor.report.facts.sizes import marked, sizes_of
 
 _LIKELY = 0.01

@@ -10,8 +10,8 @@ from advisor.gap.alternative import AlternativeEvidence, Weighed
 from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification
 from advisor.gap.verdict.text import answers_of, in_words, limits_of, title_of
 from advisor.process.parts import FailedPart
-from advisor.report.facts.gap import changed, grown_said, shrink_said, size_of_gap, where_said
-from advisor.report.facts.reasons import heading, how_sure
+from advisor.report.facts.gap import changed, grown_said, heading, shrink_said, size_of_gap, where_said
+from advisor.report.facts.reasons import how_sure
 from advisor.report.facts.sizes import sizes_of
 from advisor.words.certainty import is_decided
 from advisor.words.plain import picked, plain

@@ -25,7 +25,6 @@ def nothing_read(log: Path) -> list:
         ("fmu:", "nothing follows the colon; write fmu:FILE"),
         ("linear:x", "linear takes nothing"),
         ("linear", "the aircraft file's model lacks Z_alpha"),
-        ("log:nowhere.tlog", "there is no such file"),
         ("log:model.xml", "a log ends with .tlog, .bin, .ulg"),
     ],
 )
@@ -34,6 +33,11 @@ def test_what_names_no_simulator_is_refused_in_one_sentence_with_the_mend(named,
         simulator_of(named, Aircraft(), nothing_read)
     assert sentence in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+def test_a_simulators_log_that_is_missing_ends_like_a_flights_log_that_is_missing():
+    with pytest.raises(UnusableInputError, match=r"There is no file nowhere\.tlog\."):
+        simulator_of("log:nowhere.tlog", Aircraft(), nothing_read)
 
 
 def test_a_kind_whose_package_is_missing_names_the_extra(monkeypatch):

@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 
+from advisor.gap.alternative import Weighed
 from advisor.gap.result import ComparedDerivative, Diagnosis, Shrink, Where
-from advisor.gap.verdict.text import place
+from advisor.gap.verdict.text import in_words, place
 from advisor.report.facts.sizes import before_after, has_grown, short
 from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.quantities import CHANNELS, PARAMETERS, SIDE_PARAMETERS
@@ -72,3 +73,12 @@ def changes(derivatives: Sequence[ComparedDerivative]) -> list[str]:
     agree = [_QUANTITIES[one.name].symbol for one in derivatives if not one.differs]
     lines = [changed(one) for one in derivatives if one.differs]
     return [*lines, *([f"{', '.join(agree)} agree{'s' if len(agree) == 1 else ''}"] if agree else [])]
+
+
+def heading(d: Weighed) -> str:
+    """Return the heading of the reasons; empty without reasons."""
+    if d.answer is None or not d.why:
+        return ""
+    stated = {one.alternative.label: in_words(one.alternative) for one in d.evidence}
+    answer, rival = in_words(d.answer), stated[d.rival]
+    return f"why {answer}, and not {rival}: parts of the log odds, in nats"

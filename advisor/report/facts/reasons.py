@@ -3,9 +3,6 @@
 import math
 from collections.abc import Iterable
 
-from advisor.gap.alternative import Weighed
-from advisor.gap.verdict.text import in_words
-
 _SAYABLE_NATS = 12.0
 """Log odds, nats, above which odds are no longer written as a number: 160,000 to 1."""
 _NOTHING = 0.005
@@ -39,15 +36,6 @@ def how_sure(alternatives: Iterable[tuple[str, float]]) -> str:
         return ""
     more = ", others less" if len(shown) > _MOST else ""
     return f"Probability by the evidence: {', '.join(shown[:_MOST])}{more}."
-
-
-def heading(d: Weighed) -> str:
-    """Return the heading of the reasons; empty without reasons."""
-    if d.answer is None or not d.why:
-        return ""
-    stated = {one.alternative.label: in_words(one.alternative) for one in d.evidence}
-    answer, rival = in_words(d.answer), stated[d.rival]
-    return f"why {answer}, and not {rival}: parts of the log odds, in nats"
 
 
 def weighed(reasons: Iterable[tuple[float, str]]) -> list[tuple[str, str]]:
