@@ -33,8 +33,6 @@ class Figure:
     size: Literal["wide", "half", "third", "quarter", "sixth"] = "wide"
     narrow: Callable[[], str] | None = None
     """Draws the picture for a phone, where the broad one would be too small to read."""
-    printed: bool = True
-    """Whether the picture is printed. A picture that stands smaller on another page of the paper is not."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,6 @@ from advisor.report.facts.sizes import WORSE, marked, short
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Verbatim, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
-from advisor.report.page.gap_picture import caption, gap_picture
 from advisor.report.table import Table
 from advisor.words.quantities import CHANNELS
 
@@ -33,11 +32,9 @@ def _blocks(found: Document) -> Iterator[Block]:
         yield Paragraph("The gap could not be diagnosed.")
         yield from listing([f"{p['text']} {p['fix']}" for p in found["problems"]])
         return
-    yield from answer(found)
+    if not found["usable"]:  # else the verdict's section has the answer and the picture
+        yield from answer(found)
     size, shrink = found["gap"], found["shrink"]
-    if found["traces"]:
-        close, phone = gap_picture("gap-picture", found), gap_picture("gap-phone", found, across=1)
-        yield Gallery((Figure(close, caption(found), narrow=phone, printed=False),))
     if found["parameters_changed"]:
         yield Paragraph("Derivatives that differ from the simulator's; the others agree within 95 %:")
         yield from listing([one["text"] for one in found["parameters_changed"]])

@@ -41,7 +41,7 @@ def caption(found: Document) -> str:
     )
 
 
-def gap_picture(name: str, found: Document, across: int = _ACROSS) -> Callable[[], str]:
+def gap_picture(name: str, found: Document, across: int) -> Callable[[], str]:
     """Return the picture for a page, with so many channels side by side."""
     return picture(name, *_size_in(found, across), _paint, found, across)
 
