@@ -1,4 +1,4 @@
-"""The flight in one picture: elevator, angle of attack, pitch rate, air speed, height; manoeuvres marked."""
+"""The flight in one picture: controls, motion, air speed and height, with the manoeuvres of both axes."""
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
@@ -12,63 +12,69 @@ from advisor.campaign.state import JudgedManeuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import Channel
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
+from advisor.report.page.blocks import Block, Figure, Gallery, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLUE, ORANGE, picture
 from advisor.words.quantities import CHANNELS
 from advisor.words.vehicle_time import CLOCK, clock
 
-_SHOWN = ("elevator", "alpha", "q", "airspeed", "height")
+_OF_PITCH, _OF_SIDE, _OF_BOTH = (
+    ("elevator", "alpha", "q"),
+    ("aileron", "rudder", "p", "r"),
+    ("airspeed", "height"),
+)
+"""Channels by the axis that was tested, from above."""
 _BINS = 500
 _EXPLAINED = (
-    "Elevator δe (trailing edge down positive), angle of attack α, pitch rate q, air speed V as logged, "
-    "height h above take-off. "
-    "Shaded: manoeuvres with their numbers, accepted ones plain, rejected ones hatched."
+    "Elevator δe (trailing edge down positive), aileron δa, rudder δr, angle of attack α, rates p, q, r, air "
+    "speed V as logged, height h above take-off. Shaded: manoeuvres with their numbers (R: roll and yaw), "
+    "accepted ones plain, rejected ones hatched."
 )
 
 
-def flight_picture(content: Content) -> Section:
-    """Return a picture of each power-on that holds a manoeuvre."""
-    return Section("flight", "The flight in one picture", tuple(_blocks(content)))
+def flight_picture(content: Content) -> Section | None:
+    """Return a picture of each power-on that holds a manoeuvre; None without one."""
+    drawn = tuple(_blocks(content))
+    return Section("flight", "The flight in one picture", drawn) if drawn else None
 
 
 def _blocks(content: Content) -> Iterator[Block]:
-    drawn = False
+    side = content.state.lateral
+    both = (content.state.maneuvers, side.maneuvers if side is not None else ())
     for flight, power_on in content.power_ons:
-        here = [j for j in content.state.maneuvers if j.maneuver.power_on == (flight, power_on.boot)]
-        if not here:
+        here = [[j for j in axis if j.maneuver.power_on == (flight, power_on.boot)] for axis in both]
+        if not any(here):
             continue
-        drawn = True
         name = f"flight-{flight}-{power_on.boot}"
         broad = picture(name, 7.4, 5.4, _paint, power_on, here)
         narrow = picture(f"{name}-narrow", 3.8, 5.4, _paint, power_on, here)
         later = f", power-on {power_on.boot + 1}" if power_on.boot else ""
         where = f"{content.names[flight]}{later}"
         yield Gallery((Figure(broad, f"{where}. {_EXPLAINED}", narrow=narrow),))
-    if not drawn:
-        yield Paragraph("No manoeuvre was found, so there is nothing to mark.")
 
 
-def _paint(drawing: Drawing, power_on: PowerOn, judged: Sequence[JudgedManeuver]) -> None:
+def _paint(drawing: Drawing, power_on: PowerOn, judged: Sequence[Sequence[JudgedManeuver]]) -> None:
+    pitch, side = judged
     channels = {name: channel for name, channel in power_on.channels.items() if len(channel) > 1}
-    shown = [name for name in _SHOWN if name in channels]
+    asked = (*(_OF_PITCH if pitch else ()), *(_OF_SIDE if side else ()), *_OF_BOTH)
+    shown = [name for name in asked if name in channels]
     rows = drawing.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
     for axes, name in zip(rows, shown, strict=True):
         quantity = CHANNELS[name]
-        channel = _as_judged(channels[name], judged)
+        channel = _as_judged(channels[name], pitch)
         t, y = thinned(channel, _BINS)
         axes.plot(t, y * quantity.factor, color=BLUE, linewidth=0.7)
         axes.set_ylabel(quantity.label)
-        _mark(axes, judged)
+        _mark(axes, [*pitch, *side])
     drawing.align_ylabels(list(rows))
     rows[-1].set_xlabel(f"time ({CLOCK})")
     rows[-1].xaxis.set_major_locator(MaxNLocator(8, steps=[1, 1.5, 2, 3, 6, 10]))
     rows[-1].xaxis.set_major_formatter(FuncFormatter(lambda t, _: clock(t)))
-    for one in judged:
+    for one, axis in (*((one, "") for one in pitch), *((one, "R") for one in side)):
         middle = 0.5 * (one.maneuver.span.start_s + one.maneuver.span.end_s)
         sign = "✓" if one.verdict.accepted else "✗"
         rows[0].annotate(
-            f"{one.maneuver.number}{sign}", (middle, 1.0), xycoords=("data", "axes fraction"),
+            f"{axis}{one.maneuver.number}{sign}", (middle, 1.0), xycoords=("data", "axes fraction"),
             ha="center", va="bottom", fontsize=8, annotation_clip=False,
         )  # fmt: skip
 

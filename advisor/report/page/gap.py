@@ -6,9 +6,10 @@ from typing import Any
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FuncFormatter
 
-from advisor.gap.result import spelled
+from advisor.gap.result import Unseen, spelled
 from advisor.report.facts.reasons import in_percent, is_shown, weighed
 from advisor.report.facts.sizes import WORSE, marked, short
+from advisor.report.gap_causes import by_reason
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Verbatim, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
@@ -72,8 +73,8 @@ def _blocks(found: Document) -> Iterator[Block]:
         )
     yield from listing(
         [
-            f"Cannot be seen: {spelled(u['effect'])}, {u['because']}. To see it: {u['would_need']}."
-            for u in found["cannot_see"]
+            f"Cannot be seen: {', '.join(names)}; {because}. To see it: {needed}."
+            for (because, needed), names in by_reason([Unseen(**u) for u in found["cannot_see"]]).items()
         ]
     )
     yield from listing(list(found["notes"]))

@@ -25,11 +25,11 @@ from advisor.report.page.prediction import prediction
 
 PageFormat = Literal["html", "md"]
 _PARTS = (
-    headline, gap, estimates, criterion, flying, flight_picture, maneuvers, fits, prediction, lateral,
+    headline, flight_picture, gap, estimates, criterion, flying, maneuvers, fits, prediction, lateral,
     telemetry, assumptions, provenance,
 )  # fmt: skip
 
-_OF_PITCH = frozenset({estimates, criterion, flying, flight_picture, maneuvers, fits, prediction})
+_OF_PITCH = frozenset({estimates, criterion, flying, maneuvers, fits, prediction})
 """Parts that the page of a flight without a test input of the elevator leaves out."""
 
 
