@@ -65,15 +65,16 @@ def _paint(drawing: Drawing, power_on: PowerOn, judged: Sequence[Sequence[Judged
         t, y = thinned(channel, _BINS)
         axes.plot(t, y * quantity.factor, color=BLUE, linewidth=0.7)
         axes.set_ylabel(quantity.label)
-        _mark(axes, [*pitch, *side])
+        _mark(axes, [*(() if name in _OF_SIDE else pitch), *(() if name in _OF_PITCH else side)])
     drawing.align_ylabels(list(rows))
     rows[-1].set_xlabel(f"time ({CLOCK})")
     rows[-1].xaxis.set_major_locator(MaxNLocator(8, steps=[1, 1.5, 2, 3, 6, 10]))
     rows[-1].xaxis.set_major_formatter(FuncFormatter(lambda t, _: clock(t)))
-    for one, axis in (*((one, "") for one in pitch), *((one, "R") for one in side)):
+    for one, axis, own in (*((one, "", _OF_PITCH) for one in pitch), *((one, "R", _OF_SIDE) for one in side)):
+        top = rows[next((k for k, name in enumerate(shown) if name in own), 0)]
         middle = 0.5 * (one.maneuver.span.start_s + one.maneuver.span.end_s)
         sign = "✓" if one.verdict.accepted else "✗"
-        rows[0].annotate(
+        top.annotate(
             f"{axis}{one.maneuver.number}{sign}", (middle, 1.0), xycoords=("data", "axes fraction"),
             ha="center", va="bottom", fontsize=8, annotation_clip=False,
         )  # fmt: skip
