@@ -26,8 +26,8 @@ _OF_PITCH, _OF_SIDE, _OF_BOTH = (
 """Channels by the axis that was tested, from above."""
 _BINS = 500
 _EXPLAINED = (
-    "Elevator δe (trailing edge down positive), aileron δa, rudder δr, angle of attack α, rates p, q, r, air "
-    "speed V as logged, height h above take-off. Shaded: manoeuvres with their numbers (R: roll and yaw), "
+    "Elevator δe (trailing edge down positive), aileron δa, rudder δr, angle of attack α, rates p, q, r. Air "
+    "speed V is as logged, height h above take-off. Shaded: manoeuvres with their numbers (R: roll and yaw), "
     "accepted ones plain, rejected ones hatched."
 )
 
