@@ -9,9 +9,9 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS, Reference
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
-from advisor.decision.lateral_levels import GROUPS, LateralLevels, lateral_levels
-from advisor.decision.lateral_levels import SOURCE as LATERAL_SOURCE
-from advisor.decision.lateral_qualification import LateralTest, lateral_qualification
+from advisor.decision.axes.lateral_levels import GROUPS, LateralLevels, lateral_levels
+from advisor.decision.axes.lateral_levels import SOURCE as LATERAL_SOURCE
+from advisor.decision.axes.lateral_qualification import LateralTest, lateral_qualification
 from advisor.flight.instruments.atmosphere import AirData, air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.lateral import Trim

@@ -4,7 +4,7 @@ from math import log
 
 import pytest
 
-from advisor.decision.lateral_levels import lateral_levels
+from advisor.decision.axes.lateral_levels import lateral_levels
 from advisor.oem.flying_qualities import Quality
 from advisor.oem.lateral_estimate import LateralModes
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
-from advisor.decision.lateral_levels import GROUPS, SOURCE
-from advisor.decision.lateral_qualification import LateralTest
+from advisor.decision.axes.lateral_levels import GROUPS, SOURCE
+from advisor.decision.axes.lateral_qualification import LateralTest
 from advisor.model.lateral import LATERAL
 from advisor.model.mil_f_8785c import MANNED
 from advisor.oem.estimate import Estimate

@@ -9,7 +9,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.decision.lateral_qualification import peak_roll_rate
+from advisor.decision.axes.lateral_qualification import peak_roll_rate
 from advisor.exports.models.flown import FlownModel, side_of
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
 from advisor.exports.models.formats.matlab_format import both_axes_text, matrices
