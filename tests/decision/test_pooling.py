@@ -19,6 +19,7 @@ from advisor.decision.pooling import (
     posteriors_at_one_speed,
 )
 from advisor.flight.signals.messages import FloatArray
+from tests.campaign.side_builders import estimate as side_estimate
 from tests.decision.campaigns import THETA, estimate
 
 
@@ -177,3 +178,10 @@ def test_pooling_averages_out_each_estimate_s_own_error_and_not_the_one_that_all
     pooled = pool(posteriors_at_one_speed(four))
     np.testing.assert_allclose(np.diag(pooled.covariance), np.diag(own) / 4.0, rtol=1e-6)
     np.testing.assert_allclose(pooled.std**2, np.diag(own) / 4.0 + np.diag(common), rtol=1e-6)
+
+
+def test_a_rudder_test_in_gusts_keeps_its_own_colour_among_calm_tests_of_the_aileron() -> None:
+    calm, gusty = side_estimate("aileron"), side_estimate("rudder")
+    gusty = replace(gusty, covariance=36.0 * gusty.covariance_cr)
+    *_, last = posteriors_at_one_speed([calm, calm, gusty])
+    assert last.std == pytest.approx(6.0 * gusty.std_cr)
