@@ -133,9 +133,9 @@ class ElevatorCampaign(AxisCampaign):
         learnt = learnt_from(self.learnt, model, one_power_on=len(told_by) == 1, exactly=self._ended)
         if learnt is self.learnt:
             return
-        self.learnt, self._told_by = learnt, told_by
+        said, self.learnt, self._told_by = lag_said(self.learnt), learnt, told_by
         for flown in self._flown:
             self._examine(flown)
-        if sentence := lag_said(learnt):
+        if (sentence := lag_said(learnt)) not in ("", said):
             self._say(sentence)
         self._judge()

@@ -16,6 +16,8 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     numbers: frozenset[int] = frozenset()
     """Columns with numbers, counted from 0."""
+    anchored: bool = False
+    """Whether each row is an anchor in the page: the table's name, a hyphen and the row's first cell."""
 
     def on_console(self, title: str | None = None) -> console.Table:
         """Return the table for a terminal, without frame, under a title."""

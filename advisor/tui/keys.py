@@ -65,7 +65,7 @@ ENGINEER: list[BindingType] = [
     _key("c", "copy", "Copy the pane", id="copy"),
     _key("s", "save", "Save the pane", id="save"),
     _key("o", "next_output", "Next output", id="next_output"),
-    _key("l", "lay_over", "Lay a manoeuvre over", id="lay_over"),
+    _key("l", "lay_over", "Lay a manoeuvre or a channel over", id="lay_over"),
     *(_key(key, f"choose({k})", f"Pane: {name}", id=f"pane_{k}") for k, (key, name) in enumerate(PANES, 1)),
 ]
 

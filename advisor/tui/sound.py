@@ -54,9 +54,11 @@ def _hurries(view: View) -> bool:
 
 def _spoken(view: View, *, more: bool) -> str:
     """Return the new verdict, if there is one, and the word: ``Manoeuvre 3 good. Continue.``"""
-    word = f"{(view.health.behind or advise(view).word).capitalize()}."
+    behind = view.health.behind.replace(" s ", " seconds ").replace(" min ", " minutes ")
+    word = f"{(behind or advise(view).word).capitalize()}."
     if not more:
         return word
     newest = view.state.maneuvers[-1]
     _, verdict, _ = for_the_pilot(newest, view.state.flight_test.decision == "stop")
-    return f"Manoeuvre {newest.maneuver.number} {verdict.lower()}. {word}"
+    heard = "rejected" if verdict == "REPEAT" else verdict.lower()
+    return f"Manoeuvre {newest.maneuver.number} {heard}. {word}"

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from math import degrees
+from textwrap import fill
 
 from advisor.decision.verdict import NextInput
 
@@ -24,6 +25,7 @@ def drawn(advised: NextInput, width: int, *, large: bool) -> str:
     if flown is None:
         return words
     words = f"{words}, ±{degrees(flown.amplitude_rad):.1f} deg of {flown.control}"
+    words = fill(words, width, subsequent_indent=" " * len(_LABEL), break_on_hyphens=False)
     sides = SIDES[flown.control]
     if not large:
         first = sides[0] if flown.nose_up_first else sides[1]

@@ -19,6 +19,9 @@ _SPELLED = {
 """ASCII spellings of the characters that the advisor writes. Greek letters and lines follow from their
 Unicode names. A delta stands before the e of the elevator, as in M_delta_e."""
 
+BRAILLE, _UPPER = 0x2800, 0b00011011
+"""The blank cell of braille, in which curves are drawn, and the bits of the upper half of its dots."""
+
 
 def plain(text: str) -> str:
     """Return the text in ASCII: stand-ins, letters without accents, a question mark for all else."""
@@ -29,7 +32,8 @@ def speak_plainly() -> None:
     """Let standard output and standard error spell characters that their encoding lacks, instead of failing.
 
     A stream in ASCII is given ASCII under another name, because click takes ASCII for a mistake in the user's
-    settings and writes UTF-8 there. A closed stream accepts every text and shows nothing.
+    settings and writes UTF-8 there. A terminal whose user states the POSIX locale is such a stream, although
+    Python writes UTF-8 there. A closed stream accepts every text and shows nothing.
     """
     codecs.register_error(_ERRORS, _stand_in)
     codecs.unregister(_ascii_by_another_name)  # a second call registers nothing twice
@@ -38,8 +42,14 @@ def speak_plainly() -> None:
     sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            is_ascii = codecs.lookup(stream.encoding).name == "ascii"
+            is_ascii = codecs.lookup(stream.encoding).name == "ascii" or (stream.isatty() and _posix())
             stream.reconfigure(encoding=_ASCII if is_ascii else None, errors=_ERRORS)
+
+
+def _posix() -> bool:
+    """Return whether the user states the POSIX locale, and nothing else chose Python's UTF-8."""
+    stated = os.environ.get("LC_ALL") or os.environ.get("LANG")
+    return stated in ("C", "POSIX") and bool(sys.flags.utf8_mode) and "PYTHONUTF8" not in os.environ
 
 
 def _spelled(character: str) -> str:
@@ -47,6 +57,9 @@ def _spelled(character: str) -> str:
         return character
     if character in _SPELLED:
         return _SPELLED[character]
+    if BRAILLE <= ord(character) < BRAILLE + 256:
+        dots = ord(character) - BRAILLE
+        return " '.:"[bool(dots & _UPPER) + 2 * bool(dots & ~_UPPER)]
     name = unicodedata.name(character, "")
     if name.startswith("GREEK"):
         return name.rpartition(" ")[2].lower()

@@ -2,6 +2,7 @@
 
 import io
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -130,3 +131,23 @@ def test_a_full_disk_behind_the_output_is_one_sentence() -> None:
     assert run.returncode == 2
     assert run.stderr.count(b"\n") == 1
     assert b"No space left" in run.stderr
+
+
+@pytest.mark.parametrize(("dots", "spelled"), [("⠀", " "), ("⠉", "'"), ("⣀", "."), ("⣿", ":"), ("⡇", ":")])
+def test_a_curve_in_braille_is_spelled_by_the_half_of_the_cell_that_it_fills(dots: str, spelled: str) -> None:
+    assert plain(dots) == spelled
+
+
+@pytest.mark.parametrize(
+    ("stated", "asked", "posix"), [("C", None, True), ("C", "1", False), ("de", None, False)]
+)
+def test_a_user_who_states_the_posix_locale_gets_ascii_though_python_writes_utf8(
+    stated: str, asked: str | None, posix: bool
+) -> None:
+    words = "import sys; from advisor.words import ascii_output as a; print(a._posix())"
+    environment = {key: value for key, value in os.environ.items() if key not in ("LC_ALL", "PYTHONUTF8")}
+    environment |= {"LC_ALL": stated} | ({"PYTHONUTF8": asked} if asked else {})
+    told = subprocess.run(
+        [sys.executable, "-c", words], env=environment, capture_output=True, text=True, check=True
+    )
+    assert told.stdout.strip() == str(posix)

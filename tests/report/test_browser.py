@@ -30,13 +30,19 @@ function looked(frame) {{
     .map(named);
   const cut = [...page.querySelectorAll("svg text")].filter(e => {{
     const t = e.getBoundingClientRect(), s = e.closest("svg").getBoundingClientRect();
-    return t.left < s.left - 2 || t.right > s.right + 2 || t.top < s.top - 2 || t.bottom > s.bottom + 2;
+    return t.width && (t.left < s.left - 2 || t.right > s.right + 2 || t.top < s.top - 2
+      || t.bottom > s.bottom + 2);
   }}).map(named);
   return {{
     width: inside.innerWidth, wide, cut, figures: page.querySelectorAll("svg").length,
     loaded: inside.performance.getEntriesByType("resource").map(entry => entry.name),
     least_height: Math.min(...[...page.querySelectorAll("svg")]
       .filter(e => e.checkVisibility()).map(e => e.getBoundingClientRect().height)),
+    layers: [...page.querySelectorAll("select")].map(select => [...select.options].map(option => {{
+      select.value = option.value;
+      return [...page.querySelectorAll("[class^=layer-]")]
+        .filter(e => e.getBoundingClientRect().width).map(e => e.getAttribute("class"));
+    }})),
     seen: [...page.querySelectorAll(".broad, .narrow")].filter(e => e.checkVisibility())
       .map(e => e.className),
   }};
@@ -143,3 +149,12 @@ def test_the_verdict_and_the_picture_of_the_gap_print_on_one_page(reported: Repo
     long = re.sub(r'(<p class="verdict">)[^<]*', rf"\1{sentence} {sentence}", first)
     limited = long.replace('<div class="gallery">', f'<ul><li>{sentence}</li></ul><div class="gallery">')
     assert printed_pages(limited, tmp_path) == 1
+
+
+@pytest.mark.skipif(BROWSER is None, reason="Debian's chromium is not installed")
+def test_the_chosen_channel_alone_is_laid_over_the_flight(reported: Reported, tmp_path: Path) -> None:
+    for one in opened(reported.written, tmp_path):
+        ((nothing, *layers),) = one["layers"]
+        assert nothing == []
+        assert ["layer-q"] in layers
+        assert all(len(shown) == 1 for shown in layers)

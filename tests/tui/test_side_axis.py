@@ -25,7 +25,7 @@ async def test_the_key_shows_the_verdict_on_aileron_and_rudder_and_then_the_elev
     flown = both_axes(judged(1, "aileron"), judged(2, "rudder", accepted=False))
     async with stage(flown, size=(100, 35)) as here:
         await here.until(lambda: "roll, yaw" in here.words("CrewNotes"))
-        assert "CONTINUE: no accepted manoeuvre has moved the rudder" in here.words("CrewNotes")
+        assert "roll, yaw   CONTINUE; key r shows roll and yaw" in here.words("CrewNotes")
         assert "reverse 3-2-1-1" in here.words("NextInput")
         await here.press("r")
         assert "✗ REPEAT   manoeuvre 2: rudder doublet" in here.words()
@@ -92,10 +92,11 @@ def test_equal_states_give_identical_parts_so_that_nothing_is_painted_again():
 def test_a_lateral_input_is_drawn_with_right_above_and_left_below():
     flown = StepInput("doublet", 1.0, np.radians(10.0), nose_up_first=True, control="aileron")
     advised = NextInput(f"next: {flown.spoken(np.radians(25.0))}", None, None, flown, np.radians(25.0))
-    lines = drawn(advised, 60, large=True).split("\n")
-    said = " ".join(lines[0].split())
+    first, second, *lines = drawn(advised, 60, large=True).split("\n")
+    said = " ".join(f"{first}{second}".split())
+    assert max(len(first), len(second)) <= 60
     assert said == "next aileron doublet, 1.0 s steps, 40 % stick, ±10.0 deg of aileron"
-    assert [line.split()[0] for line in (lines[1], lines[3])] == ["right", "left"]
+    assert [line.split()[0] for line in (lines[0], lines[2])] == ["right", "left"]
     assert drawn(advised, 60, large=False).endswith("▔▔▁▁  right first")
 
 
@@ -107,3 +108,19 @@ async def test_the_screen_opens_on_roll_and_yaw_where_only_they_are_flown_and_co
         assert "2 accepted of 2" in here.words("Gauge")
         await here.press("r")
         assert "none flown yet" in here.words("Gauge")
+
+
+async def test_an_axis_without_a_manoeuvre_does_not_keep_the_verdict_of_the_other():
+    async with stage(replace(flights.state(3), lateral=state()), size=(100, 35)) as here:
+        await here.until(lambda: "GOOD" in here.words("#verdict-word"))
+        await here.press("r")
+        assert here.words("#verdict-word") == "no manoeuvre yet"
+        assert not here.app.screen.query_one("LastVerdict").has_class("-good")
+
+
+async def test_no_word_of_the_next_input_is_cut_at_80_by_24():
+    async with stage(replace(flights.state(3), lateral=state()), size=(80, 24)) as here:
+        await here.press("r")
+        page = " ".join(here.page().split())
+        assert " ".join(here.words("NextInput").split()) in page
+        assert "…" not in here.words("NextInput")

@@ -1,6 +1,7 @@
 """A bell and a voice that tell a verdict to a pilot who does not look."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -34,6 +35,16 @@ def test_a_verdict_rings_and_is_spoken_with_the_word():
 
 def test_what_stands_already_is_not_told_again():
     assert heard(moment(5), moment(5)) == []
+
+
+def test_a_rejected_manoeuvre_is_called_so_before_the_word_repeat():
+    bad = replace(moment(6), state=flights.state(6, bad=(6,)))
+    assert heard(moment(5), bad) == ["*", "Manoeuvre 6 rejected. Repeat."]
+
+
+def test_seconds_are_spoken_as_a_word():
+    late = LinkHealth("good", "412 messages/s.", read_to_s=8.0, link=SimpleNamespace(newest_s=20.0))
+    assert heard(moment(5), replace(moment(5), health=late)) == ["*", "This computer is 12 seconds behind."]
 
 
 def test_a_lost_link_is_told_by_its_word():

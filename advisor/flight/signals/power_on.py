@@ -81,6 +81,9 @@ class PowerOn:
     """Shape (n,), rising: arrival index of each message that stamps the vehicle's clock."""
     clock_s: FloatArray
     """Shape (n,), never falling: the vehicle's clock at each of these arrivals, s since boot."""
+    modes: tuple[tuple[float, str], ...] = ()
+    """Vehicle time at which each flight mode was first heard, s since boot (NaN: before the clock), and its
+    name."""
 
     def arrivals(self, start_s: float, end_s: float) -> tuple[int, int]:
         """Return the arrival indices of the clock's first and last stamp with ``start_s <= t <= end_s``.

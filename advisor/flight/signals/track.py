@@ -54,10 +54,6 @@ class BestRate:
         return rate_hz if np.isnan(self._best_hz) else self._best_hz
 
 
-SHOWN_WHOLE = ("elevator", "alpha", "q", "airspeed", "height")
-"""Channels that are shown over the whole flight, in this order."""
-
-
 @dataclass(frozen=True, slots=True)
 class ChannelStatus:
     """Arrival of one channel."""
@@ -115,8 +111,8 @@ class Track:
         self._best = BestRate()
         self.lowest, self.highest = np.inf, -np.inf
         """Smallest and largest value since boot."""
-        self.extremes = Extremes() if name in SHOWN_WHOLE else None
-        """The whole power-on in bounded memory, for the channels that are shown whole."""
+        self.extremes = Extremes()
+        """The whole power-on in bounded memory."""
         self._t = np.empty(1024)
         self._y = np.empty(1024)
         self._order = np.empty(1024, dtype=np.int64)
@@ -135,8 +131,7 @@ class Track:
             self.newest = float(y[latest])
         self.newest_s = float(newest[-1])
         self._best.add(t)
-        if self.extremes is not None:
-            self.extremes.add(t, y)
+        self.extremes.add(t, y)
         self.lowest = min(self.lowest, float(y.min()))
         self.highest = max(self.highest, float(y.max()))
         self._make_room(len(t))

@@ -10,7 +10,7 @@ from advisor.flight.signals.channels import COMPANION_ALPHA, GIVEN_AIRSPEED, GIV
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, DerivedAlpha
 from advisor.flight.signals.power_on import Course
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
-from advisor.flight.signals.track import SHOWN_WHOLE, ChannelStatus, Track
+from advisor.flight.signals.track import ChannelStatus, Track
 from advisor.flight.signals.true_airspeed import AS_GROUND_SPEED, AS_REPORTED, true_airspeed
 
 _AIR_S = 10.0
@@ -150,13 +150,9 @@ class Tracks:
         return {name: track.status for name, track in found.items() if track is not None}
 
     def courses(self) -> dict[str, Course]:
-        """Return each channel that is shown whole, over this power-on, from its best measured source."""
-        found = {name: next(iter(self._candidates(name)), None) for name in SHOWN_WHOLE}
-        return {
-            name: track.extremes.course
-            for name, track in found.items()
-            if isinstance(track, Track) and track.extremes is not None
-        }
+        """Return each channel over this power-on, from its best source where that is measured."""
+        found = {name: next(iter(self._candidates(name)), None) for name in UNITS}
+        return {name: track.extremes.course for name, track in found.items() if isinstance(track, Track)}
 
     def _candidates(self, name: str) -> list[Track | DerivedAlpha]:
         """Return tracks of a channel, the preferred source first."""

@@ -43,7 +43,12 @@ def decoded(columns: Columns, t: FloatArray, aircraft: Aircraft, companion: bool
 
 
 def power_on(
-    boot: int, tracks: Tracks, who: Identity, is_backwards: bool, clock: Sequence[Master]
+    boot: int,
+    tracks: Tracks,
+    who: Identity,
+    is_backwards: bool,
+    clock: Sequence[Master],
+    modes: Sequence[tuple[float, str]],
 ) -> PowerOn:
     """Return everything that was heard since the vehicle's clock began.
 
@@ -57,6 +62,8 @@ def power_on(
         Whether the elevator was found to move opposite to its nominal sign.
     clock
         Accepted stamps of the vehicle's clock.
+    modes
+        Vehicle time at which each flight mode was first heard, s, and the mode's name.
     """
     found = {name: tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
     channels = {name: who.identified(c) for name, c in found.items() if c is not None}
@@ -64,4 +71,4 @@ def power_on(
         channels["elevator"] = replace(channels["elevator"], y=-channels["elevator"].y)
     heard = [(master.order, master.t) for master in clock if len(master.t)]
     order, t = map(np.concatenate, zip(*heard, strict=True)) if heard else (np.empty(0, int), np.empty(0))
-    return PowerOn(boot, channels, order, t)
+    return PowerOn(boot, channels, order, t, tuple(modes))

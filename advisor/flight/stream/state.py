@@ -107,6 +107,7 @@ class StreamState:
         self._first_s = np.nan
         self._flown_before = self._cutting.maneuvers
         self._master_s = np.nan
+        self._modes: list[tuple[float, str]] = [(np.nan, self._who.mode)]
         self._heartbeat_s = -np.inf
         self._guesses.begin()
         self._instruments.begin()

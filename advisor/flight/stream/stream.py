@@ -70,7 +70,14 @@ class FlightStream(StreamState):
         self._past = self._at_best()
         if self._keep_s == np.inf:
             self.power_ons.append(
-                power_on(self.boot, self._tracks, self._who, self._cutting.is_backwards, self._clock_heard)
+                power_on(
+                    self.boot,
+                    self._tracks,
+                    self._who,
+                    self._cutting.is_backwards,
+                    self._clock_heard,
+                    self._modes,
+                )
             )
         return events
 
@@ -94,6 +101,7 @@ class FlightStream(StreamState):
             self._service.begin()
         if self._who.mode != mode:
             events.append(ModeChanged(self._who.mode, self._master_s))
+            self._modes.append((self._master_s, self._who.mode))
             if np.isfinite(self._master_s):
                 order = min(int(c.order[0]) for c in piece)
                 earliest_s = max(self._heartbeat_s, self._master_s - _HEARTBEAT_S)

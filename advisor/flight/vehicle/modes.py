@@ -1,5 +1,9 @@
 """Flight modes: their names for the autopilot's users, and who moves the elevator in them."""
 
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from math import inf, isfinite
+
 _PLANE = {
     0: "MANUAL", 1: "CIRCLE", 2: "STABILIZE", 3: "TRAINING", 4: "ACRO", 5: "FBWA", 6: "FBWB", 7: "CRUISE",
     8: "AUTOTUNE", 10: "AUTO", 11: "RTL", 12: "LOITER", 13: "TAKEOFF", 14: "AVOID_ADSB", 15: "GUIDED",
@@ -86,3 +90,19 @@ def closes_pitch_loop(mode: str) -> bool:
 def has_an_errand(mode: str) -> bool:
     """Return whether the autopilot takes off, lands, returns, circles or hovers in this mode."""
     return mode in _ERRANDS or hovers(mode)
+
+
+def stays(
+    changes: Sequence[tuple[float, str]], begin_s: float, end_s: float
+) -> Iterator[tuple[float, float, str]]:
+    """Yield begin, end and mode of each stay in a mode between two times of a flight, s since boot.
+
+    Parameters
+    ----------
+    changes
+        Time at which each mode began, never falling, and its name. Not finite: before the first time.
+    """
+    named = [(max(t, begin_s) if isfinite(t) else begin_s, name) for t, name in changes]
+    for (start_s, name), (next_s, _) in pairwise([*named, (inf, "")]):
+        if name and min(next_s, end_s) > start_s:
+            yield start_s, min(next_s, end_s), name

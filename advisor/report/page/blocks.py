@@ -33,6 +33,8 @@ class Figure:
     size: Literal["wide", "half", "third", "quarter", "sixth"] = "wide"
     narrow: Callable[[], str] | None = None
     """Draws the picture for a phone, where the broad one would be too small to read."""
+    layers: tuple[str, ...] = ()
+    """Channels that the reader can lay over the picture, one at a time."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,6 +43,8 @@ _MOST_TICKS = 8
 """Most labels of a logarithmic axis."""
 _SERIES = ((1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0), (1.0, 2.0, 5.0), (1.0,))
 """Labels within a decade, the densest first."""
+LAYER = "layer-"
+"""Beginning of the name of a layer, which the page shows only when the reader chooses it."""
 _DPI = 150
 """Dots per inch of a picture in dots: sharp on a screen of twice the usual density."""
 Shown = TypeVarTuple("Shown")
@@ -128,10 +130,14 @@ def log_ticks(low: float, high: float) -> list[float]:
 
 
 def _inline(svg: str, width_in: float) -> str:
-    """Return the SVG element alone, as wide as its place allows, with only the ids that are referred to."""
+    """Return the SVG element alone, as wide as its place allows.
+
+    Layers become classes, which several pictures of a page share. Of the ids only those referred to stay.
+    """
     element = svg[svg.index("<svg") :].strip()
     element = re.sub(r' (width|height)="[\d.]+pt"', "", element, count=2)
     element = re.sub(r"<!--.*?-->\s*", "", element, flags=re.DOTALL)
+    element = re.sub(rf' id="({LAYER}\w+)"', r' class="\1"', element)
     used = set(re.findall(r'(?:url\(|href=")#([^")]+)', element))
     element = re.sub(r' id="([^"]+)"', lambda m: m.group(0) if m.group(1) in used else "", element)
     return element.replace("<svg ", f'<svg style="max-width:{width_in:g}in" ', 1)

@@ -16,7 +16,7 @@ from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Sectio
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import picture
 from advisor.report.page.fits import by_fit, caption_of, paint_rows
-from advisor.report.page.maneuvers import HEAD, maneuver_row
+from advisor.report.page.maneuvers import ANCHORS, HEAD, maneuver_row
 from advisor.report.qualities import MODE_NAMES, levels_of, mode_facts, tests_of
 from advisor.report.result_rows import joint_of
 from advisor.report.table import Table
@@ -37,8 +37,8 @@ def _blocks(content: Content, state: LateralState) -> Iterator[Block]:
         maneuver_row(one, several=len(content.names) > 1) for one in content.analysis["lateral"]["maneuvers"]
     )
     yield Table(
-        "lateral-maneuvers", f"Inputs of aileron and rudder; times are {CLOCK}.", HEAD, rows,
-        frozenset({0, 1}),
+        ANCHORS["R"], f"Inputs of aileron and rudder; times are {CLOCK}.", HEAD, rows,
+        frozenset({0, 1}), anchored=True,
     )  # fmt: skip
     if state.model is None:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")

@@ -10,6 +10,8 @@ from advisor.report.text import caution_lines
 from advisor.words.vehicle_time import CLOCK, clock
 
 _HYPHEN, _SPACE = "\N{NON-BREAKING HYPHEN}", "\N{NO-BREAK SPACE}"
+ANCHORS = {"": "maneuver-list", "R": "lateral-maneuvers"}
+"""Letter in front of a manoeuvre's number to the table that lists the manoeuvre: R for roll and yaw."""
 HEAD = ("no.", "start", "input", "mode", "verdict", "why")
 
 
@@ -18,8 +20,8 @@ def maneuvers(content: Content) -> Section:
     found = content.analysis["maneuvers"]
     rows = tuple(maneuver_row(maneuver, several=len(content.names) > 1) for maneuver in found)
     table = Table(
-        "maneuver-list", f"Every manoeuvre in the order flown; times are {CLOCK}.", HEAD, rows,
-        frozenset({0, 1}),
+        ANCHORS[""], f"Every manoeuvre in the order flown; times are {CLOCK}.", HEAD, rows,
+        frozenset({0, 1}), anchored=True,
     )  # fmt: skip
     return Section("maneuvers", "Manoeuvres", (table, *listing(caution_lines(content.state.maneuvers))))
 

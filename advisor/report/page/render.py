@@ -13,6 +13,7 @@ from advisor.report.page.appendix import assumptions, provenance, telemetry
 from advisor.report.page.blocks import Block, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.criterion import criterion
+from advisor.report.page.drawing import LAYER
 from advisor.report.page.estimates import estimates
 from advisor.report.page.fits import fits
 from advisor.report.page.flight_picture import flight_picture
@@ -22,6 +23,7 @@ from advisor.report.page.headline import headline
 from advisor.report.page.lateral import lateral
 from advisor.report.page.maneuvers import maneuvers
 from advisor.report.page.prediction import prediction
+from advisor.words.quantities import CHANNELS
 
 PageFormat = Literal["html", "md"]
 _PARTS = (
@@ -58,6 +60,8 @@ def page(content: Content, form: PageFormat) -> str:
     return environment.get_template(f"page.{form}.j2").render(
         title=f"{content.aircraft.name}: {', '.join(content.names)}",
         sections=sections(content),
+        channels=CHANNELS,
+        layer=LAYER,
         css=Markup(_read("page.css")) if form == "html" else "",
     )
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from advisor.decision.verdict import FlightTestVerdict
 from advisor.session.view import View
 from advisor.tui.panes.lines import HangingLines, Labelled, Part
 
@@ -29,12 +30,17 @@ class CrewNotes(Part, HangingLines):
 
 
 def _other_axis(view: View) -> Iterator[Labelled]:
-    """Yield the state of the axis that is not shown, once one of its manoeuvres was flown."""
+    """Yield the word of the axis that is not shown, once one of its manoeuvres was flown."""
     lateral = view.state.lateral
     if view.elevator is not None and view.elevator.state.maneuvers:
-        yield "elevator    ", view.elevator.state.flight_test.sentence
+        yield "elevator    ", _word(view.elevator.state.flight_test)
     elif view.elevator is None and lateral is not None and lateral.maneuvers:
-        yield "roll, yaw   ", f"{lateral.flight_test.sentence} Key r shows it."
+        yield "roll, yaw   ", f"{_word(lateral.flight_test)}; key r shows roll and yaw"
+
+
+def _word(verdict: FlightTestVerdict) -> str:
+    """Return a verdict's first words, which its axis shows in large letters."""
+    return verdict.sentence.partition(":")[0]
 
 
 def _rows(view: View) -> Iterator[Labelled]:

@@ -1,4 +1,7 @@
-"""The whole flight: elevator, angle of attack, pitch rate, air speed, height, manoeuvres and modes."""
+"""The whole flight: channels, manoeuvres of both axes, flight modes, and a channel laid over."""
+
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from textual.app import ComposeResult
@@ -7,20 +10,22 @@ from textual.message import Message
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.power_on import Course
-from advisor.flight.signals.track import SHOWN_WHOLE
+from advisor.flight.vehicle.modes import stays
 from advisor.session.view import View
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Ink, Series
 from advisor.tui.plot.widget import Plot
-from advisor.words.quantities import channel
-from advisor.words.vehicle_time import clock
+from advisor.words.quantities import CHANNELS, channel
 
+SHOWN_WHOLE = ("elevator", "alpha", "q", "airspeed", "height")
+"""Channels with a plot of their own, from above."""
 _INKS: dict[str, Ink] = {"elevator": "input", "height": "prior", "airspeed": "residual"}
 _ROWS_FOR_ONE = 4
 _GUTTER = 7
 """Columns left of the plots, for the labels of their axes."""
+_MODE = "modes"
 _LEAST_S = 10.0
 """Shortest time axis, s."""
 
@@ -34,8 +39,12 @@ class WholeFlightPane(Pane):
 # Flight
 
 The whole power-on: elevator, angle of attack, pitch rate, air speed and height over the vehicle's time. The
-line above the plots has the number of each manoeuvre with ✓, ✗ or ∅ at its time; the line below has the
-modes. A bar stands from the lowest to the highest value of each stretch, so that no step is lost.
+line above the plots has the number of each manoeuvre with ✓, ✗ or ∅ at its time (R: roll and yaw). The
+line below has the flight modes at their times. A bar stands from the lowest to the highest value of each
+stretch, so that no step is lost.
+
+**l** lays the next channel over every plot, and after the last channel none. The lower edge names the
+channel, with the values at the foot and at the top of each plot.
 
 In a replay, a click jumps to the manoeuvre there. The upright line is the present moment.
 """
@@ -48,6 +57,8 @@ In a replay, a click jumps to the manoeuvre there. The upright line is the prese
             self.at_s = at_s
 
     _view: View | None = None
+    _over: str | None = None
+    """Channel that is laid over the plots."""
 
     def compose(self) -> ComposeResult:
         """Lay out the manoeuvres, one plot for each channel, and the modes."""
@@ -60,7 +71,7 @@ In a replay, a click jumps to the manoeuvre there. The upright line is the prese
     def show(self, view: View) -> None:
         """Draw the power-on anew when its picture is renewed, or a manoeuvre is judged."""
         self._view = view
-        if self.changed(view.state.whole_flight, view.state.maneuvers):
+        if self.changed(view.state.whole_flight, view.state.maneuvers, view.state.lateral):
             self._draw(view)
 
     def _draw(self, view: View) -> None:
@@ -70,15 +81,37 @@ In a replay, a click jumps to the manoeuvre there. The upright line is the prese
             return
         low = min(first for first, _ in ends)
         high = max(low + _LEAST_S, *(last for _, last in ends))
-        shown = [name for name in SHOWN_WHOLE if len(self._course(view, name).t)]
+        plots = {name: self.query_one(f"#whole-{name}", Plot) for name in SHOWN_WHOLE}
+        shown = [name for name in plots if plots[name].display and len(self._course(view, name).t)]
+        layer = self._layer(view)
         for name in shown:
             last = name == shown[-1]
             chart = _chart(name, self._course(view, name), (low, high), view.state.now_s, foot=last)
-            self.query_one(f"#whole-{name}", Plot).chart = chart
+            plots[name].chart = replace(chart, layer=layer)
         width = max(self.size.width - 2, 1)
         self.query_one("#whole-maneuvers", Lines).write(_maneuvers(view, low, high, width))
-        modes = "   ".join(f"{clock(at_s)} {mode}" for at_s, mode in whole.modes)
-        self.query_one("#whole-modes", Lines).write(modes and f"modes  {modes}")
+        bands = list(stays(whole.modes, low, high))
+        self.query_one("#whole-modes", Lines).write(_modes(bands, low, high, width) if bands else "")
+
+    def lay_over_next(self) -> None:
+        """Lay the next channel over the plots; after the last channel, none."""
+        if self._view is None:
+            return
+        heard = [name for name in CHANNELS if len(self._course(self._view, name).t)]
+        later = heard[heard.index(self._over) + 1 :] if self._over in heard else heard
+        self._over = next(iter(later), None)
+        self._draw(self._view)
+
+    def _layer(self, view: View) -> Series | None:
+        """Return the curve of the channel that is laid over, and name the channel in the lower edge."""
+        if self._over is None or not len((course := self._course(view, self._over)).t):
+            self.subtitle("l: lay a channel over")
+            return None
+        quantity = channel(self._over)
+        t, y = _zigzag(course)
+        ends = (f"{value * quantity.factor:.3g}" for value in (np.min(y), np.max(y)))
+        self.subtitle(f"{' to '.join(ends)} {quantity.unit}: {quantity.symbol} laid over; l: next")
+        return Series("", t, y, "fitted")
 
     def _course(self, view: View, name: str) -> Course:
         return view.state.whole_flight.courses.get(name, _NOTHING)
@@ -90,7 +123,7 @@ In a replay, a click jumps to the manoeuvre there. The upright line is the prese
 
     def on_resize(self, event: Resize) -> None:
         """Show as many channels as have room."""
-        count = max(1, (event.size.height - 3) // _ROWS_FOR_ONE)
+        count = max(1, (self.size.height - 3) // _ROWS_FOR_ONE)
         for k, name in enumerate(SHOWN_WHOLE):
             self.query_one(f"#whole-{name}").display = k < count
         if self._view is not None:
@@ -118,12 +151,26 @@ def _maneuvers(view: View, low: float, high: float, width: int) -> str:
     """Return the numbers of the manoeuvres of this power-on, each at its place on the time axis."""
     line = [" "] * width
     here = (view.state.flight, view.state.boot)
-    for judged in view.state.maneuvers:
+    side = view.state.lateral
+    flown = [("", j) for j in view.state.maneuvers]
+    flown += [("R", j) for j in (side.maneuvers if side is not None else ())]
+    for axis, judged in sorted(flown, key=lambda one: one[1].maneuver.span.start_s):
         if judged.maneuver.power_on != here:
             continue
-        text = f"{judged.maneuver.number}{symbol_and_word(judged)[0]}"
+        text = f"{axis}{judged.maneuver.number}{symbol_and_word(judged)[0]}"
         share = (judged.maneuver.span.start_s - low) / (high - low)
         at = _GUTTER + int(share * (width - _GUTTER - len(text)))
         if at >= _GUTTER and all(sign == " " for sign in line[at - 1 : at + len(text)]):
             line[at : at + len(text)] = text
+    return "".join(line).rstrip()
+
+
+def _modes(bands: Sequence[tuple[float, float, str]], low: float, high: float, width: int) -> str:
+    """Return the flight modes, each from its begin on the time axis as far as there is room."""
+    line = [" "] * width
+    line[: len(_MODE)] = _MODE
+    for begin_s, end_s, name in bands:
+        first, last = (_GUTTER + int((t - low) / (high - low) * (width - _GUTTER)) for t in (begin_s, end_s))
+        text = f"│{name}"[: last - first].ljust(last - first)
+        line[first:last] = text
     return "".join(line).rstrip()

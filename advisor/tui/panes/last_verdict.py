@@ -39,6 +39,9 @@ def for_the_pilot(judged: JudgedManeuver, test_is_complete: bool) -> tuple[str, 
     return symbol, "REPEAT", sentence
 
 
+_NONE_YET = "no manoeuvre yet", "The verdict stands here a few seconds after a manoeuvre ends."
+
+
 class LastVerdict(Part, Vertical):
     """The newest manoeuvre's verdict."""
 
@@ -47,21 +50,22 @@ class LastVerdict(Part, Vertical):
     def compose(self) -> ComposeResult:
         """Yield the word, large where there is room; a line that names the manoeuvre; and the sentence."""
         yield Lines(id="verdict-block")
-        yield Lines("no manoeuvre yet", id="verdict-word")
-        yield Lines("The verdict stands here a few seconds after a manoeuvre ends.", id="verdict-sentence")
+        yield Lines(_NONE_YET[0], id="verdict-word")
+        yield Lines(_NONE_YET[1], id="verdict-sentence")
 
     def show(self, view: View) -> None:
-        """Write the newest verdict, once there is one."""
-        if not view.state.maneuvers:
-            return
-        judged = view.state.maneuvers[-1]
-        symbol, name, sentence = for_the_pilot(judged, view.state.flight_test.decision == "stop")
-        title = f"{symbol} {name}   manoeuvre {judged.maneuver.number}: {judged.maneuver.span.kind}"
-        self.query_one("#verdict-block", Lines).write(block_letters(name, self.size.width, HEIGHT))
+        """Write the newest verdict of the axis that is shown."""
+        judged = view.state.maneuvers[-1] if view.state.maneuvers else None
+        block, (title, sentence) = "", _NONE_YET
+        if judged is not None:
+            symbol, name, sentence = for_the_pilot(judged, view.state.flight_test.decision == "stop")
+            title = f"{symbol} {name}   manoeuvre {judged.maneuver.number}: {judged.maneuver.span.kind}"
+            block = block_letters(name, self.size.width, HEIGHT)
+        self.query_one("#verdict-block", Lines).write(block)
         self.query_one("#verdict-word", Lines).write(title)
         self.query_one("#verdict-sentence", Lines).write(sentence)
-        self.set_class(judged.verdict.accepted, "-good")
-        self.set_class(not judged.verdict.accepted, "-warn")
+        self.set_class(judged is not None and judged.verdict.accepted, "-good")
+        self.set_class(judged is not None and not judged.verdict.accepted, "-warn")
 
 
 class VerdictPane(TextPane):

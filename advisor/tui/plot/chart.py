@@ -47,6 +47,8 @@ class Chart:
     """Quantity and unit, e.g. ``t [s]``."""
     series: tuple[Series, ...] = ()
     levels: tuple[Level, ...] = ()
+    layer: Series | None = None
+    """Curve of another quantity, drawn from the lowest to the highest row whatever its range is."""
     why_empty: str = ""
     """Sentence of a plot without series."""
     whole_x: bool = False

@@ -63,6 +63,8 @@ def paint(chart: Chart, width: int, height: int, base: Style, inks: list[Style])
     columns = max(2, width - gutter)
     x_axis = _x_axis(chart, max(1, columns // (_COLUMNS_PER_NUMBER if chart.whole_x else _COLUMNS_PER_TICK)))
     canvas = Canvas(columns, rows, (x_axis.low, x_axis.high), (y_axis.low, y_axis.high))
+    if chart.layer is not None:
+        _draw_series(canvas, _scaled(chart.layer, y_axis.low, y_axis.high))
     _draw(canvas, _logarithmic(chart) if chart.log_y else chart)
     side = down_the_side(y_axis, rows, gutter)
     strips = [
@@ -112,6 +114,13 @@ def _cut(series: Series, low: float, high: float) -> Series:
     last = int(np.searchsorted(series.x, high, side="right")) + 1
     half = None if series.half is None else series.half[first:last]
     return replace(series, x=series.x[first:last], y=series.y[first:last], half=half)
+
+
+def _scaled(series: Series, low: float, high: float) -> Series:
+    """Return a curve whose lowest and highest value are moved to two heights."""
+    least, most = float(np.min(series.y)), float(np.max(series.y))
+    share = (series.y - least) / (most - least) if most > least else np.full_like(series.y, 0.5)
+    return replace(series, y=low + share * (high - low))
 
 
 def _heights(chart: Chart) -> list[FloatArray]:

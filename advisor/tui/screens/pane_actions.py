@@ -1,4 +1,4 @@
-"""Actions of keys on one pane: copy, save, bring the next output up, lay a manoeuvre over another one."""
+"""Actions of keys on one pane: copy, save, bring the next output up, lay something over."""
 
 from abc import abstractmethod
 from collections.abc import Callable
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from advisor.session.view import View
 from advisor.tui.panes.fit import Fit
+from advisor.tui.panes.flight import WholeFlightPane
 from advisor.tui.panes.pane import Pane
 from advisor.tui.taking import files_of, pane_name, save
 
@@ -73,7 +74,11 @@ class PaneActions(Base):
         self.query_one(Fit).next_output()
 
     def action_lay_over(self) -> None:
-        """Ask for the manoeuvre to lay over the selected one."""
+        """Lay the next channel over the whole flight, or ask for a manoeuvre to lay over the selected one."""
+        pane = self.pane_in_front()
+        if isinstance(pane, WholeFlightPane):
+            pane.lay_over_next()
+            return
         self.ask(
             "Lay over manoeuvre number (0: none):", lambda answer: self._lay_over(int(answer)), integer=True
         )

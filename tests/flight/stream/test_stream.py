@@ -116,6 +116,12 @@ def test_mode_changes_are_told_and_end_the_free_response(eventful):
     assert first.span.end_s == pytest.approx(58.6, abs=0.1)
 
 
+def test_each_power_on_keeps_its_flight_modes(eventful):
+    stream, _ = flown(eventful, keep_all=True)
+    kept = [[mode for _, mode in power_on.modes if mode] for power_on in stream.power_ons]
+    assert kept == [["MANUAL", "CRUISE", "MANUAL"], ["MANUAL"]]
+
+
 def test_a_free_response_that_was_over_before_its_mode_change_was_heard_of_is_cut_all_the_same():
     wire = Wire()
     fly(wire, 1000.0, 50.0, ONE, 14.0)
