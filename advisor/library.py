@@ -162,7 +162,7 @@ def diagnose(flights: Flight | Sequence[Flight], holdout: int | None = None) -> 
     Parameters
     ----------
     flights : Flight or sequence of Flight
-        One flight, or the flights of one campaign. The logs of these flights are read again.
+        One flight, or the flights of one campaign. The logs of the given flights are read again.
     holdout : int, optional
         Measure on so many manoeuvres, the last ones, with numbers fitted without them; by default the
         diagnosis chooses.

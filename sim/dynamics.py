@@ -8,7 +8,7 @@ the wind-axes force equations with β = 0 (Stevens & Lewis, *Aircraft Control an
     q̇ = M / I_yy
 
 The state's V and α belong to the motion through the steadily moving air mass. A gust's vertical speed w (up)
-adds w/V to the α of wing and vane. Its head wind u adds to the speed.
+adds w/V to the α of wing and vane. The head wind u adds to the speed.
 """
 
 import math

@@ -1,6 +1,7 @@
 """The paper's linear model as an aircraft: eight parameters, optionally with further effects.
 
-The motion has constant V. So γ = θ − α, and the specific forces follow from kinematics alone,
+The motion has constant V. The flight-path angle is γ = θ − α, and the specific forces follow from kinematics
+alone,
 
     a_z = V cos α (α̇ − q) + V̇ sin α − g cos θ,   a_x = −V sin α (α̇ − q) + V̇ cos α + g sin θ.
 """

@@ -1,7 +1,7 @@
 """Data classes of the aircraft file: every key with its default value.
 
-These classes are data only. ``advisor.aircraft_file.read`` reads them from YAML and lists every mistake at
-once. The core takes them as arguments and never opens a file.
+The classes hold data and compute nothing. ``advisor.aircraft_file.read`` reads them from YAML and lists
+every mistake at once. The core takes them as arguments and never opens a file.
 """
 
 from collections.abc import Mapping

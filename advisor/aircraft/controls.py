@@ -48,7 +48,8 @@ class Elevator:
         mend="measure the deflection at three pulse widths",
     )] = None  # fmt: skip
     outputs: tuple[ElevatorOutput, ...] = ()
-    """All servo outputs that make the deflection. This key replaces ``output`` and ``calibration``."""
+    """All servo outputs that make the deflection. The key ``outputs`` replaces ``output`` and
+    ``calibration``."""
     lag_s: Annotated[float | None, Key(
         "First-order lag of the servo, s. None: unknown, and every result says so.",
         example="0.05",

@@ -82,7 +82,7 @@ class LogFacts:
         return (self.guess.output,) if self.guess else ()
 
     def stated_scale(self, output: int) -> Scale | None:
-        """Return the limits of an output by the log's parameters; None where the log has none of them."""
+        """Return the limits of an output by the log's parameters; None where the log states no limit."""
         return self.wiring.scales.get(output) if output in self.wiring.known_directions else None
 
 

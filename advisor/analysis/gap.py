@@ -112,7 +112,7 @@ def _recorded(
 
 
 def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
-    """Return the manoeuvres without repetitions, as from a copy of a log, which would confirm itself. The
+    """Return the manoeuvres without repetitions. A copy of a log would confirm the log's own errors. The
     fuller record stays."""
     found: list[Maneuver] = []
     for maneuver in recorded:

@@ -66,8 +66,8 @@ class LogSeries:
         """Feed all logs to a new consumer, and return the consumer.
 
         Of several logs, one whose messages break the consumer is left out and listed in ``unreadable``. The
-        other logs are then fed to another new consumer. A single log has no others to protect, so that its
-        error is raised.
+        logs that can be read are then fed to another new consumer. A single log has no others to protect, so
+        that its error is raised.
         """
         while True:
             consumer, flight = make(), 0

@@ -34,7 +34,7 @@ def path_beside(log: Path) -> Path:
 
 
 def read_by_hand(log: Path) -> ByHand:
-    """Read the decisions by hand on a log. Without a file there are none.
+    """Read the decisions by hand on a log. Without a file nothing is marked.
 
     Raises
     ------

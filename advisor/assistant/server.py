@@ -108,7 +108,7 @@ def _answering(tool: Tool) -> Tool:
 
 
 def _files(folders: Folders, log: str | None, logs: Names) -> list[str]:
-    """Return the paths of the logs of both arguments; none of them can be taken for an option."""
+    """Return the paths of the logs of both arguments, written so that no path is taken for an option."""
     names = [log] if log is not None else []
     names += [logs] if isinstance(logs, str) else logs or []
     if not names:

@@ -18,7 +18,7 @@ from advisor.oem.estimator import Fit, fit_jointly
 NEWEST = 7
 """Number of newest accepted manoeuvres that are estimated together during the flight: a whole campaign of the
 paper. The seven manoeuvres of ``logs/arduplane-calm.tlog`` give the servo's lag to 5 %. Each further
-manoeuvre takes some 0.1 s more of processor time at every verdict."""
+manoeuvre in the joint estimate takes some 0.1 s of processor time at every verdict."""
 
 
 @dataclass(slots=True)

@@ -1,8 +1,8 @@
 """The instruments, identified during a campaign and used in every later estimate.
 
 Unknown instruments are estimated from all accepted manoeuvres together. Single estimates, verdicts and
-criteria take them as given, with their errors (``oem.known_instruments``). A servo's lag that the crew leaves
-open must be known to a tenth.
+criteria take the instruments as given, with their errors (``oem.known_instruments``). A servo's lag that the
+crew leaves open must be known to a tenth.
 """
 
 import numpy as np
@@ -47,7 +47,8 @@ def learnt(
         Whether all these manoeuvres are of one power-on. The delay of the command differs from one to the
         next.
     exactly
-        Take the newest values even within their standard deviations of those in use, as at the end of a log.
+        Take the newest values even where they differ by less than a standard deviation from those in use, as
+        at the end of a log.
     """
     if model is None or model.found is None:
         return aircraft

@@ -1,8 +1,8 @@
 """The running estimate of the manoeuvre being flown: when its numbers may be read, and when further response
 adds nothing.
 
-A fit of half an input explains the data so far with wrong numbers and narrow intervals. So numbers wait until
-the input is over, the servo is known, and the estimate agrees with the manoeuvres before.
+A fit of half an input explains the data so far with wrong numbers and narrow intervals. Numbers are shown
+only after the input is over, the servo is known, and the estimate agrees with the manoeuvres before.
 """
 
 from collections import deque

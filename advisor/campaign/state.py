@@ -22,7 +22,7 @@ from advisor.process.parts import FailedPart
 from advisor.words.problems import Problem
 
 AxisName = Literal["pitch", "lateral"]
-"""Axis whose manoeuvres are numbered by themselves."""
+"""Axis of a manoeuvre: each axis numbers its manoeuvres from 1."""
 
 
 @dataclass(frozen=True, slots=True)

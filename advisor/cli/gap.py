@@ -221,7 +221,7 @@ def command(
 
 
 def compared_or_code(part: str, compare: "Callable[[], Found]", as_json: bool) -> "Found | int":
-    """Return a comparison. Without one, print the answer that remains and return its exit code."""
+    """Return a comparison. Without a comparison, print the answer that remains and return its exit code."""
     from advisor.report.gap_document import gap_document
 
     try:

@@ -29,7 +29,7 @@ from advisor.words.problems import ConfigurationError
 def command(folders: tuple[Path, ...], most_mb: float, limit_s: float) -> None:
     """Serve doctor, analyze, gap and report to an assistant over the Model Context Protocol (stdio).
 
-    The tools only read, and only files inside FOLDERS. Their answers are the documents of the commands. An
+    The tools only read, and only files inside FOLDERS. The tools answer with the commands' JSON documents. An
     assistant starts this command itself; its configuration names the command and the folders.
 
     \b

@@ -1,7 +1,7 @@
 """Detection of a change: the aircraft or an instrument differs from its state some manoeuvres ago.
 
 Noise moves every estimate by as much as its interval says. A poor manoeuvre moves one estimate. A change
-moves all later estimates equally. So the manoeuvres before and after every possible moment are pooled and
+moves all later estimates equally. The manoeuvres before and after every possible moment are pooled and
 compared, in a likelihood-ratio test for one change point. The test covers the derivatives, because Z_0 and
 M_0 move with the trim anyway.
 """

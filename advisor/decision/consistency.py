@@ -57,9 +57,10 @@ def outliers(posteriors: Sequence[Posterior]) -> Mapping[int, Outlier]:
 def beyond_in_alpha(posteriors: Sequence[Posterior]) -> dict[int, Outlier]:
     """Return manoeuvres beyond the angle of attack of most others, whose derivatives contradict the others'.
 
-    In buffet and in a stall the aircraft is another one. Neither fact alone tells that. An aircraft may be
-    linear beyond the others' range, and a contradiction may have other causes. A minority at one end of the
-    range is compared with all others, whose scatter widens the errors of both.
+    In buffet and in a stall the aircraft has other derivatives. Neither a large angle of attack alone nor a
+    contradiction alone shows buffet or a stall. An aircraft may be linear beyond the others' range, and a
+    contradiction may have other causes. A minority at one end of the range is compared with all others,
+    whose scatter widens the errors of both.
     """
     known = [i for i, posterior in enumerate(posteriors) if np.all(np.isfinite(posterior.alpha_rad))]
     rising = sorted(known, key=lambda i: _middle(posteriors[i]))

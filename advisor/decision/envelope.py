@@ -1,7 +1,7 @@
 """Completeness of a manoeuvre, and its agreement with the model's assumptions, from the data alone.
 
-The model knows one input, a constant speed and wings level. Each check here is one of these assumptions, with
-the measured number and its limit.
+The model knows one input, a constant speed and wings level. Each check compares one assumption of the model
+with the flight: the measured number and its limit.
 """
 
 from collections.abc import Collection, Sequence
@@ -69,7 +69,7 @@ def incomplete(
 
 
 def not_heard(maneuver: Maneuver) -> Reason:
-    """Return the reason of a record of which the advisor itself has missed a part."""
+    """Return the reason against a record that lacks a part, because the advisor was down."""
     text = f"{maneuver.missed_s:.1f} s are missing: the advisor was down; fly it again"
     return Reason("advisor_down", text, maneuver.missed_s, 0.0)
 
@@ -122,7 +122,7 @@ def too_slow(channels: Sequence[Channel], period_s: float) -> list[Reason]:
 
 
 def with_gap(channels: Sequence[Channel], maneuver: Maneuver, period_s: float) -> list[Reason]:
-    """Return a reason for the longest gap of these channels in a manoeuvre, where it is too long."""
+    """Return a reason where the longest gap of the given channels in a manoeuvre is too long."""
     share, least, most = _LONGEST_GAP
     reasons = []
     for c in channels:
@@ -170,7 +170,7 @@ def banked(maneuver: Maneuver, limit: float, mend: str = "fly it wings level") -
 
 
 def above(code: str, value: float, limit: float, text: str, digits: int = 0) -> list[Reason]:
-    """Return a reason where a value exceeds its limit. Its text has ``{}`` for value and limit."""
+    """Return a reason where a value exceeds its limit. The reason's text has ``{}`` for value and limit."""
     if value <= limit:
         return []
     return [Reason(code, text.format(*distinct_texts(value, limit, digits)), value, limit)]
@@ -211,7 +211,7 @@ def saturated(maneuver: Maneuver, control: str, ends_deg: tuple[float, float] | 
 
 
 def other_controls(maneuver: Maneuver, names: Sequence[str], mend: str) -> list[Reason]:
-    """Return a reason for each of these controls that moved much."""
+    """Return a reason for each of the given controls that moved much."""
     reasons = []
     for name in names:
         moved = _range_deg(maneuver, name) / 2.0
@@ -226,7 +226,8 @@ def _range_deg(maneuver: Maneuver, name: str) -> float:
 
 
 def follows_motion(maneuver: Maneuver, control: str, others: Sequence[str]) -> list[Reason]:
-    """Return a reason where a control moves so much less than another one that it follows the motion."""
+    """Return a reason where a control moves so much less than the largest other that this control follows
+    the motion."""
     moved, *beside = (_range_deg(maneuver, name) for name in (control, *others))
     larger = others[int(np.argmax(beside))]
     if moved >= LEAST_PART * max(beside):

@@ -55,7 +55,7 @@ def as_heard(found: RuleProgress, rule: str, heard: Sequence[Heard]) -> RuleProg
     found
         Progress of the rule by the newest estimates.
     heard
-        What was heard after each of the first manoeuvres. The other fields are those of ``found``.
+        What was heard after each of the first manoeuvres. All other fields are equal to those of ``found``.
     """
     n, flown = len(heard), len(found.hindsight_percent)
     stopped = first_stop(heard, rule)

@@ -38,8 +38,8 @@ class PredictedOutput:
 def predict_last(usable: Sequence[CandidateManeuver]) -> Mapping[str, PredictedOutput]:
     """Predict the last of the usable manoeuvres from all earlier ones, which are independent of it.
 
-    Trim, initial state and biases belong to the manoeuvre itself. So they come from its own fit: the fit less
-    the response from trim by its own derivatives.
+    Trim, initial state and biases are estimated for each manoeuvre. So they come from its own fit: the fit
+    less the response from trim by its own derivatives.
 
     Parameters
     ----------

@@ -1,10 +1,11 @@
 """The rule ``information``: stop when further manoeuvres change nothing that matters, and its words.
 
 The paper's criterion asks whether the last estimates scatter little relative to their mean. That ratio has no
-scale where a parameter is near zero, and it ignores every manoeuvre outside its window. This rule asks three
-questions about the use of the model. Is the 95 % band of the predicted response within the tolerance? Was the
-newest manoeuvre predicted before the estimate had used it? Is each derivative that the crew named within its
-own tolerance? A parameter that moves no prediction and is not named delays no stop.
+scale where a parameter is near zero, and it ignores every manoeuvre outside its window. The rule
+``information`` asks three questions about the use of the model. Is the 95 % band of the predicted response
+within the tolerance? Was the newest manoeuvre predicted before the estimate had used it? Is each derivative
+that the crew named within its own tolerance? A parameter that moves no prediction and is not named delays no
+stop.
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,6 +1,6 @@
 """Inverses of covariances and information matrices in which some parameters are unknown.
 
-Both functions take one matrix or a stack of them.
+``covariance_of`` and ``information_of`` take one matrix or a stack of matrices.
 """
 
 import numpy as np

@@ -20,8 +20,9 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.lateral_estimate import LateralEstimate
 
 FIRST_UNIT_S = 1.0
-"""Step of the first doublet, s, before any mode is known. It lies between half a Dutch roll of a small
-aircraft (0.9 s) and of a jet (1.7 s). It has at least two time constants of either's roll (0.1, 0.5 s)."""
+"""Step of the first doublet, s, before any mode is known. The step lies between half a Dutch roll of a small
+aircraft (0.9 s) and half a Dutch roll of a jet (1.7 s). The step lasts at least two time constants of the
+roll of a small aircraft (0.1 s) and of a jet (0.5 s)."""
 _CONTROLS = ("aileron", "rudder")
 
 

@@ -206,7 +206,7 @@ def pooled_without_each(posteriors: Sequence[Posterior]) -> list[Pooled]:
 
 
 def pooled_on_both_sides(posteriors: Sequence[Posterior]) -> list[tuple[Pooled, Pooled]]:
-    """Return, for each estimate but the first, the pooled estimates of those before it and of the others."""
+    """Return two pooled estimates for each estimate but the first: of the earlier ones, and of the rest."""
     return _Summed.of(posteriors).both_sides()
 
 

@@ -1,4 +1,4 @@
-"""Objections to a manoeuvre itself, before any rule compares it with others.
+"""Objections to a single manoeuvre, before any rule compares the manoeuvre with others.
 
 The checks run in this order: complete data, sound instruments, within the model, long enough, rich enough,
 well explained. The first reason is the one that the crew can act on. Consequences of the first reason come
@@ -78,9 +78,9 @@ class Examined:
     needed: tuple[str, ...]
     """Channels without which nothing can be said."""
     responses: tuple[Response, ...]
-    """Channels that respond to the controls flown. Each control's own rate comes first."""
+    """Channels that respond to the controls flown. The rate that the control moves directly comes first."""
     determined: tuple[str, ...]
-    """Derivatives that a test of these controls determines."""
+    """Derivatives that a test of the moved controls determines."""
     bands: tuple[str, ...]
     """Outputs whose prediction is narrow after a test that determines its axis."""
     outside: tuple[Reason, ...]
@@ -92,7 +92,7 @@ class Examined:
     lacks: Callable[[], Iterable[Reason]] = tuple
     """Returns the reasons by moments that the model leaves out."""
     modes_alone: tuple[Reason, ...] | None = None
-    """Reasons where a record determines no derivative. None: it determines some."""
+    """Reasons where a record determines no derivative. None: this test determines at least one derivative."""
 
     @property
     def rates(self) -> Mapping[str, Response]:

@@ -128,7 +128,8 @@ def by_scatter(
 
 
 def odds_of(history: Sequence[CandidateManeuver], course: CriterionCourse) -> Odds:
-    """Return how many manoeuvres of a campaign were usable, and how many of these were predicted."""
+    """Return how many manoeuvres of a campaign were usable, and how many usable ones the earlier manoeuvres
+    predicted."""
     usable = usable_ones(history)
     told = [course.standing(usable[:k]).predicted for k in range(2, len(usable) + 1)]
     return Odds(Share(len(usable), len(history) - len(usable)), Share(sum(told), len(told) - sum(told)))

@@ -32,8 +32,8 @@ def flight_test(
 ) -> FlightTestVerdict:
     """Return whether testing may stop, and the next input, after the last manoeuvre of ``history``.
 
-    A stop holds where the chosen rule's criterion holds now. A stop that the crew has heard stays. It ends
-    where a change of the aircraft is found, or where one of its manoeuvres is no longer usable.
+    A stop holds where the chosen rule's criterion holds now. A stop that the crew has heard stays. The stop
+    ends where a change of the aircraft is found, or where one of its manoeuvres is no longer usable.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def progress(
 def _weighed(history: Sequence[CandidateManeuver], rule: Rule) -> list[bool]:
     """Return which manoeuvres enter a rule's criterion.
 
-    The rule ``information`` uses all usable ones, because it detects contradictions itself.
+    The rule ``information`` uses all usable manoeuvres, because this rule detects contradictions.
     """
     if rule == "information":
         return [flown.usable is not None for flown in history]

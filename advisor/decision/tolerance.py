@@ -16,9 +16,9 @@ NEAR_ZERO = 3.0
 SHARE = 2.0
 """Tolerance of a derivative as a multiple of the prediction's tolerance.
 
-An error of 5 to 9 % in M_alpha alone moves the response by 5 % of its peak; in Z_alpha, 7 to 13 %. These
-figures are from three flights of a real autopilot and from a research jet. The frequency changes with the
-square root of the stiffness. M_delta_e scales the whole response, so that the prediction's band limits
+An error of 5 to 9 % in M_alpha alone moves the response by 5 % of its peak; in Z_alpha, 7 to 13 %. The
+percentages are from three flights of a real autopilot and from a research jet. The frequency changes with
+the square root of the stiffness. M_delta_e scales the whole response, so that the prediction's band limits
 M_delta_e more closely.
 """
 LEAST = 1e-12

@@ -70,8 +70,8 @@ class RuleProgress:
     stopped_at: int | None
     """Number of manoeuvres at the first stop of this rule that the crew heard. None: no stop yet."""
     history_percent: tuple[float | None, ...]
-    """Criterion after each manoeuvre, as the crew heard it. None while there are too few manoeuvres; on
-    roll and yaw also after the stop."""
+    """Criterion after each manoeuvre, as the crew heard it. None while the manoeuvres are too few for the
+    rule; on roll and yaw also after the stop."""
     limit_percent: float = 25.0
     """Limit of the criterion: 25 % of Eq. (12), or 100 % of the tolerance for ``information``."""
     prediction_percent: Mapping[str, float | None] = field(default_factory=dict)

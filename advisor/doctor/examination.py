@@ -48,8 +48,8 @@ class ElevatorFound:
     resolution_deg: float
     """Deflection of the smallest step that an output can express: 1 us of one output."""
     calibrated: bool
-    """Whether the file has a calibration. Without one, the parameters' limits and assumed full travel give
-    the scale."""
+    """Whether the file has a calibration. Without a calibration, the parameters' limits and an assumed full
+    travel give the scale."""
     doubts: tuple[Problem, ...] = ()
     """Problems of limits that are assumed in the scale."""
 
@@ -80,7 +80,7 @@ class Examination:
     assumed: Assumed
     """Model and noise behind the expected errors and the demands on rates."""
     instruments: tuple[InstrumentFinding, ...] = ()
-    """Contradictions of the instruments. Each contradiction is a limit, too."""
+    """Contradictions of the instruments. Each contradiction of an instrument is also listed in ``limits``."""
     airspeed_m_s: tuple[float, float] | None = None
     """Lowest and highest air speed in flight, m/s. None: no air speed arrives, or nothing flies."""
     notes: tuple[str, ...] = ()

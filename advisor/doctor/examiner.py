@@ -1,4 +1,4 @@
-"""The examination itself: messages in, findings out, without input or output of its own."""
+"""The examination of telemetry: messages in, findings out, without reading files or printing."""
 
 from collections.abc import Mapping, Sequence
 

@@ -49,7 +49,8 @@ class ExaminationText:
                 f"Expected errors of one 3-2-1-1, steps of {found.expectation.unit_s:.2f} s and "
                 f"±{found.expectation.amplitude_deg:.1f} deg, computed from {found.assumed.source}, "
                 f"natural frequency {frequency(found.assumed.model):.1f} rad/s. "
-                "Half of the 95 % interval (1.96 standard deviations):"
+                "Half of the 95 % interval (1.96 standard deviations), where the model lacks nothing; "
+                "analyze adds what the model lacks in all manoeuvres:"
             )
             for name in PARAMETERS:
                 quantity = QUANTITIES[name]

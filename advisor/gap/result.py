@@ -112,8 +112,8 @@ def ranked(scores: Mapping[str, float]) -> tuple[tuple[str, float], ...]:
 class Shrink:
     """Shrink of the gap on manoeuvres whose parameters were fitted without them.
 
-    In moving air the likeliest course of the air is removed. That course is fitted to the same samples,
-    because no other manoeuvre predicts it.
+    In moving air the likeliest course of the air is removed. The air's course is fitted to the held-out
+    samples, because no other manoeuvre predicts a gust.
     """
 
     holdout: tuple[int, ...]
@@ -201,7 +201,7 @@ class InSimulator:
     qualification: tuple[Qualification, ...]
     after_air_and_instruments: float | None = None
     """Gap ``after`` without what the air's course and the instruments' natural errors explain in the same
-    samples. That is no shrink. None where nothing was changed."""
+    samples. This part of the gap is not counted as shrink. None where nothing was changed."""
     refused: str = ""
     """Why the simulator does not fly with the effects; empty where it does, or where none was added."""
 
@@ -257,7 +257,8 @@ class Diagnosis(Weighed):
     yardsticks: Mapping[str, tuple[Yardsticks, Yardsticks]]
     """Channel to the measures of the simulator as given and of the final model."""
     share_irreducible: float
-    """Share of the final model's error that is noise and moving air. The rest is model error."""
+    """Share of the final model's error that is noise and moving air. The rest of the remaining gap is model
+    error."""
     derivatives: tuple[ComparedDerivative, ...] = ()
     """Derivatives of simulator and flight, those that differ most first; empty without a simulator."""
     traces: tuple[Trace, ...] = ()

@@ -1,9 +1,10 @@
 """The model of any axis solved on the union of all stamps, with exact sensitivities.
 
 The classical Runge-Kutta method solves the states. The sensitivities are carried with the exponential of the
-matrix in the middle of each step, and Simpson's rule for their forcing. Both methods are of fourth order. The
-inputs are linear (or held) between their stamps. Speed, attitude and angle of attack are constant over a
-step. The short period has a closed form of its own (``response``).
+matrix in the middle of each step, and Simpson's rule for their forcing. The Runge-Kutta method and the
+method for the sensitivities are of fourth order. The inputs are linear (or held) between their stamps.
+Speed, attitude and angle of attack are constant over a step. The short period has a closed form of its own
+(``response``).
 """
 
 import math

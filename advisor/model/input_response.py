@@ -1,7 +1,7 @@
 """Derivatives of the outputs by changes of the input, and by instruments that only read the motion.
 
-The model is linear in its input. From rest, a change of the input moves α, q and θ by the exact steps of the
-input itself. One pass over the events gives the columns of any number of changes.
+The model is linear in its input. From rest, a change of the input moves α, q and θ as the exact solution for
+a step does. One pass over the events gives the columns of any number of changes.
 """
 
 from typing import NamedTuple

@@ -68,7 +68,7 @@ class LevelFound:
 
     category: Category
     level: int
-    """Level of the values themselves."""
+    """Level of the estimated values, whatever their intervals."""
     best_level: int
     """Best level within the 95 % intervals."""
     worst_level: int

@@ -1,8 +1,9 @@
 """Normal equations in the shape of an arrow, and their solutions.
 
-The derivatives are shared by all manoeuvres, and each manoeuvre has its own nuisance parameters. These are
-eliminated manoeuvre by manoeuvre, so the work grows linearly with their number. The compiled functions serve
-small systems in a search. LAPACK serves larger systems, and systems with bounds.
+The derivatives are shared by all manoeuvres, and each manoeuvre has its own nuisance parameters. A
+manoeuvre's own parameters are eliminated manoeuvre by manoeuvre, so the work grows linearly with the number
+of manoeuvres. The compiled functions serve small systems in a search. LAPACK serves larger systems, and
+systems with bounds.
 """
 
 import numpy as np

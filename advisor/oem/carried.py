@@ -1,7 +1,7 @@
 """A solution updated with the newest samples of a manoeuvre, without solving the whole model again.
 
 The model is solved over the new samples alone, from the state and the sensitivities at the end of the
-solution. Each new sample adds to sums (``sums``) from which the next Gauss-Newton step and the errors follow.
+solution. Each new sample adds to running sums, from which the next Gauss-Newton step and the errors follow.
 All samples count at every refresh. Air speed and turning of the path stay at their last values, so a complete
 solution follows twice per second.
 """

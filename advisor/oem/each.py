@@ -1,4 +1,4 @@
-"""Compiled estimates of manoeuvres that share grid and input, each by itself."""
+"""Compiled estimates of single manoeuvres that share grid and input."""
 
 import numpy as np
 

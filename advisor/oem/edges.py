@@ -1,9 +1,9 @@
 """The time of a command's step, which lies somewhere between two stamps.
 
-A step between two stamps is drawn as a ramp over the interval, as if it had happened in the middle. It may
-have happened anywhere, and at the later stamp for a held digital command. Half an interval is a false delay,
-of many standard deviations in a joint estimate. Each large step therefore gets its own time, estimated
-together with all other parameters, where the data require it.
+A step between two stamps is drawn as a ramp over the interval, as if it had happened in the middle. The true
+time of a step lies anywhere in the interval, and at the later stamp for a held digital command. Half an
+interval is a false delay, of many standard deviations in a joint estimate. Each large step therefore gets
+its own time, estimated together with all other parameters, where the data require it.
 """
 
 from collections.abc import Sequence

@@ -110,7 +110,8 @@ class Estimate:
     instruments: tuple[InstrumentEstimate, ...] = ()
     """Instrument parameters that the data determine, as used in this estimate."""
     found: FoundInstruments | None = None
-    """All instrument parameters of the fit, also those that only priors determine. None: there is none."""
+    """All instrument parameters of the fit, also those that only priors determine. None: the estimate tells
+    nothing of the instruments."""
     common: FloatArray = field(default_factory=lambda: np.zeros((len(PARAMETERS), len(PARAMETERS))))
     """Shape (8, 8), part of ``covariance`` that all estimates with the same given instruments share."""
     gust_rad: float | None = None

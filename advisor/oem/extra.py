@@ -95,7 +95,7 @@ class Extra:
         return Extra(columns, self.weight, self.pull, np.ones(len(self)))
 
     def joined(self, other: "Extra") -> "Extra":
-        """Return these parameters, and then the other ones."""
+        """Return the parameters of both sets, the given set last."""
         return Extra(
             np.column_stack([self.columns, other.columns]),
             np.concatenate([self.weight, other.weight]),

@@ -71,7 +71,7 @@ class FlyingQualities:
     left_out: Mapping[str, str] = field(default_factory=dict)
     """By name, why a parameter of ``UNITS`` is missing."""
     correlation: float | None = None
-    """Correlation of the errors of natural frequency and n/α; None where one of them is missing."""
+    """Correlation of the errors of natural frequency and n/α; None where one of the two is missing."""
 
 
 def flying_qualities(estimate: Estimate, air: AirData, reference: Reference) -> FlyingQualities:

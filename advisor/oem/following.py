@@ -1,9 +1,9 @@
 """The estimate of a manoeuvre in flight, refreshed at every sample.
 
-Each refresh is complete: all data so far, all parameters, corrected errors. Most refreshes update the last
-solution with the newest samples (``carried``). Twice per second the model is solved anew over all data, from
-the last optimum. The noise model, and the use of the angle of attack, are checked every two seconds. Servo
-lag and delay of the command are allowed for by one more step (``Doubt``).
+Each refresh of the estimate uses all data so far, fits all parameters and corrects the errors. Most
+refreshes update the last solution with the newest samples (``carried``). Twice per second the model is
+solved anew over all data, from the last optimum. The noise model, and the use of the angle of attack, are
+checked every two seconds. Servo lag and delay of the command are allowed for by one more step (``Doubt``).
 """
 
 import math

@@ -21,7 +21,8 @@ FLAT = 1e-11
 """Promised change of log J below which a step ends the search; the remaining change is far smaller."""
 MOST_ITERATIONS = 120
 FIRST_DAMPING = 1e-8
-"""First damping relative to the diagonal. So small a damping hides no step that still promises a decrease."""
+"""First damping relative to the diagonal. A damping of this size hides no step that still promises a
+decrease."""
 LEAST_DAMPING = 1e-12
 DAMPING_FACTOR = 10.0
 LEAST_NOISE = 1e-10

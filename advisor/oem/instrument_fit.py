@@ -5,7 +5,7 @@ is known before the flight:
 
 - *The delays of the command and of the angle of attack* are nuisances of every log. A prior holds each, and
   every interval contains both. A late angle of attack and a vane's arm look nearly alike, and are off by
-  Z_α² times the delay in Z_α. So both are in the fit.
+  Z_α² times the delay in Z_α. The fit therefore has a delay and an arm.
 - *An open parameter*, such as a servo's lag, has the prior of instruments that nobody has measured. On a
   well damped aircraft a lag is correlated with M_q and M_δe over a long range, and every interval contains
   that.

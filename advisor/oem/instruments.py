@@ -3,14 +3,14 @@
 A log holds the command, not the surface. An ignored servo lag of 0.14 s halves M_α and M_δe of a small
 aircraft, while the fit still explains 95 % of the motion. A command that acts 10 ms after its stamps changes
 M_q and M_δe by 7 to 19 %. A vane ahead of the centre of gravity reads α - (x/V)·q, and an autopilot's own
-angle of attack is late. Both change Z_α, Z_q, Z_δe and M_q while α and q fit as well as before. With a_z and
-air speed the kinematics distinguish instrument and aircraft.
+angle of attack is late. A delay of α and an arm change Z_α, Z_q, Z_δe and M_q while α and q fit as well as
+before. With a_z and air speed the kinematics distinguish instrument and aircraft.
 
 Not an instrument, but a nuisance of the same kind, is the moment that does not scale with V². Where the air
 speed changes, a thrust that passes the centre of gravity would bias M_α, M_q and M_δe. The simulator of an
 autopilot has such a moment as well.
 
-Each unknown instrument is one more shared parameter of the fit (``instrument_fit``).
+Each unknown quantity of an instrument is one more shared parameter of the fit (``instrument_fit``).
 """
 
 from collections.abc import Callable, Mapping, Sequence

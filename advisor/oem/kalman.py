@@ -22,7 +22,7 @@ class Gains(NamedTuple):
     step: FloatArray
     """Shape (n, 4, 4): transition of α, q, θ and the gust up to each row."""
     keep: FloatArray
-    """Shape (n,): decay of the coloured noise since the row before."""
+    """Shape (n,): factor by which the coloured noise has decayed since the previous row."""
     gain: FloatArray
     """Shape (n, 8): Kalman gain of each row."""
     root: FloatArray

@@ -1,9 +1,9 @@
 """Instruments as several manoeuvres together tell them, for the estimate from each of these manoeuvres.
 
 One manoeuvre hardly tells a servo's lag from M_q and M_δe. All manoeuvres of a power-on share their
-instruments and tell them well. So the joint estimate tells the instruments, and each manoeuvre's estimate
-takes them as given. The error of an instrument's estimate has two parts. One part is the manoeuvre's own, for
-given instruments. The other part comes from the errors of the instruments, and all manoeuvres have it in
+instruments and tell them well. The joint estimate tells the instruments, and each manoeuvre's estimate takes
+their values as given. The error of an instrument's estimate has two parts. One part is the manoeuvre's own,
+for given instruments. The other part comes from the errors of the instruments, and all manoeuvres have it in
 common. Further manoeuvres average out the first part alone.
 """
 

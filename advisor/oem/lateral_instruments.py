@@ -4,8 +4,8 @@ The command acts up to half an interval and a filter's delay earlier or later th
 may be late relative to the rates, and every time is relative to the rates. A servo that the aircraft file
 leaves open lags by an unknown time. An ignored lag of 0.08 s costs a quarter of L_p and L_δa. A sideslip vane
 ahead of the centre of gravity reads β + (x/V)·r. A vane taken as at the centre of gravity shifts N_r by
--N_β·x/V. The true air speed differs from the read one. Each is one more parameter, and its error is part of
-every interval.
+-N_β·x/V. The true air speed differs from the read one. Each unknown quantity of an instrument is one more
+parameter, whose error is part of every interval.
 """
 
 from collections.abc import Callable, Sequence

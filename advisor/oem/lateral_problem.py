@@ -16,7 +16,7 @@ from advisor.oem.surface import Servo
 _BETA, _P, _R, _BANK = range(len(LATERAL.states))
 LEAST_PART = 0.2
 """Least range of an input over that of the larger one, for a test of this input. A rudder of 0.9 deg
-in an aileron test of 12 deg follows the motion. Its derivatives would be wrong by half."""
+in an aileron test of 12 deg follows the motion. Derivatives of such a rudder would be wrong by half."""
 NEEDED = ("p", "r", "bank")
 """Outputs that every record has."""
 CAUSES = ("command", *LATERAL.inputs)

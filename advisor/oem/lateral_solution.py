@@ -1,8 +1,8 @@
 """Output error on the lateral axis: from records to derivatives, errors and identifiability.
 
 The influence of every measurement and the noise model are those of the short period. White noise makes
-coloured residuals look too certain relative to a prior. So a first fit gives their colour. A second fit
-weighs the priors by the colour of the first, and a third fit by the colour of the second.
+coloured residuals look too certain relative to a prior. A first fit gives the colour of the noise. A second
+fit weighs the priors by the colour of the first, and a third fit by the colour of the second.
 """
 
 from collections.abc import Mapping, Sequence

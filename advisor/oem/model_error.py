@@ -1,10 +1,10 @@
 """Errors by dynamics that the model lacks, alike in all manoeuvres.
 
-A true response differs from the model's by a relative error. It is the same in each manoeuvre, so more
-manoeuvres do not average it out. The error is a short filter behind the model's own outputs, with Gaussian
-weights about zero. Their variance is the likeliest one for the residual. What such a filter moves of the
-parameters is a part of their covariance. The source is Goodwin, Gevers & Ninness, *IEEE Transactions on
-Automatic Control* 37, 1992 (stochastic embedding).
+A true response differs from the model's by a relative error. An error of the model is equal in each
+manoeuvre, so more manoeuvres do not average the error out. The error is a short filter behind the model's
+own outputs, with Gaussian weights about zero. The variance of the model's errors is the likeliest one for
+the residual. What such a filter moves of the parameters is a part of their covariance. The source is
+Goodwin, Gevers & Ninness, *IEEE Transactions on Automatic Control* 37, 1992 (stochastic embedding).
 """
 
 from collections.abc import Mapping

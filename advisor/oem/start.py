@@ -4,10 +4,10 @@ Integrated from the first stamp, Eqs. (1)-(2) read
 
     α(t) = α(0) + Z_0·t + Z_α·∫α + (1 + Z_q)·∫q + Z_δe·∫δe
 
-and likewise for q. These equations are linear in the parameters, including the initial states, and
+and likewise for q. The integrated equations are linear in the parameters and the initial states, and
 integration averages the noise. This is the integral form of the equation-error method (Klein & Morelli, Ch.
-5). Each equation is regressed at the stamps of its left side. The derivatives are common to all manoeuvres;
-constants and initial states belong to one manoeuvre each.
+5). Each integrated equation is regressed at the stamps of its left side. The derivatives are common to all
+manoeuvres; constants and initial states belong to one manoeuvre each.
 """
 
 import numpy as np

@@ -78,7 +78,7 @@ class Servo:
         Parameters
         ----------
         intervals
-            Only these intervals of the command are late, counted from 0. None: all of them.
+            Only these intervals of the command are late, counted from 0. None: the effects of all parameters.
         """
         run, start, arrival = self._driven(command_t, command, t, held)
         step = np.diff(run)

@@ -1,7 +1,7 @@
 """Ctrl-C and other signals: the program ends with one sentence, at once or in order.
 
 An exception that a signal raises is printed and lost where a library calls back from C. Outside the advisor's
-own code the exception leaves a traceback. So Ctrl-C ends the process itself. While a recording or a screen is
+own code the exception leaves a traceback. Ctrl-C ends the process. While a recording or a screen is
 open, a signal raises :class:`Interrupted` instead, which closes both. A busy computer may take long for that.
 A second Ctrl-C ends the process at once.
 """

@@ -65,7 +65,7 @@ class Watch:
         self._over = Event()
         self._thread = Thread(target=self._run, name="watch", daemon=True)
         self.ended_after_s: float | None = None
-        """Age of the newest message, s, at which the process was ended. None: it was not."""
+        """Age of the newest message, s, at which the process was ended. None: the process was not ended."""
 
     def __enter__(self) -> Self:
         self._thread.start()

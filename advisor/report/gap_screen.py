@@ -2,6 +2,7 @@
 
 import shlex
 from collections.abc import Iterator, Sequence
+from textwrap import fill, indent
 
 import numpy as np
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
@@ -78,7 +79,7 @@ class GapScreen:
             yield from simulated(d.in_simulator, self.everything)
         if self.everything:
             yield from self._errors(width)
-            yield from self._limits()
+            yield from self._limits(width)
         if self.improved is not None:
             yield ""
             yield Text(
@@ -109,10 +110,10 @@ class GapScreen:
         yield ""
         yield from yardsticks(d)
 
-    def _limits(self) -> Iterator[RenderableType]:
+    def _limits(self, width: int) -> Iterator[RenderableType]:
         """Yield the notes, and the effects that the flight cannot show."""
         yield ""
-        yield from (_hanging("·", Text(note)) for note in _notes(self.diagnosis))
+        yield from (_hanging("·", note, width) for note in _notes(self.diagnosis))
         if self.diagnosis.cannot_see:
             yield ""
             yield Text("This flight could not show (→ what would):", style="bold")
@@ -145,11 +146,15 @@ def _notes(d: Diagnosis) -> list[str]:
     return [note for note in (d.kinematics.sentence, floor, *d.notes) if note]
 
 
-def _numbered(steps: Sequence[GapStep], width: int) -> Iterator[RenderableType]:
+def _numbered(steps: Sequence[GapStep], width: int) -> Iterator[Text]:
+    """Yield each step with its command. No blank follows a backslash, which a shell would take for a word."""
     for number, step in enumerate(steps, start=1):
-        lines = "\n".join(command_lines(step.command, width - len(f"{number}. "))) if step.command else ""
-        command = Text(lines, style="bold", no_wrap=True, overflow="ignore")
-        yield _hanging(f"{number}.", Text(step.text), *([command] if lines else []))
+        mark = f"{number}."
+        yield _hanging(mark, step.text, width)
+        if step.command:
+            lines = command_lines(step.command, width - len(f"{mark} "))
+            command = indent("\n".join(lines), " " * len(f"{mark} "))
+            yield Text(command, style="bold", no_wrap=True, overflow="ignore")
 
 
 def command_lines(command: str, width: int) -> list[str]:
@@ -165,12 +170,10 @@ def command_lines(command: str, width: int) -> list[str]:
     return lines
 
 
-def _hanging(mark: str, *lines: Text) -> Table:
-    """Return lines that are aligned behind a mark."""
-    table = Table.grid(padding=(0, 1))
-    for line in lines:
-        table.add_row(mark if line is lines[0] else "", line)
-    return table
+def _hanging(mark: str, text: str, width: int) -> Text:
+    """Return a text that is aligned behind a mark."""
+    behind = " " * len(f"{mark} ")
+    return Text(fill(f"{mark} {text}", width, subsequent_indent=behind, break_on_hyphens=False))
 
 
 def _numbers(d: Diagnosis) -> Text:

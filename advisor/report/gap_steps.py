@@ -133,7 +133,8 @@ def _against_the_rival(d: Diagnosis) -> str:
     if telling is not None:
         return f"To exclude {_rivals(telling)}: {telling.tell_apart_by}."
     if d.verdict == "unknown":
-        return "To find the cause: fly two more manoeuvres of other amplitude, and log what is listed above."
+        lists = "; advisor gap --all lists what to log" if d.cannot_see else ""
+        return f"To find the cause: fly two more manoeuvres of other amplitude{lists}."
     hidden = next(iter(d.cannot_see), None)
     return f"To see {spelled(hidden.effect)} as well: {hidden.would_need}." if hidden is not None else ""
 

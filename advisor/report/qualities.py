@@ -59,7 +59,7 @@ def reference_speed(state: CampaignState) -> str:
 
 
 def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
-    """Return the part ``flying_qualities`` of ``advisor.analyze/1``. Each quality has its unit."""
+    """Return the part ``flying_qualities`` of ``advisor.analyze/1``. Each quality is given with its unit."""
     if found is None:
         return None
     return {

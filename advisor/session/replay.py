@@ -33,7 +33,8 @@ class LogPlayer:
     wait : callable
         ``wait(event, seconds)`` waits until the event is set or the time is over. Tests pass their own clock.
     keep_beside : sequence of Path
-        Logs next to which decisions by hand are kept, flight by flight. Empty: they are not kept.
+        Logs next to which decisions by hand are kept, flight by flight. Empty: decisions by hand are not
+        kept.
     before : ByHand
         Earlier decisions by hand.
     said : callable

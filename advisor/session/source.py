@@ -24,7 +24,7 @@ class LinkHealth:
     figures: tuple[tuple[str, str], ...] = ()
     """Statistics for the engineer: (name, value with unit)."""
     alarm: str = ""
-    """Loss at this moment; empty without one."""
+    """Sentence on data that are lost at this moment; empty while none are."""
     recording: str = ""
     """State of the recording with its size and the free disk; empty for a log."""
     link: LinkStatistics | None = None

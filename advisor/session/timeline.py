@@ -80,8 +80,8 @@ class Goal:
 
     number: int
     start: tuple[int, int, float] | None
-    """Flight, power-on and vehicle time of the first step, where the manoeuvre was judged before. None: it
-    lies ahead."""
+    """Flight, power-on and vehicle time of the first step, where the manoeuvre was judged before. None: the
+    beginning lies ahead."""
 
     def reached(self, state: CampaignState, position_s: float = 0.0) -> bool:
         """Return whether the replay has reached the goal, or passed it."""

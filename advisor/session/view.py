@@ -37,7 +37,8 @@ class View:
     aircraft_file: Path | None = None
     """Aircraft file, for commands to type afterwards; None without one."""
     elevator: "View | None" = None
-    """View of the elevator's axis, where this one shows roll and yaw. None: this one shows the elevator's."""
+    """View of the elevator's axis, where this one shows roll and yaw. None: this view shows the elevator's
+    axis."""
 
     @property
     def obstacles(self) -> tuple[Problem, ...]:

@@ -1,8 +1,8 @@
 """The gap of the lateral axis: the simulator's derivatives and effects against those of the flight.
 
 Derivatives are compared with their intervals, servos and clocks as the estimate tells them. ``diagnosis``
-weighs right derivatives, wrong ones and effects. It measures the gap of each manoeuvre with the derivatives
-of all others.
+weighs right derivatives, wrong ones and effects. Each manoeuvre's gap is measured with the derivatives of
+all other manoeuvres.
 """
 
 from collections.abc import Mapping, Sequence

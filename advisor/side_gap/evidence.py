@@ -63,8 +63,8 @@ class Squares(NamedTuple):
 
     in_fit: FloatArray
     held_out: FloatArray
-    """Each manoeuvre predicted from all others. Derivatives and numbers come from these and from the prior.
-    Trims, initial states and biases come from the manoeuvre itself."""
+    """Prediction of each manoeuvre from all other manoeuvres. Derivatives and numbers come from these and
+    from the prior. Trims, initial states and biases come from the manoeuvre itself."""
 
 
 def squares_of(fit: Fit, told: Information, known: Known) -> Squares:

@@ -1,6 +1,6 @@
 """Output error with derivatives, trims and the numbers of a setting, all free at once.
 
-Each step is that of Gauss-Newton. Trims, initial states and biases are projected out of every manoeuvre, so
+The fit takes Gauss-Newton steps. Trims, initial states and biases are projected out of every manoeuvre, so
 that derivatives and numbers alone remain. Their prior is Gaussian.
 """
 

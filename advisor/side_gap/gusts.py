@@ -1,9 +1,9 @@
 """Side gusts in the residuals of a fit, distinguished from coloured noise of the instruments.
 
 A gust adds its angle to the sideslip that fin, wing and vane meet, so it enters side force, roll and yaw
-together. Its angle is linear between knots, with an exponential correlation, as in Dryden's turbulence across
-the flight path. Noise of an instrument, however coloured, enters its own output alone. The likelihoods of the
-residuals distinguish the two.
+together. The gust's angle is linear between knots, with an exponential correlation, as in Dryden's
+turbulence across the flight path. Noise of an instrument, however coloured, enters its own output alone. The
+likelihoods of the residuals distinguish the two.
 """
 
 from collections.abc import Sequence

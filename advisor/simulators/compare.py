@@ -1,7 +1,7 @@
 """The comparison of a flight with the user's own simulator: place, cause and shrink of the gap.
 
-The simulator S replays the recorded inputs. Its linear surrogate L is diagnosed on y − (y_S − y_L). The
-difference between S and L belongs to the simulator, and is not called missing.
+The simulator S replays the recorded inputs. The simulator's linear surrogate L is diagnosed on y − (y_S −
+y_L). The difference between S and L belongs to the simulator, and is not called missing.
 """
 
 from collections.abc import Mapping, Sequence
@@ -89,7 +89,8 @@ def compare(
     simulator
         The user's own simulator.
     aircraft
-        The aircraft file. Its effects and its servo act around and in the simulator; its model is not used.
+        The aircraft file. The file's effects and servo act around and in the simulator; the file's model is
+        not used.
 
     Raises
     ------

@@ -5,9 +5,9 @@ In still air and in the vertical plane
     θ̇ = q        α̇ = q + (a_z·cos α − a_x·sin α + g·cos γ)/V        a_z = −g·cos θ in steady level flight
 
 (Klein and Morelli, *Aircraft System Identification*, chapter 10). A factor of −1 or 180/π between the sides
-is a sign or a unit, if the motion agrees with itself without that factor. Neither a flight nor a model of the
-simulator is a part of these tests. A control's sense is that of the convention, and a control in degrees has
-57 times less effect than any aircraft's.
+is a sign or a unit, if the motion agrees with itself without that factor. The tests of the interface need
+neither a flight nor a model of the simulator. A control's sense is that of the convention, and a control in
+degrees has 57 times less effect than any aircraft's.
 """
 
 from collections.abc import Sequence

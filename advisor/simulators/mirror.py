@@ -1,8 +1,9 @@
 """An effect that only the simulator has: a rate limit, play, a filter that the aircraft does not show.
 
-A fit to the flight cannot take such an effect out of a simulator, because its size would be negative. So
-the roles change. The simulator's own replays are diagnosed without any model, and the effect found there
-joins the surrogate. Where the aircraft then flies like that surrogate without it, the simulator has too much.
+A fit to the flight cannot take such an effect out of a simulator, because its size would be negative. The
+aircraft and the simulator then exchange roles. The simulator's own replays are diagnosed without any model,
+and the effect found there joins the surrogate. Where the aircraft then flies like that surrogate without it,
+the simulator has too much.
 """
 
 from collections.abc import Mapping, Sequence

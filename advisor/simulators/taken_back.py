@@ -34,8 +34,8 @@ def without_worse(
     """Return the diagnosis without effects that raise the gap visibly, and the measurement without them.
 
     The sets are those of the search: its numbers, then one effect more at a time. First the set with the
-    least gap in manoeuvres that are held out in turn stays. Then the set with the least gap on the manoeuvres
-    kept apart stays. A sentence names each effect that was taken back.
+    least gap in manoeuvres that are held out in turn stays. The set of corrections with the least gap on the
+    manoeuvres kept apart stays. A sentence names each effect that was taken back.
 
     Parameters
     ----------

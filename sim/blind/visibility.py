@@ -3,7 +3,7 @@
 Two flights without noise are compared, with and without the effect. Least squares remove the part of their
 difference that a short-period model could explain. That model has the eight parameters, and in each manoeuvre
 its own initial states, trim and offsets. The answer to differing commands is removed as well, because
-commands are recorded. The rest, over the noise, is the structural gap.
+commands are recorded. The structural gap is the residual of this fit over the noise.
 """
 
 from collections.abc import Sequence

@@ -40,7 +40,7 @@ class MoreMass:
 
 
 def _weight(engine: Any) -> float:
-    """Return the weight's part of Z_0, 1/s. The rest of Z_0 is aerodynamic."""
+    """Return the weight's part of Z_0, 1/s. The part of Z_0 that is not gravity's is aerodynamic."""
     return GRAVITY_M_S2 / float(engine.record["speed_ref"][0])
 
 

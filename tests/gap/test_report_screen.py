@@ -226,6 +226,13 @@ def test_a_command_over_several_lines_is_one_to_a_shell():
     assert shlex.split("\n".join(lines).replace("\\\n", "")) == shlex.split(command)
 
 
+def test_no_blank_follows_the_backslash_of_a_printed_command():
+    steps = [GapStep("Prove the change.", f"advisor gap {'flight-of-the-long-wing.tlog ' * 4}--json")]
+    lines = [one for one in printed(diagnosis(), 80, steps=steps) if "\\" in one]
+    assert lines
+    assert all(one.endswith("\\") for one in lines)
+
+
 def test_effects_that_share_a_reason_share_a_row():
     first, second = (Unseen(name, "no vane", "a vane") for name in ("alpha_lag", "alpha_scale"))
     lines = printed(diagnosis(cannot_see=(first, diagnosis().cannot_see[0], second)), 120)

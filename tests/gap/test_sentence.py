@@ -7,7 +7,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.sensors import Accelerometer, Alpha
 from advisor.gap.effects import EFFECTS
-from advisor.gap.result import Cause, Value, Where
+from advisor.gap.result import Cause, Shrink, Value, Where
 from advisor.gap.verdict.statements import in_simulator, what
 from advisor.gap.verdict.text import sentence_of
 from tests.gap.test_report_screen import diagnosis
@@ -38,6 +38,13 @@ def test_where_nothing_is_named_gusts_are_not_credited_to_fitted_parameters(by_a
     gap = replace(diagnosis().gap, before=2.0, after=0.4, by_air=by_air)
     sentence = sentence_of("none", gap, diagnosis().where, (), None)
     assert sentence == f"The simulator flies like the aircraft: {said}."
+
+
+def test_the_shrink_of_the_sentence_has_the_decimals_of_the_line_below():
+    shrink = Shrink((2, 5), 119.0, 0.116, 99.83, (99.7, 99.9), by_numbers_percent=98.61)
+    cause = found("actuator_lag", lag_s=0.129)
+    sentence = sentence_of("effect", diagnosis().gap, diagnosis().where, (cause,), shrink)
+    assert "removes 99.8 % of the gap (the parameters alone 98.6 %)" in sentence
 
 
 def found(effect, **sizes):

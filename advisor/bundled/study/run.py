@@ -38,7 +38,7 @@ class StudyReport:
 
 @dataclass(frozen=True, slots=True)
 class Study(Generic[T, R]):
-    """Tasks, the work on one of them, and the report of all."""
+    """Tasks of a study, the work on one task, and the report of all results."""
 
     tasks: Sequence[T]
     work: Callable[[T], R]

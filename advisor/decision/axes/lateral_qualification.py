@@ -1,8 +1,9 @@
 """The published tolerances of roll and yaw: 14 CFR Part 60, Appendix A, Table A2A, tests 2.d.2 and 2.d.7.
 
 Roll response (2.d.2): roll rate within 10 % or 2 °/s. Dutch roll (2.d.7): period within 10 %, and time to
-half amplitude within 10 % or damping ratio within 0.02. The table also allows 0.5 s of the period. That is a
-quarter of a small aircraft's period, and is not applied, nor the time between peaks of bank and sideslip.
+half amplitude within 10 % or damping ratio within 0.02. The table also allows 0.5 s of the period, which is
+a quarter of a small aircraft's. Neither this limit nor the time between peaks of bank and sideslip is
+applied.
 """
 
 from collections.abc import Mapping

@@ -88,7 +88,7 @@ def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float
     """Return the natural period of the short-period motion in s, 2π/ω with ω² = Z_α M_q − (1 + Z_q) M_α.
 
     Without an estimate that predicts its own response, the period follows from the input, which crews match
-    to the aircraft. It is 2.5 times the shortest step, or twice the median lobe of a multisine.
+    to the aircraft. The period is 2.5 times the shortest step, or twice the median lobe of a multisine.
     """
     if isinstance(estimate, Estimate) and _knows_the_motion(estimate):
         square = estimate.value("Z_alpha") * estimate.value("M_q")

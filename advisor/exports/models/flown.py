@@ -40,7 +40,7 @@ class SideModel:
     values: Mapping[str, Value]
     """Derivatives that are known, by the names of ``SIDE_PARAMETERS``."""
     untold: Mapping[str, str]
-    """Each other derivative with the reason for which it is not known."""
+    """Each unknown derivative, with the reason for which the flight does not tell the derivative."""
     trim: Trim
     """Trimmed flight. The air speed of the trim is of the kind that ``air`` knows."""
     air: AirData = STILL_AIR

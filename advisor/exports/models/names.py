@@ -1,3 +1,4 @@
-"""Names of the formats of a model, for options and messages, without the formats themselves."""
+"""Names of the formats in which a model is exported, for options and messages, without importing the
+formats."""
 
 NAMES = ("jsbsim", "ardupilot", "sdf", "matlab", "aircraft")

@@ -1,8 +1,8 @@
 """The improved simulator on manoeuvres that no fit has used: the gap before and after, and a second answer.
 
 Without logs of their own, the last third of the manoeuvres is kept apart. The simulator is improved by the
-others, as ``--out`` and ``--export`` improve it. Then the manoeuvres kept apart are compared with the
-simulator as given and with the improved one.
+others, as ``--out`` and ``--export`` improve it. The manoeuvres kept apart are compared with the given
+simulator and with the improved simulator.
 """
 
 import tempfile

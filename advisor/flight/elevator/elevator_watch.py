@@ -1,8 +1,8 @@
 """Elevator samples in the order of their stamps, watched for manoeuvres.
 
 A link may deliver packets out of order. Samples wait a moment of vehicle time before the segmenter takes
-them. A manoeuvre that has ended waits until the other channels have arrived. Both waits are measured in the
-elevator's own stamps, so that live and replay cut at equal samples.
+them. A manoeuvre that has ended waits until the other channels have arrived. The elevator's own stamps
+measure both waits, so that live and replay cut at equal samples.
 """
 
 import heapq

@@ -11,8 +11,8 @@ from advisor.flight.vehicle.wiring import Wiring
 def parts_of(control: Control, wiring: Wiring) -> tuple[Part, ...]:
     """Return the outputs of a control in rising order; empty where nothing makes the whole control.
 
-    All plain outputs make the control, and so does each pair whose members are complete. The control is the
-    mean of these. Several outputs of one member count as their mean.
+    All plain outputs make the control, and so does each pair whose members are complete. The control's
+    deflection is the mean of its parts. Several outputs of one member count as their mean.
     """
     groups: dict[str, dict[int, Role]] = {}
     for n, role in wiring.roles.items():

@@ -1,7 +1,7 @@
 """Elevator samples from several outputs, each with the sign of the aircraft's answer.
 
 Where neither a calibration nor a parameter gives the sign of an output, adding outputs could cancel them.
-Their samples then wait, at most a minute of the vehicle's clock, until the pitch rate has shown the signs.
+The outputs' samples wait, at most a minute of the vehicle's clock, until the pitch rate has shown the signs.
 All decisions follow the order of arrival, so that live and replay decide at one sample.
 """
 

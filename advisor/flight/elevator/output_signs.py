@@ -1,4 +1,4 @@
-"""Signs of several elevator outputs in pitch, from the aircraft's answer to all of them together."""
+"""Signs of several elevator outputs in pitch, from the aircraft's answer to all outputs together."""
 
 from collections.abc import Sequence
 from itertools import product

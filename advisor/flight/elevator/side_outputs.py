@@ -1,8 +1,8 @@
 """Aileron and rudder: their servo outputs and mixing.
 
-With ``Scale`` a positive deflection is trailing edge down for a positive pulse in reverse. So an aileron is
-positive where the right half goes down, and rolls to the left. A positive rudder yaws to the left. The rows
-of ``mixers.py`` give each output's share.
+With ``Scale`` a positive deflection is trailing edge down for a positive pulse in reverse. An aileron is
+positive where the right half goes down, and then rolls the aircraft to the left. A positive rudder yaws to
+the left. The rows of ``mixers.py`` give each output's share.
 """
 
 from dataclasses import replace

@@ -12,8 +12,8 @@ from advisor.flight.signals.motion import integrated
 LONGEST_DELAY_S = 0.3
 """Longest delay in the search, s. Telemetry that is later shows as a gap or as a clock of its own."""
 _STARTS_S = (0.0, 0.12, -0.12)
-"""Delays, s, at which the search starts. They lie within half a period of the fastest short period of a small
-aircraft (3 Hz) from any delay in the search."""
+"""Delays, s, at which the search starts. Every delay in the search is within half a period of the fastest
+short period (3 Hz) of one of these starts."""
 _FIRST_ROUNDS, _ROUNDS = 2, 15
 """Rounds of the search from each start, and from the best of them."""
 _SETTLED_S = 1e-5

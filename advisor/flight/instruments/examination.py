@@ -1,7 +1,7 @@
 """Examination of the instruments of one record: what contradicts, and the channels with known errors removed.
 
-Each check relies on the earlier ones. The order is: attitude and pitch rate, unit of the specific force,
-clocks, angle of attack, air speed.
+Each check of an instrument relies on the checks before. The order is: attitude and pitch rate, unit of the
+specific force, clocks, angle of attack, air speed.
 """
 
 from collections.abc import Mapping

@@ -138,7 +138,7 @@ def _compare(
     """Fit α(t) = (1 + k)·α_k(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in τ, k and the b.
 
     A gust moves the vane at once and the aircraft later, which looks like a lag and a scale. A gust is
-    independent of the command. So the lagged commands are the instrumental variables of the fit (two-stage
+    independent of the command. The lagged commands are the instrumental variables of the fit (two-stage
     least squares).
     """
     inside = (t_alpha >= t[0] + 0.3) & (t_alpha <= t[-1] - 0.3)

@@ -4,7 +4,7 @@ The order is: roll rate and bank, unit of the specific force, clock of the roll 
 
 The bank's rate is p + tan θ·(q·sin φ + r·cos φ). The sideslip's rate is β̇ = a_y/V + b + c. The part of the
 weight is b = (g/V)·cos θ·sin φ, and that of turning is c = sin α·p - cos α·r. On every aircraft the side
-force opposes the sideslip, a_y/V = Y_β·β with Y_β < 0 and a small part of the rudder's. So the sign of each
+force opposes the sideslip, a_y/V = Y_β·β with Y_β < 0 and a small part of the rudder's. The sign of each
 part in a measured sideslip, and in a side force, is known without any aerodynamics.
 """
 

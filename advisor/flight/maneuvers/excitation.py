@@ -46,7 +46,8 @@ class Excitation:
     external_error: float
     """Relative standard error for the external input alone, as in a closed loop."""
     effect: float
-    """Elevator's effect on the pitch rate, b0 + b1 + b2. Its sign is the control's; 0 where not estimated."""
+    """Elevator's effect on the pitch rate, b0 + b1 + b2. The effect has the sign of the control; 0 where the
+    effect is not estimated."""
 
 
 def excitation(maneuver: Maneuver, loop: Loop = PITCH) -> Excitation | None:

@@ -24,8 +24,8 @@ from advisor.flight.signals.record import Channel
 DELAYS_S = (0.1, 0.2, 0.3)
 """Delays of a hand between the motion and the answer, s. Pilots have 0.1 to 0.3 (McRuer & Krendel 1974)."""
 HISTORY_S = 15.0
-"""Time before a movement over which the median pitch angle is the angle that the pilot keeps, s. It holds one
-test input with its free response, and more steady flight than that."""
+"""Time before a movement over which the median pitch angle is the angle that the pilot keeps, s. The history
+holds one test input with its free response, and a longer stretch of steady flight."""
 _FEWEST = 8
 """Fewest samples of the elevator, for the law with its four unknowns."""
 _AT_S = 0.2
@@ -44,8 +44,8 @@ def explained_by_feedback(
     elevator
         Elevator, rad.
     motion
-        Channels ``q`` and ``theta`` from ``HISTORY_S`` before the movement to its end. Without one of them
-        the share is 0.
+        Channels ``q`` and ``theta`` from ``HISTORY_S`` before the movement to its end. Where a channel is
+        missing, the share is 0.
     effect
         Elevator's effect on the pitch rate. Only the sign counts; 0: unknown.
     loop

@@ -2,8 +2,8 @@
 
 An elevator movement in the preflight check, in the take-off run or after a crash is no test input. An
 estimate from such a movement would be nonsense. The autopilot's own statement counts first
-(EXTENDED_SYS_STATE). Then come the armed flag with the speed over ground, speed and height together, and an
-air speed that begins or ends near zero.
+(EXTENDED_SYS_STATE). The next signs are the armed flag with the speed over ground, speed and height
+together, and an air speed near zero.
 """
 
 from collections.abc import Callable

@@ -27,7 +27,7 @@ _SLOWEST = 1.1
 """Largest ratio of two sampling intervals to ``EDGE_S`` at which an abrupt step shows. Jitter takes 10 %."""
 _THROUGHOUT = 0.75
 """Share of a movement outside of a limit that counts as throughout. The aircraft enters a turn from level
-flight within the movement itself."""
+flight during the movement of the control."""
 
 
 def flown_elsewhere(maneuver: Maneuver, limits: Limits) -> str | None:

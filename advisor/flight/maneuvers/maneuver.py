@@ -1,7 +1,7 @@
 """A manoeuvre: the stretch of flight behind one estimate, and whether two records are one manoeuvre.
 
-Vehicle time and attitude decide: in both records the clock shows one pitch angle. Two flights of one
-schedule, even simulated ones, differ by more than a log's resolution.
+Two records hold one manoeuvre where both show the same pitch angle at the same vehicle time. Two flights of
+one schedule, even simulated ones, differ by more than a log's resolution.
 """
 
 from collections.abc import Mapping
@@ -73,14 +73,14 @@ class Maneuver:
     distrusts: tuple[Distrust, ...] = ()
     """Channels that cannot be right. A frozen specific force or α is left out of ``channels``."""
     findings: tuple[InstrumentFinding, ...] = ()
-    """Contradictions of the instruments, by all records of this power-on so far. ``channels`` are free of
-    those that are used."""
+    """Contradictions of the instruments, by all records of this power-on so far. ``channels`` are corrected
+    for the findings that are used."""
     flight: int = 0
     """Number of the campaign's log or link, 0 for the first."""
     data_notes: tuple[str, ...] = ()
     """Sentences on samples that no aircraft can have flown, and on an air speed that no sensor measured."""
     missed_s: float = 0.0
-    """Time within the record, or at its end, in which the advisor itself did not listen, s."""
+    """Time within the record, or at its end, in which the advisor was down, s."""
     leapt_s: float = 0.0
     """Leap of the vehicle's stamps within the record, or at its begin or end, s."""
     scale: Scale | None = None

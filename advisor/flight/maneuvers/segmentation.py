@@ -1,7 +1,7 @@
 """The segmenter: finds every movement of the elevator in the stream of its samples, as the movement ends.
 
-A movement begins where the elevator leaves its rest. It ends where the elevator rests again: at the earlier
-level, or for long at another one. Rest is measured relative to the movement itself (`rest`). So one rule
+A movement begins where the elevator leaves its rest. A movement ends where the elevator rests again: at the
+earlier level, or for long at another level. The limit of rest is a share of the movement (`rest`). One rule
 serves steps, slewed edges, pulses and multisines, of fast aircraft and slow ones. The free response follows
 until it has lasted long enough or an event ends it. The movement is classified where the other channels are
 at hand (`purpose`). The work per sample is bounded. A result depends on the samples, not on their delivery.
@@ -223,7 +223,8 @@ class Segmenter:
             self._leaving = min(max(4.0 * float(recent.std()), 0.5 * SMALLEST_RAD), 2.0 * SMALLEST_RAD)
 
     def _look(self, i: int, t: float, from_s: float, base: float) -> None:
-        """Test whether the moving elevator has come to rest, at the earlier level or long at another one."""
+        """Test whether the moving elevator has come to rest, at the earlier level or for long at another
+        level."""
         if t - from_s > _REACH_S:
             self._cut_off("no rest", t - _OVERLAP_S)
             self._restart(t - _OVERLAP_S)

@@ -44,8 +44,8 @@ def at_steady_speed(span: Span, airspeed: Channel | None, change_percent: float)
     Returns
     -------
     Span
-        The span itself where the speed leaves in the midst of the input. A step that is held for the least
-        free response counts as an input with its response.
+        The unchanged span where the speed leaves its limits during the input. A step that is held for the
+        least free response counts as an input with its response.
     """
     if airspeed is None or len(airspeed) < 2 or not (trim := speed_before(airspeed, span)) > 0.0:
         return span

@@ -27,7 +27,7 @@ class Pulses:
     """Shape (m + n, outputs of a bank), pulse widths, us."""
 
     def of(self, outputs: Sequence[int]) -> FloatArray:
-        """Return the pulses of these outputs, shape (n, number of outputs), us.
+        """Return the pulses of the given outputs, shape (n, number of outputs), us.
 
         A message of the last bank makes a sample, with the newest pulses of the other banks. NaN marks a
         message of another bank. NaN also marks a sample since whose forerunner another bank was silent.
@@ -45,7 +45,7 @@ class Pulses:
         return pulses[len(rows) - len(self.columns.order) :]
 
     def source(self, outputs: Sequence[int]) -> str:
-        """Return ``MESSAGE.field+field`` of these outputs."""
+        """Return the source of the given outputs as ``MESSAGE.field+field``."""
         if self.columns.name == "ACTUATOR_OUTPUT_STATUS":
             return f"{self.columns.name}.actuator" + "+".join(f"[{n - 1}]" for n in outputs)
         banks = {(n - 1) // _OUTPUTS for n in outputs}

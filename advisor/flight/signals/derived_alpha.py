@@ -1,7 +1,8 @@
 """The angle of attack in still air, derived from attitude, climb rate and air speed at equal times.
 
-Each of the three arrives at its own stamps. Attitude and air speed are interpolated at the stamps of the
-climb rate. So neither the order of messages nor their delay enters the angle.
+Pitch angle, climb rate and air speed arrive at stamps of their own. Attitude and air speed are interpolated
+at the stamps of the climb rate. Neither the order of messages nor their delay enters the derived angle of
+attack.
 """
 
 from collections.abc import Callable
@@ -108,7 +109,8 @@ def derived_alpha(
 
 
 def promised(hud: Columns, airspeed_m_s: float | None) -> IntArray:
-    """Return the orders of those VFR_HUD that give an angle, or will once the aircraft flies.
+    """Return the orders of the VFR_HUD messages that give an angle of attack, or will give one once the
+    aircraft flies.
 
     While the aircraft stands, no angle of attack can be derived, which is no fault of the stream.
 

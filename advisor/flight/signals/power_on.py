@@ -80,7 +80,7 @@ class PowerOn:
     clock_order: IntArray
     """Shape (n,), rising: arrival index of each message that stamps the vehicle's clock."""
     clock_s: FloatArray
-    """Shape (n,), never falling: the vehicle's clock at each of these arrivals, s since boot."""
+    """Shape (n,), never falling: the vehicle's clock at each arrival in ``clock_order``, s since boot."""
     modes: tuple[tuple[float, str], ...] = ()
     """Vehicle time at which each flight mode was first heard, s since boot (NaN: before the clock), and its
     name."""

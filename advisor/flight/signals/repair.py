@@ -1,7 +1,7 @@
 """Samples of a manoeuvre that no aircraft can have flown: left out or put right, and said.
 
-A single sample may leave the motion by more than the whole range of the other samples. It is a fault of a
-memory card, a radio or a driver. An angle counted from 0 to 360 deg is put right.
+A single sample may leave the motion by more than the whole range of the other samples. Such a value is a
+fault of a memory card, a radio or a driver. An angle counted from 0 to 360 deg is put right.
 """
 
 from dataclasses import dataclass, replace

@@ -17,7 +17,7 @@ _LEAST_S = 5.0
 class BestRate:
     """Counts the samples of each ten seconds since boot and keeps the fastest count.
 
-    A sample counts when its stamp is newer than all before. So a packet that comes twice counts once, and the
+    A sample counts when its stamp is newer than all before. A packet that comes twice counts once, and the
     size of batches makes no difference.
     """
 

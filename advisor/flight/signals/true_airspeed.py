@@ -61,8 +61,8 @@ BY_PRESSURE = ", true by the static pressure"
 AS_REPORTED = ", true as reported"
 """End of the source of an air speed that a simulator reports as the true one."""
 AS_GROUND_SPEED = ", equal to the ground speed"
-"""End of the source of an air speed that equals the ground speed in every sample. No pressure tells such a
-speed, so that no density makes another one of it."""
+"""End of the source of an air speed that equals the ground speed in every sample. A speed over the ground
+comes from no pressure, so that no density corrects this speed."""
 BY_HEIGHT = ", true by the height"
 """End of the source of an air speed that the height has made true."""
 

@@ -1,4 +1,5 @@
-"""The flights of a campaign, one log or link after the other. Each manoeuvre has a number and counts once."""
+"""The flights of a campaign, one log or link after the other. Each manoeuvre of a campaign has a number and
+counts once."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

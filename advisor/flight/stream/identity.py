@@ -169,7 +169,8 @@ class Identity:
         return self._finder.may_choose
 
     def _choose(self, piece: Sequence[Columns]) -> list[FlightEvent]:
-        """Follow another vehicle where the present one cannot serve and another one clearly can."""
+        """Follow another vehicle where the present vehicle's data cannot serve and the other's clearly
+        can."""
         before = self._finder.vehicle
         if before is None or not piece:
             return []

@@ -3,7 +3,7 @@
 A stream that served at the first manoeuvre may become too slow, or lose its elevator, at any time. Times of
 arrival decide, because the vehicle's clock stands still when ATTITUDE stops. Judgements happen at fixed steps
 of arrival, so that a log and a live link agree for any batches. A link that is wholly silent says nothing
-about its channels; the link itself reports a silence.
+about its channels; the link's own watch reports the silence.
 """
 
 from array import array
@@ -26,7 +26,8 @@ LAPSED_AFTER_S = 1.0
 SERVED_AFTER_S = 5.0
 """Time without any problem before its end is reported, s, so that reports do not alternate near a limit."""
 PAUSE_S = 2.5
-"""Silence of the vehicle after which counting restarts, s: two heartbeats, one of them lost."""
+"""Silence of the vehicle after which counting restarts, s: two intervals of heartbeats, so that one may be
+lost."""
 
 Judge = Callable[[Mapping[str, ChannelStatus], float], Sequence[Problem]]
 

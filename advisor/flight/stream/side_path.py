@@ -1,7 +1,7 @@
 """Path of the samples of aileron and rudder: from movements to lateral manoeuvres.
 
-Each control has a finder of its own. Movements at the same time are one input. An input is cut where its free
-response has lasted long enough, in the vehicle's time, so that a log and a live link agree.
+Aileron and rudder each have a finder of movements. Movements at the same time are one input. An input is cut
+where its free response has lasted long enough, in the vehicle's time, so that a log and a live link agree.
 """
 
 from collections.abc import Sequence

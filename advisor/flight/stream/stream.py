@@ -1,7 +1,7 @@
 """The stream of one vehicle: columns of messages in, channels and manoeuvres out.
 
-Every decision follows the order of arrival and the vehicle's clock, never the batches. So a live link,
-message by message, and a whole log end in equal events. Memory is bounded by two minutes of channels.
+Every decision follows the order of arrival and the vehicle's clock, never the batches. A live link, message
+by message, and a whole log end in equal events. Memory is bounded by two minutes of channels.
 """
 
 from collections.abc import Sequence

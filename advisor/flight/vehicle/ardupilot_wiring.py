@@ -13,7 +13,7 @@ from advisor.flight.vehicle.wiring import Parameters, Wiring, Words, limits
 
 _CHANNELS = range(1, 17)
 PREFIXES = ("SERVO", "RCMAP_", "DSPOILER_OPTS", *(f"RC{k}_REVERSED" for k in _CHANNELS))
-"""Beginnings of these parameters' names."""
+"""Beginnings of the names of ArduPilot's parameters that state outputs."""
 _OUTPUTS = range(1, 33)
 _PASSES_OWN = 1
 _PASSES_RAW, _PASSES_SCALED = 50, 139

@@ -1,7 +1,7 @@
 """Breaks in the stamps of one power-on: times in which the advisor did not listen, and leaps of the clock.
 
-The process of the link writes a text into its own stream when it listens again. So a log and a link agree on
-who is to blame for a gap: the advisor, and neither the radio nor the pilot.
+The process of the link writes a text into its own stream when it listens again. A log and a link both blame
+such a gap on the advisor, and neither on the radio nor on the pilot.
 """
 
 import numpy as np

@@ -78,7 +78,7 @@ class Parameters:
             known[name] = stated
 
     def stated(self, senders: Sequence[Sender], autopilot: str) -> dict[str, float]:
-        """Return the known values of these senders by name. The last sender overrides."""
+        """Return the known parameters of the given senders, name to value. The last sender overrides."""
         return {
             name: value
             for sender in senders

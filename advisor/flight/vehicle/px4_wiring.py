@@ -29,7 +29,7 @@ its opposite. PX4 before 1.13 mixes its outputs by files, which no log holds."""
 STANDS_FOR_ELEVATOR = 2.0
 """Value of such a parameter where the pulses are the pitch command itself, with 500 us for full command."""
 PREFIXES = ("CA_SV_CS", *GROUPS, FOLLOWS_PITCH)
-"""Beginnings of these parameters' names."""
+"""Beginnings of the names of PX4's parameters that state outputs."""
 OUTPUTS = range(1, 17)
 """Numbers of the outputs of one group."""
 _SURFACES = range(8)
@@ -193,7 +193,7 @@ def _followers(parameters: Parameters) -> Wiring:
     if senses:
         assumed = "a guess: it follows the pitch command"
     if STANDS_FOR_ELEVATOR in senses.values():
-        assumed = "the pitch command, which stands for it"
+        assumed = "the pitch command, which stands for the elevator"
     return Wiring(
         WORDS,
         dict.fromkeys(senses, ELEVATOR),

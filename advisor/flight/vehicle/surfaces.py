@@ -2,9 +2,9 @@
 
 The deflection is that of the *command*. The estimator models the servo's answer.
 
-Signs: an output that is not reversed rises with the demand, and a positive pitch demand lifts the nose. So
-more PWM is trailing edge up unless the output is reversed. The elevator channel counts trailing edge down as
-positive, which explains the minus in `Scale.deflection`.
+Signs: an output that is not reversed rises with the demand, and a positive pitch demand lifts the nose. A
+longer pulse moves the trailing edge up, unless the output is reversed. The elevator channel counts trailing
+edge down as positive, which explains the minus in `Scale.deflection`.
 """
 
 from collections.abc import Collection, Iterable, Sequence

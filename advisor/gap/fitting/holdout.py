@@ -1,8 +1,8 @@
 """Hold-out: how a model predicts manoeuvres that were left out of its fit.
 
 The fit is linear about the optimum. Leaving out a fold moves the shared parameters by (H − H_f)⁻¹ g_f,
-without a simulation. Only the nuisance parameters of a held-out manoeuvre are refitted. Folds are interleaved
-and rotated, because a gust or a change may fall into any one of them.
+without a simulation. Only the nuisance parameters of a held-out manoeuvre are refitted. Folds are
+interleaved and rotated, because a gust or a change may fall into any fold.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -135,7 +135,8 @@ def measured_in(
 ) -> HeldOut:
     """Return the hold-out with the residuals of the fit in some manoeuvres.
 
-    These manoeuvres alone determine some parameter, so no other manoeuvre predicts them.
+    The manoeuvres in ``sole_maneuvers`` alone determine some parameter, so that no other manoeuvre predicts
+    them.
     """
 
     def chosen(inside: Sequence[FloatArray], kept_out: Sequence[FloatArray]) -> list[FloatArray]:

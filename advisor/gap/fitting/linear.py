@@ -90,7 +90,8 @@ class Linear(SensitivityColumns):
     def products(self) -> FloatArray:
         """Shape (channels, m + k + 1, m + k + 1): inner products of all columns, by channel.
 
-        Every normal equation is a weighted sum of these products, so new weights need no pass over the rows.
+        Every normal equation is a weighted sum of the products of rows, so new weights need no pass over the
+        rows.
         """
         return np.stack([self.columns[rows].T @ self.columns[rows] for rows in self.channels])
 

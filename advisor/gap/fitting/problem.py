@@ -84,7 +84,7 @@ class SearchPoint:
         )
 
     def keeping(self, which: Sequence[int]) -> "SearchPoint":
-        """Return the model with the effects of these indices."""
+        """Return the model with the effects of the given indices."""
         return replace(
             self, effects=tuple(self.effects[k] for k in which), values=tuple(self.values[k] for k in which)
         )

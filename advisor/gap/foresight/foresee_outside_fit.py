@@ -32,7 +32,7 @@ from advisor.gap.simulator.layout import DISTURB_AIR, REFERENCE, SPEED
 CLIMB_RATE_STD_M_S = 0.1
 """Prior: noise assumed for an unmeasured climb rate, m/s, with one independent reading per second."""
 _ANGLES = np.geomspace(1e-5, 0.5, 200)
-"""Numerical: gust angles that are tried, rad; a filter assumes one of them."""
+"""Numerical: gust angles that are tried, rad, one angle for each filter."""
 _SPEED_STEP = 0.01
 """Numerical: relative change of speed with which the signature of the air speed is evaluated."""
 

@@ -93,7 +93,7 @@ def foresee_flights(
 ) -> list[Foreseen]:
     """Return for every effect the smallest size that prepared manoeuvres could detect.
 
-    Only stamps, commands and slow channels of these manoeuvres count.
+    Only stamps, commands and slow channels of the given manoeuvres count.
 
     Parameters
     ----------

@@ -61,7 +61,7 @@ def residual_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> Resid
 
 
 def shares_of(blocks: Sequence[str], nats: Sequence[float]) -> Mapping[str, float]:
-    """Return the probability of each block, given that a disturbance acts in one of them."""
+    """Return the probability of each block, given that a disturbance acts in exactly one block."""
     shares = np.exp(np.array(nats) - np.logaddexp.reduce(nats))
     return {block: float(p) for block, p in zip(blocks, shares, strict=True) if p > _HARDLY}
 

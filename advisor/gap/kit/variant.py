@@ -38,7 +38,8 @@ class Variant:
     fixed: Mapping[str, float] = field(default_factory=dict)
     """Parameters of the aircraft file that are not searched for, such as the time of a step."""
     places: tuple[str, ...] = ()
-    """Parameters of position, time or rate instead of size. Zero there does not mean that no effect acts."""
+    """Parameters of position, time or rate instead of size. A size of zero does not mean that no effect
+    acts."""
     prior_std: tuple[float, ...] = ()
     """Prior standard deviation of each parameter about zero; empty for a flat prior."""
     is_nuisance: bool = False

@@ -1,9 +1,9 @@
 """Uncertain stamps: how exactly the time of a sample is known, and the error of its value that follows.
 
-A stamp with an error δt makes an error of δt times the rate of the channel. That error is white however
-smooth the motion is. Differences of the residual show it as the part of their mean square that grows with the
-square of the rate. Where a step of the command jerks the accelerometer, time is known no better than the
-simulation's grid.
+A stamp with an error δt makes an error of δt times the rate of the channel. The error that a wrong stamp
+makes is white, however smooth the motion is. Differences of the residual show it as the part of their mean
+square that grows with the square of the rate. Where a step of the command jerks the accelerometer, time is
+known no better than the simulation's grid.
 """
 
 import numpy as np
@@ -93,7 +93,8 @@ def stamp_jitter(problem: EffectProblem, fitted: EffectFit, rates: list[FloatArr
 def _jitter_in(
     problem: EffectProblem, fitted: EffectFit, rates: list[FloatArray], channel: str
 ) -> tuple[float, float]:
-    """Return the power of the stamps' errors in a channel over its limit, and the standard deviation in s."""
+    """Return two numbers of a channel: the noise power that errors of stamps make, over its limit, and the
+    standard deviation of these errors, s."""
     c = problem.channels.index(channel)
     power = float(np.sum(_THIRD**2))
     rough, moving = [], []

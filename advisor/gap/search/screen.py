@@ -65,7 +65,8 @@ class Screen:
         )
 
     def quick_fits(self, variants: Sequence[Variant]) -> list[Screened]:
-        """Return the best quick fit of each variant over its starts, where one of them leads anywhere.
+        """Return the best quick fit of each variant over its starts, for variants of which some start
+        converges.
 
         Variants that promise next to nothing relative to the best one are not followed.
         """

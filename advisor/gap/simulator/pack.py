@@ -1,7 +1,7 @@
 """A pack of simulations: an array of shape (``ROWS``, ``LANES``), its rows' meaning, and its initial values.
 
-The first rows are the driving numbers of ``advisor.gap.simulator.layout``. Each column, or lane, is one
-simulation.
+The first rows are the driving numbers of ``advisor.gap.simulator.layout``. Each column of an array, called a
+lane, is one simulation.
 """
 
 import numpy as np

@@ -178,7 +178,8 @@ def moment(x: FloatArray, m: int, q: float, alpha_dot: float, da: float, behind:
 def rates(x: FloatArray, lanes: int, h: float, d_air: float, alpha_trim: float, first: bool) -> None:
     """Write α̇ and q̇ by Eqs. (1)-(2), half a step ahead of the state by the rates known so far.
 
-    ``first``: the rates known so far are zero, so the result belongs to the step's start, like the outputs.
+    ``first``: the rates of the previous step count as zero, so the result belongs to the step's start, like
+    the outputs.
     """
     for m in range(lanes):
         a = x[row.ALPHA, m] + 0.5 * h * x[row.KA, m] + x[row.DOSE, m] * d_air

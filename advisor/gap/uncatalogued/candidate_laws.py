@@ -1,10 +1,11 @@
 """Simple laws outside the catalogue: nonlinear readings, nonlinear damping, losses, friction and stops.
 
-The catalogue scales α and q, but not a_z and θ. It has no nonlinear reading, and no gyro that is sensitive to
-acceleration. Its moments are nonlinear in deflection and α, but not in pitch rate. Its servo may lag or reach
-a rate limit, but neither overshoots nor meets a stop. Its α may lag, but no vane has friction or a stop. Its
-channels may be late, but not filtered. Its lift may be nonlinear and delayed, but has no hysteresis. Ice
-reduces lift and elevator power, but no effect reduces elevator power alone.
+The catalogue scales α and q, but not a_z and θ. The catalogue has no nonlinear reading, and no gyro that is
+sensitive to acceleration. Moments of the catalogue are nonlinear in deflection and α, but not in pitch rate.
+The catalogue's servo may lag or reach a rate limit, but neither overshoots nor meets a stop. The catalogue's
+α may lag, but no vane has friction or a stop. The catalogue's channels may be late, but not filtered. The
+catalogue's lift may be nonlinear and delayed, but has no hysteresis. Ice reduces lift and elevator power,
+but no effect reduces elevator power alone.
 """
 
 from collections.abc import Sequence

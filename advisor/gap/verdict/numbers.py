@@ -156,7 +156,8 @@ def compared_derivatives(
 ) -> tuple[ComparedDerivative, ...]:
     """Return the simulator's derivatives with the flight's, those that differ by most intervals first.
 
-    ``known``, shape (k, k), is the covariance of the shared parameters. Without a simulator there are none.
+    ``known``, shape (k, k), is the covariance of the shared parameters. Without a simulator no derivative is
+    compared.
     """
     if problem.prior_derivatives is None:
         return ()

@@ -124,13 +124,13 @@ def _of_effects(causes: Sequence[Cause], shrink: Shrink | None, in_simulator: fr
     if shrink is not None and shrink.by_numbers_percent is not None:
         # The share of fitted derivatives must not pass for the effect's.
         added = "adding it and refitting the eight parameters"
-        removed += f" (the parameters alone {shrink.by_numbers_percent:.0f} %)"
+        removed += f" (the parameters alone {shrink.by_numbers_percent:.1f} %)"
     also = f"; also {_listed(present[1:])}" if len(present) > 1 else ""
     return f"{named}; {added} removes {removed}{also}."
 
 
 def _removed(shrink: Shrink | None) -> str:
-    return "the gap" if shrink is None else f"{max(shrink.percent, 0.0):.0f} % of the gap"
+    return "the gap" if shrink is None else f"{max(shrink.percent, 0.0):.1f} % of the gap"
 
 
 def _listed(causes: Sequence[Cause]) -> str:

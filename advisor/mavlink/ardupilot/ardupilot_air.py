@@ -89,7 +89,7 @@ def _first(
 
 
 def _away_from(time_us: IntArray, other_us: IntArray) -> NDArray[np.bool_]:
-    """Return whether each other time is farther from all times than three intervals of these."""
+    """Return whether each of the other times is farther from every time than three sampling intervals."""
     if len(time_us) < 2:
         return np.ones(len(other_us), dtype=np.bool_)
     apart_us = np.abs(other_us - time_us[nearest(other_us, time_us)])

@@ -46,7 +46,8 @@ _RECORDS: dict[str, set[str]] = {
     "XKF1": {"VD"},
     "XKF2": {"VWN", "VWE"},
 }
-"""Record to its necessary fields. Without them (another vehicle, an older version) it counts as missing."""
+"""Record to its necessary fields. A record without these fields (another vehicle, an older version) counts
+as missing."""
 _FIELDS = frozenset[str]().union(*_RECORDS.values(), *SDLOG2_RECORDS.values()) | {
     *("TimeUS", "TimeMS", "T", "I", "C"),
     *("As", "BU", "H", "Press", "Pri", "ThO", "U"),

@@ -22,8 +22,8 @@ SLOWEST_ANGLES_HZ = 20.0
 """Least rate of angles, Hz, from which angular rates are derived. The difference over 1/20 s gives the rate
 to 1 % for a natural frequency up to 10 rad/s, typical of a small aircraft."""
 GYRO_FILTER_HZ = 20.0
-"""INS_GYRO_FILTER where the log does not state it, Hz, which is ArduPlane's default. This is the corner of a
-second-order low-pass for all gyro readings of the autopilot."""
+"""INS_GYRO_FILTER where the log does not state it, Hz, which is ArduPlane's default. INS_GYRO_FILTER is the
+corner of a second-order low-pass for all gyro readings of the autopilot."""
 _FROZEN_S = 1.0
 """Least time of constant output, s, that shows a controller at rest. A controller that does not run keeps its
 last rate, as ArduPlane's do in MANUAL."""
@@ -61,7 +61,7 @@ def body_rates(tables: Mapping[str, RecordTable]) -> Rates | None:
 def gyro_delay_s(parm: RecordTable | None) -> float:
     """Return the delay of the autopilot's gyro readings at the frequencies of flight, s.
 
-    This is the delay of a second-order Butterworth low-pass, √2 / (2π f), with f of INS_GYRO_FILTER. The
+    A second-order Butterworth low-pass delays by √2 / (2π f), with f of INS_GYRO_FILTER. The
     result is 11 ms at 20 Hz, where 12 ms were measured in a log of ArduPlane 4.5 (logs/arduplane-calm.tlog).
     """
     corner_hz = GYRO_FILTER_HZ

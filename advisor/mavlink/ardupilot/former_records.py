@@ -1,8 +1,7 @@
 """Records of every firmware since 2013 under today's names, each with its time since boot.
 
 Firmware of 2013 to 2015 stamped records in milliseconds and numbered channels ``Chan1`` or ``Ch1``. A second
-sensor had a record of its own, and some records had no time at all (ArduPilot, DataFlash.h and
-ArduPlane/Log.cpp of those years).
+sensor had a record of its own, and some records had no time (ArduPilot, DataFlash.h and ArduPlane/Log.cpp).
 """
 
 import re

@@ -18,7 +18,7 @@ _HEALTH = ("H", "GH", "AH")
 _IN_USE = "U"
 """Field that is 1 where the autopilot uses the sensor."""
 _MOVING = ("GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ")
-"""Fields of IMU. Noise moves at least one of them from sample to sample."""
+"""Fields of IMU. Noise moves at least one of a live sensor's axes from sample to sample."""
 _FROZEN_S = 0.5
 """Time, s, of constant values after which an inertial sensor counts as dead, whatever its health says. A
 sound sensor repeats its values at most once, when records come faster than samples."""
@@ -35,7 +35,8 @@ def flown(table: RecordTable, health: Collection[str]) -> RecordTable:
     Only the fields in ``health`` tell of a sensor's health (:func:`stated_health`).
 
     ARSP.Pri names the primary sensor. Where the primary one is not healthy and in use, the lowest-numbered
-    sensor that is counts. Without one, the lowest-numbered healthy sensor counts. (ArduPilot's ARSP and IMU.)
+    sensor that is counts. Without a stated primary sensor, the healthy sensor of the lowest number counts.
+    (ArduPilot's ARSP and IMU.)
     """
     if len(table) == 0:
         return table

@@ -104,9 +104,9 @@ REOPEN_EVERY_S = 1.0
 class SeparateConnection(Talker):
     """Sends to a ground station the messages that a talker would send on the link.
 
-    MAVProxy forwards messages from its ``--out`` to the vehicle, and shows none of them. MAVProxy shows a
-    message from its ``--master`` when the text carries the system and component of its vehicle (MAVProxy,
-    ``mavproxy_link.py``, ``message_is_from_primary_vehicle``).
+    MAVProxy forwards messages from its ``--out`` to the vehicle, and does not show these messages. MAVProxy
+    shows a message from its ``--master`` when the text carries the system and component of its vehicle
+    (MAVProxy, ``mavproxy_link.py``, ``message_is_from_primary_vehicle``).
 
     Parameters
     ----------

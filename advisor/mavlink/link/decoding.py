@@ -32,7 +32,7 @@ class Decoding:
         self._followed: Ids | None = None
 
     def feed(self, records: bytes) -> list[Columns]:
-        """Return the messages of these records."""
+        """Return the messages in the given records."""
         columns = self._scanner.feed(records)
         for piece in pieces(columns, by_second=True):
             self._who.learn(piece)

@@ -2,7 +2,8 @@
 
 python -m advisor.mavlink.link.keeper
 
-Nothing is estimated, drawn or decoded here, so that no fault of these can harm the link or the recording.
+The keeper estimates, draws and decodes nothing, so that no fault of such work can harm the link or the
+recording.
 """
 
 import contextlib

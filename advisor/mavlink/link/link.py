@@ -2,7 +2,7 @@
 
 A separate thread takes frames from the connection and puts a time stamp before each, as in a tlog. The thread
 hands these records to the recorder and to the reader of the link. Readers decode these bytes with the scanner
-that reads logs. So the live messages and the replayed ones are equal, in equal order.
+that reads logs. Live messages and replayed messages are equal, in equal order.
 """
 
 import contextlib

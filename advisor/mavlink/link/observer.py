@@ -22,7 +22,7 @@ class LinkObserver:
     Parameters
     ----------
     door
-        Address of the process. None: there is no such process, and nothing is told.
+        Address of the process. None: no process keeps a link, and nothing is reported.
     tell
         Called with the health, in a thread of the observer.
     """

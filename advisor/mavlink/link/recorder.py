@@ -29,7 +29,7 @@ class Recorded:
     """Progress of a recording."""
 
     written: int
-    """Bytes in the file, all of them whole records."""
+    """Number of bytes in the file, which ends with a whole record."""
     unsaved: bytes
     """Records in memory that are not in the file yet."""
 

@@ -41,7 +41,8 @@ def recordings_folder() -> Path:
 
 
 def writable_folder() -> tuple[Path, str]:
-    """Return a folder for a recording that the user does not name, and a sentence where that is another one.
+    """Return a folder for a recording that the user does not name, and a sentence where this is not the
+    usual folder.
 
     A home that is full, read-only or missing keeps nobody from advising.
     """
@@ -82,7 +83,7 @@ def create(path: Path) -> tuple[Path, BinaryIO]:
 
 
 def take_up(path: Path) -> tuple[Path, BinaryIO]:
-    """Open a recording behind its last whole record. The rest of a record that a power cut broke is cut off.
+    """Open a recording behind its last whole record. A last record that a power cut broke is removed.
 
     Raises
     ------

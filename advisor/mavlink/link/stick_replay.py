@@ -89,7 +89,7 @@ class StickReplay(Talker):
         return [_override(vehicle, self._pulses[row].tolist())]
 
     def leave(self, now_s: float) -> list[Any] | None:
-        """Return nothing more to send: an override that ends is released by the vehicle itself."""
+        """Return nothing more to send: the vehicle releases an override that ends."""
         return None
 
     def _asked(self, vehicle: Ids, now_s: float) -> list[Any]:

@@ -35,7 +35,7 @@ TOPICS: dict[str, set[str]] = {
     "wind": {"windspeed_north", "windspeed_east"},
     "wind_estimate": {"windspeed_north", "windspeed_east"},
 }
-"""Topic to its necessary fields. Without them (another version) a topic counts as missing."""
+"""Topic to its necessary fields. A topic without these fields (another version) counts as missing."""
 
 ENOUGH_HZ = 25.0
 """Least rate at which the preferred topic is used although another topic is faster, 1/s: twelve samples in a

@@ -107,7 +107,7 @@ class WholeFile(io.BufferedReader):
     """A file in which a read beyond the end fails, unless nothing is left.
 
     Where damaged definitions lead pyulog 1.3 beyond the end, pyulog steps back by the bytes it wanted to
-    read, not by those it got. Its search would then never end.
+    read, not by those it got. The search of pyulog would then never end.
     """
 
     def read(self, size: int | None = -1, /) -> bytes:

@@ -1,9 +1,9 @@
 """Messages as the vehicle would have sent them, from logs with the autopilot's own records.
 
-Autopilots log angles, rates, outputs and air data as separate records, each at its own time. This module
-turns records into messages of a telemetry link, so that all later code has one path. A message holds only
-values of its record. Missing and infinite values are NaN in a floating-point field, and zero otherwise.
-Nothing is interpolated.
+Autopilots log angles, rates, outputs and air data as separate records, each at its own time. Records of a
+log become messages of a telemetry link, so that all later code has one path. A message holds only values of
+its record. Missing and infinite values are NaN in a floating-point field, and zero otherwise. Nothing is
+interpolated.
 """
 
 from collections.abc import Mapping

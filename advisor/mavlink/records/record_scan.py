@@ -1,7 +1,7 @@
 """Records of an ArduPilot log in its bytes, window by window, so that no file must fit into memory.
 
-A record is two bytes of header, a type, and its fields. Records carry no checksum. So a record counts only
-when another header, or the end of the file, follows right behind it.
+A record is two bytes of header, a type, and its fields. Records carry no checksum. A record counts only when
+another header, or the end of the file, follows right behind.
 """
 
 from collections.abc import Iterator

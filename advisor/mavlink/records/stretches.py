@@ -39,8 +39,8 @@ def read_stretches(
 ) -> Iterator[Stretch]:
     """Yield the records of the named types, stretch by stretch, for each log that was joined into the file.
 
-    Two logs may number their types differently. A type without records is left out. Only records of the named
-    types are kept in memory, of these only the fields that ``is_read`` names.
+    Two logs may number their types differently. A type without records is left out. Memory holds only
+    records of the named types, with the fields that ``is_read`` names.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ class _Collected:
         yield self._last()
 
     def holds(self, names: Collection[str]) -> bool:
-        """Return whether the log has records of any of these types."""
+        """Return whether the log has records of any of the given types."""
         return any(
             name in names for number, name, layout, _ in self._defined() if (number, layout) in self._rows
         )
@@ -186,7 +186,7 @@ class _Collected:
             )
 
     def _tables(self, keep_from: float = math.inf) -> dict[str, RecordTable]:
-        """Return the collected records, and keep copies of those that come again."""
+        """Return the collected records, and keep copies of the records that come again."""
         tables: dict[str, RecordTable] = {}
         for number, name, layout, divisors in self._defined():
             if layout is None or name not in self._wanted:
@@ -220,7 +220,7 @@ def _merged(one: RecordTable, other: RecordTable) -> RecordTable:
 
 
 def _grown(stored: Mapping[str, NDArray[Any]]) -> dict[str, _Growing]:
-    """Return arrays that begin with copies of these."""
+    """Return longer arrays that begin with copies of the given arrays."""
     grown = {name: _Growing() for name in stored}
     for name, values in stored.items():
         grown[name].extend(values)

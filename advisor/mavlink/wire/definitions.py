@@ -2,7 +2,7 @@
 
 One line for each message, from the MAVLink definitions (common.xml, ardupilotmega.xml): ``NAME id: type
 field, ... + extension fields of MAVLink 2``. The order on the wire and the seed of the checksum follow from
-the protocol's rules. So reading a log needs no dialect of pymavlink, whose import costs 0.1 s and more.
+the protocol's rules. Reading a log needs no dialect of pymavlink, whose import costs at least 0.1 s.
 """
 
 from dataclasses import dataclass

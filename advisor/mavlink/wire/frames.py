@@ -29,7 +29,7 @@ class Received:
     late: int = 0
     """Frames that came after a younger one."""
     repeated: int = 0
-    """Frames that a second path brought again. None of them counts."""
+    """Frames that a second path brought again. No repeated frame counts."""
     repeated_after_s: float = math.nan
     """Mean delay of a repeat after the first copy, s."""
 

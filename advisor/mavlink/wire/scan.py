@@ -60,8 +60,8 @@ def _frame_length(stream: Bytes, at: int, final: bool, seeds: Ints) -> int:
     """Return the length of the good frame at ``at``; ``_NONE`` without one, or ``_WAIT`` for more bytes.
 
     ``seeds`` holds the CRC_EXTRA of each message id, -1 for an unknown one. The checksum of an unknown
-    message fits some seed for one in 256 of the possible remainders. Such a frame is skipped as a frame where
-    another one is due right behind it.
+    message fits some seed for one in 256 of the possible remainders. An unknown frame is skipped as a whole
+    where another frame begins right behind.
     """
     n = len(stream)
     short = _NONE if final else _WAIT

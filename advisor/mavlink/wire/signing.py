@@ -5,9 +5,9 @@ a signature. The time stamp has 48 bits, in 10 us since 2015-01-01, and only ris
 48 bits of SHA-256 over key, frame, link id and time.
 
 By the guide, a new stream is refused when its time lies more than a minute behind the local one. An autopilot
-without GPS counts on from the time it stored last, which may lie months behind this host's clock. So the
-host's clock does not count: each sender is compared with its own newest time. Frames recorded before this
-session can be replayed until their sender is heard.
+without GPS counts on from the time it stored last, which may lie months behind this host's clock. The host's
+clock does not count: each sender's time is compared with the newest time of that sender. Frames recorded
+before this session can be replayed until their sender is heard.
 """
 
 import hashlib
@@ -21,7 +21,7 @@ from advisor.words.problems import ConfigurationError
 KEY_LENGTH = 32
 EPOCH_2015_S = 1_420_070_400
 RADIO_STATUS = 109
-"""Message of the radios themselves, which hold no key and never sign."""
+"""Message that the radios send, which hold no key and never sign."""
 
 _NEW_STREAM_MAY_LAG = 6_000_000
 """Largest delay of a new stream behind its sender's other streams: one minute, in 10 us (MAVLink guide)."""

@@ -35,7 +35,7 @@ def shrink_said(shrink: Shrink) -> str:
 
 def where_said(where: Where) -> str:
     """Return the place of a gap, and its share: ``in the lift, 93 % of the gap``."""
-    share = f", {100 * where.share:.0f} % of the gap" if where.share >= _WORTH_SAYING else ""
+    share = f", {100 * where.share:.1f} % of the gap" if where.share >= _WORTH_SAYING else ""
     return f"{place(where.block)}{share}"
 
 

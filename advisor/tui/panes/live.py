@@ -43,7 +43,7 @@ so: recover. Between manoeuvres nothing moves here; the last trace stays.
             yield Plot(empty, id=f"live-{name}")
 
     def show(self, view: View) -> None:
-        """Draw the manoeuvre in the air. Without one, the last trace stays."""
+        """Draw the manoeuvre in the air. Between manoeuvres the last trace stays."""
         flying, settling = view.state.flying, view.state.settling
         if flying is None or view.health.condition == "ended":
             self.subtitle("")

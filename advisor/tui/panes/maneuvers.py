@@ -30,7 +30,7 @@ _RULES = ("continuous", "separate", "information")
 
 
 class Maneuvers(Pane):
-    """Table of manoeuvres. The other panes show the manoeuvre under the cursor."""
+    """Table of manoeuvres. All panes of one manoeuvre show the manoeuvre under the cursor."""
 
     TITLE = "1 Manoeuvres"
     SHORT = "1Man"

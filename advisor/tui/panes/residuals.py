@@ -74,7 +74,7 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
         self._only_with_fit()
 
     def show(self, view: View) -> None:
-        """Draw the selected manoeuvre when it is another one."""
+        """Draw the selected manoeuvre anew when the selection has changed."""
         judged = view.judged
         if judged is None or not self.changed(judged):
             return

@@ -53,7 +53,7 @@ _MARGINS = 2
 class KeysLine(Static):
     """Keys and their actions, in the order of importance. A click on an action presses its key.
 
-    This is one line of text, where Textual's footer mounts a widget for every key anew whenever the focus
+    The line is one text, whereas Textual's footer mounts a widget for every key anew whenever the focus
     moves. A message uses this line and needs no new layout. Textual's toasts would come up a repaint later.
     """
 

@@ -1,7 +1,7 @@
 """Remedies for a record that falls short, in the words of its autopilot's users.
 
 A vehicle is heard over telemetry, live or from a ``.tlog``, or read from the log that its autopilot keeps.
-Each of these has other names for the values, and other settings for their rates.
+Each kind of sender has other names for the values, and other settings for their rates.
 """
 
 from typing import Literal

@@ -33,8 +33,8 @@ from advisor.words.problems import ConfigurationError
 MASS_KG = 2.0
 """Mass of ArduPilot's plane, kg."""
 OWN_DRAG, OWN_OSWALD = 0.1, 0.9
-"""Drag without lift and Oswald's factor of ArduPilot's own plane (``skywalker_2013``). Neither is found by
-the flight, so each is kept for the user's aircraft."""
+"""Drag without lift and Oswald's factor of ArduPilot's own plane (``skywalker_2013``). The flight tells
+neither drag nor Oswald's factor, so the user's aircraft keeps both."""
 SIDE_KEYS = ("wing_area_m2", "span_m")
 FACTORS = {"beta": "b", "p": "p", "r": "r", "delta_a": "deltaa", "delta_r": "deltar"}
 """Factor of a derivative to the spelling of ArduPilot's keys."""

@@ -1,9 +1,9 @@
 """``jsbsim``: a copy of the user's own JSBSim aircraft, corrected in both axes.
 
 A derivative is corrected where its 95 % interval excludes the prior value. The prior is the aircraft file's
-``model``, else the JSBSim aircraft itself. The aircraft's own terms are multiplied by a factor. A function is
-added where there is no term or where the terms do not reach the value. A function also replaces a factor that
-would turn the sign.
+``model``, else the derivatives of the JSBSim aircraft. The aircraft's own terms are multiplied by a factor.
+A function is added where there is no term or where the terms do not reach the value. A function also
+replaces a factor that would turn the sign.
 
 The curves of effects are those of the aircraft file. Squares and cubes are of α or of the elevator; a
 moment is by the rate of α. The terms count from ``about_rad`` or else from the trim. All are proportional to

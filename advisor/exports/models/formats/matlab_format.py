@@ -3,8 +3,9 @@
     x = [α; q],  u = δe,  y = [α; q; a_z],  all departures from trim
     x = [β; p; r; φ],  u = [δa; δr],  y = [p; r; φ; a_y; β],  all departures from level flight
 
-With N = α̇ - q, the specific force along body z at the centre of gravity is V·N to first order. Its rows are
-V times (Z_α, Z_q) and V·Z_δe. The specific force along body y is V times the derivatives' part of β̇.
+With N = α̇ - q, the specific force along body z at the centre of gravity is V·N to first order. The rows of
+the normal acceleration are V times (Z_α, Z_q) and V·Z_δe. The specific force along body y is V times the
+derivatives' part of β̇.
 """
 
 from dataclasses import replace

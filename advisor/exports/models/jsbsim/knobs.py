@@ -1,6 +1,6 @@
 """Numbers in a corrected aircraft that set its derivatives, and their search.
 
-Lift acts on the pitching moment by its arm, and a term moves the trim. So the aircraft is corrected and
+Lift acts on the pitching moment by its arm, and a term moves the trim. The aircraft is corrected and
 measured in turn until each derivative has its target value.
 """
 
@@ -12,7 +12,8 @@ from advisor.exports.models.jsbsim.slopes import COLUMNS, Slopes
 from advisor.exports.models.jsbsim.source import AXES, PLAIN, AddedFunction, Factor
 
 ROUNDS = 8
-"""Number of rounds in which the numbers settle. Each round divides the error by ten or more."""
+"""Number of rounds in which the numbers settle. Each round of corrections divides the derivatives' error by
+ten or more."""
 WITHIN = 1e-3
 """Relative error of a derivative at which the corrected aircraft counts as settled."""
 

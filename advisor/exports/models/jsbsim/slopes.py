@@ -2,8 +2,8 @@
 
 The module runs in a separate process (``python -m``), because JSBSim writes on stdout and may end its
 process. The states are held while the forces settle, so that no derivative is mixed with motion. α̇ and q̇
-respond to α, q and elevator with all dependent terms. So the terms of α̇ count into the derivatives of α and
-q, as in a flight.
+respond to α, q and elevator with all dependent terms. The terms of α̇ count into the derivatives of α and q,
+as in a flight.
 """
 
 import json
