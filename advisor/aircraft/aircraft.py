@@ -182,5 +182,6 @@ class Aircraft:
 
     @property
     def stated_airspeed_m_s(self) -> float | None:
-        """Air speed that the file gives for a log without air speed, m/s. None: the file gives none."""
+        """Air speed that the file gives for a log without air speed, m/s. None: the file gives no air
+        speed."""
         return self.airspeed_m_s or self.reference_airspeed_m_s

@@ -46,7 +46,7 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
     origin
         Name of the file, or of whatever the content comes from, for the sentence about mistakes.
     mend
-        Sentence on what to do about them.
+        Sentence on the remedy for the errors.
 
     Raises
     ------

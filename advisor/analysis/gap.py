@@ -33,7 +33,8 @@ from advisor.words.printable import printable
 from advisor.words.problems import Problem, UnusableInputError
 
 _PAUSE_S = 60.0
-"""Time between the last manoeuvre of one log and the first of the next, s. No clock measured it."""
+"""Time between the last manoeuvre of one log and the first of the next, s. No clock measured the pause
+between two logs."""
 
 
 @dataclass(frozen=True)

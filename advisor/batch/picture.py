@@ -18,7 +18,7 @@ class Point(NamedTuple):
     flight: int
     value: float
     half: float
-    """Half of the 95 % interval. Not finite where the flight did not show the derivative."""
+    """Half of the 95 % interval, not finite where the flight did not show the derivative."""
 
 
 def trend_svg(name: str, unit: str, points: Sequence[Point], since: int | None) -> str:

@@ -49,7 +49,8 @@ def changes_of(flights: Sequence[Analyzed]) -> dict[str, ChangeOverFlights]:
 def not_told_apart(flights: Sequence[Analyzed]) -> dict[str, str]:
     """Return a sentence for each identity without an aircraft file whose flights do not agree.
 
-    A system id is 1 by default, so that it names no aircraft. Flights that agree count as those of one.
+    A system id is 1 by default, so that it names no aircraft. Flights without an aircraft file that agree
+    count as flights of one aircraft.
     """
     told = {}
     nameless = [replace(f, joint={}) if f.is_named else f for f in flights]

@@ -71,7 +71,7 @@ class Campaign:
         System id of the vehicle; None: the first one heard.
     settle
         Estimate while a manoeuvre is still being flown, for live faces.
-        Verdicts do not depend on it.
+        Verdicts do not depend on the running estimate.
     tell
         Called with every event, for example to announce verdicts.
     by_hand

@@ -68,7 +68,8 @@ class Together:
     def of_lag(self, maneuvers: Sequence[Maneuver]) -> Estimate | None:
         """Return the joint estimate over manoeuvres that tell the servo's lag; None where they tell none.
 
-        The fit knows that, and the estimate takes a quarter as long again.
+        The joint fit shows whether the lag is told; the estimate from the fit takes a quarter of the fit's
+        time.
         """
         joint = self._of(maneuvers)
         return joint.estimate() if joint.tells_lag else None

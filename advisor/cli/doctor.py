@@ -43,7 +43,8 @@ def command(
 ) -> int:
     """Check whether the telemetry is good enough to identify the aircraft, and say what to change.
 
-    The command reads a log, or listens to a live link. Nothing is sent unless --request-rates asks for it.
+    The command reads a log, or listens to a live link. Nothing is sent to the vehicle without
+    --request-rates.
 
     \b
     Example:

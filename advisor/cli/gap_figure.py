@@ -27,7 +27,8 @@ def refuse_figure(figure: Path | None, others: Sequence[Path | None]) -> None:
     Raises
     ------
     ConfigurationError
-        The ending names no picture, matplotlib is missing, or the file is one of the others.
+        The ending names no picture, matplotlib is missing, or the file is also an input or output of the
+        command.
     """
     if figure is None:
         return

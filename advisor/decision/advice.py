@@ -38,7 +38,7 @@ def next_input(
 ) -> NextInput:
     """Return the input to fly after the last of ``history``. ``course`` is explained in ``flight_test``.
 
-    The number of further manoeuvres is foretold once a manoeuvre was usable; before, nothing tells it.
+    The number of further manoeuvres is foretold after the first usable manoeuvre.
     """
     plan = aircraft.campaign
     if stopped:

@@ -72,7 +72,8 @@ class Change:
 def find_change(history: Sequence[CandidateManeuver]) -> Change | None:
     """Return the most significant change between manoeuvres of a campaign; None when noise explains all.
 
-    At least two manoeuvres must stand before the change. With only one, either side may be the outlier.
+    At least two manoeuvres must stand before the change. With only one manoeuvre on a side, that manoeuvre
+    may be the outlier.
     """
     flown = [(i, e) for i, m in enumerate(history, start=1) if (e := m.usable)]
     posteriors = posteriors_at_one_speed([e for _, e in flown])

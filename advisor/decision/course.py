@@ -1,7 +1,7 @@
 """The criterion of the rule ``information`` after each manoeuvre, kept from one decision to the next.
 
 Knowledge after k manoeuvres depends on those k alone. A decision after one more manoeuvre adds one entry. A
-manoeuvre that is excluded, included or assessed again voids its own entry and all later ones.
+manoeuvre that is excluded, included or assessed again voids its own entry in the cache and all later entries.
 """
 
 from collections.abc import Sequence

@@ -21,7 +21,7 @@ from advisor.words.digits import distinct_texts
 
 SAMPLES_PER_PERIOD = 8.0
 """Fewest samples of elevator and pitch rate in one natural period. An aircraft of 2 rad/s needs 2.6 Hz, one
-of 9 rad/s needs 11 Hz. Between slower samples the input is unknown, and no interval shows it."""
+of 9 rad/s needs 11 Hz. Between slower samples the input is unknown, and no interval shows this error."""
 _LONGEST_GAP = (0.3, 0.2, 1.0)
 """Longest gap: a share of the natural period, then its least and greatest value, s."""
 _SHORTEST_FREE = 0.75

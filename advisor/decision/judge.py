@@ -24,7 +24,7 @@ def judge_campaign(
     """Return verdicts on all manoeuvres so far, in the order flown, each with the result of every rule.
 
     A verdict depends only on the earlier manoeuvres, with two exceptions. A manoeuvre may be excluded by
-    hand. Under the rule ``information`` later manoeuvres may show that it contradicts all the others. A
+    hand. Under the rule ``information`` later manoeuvres may show that a manoeuvre contradicts all others. A
     ``course`` keeps results of earlier decisions, and changes no verdict.
     """
     course = course or CriterionCourse(plan)

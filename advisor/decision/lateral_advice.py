@@ -1,4 +1,4 @@
-"""Advice on the next lateral manoeuvre: which control, how long a step, how much of it.
+"""Advice on the next lateral manoeuvre: the control, the length of a step and the amplitude.
 
 The response is linear: bank and information follow from the input flown last, in proportion to the amplitude
 and to its square.

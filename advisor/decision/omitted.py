@@ -173,7 +173,8 @@ def _at_fit(maneuver: Maneuver, estimate: Estimate, name: str) -> FloatArray:
 
 
 def _beyond(estimate: Estimate, bias: FloatArray, code: str, what: str, cure: str) -> list[Reason]:
-    """Return a reason with the derivative that the bias moves farthest beyond its interval; empty within."""
+    """Return a reason with the derivative that the bias moves farthest beyond its interval; empty where none
+    is moved beyond."""
     half = NORMAL_95 * estimate.std
     share = {name: abs(float(bias[k]) / float(half[k])) for name, k in _PLACES.items() if half[k] > 0.0}
     name = max(share, key=lambda name: share[name], default="")

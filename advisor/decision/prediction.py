@@ -187,7 +187,8 @@ def _airspeed(maneuver: Maneuver) -> float | None:
 
 
 def _horizon(command: Signal, derivatives: tuple[float, ...]) -> float:
-    """Return the time to which a response is compared. For a diverging model, a deviation has doubled there.
+    """Return the time to which a response is compared. The horizon of a diverging model is the time in which
+    a deviation doubles.
 
     The pilot of an unstable aircraft corrects within that time. A longer open loop means nothing.
     """

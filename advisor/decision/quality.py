@@ -1,8 +1,8 @@
 """Objections to a single manoeuvre, before any rule compares the manoeuvre with others.
 
 The checks run in this order: complete data, sound instruments, within the model, long enough, rich enough,
-well explained. The first reason is the one that the crew can act on. Consequences of the first reason come
-after it. One walk examines every axis; what an axis asks is data (``decision.axes``).
+well explained. The first reason is the one that the crew can act on. Reasons that follow from the first
+reason come after the first. One walk examines every axis; what an axis asks is data (``decision.axes``).
 
 Richness is information, not amplitude: the precision with which the estimate from this manoeuvre alone
 predicts the response to its own input. Moving air, a slow channel, a missing vane or a gentle input all
@@ -42,7 +42,7 @@ alone gives 24. Real records that two halves of a campaign agree on have 9 to 21
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """An output that the input of a control moves, and how well the output must show that."""
+    """An output that the input of a control moves, and the least response that a test needs."""
 
     output: str
     said: str

@@ -101,7 +101,7 @@ def by_scatter(
     Parameters
     ----------
     window
-        (k, 8) last accepted estimates. At most n - 1 of them stay in the next window.
+        (k, 8) last accepted estimates. At most n - 1 of the last estimates stay in the next window.
     posterior
         Values about which the next estimates scatter, with their errors.
     next_std

@@ -32,8 +32,8 @@ def tolerances(theta: FloatArray, prediction: Prediction, plan: CampaignPlan) ->
     parameter. The other is the change that moves the frequency or the damping of the short period by
     ``plan.tolerance_percent``. A share of a derivative near zero would be smaller than any change that
     matters. So there the tolerance is δ, the change that alone moves the predicted response by its tolerance.
-    δ fades linearly until the derivative reaches 3·δ. An entry of ``plan.tolerance`` overrides all this.
-    Noise does not enter: a poor manoeuvre must not widen a tolerance.
+    δ fades linearly until the derivative reaches 3·δ. An entry of ``plan.tolerance`` replaces the computed
+    tolerance. Noise does not enter: a poor manoeuvre must not widen a tolerance.
 
     Returns
     -------

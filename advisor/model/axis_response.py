@@ -361,7 +361,7 @@ def _feel(
 ) -> None:  # fmt: skip
     """Write the derivatives of output ``c`` at event ``e``, at the beginning of a part.
 
-    Biases have columns after those of the initial states; causes come last.
+    Columns of biases follow the columns of the initial states; the columns of causes come last.
     """
     n, causes, last = len(by), changed.shape[1], g.shape[1]
     own = len(place) + n

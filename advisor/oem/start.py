@@ -65,9 +65,9 @@ def start(
 def _from_force(problem: OutputErrorProblem) -> tuple[FloatArray, FloatArray]:
     """Return the start without a measured angle of attack, with Z_q = Z_δe = 0.
 
-    Specific force is aerodynamic: n = a_z/V = Z_0 + Z_α·α. In Eq. (2) n replaces α with the factor M_α/Z_α,
-    so that moving air, which the inferred α does not show, does no harm. The slope of n over the inferred α
-    is Z_α; a parabola in time removes its drift.
+    Specific force is aerodynamic: n = a_z/V = Z_0 + Z_α·α. In Eq. (2) the specific force n replaces α with
+    the factor M_α/Z_α, because an inferred α does not show moving air. The slope of n over the inferred α is
+    Z_α; a parabola in time removes its drift.
     """
     shared, local = np.zeros(N_SHARED), np.zeros((len(problem.records), N_LOCAL))
     moments, slopes, forces, levels = [], [], [], []

@@ -64,7 +64,7 @@ def gap_document(
             "by_band_hz": [{"from_hz": a, "to_hz": b, "share": s} for a, b, s in gap.by_band_hz],
         },
         "where": {
-            "text": where_said(d.where),
+            "text": where_said(d),
             **picked(d.where, "block share"),
             "ranking": [{"block": b, "score": s} for b, s in d.where.ranking],
         },

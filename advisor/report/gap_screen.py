@@ -65,7 +65,7 @@ class GapScreen:
         yield Panel(Group(*_answer(d)), title=title_of(d), title_align="left")
         yield _numbers(d)
         if d.verdict not in ("none", "untested"):
-            where = f"where: {where_said(d.where)}" if d.verdict in ("effect", "unknown") else "where"
+            where = f"where: {where_said(d)}" if d.verdict in ("effect", "unknown") else "where"
             yield Panel(Group(*_picture(d)), title=where, title_align="left")
         if self.everything:
             yield from self._course()

@@ -134,7 +134,8 @@ class RemoteConductor(AskedElsewhere):
         return code, watch
 
     def _pass_on(self, pipe: IO[bytes]) -> None:
-        """Send the task, then every request. A request that a process has not taken waits for the next."""
+        """Send the task, then every request. A request that a process has not taken waits for the next
+        process."""
         request = _ENOUGH
         with suppress(BrokenPipeError, ValueError):
             pickle.dump(self._task, pipe)

@@ -88,7 +88,8 @@ def _later(two: FloatArray, knots: int) -> FloatArray:
 
 
 def answered(fit: Fit, flown: Flown, m: int, block: str, t: FloatArray, course: FloatArray) -> FloatArray:
-    """Return the change of the rows of a manoeuvre by disturbances (n, k) of a block, of values at ``t``."""
+    """Return the change of a manoeuvre's rows by ``k`` disturbances in a block, whose values (n, k) belong
+    to the times ``t``."""
     return _read(fit, m, t, _outputs(fit.point.theta, flown, m, block, course))
 
 

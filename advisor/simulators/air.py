@@ -1,8 +1,8 @@
 """The air in which a simulator flies a manoeuvre: its density and its wind.
 
 A simulator computes forces with the true air speed V and the density ρ of its own standard atmosphere. The
-dynamic pressure ½·ρ·V² of the flight therefore needs two numbers. One is the true air speed. The other is the
-height at which the standard atmosphere has the density flown in.
+dynamic pressure ½·ρ·V² of the flight therefore needs two numbers. The first quantity is the true air speed.
+The other is the height at which the standard atmosphere has the density flown in.
 """
 
 from collections.abc import Mapping, Sequence

@@ -37,8 +37,8 @@ STEP_S = 0.02
 OWN_DELAY, OWN_LAG = Prior(0.0, 0.1), Prior(FIRST_LAG_S, 0.1)
 """Delay and lag between the simulator's input and its surfaces, s. Noiseless replays tell them alone."""
 TURNS = {"aileron": ("L_delta_a", "L_p"), "rudder": ("N_delta_r", "N_beta")}
-"""Control to the derivative by which it turns, and to that which it turns against: their ratio is the answer
-of ``interface.control_fault``."""
+"""Control to two derivatives: the control's moment, and the moment that opposes the motion.
+``interface.control_fault`` compares their ratio with the simulator's answer."""
 
 
 def side_without_difference(

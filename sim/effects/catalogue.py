@@ -1,7 +1,7 @@
 """Every named effect as a physical component of the aircraft.
 
 Signs: a positive skew means late data. A change between manoeuvres begins halfway through the flight, unless
-``at_s`` (seconds since the log began) gives the time. ``ramp_s`` is its duration.
+``at_s`` (seconds since the log began) gives the time. ``ramp_s`` is the duration of a gradual change.
 """
 
 import math

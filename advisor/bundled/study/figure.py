@@ -45,7 +45,7 @@ def refuse_undrawable(path: Path) -> None:
     Raises
     ------
     ConfigurationError
-        matplotlib is not installed, or the ending is unknown to it.
+        matplotlib is not installed, or does not know the ending.
     """
     try:
         from matplotlib.backend_bases import FigureCanvasBase

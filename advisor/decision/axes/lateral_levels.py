@@ -24,7 +24,7 @@ GROUPS: Mapping[Group, str] = {
 """Classes with equal requirements, and their aircraft. Category A counts all of Class II as II-L."""
 Mode = Literal["dutch_roll", "roll", "spiral"]
 Least = tuple[float, ...]
-"""Least values of one level. A larger value is a better one."""
+"""Least values of one level. Larger values of the quality are better."""
 
 _DUTCH: Mapping[Group, Mapping[Category, Least]] = {
     "I, II-C, IV": {"A": (0.19, 0.35, 1.0), "B": (0.08, 0.15, 0.4), "C": (0.08, 0.15, 1.0)},

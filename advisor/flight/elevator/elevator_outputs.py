@@ -147,7 +147,7 @@ def without_calibration(parts: tuple[Part, ...], begin: str, derivatives: str, w
     Parameters
     ----------
     begin
-        Beginning of the sentence, up to the verb.
+        Beginning of the sentence on the missing calibration, up to the verb.
     derivatives
         Derivatives that the scale divides.
     """

@@ -171,7 +171,7 @@ def stds_of_delays(covariance: FloatArray) -> tuple[float, float] | None:
     Parameters
     ----------
     covariance
-        (2, 2) of the delays, s².
+        (2, 2) covariance of the two delays, s².
     """
     variances = np.array([covariance[0, 0] + covariance[1, 1] - 2.0 * covariance[0, 1], covariance[1, 1]])
     if not np.all(variances > 0.0):

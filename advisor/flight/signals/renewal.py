@@ -11,8 +11,8 @@ from advisor.flight.signals.record import Channel
 _MOSTLY_NEW = 0.7
 """Least share of new values at which no value counts as repeated."""
 _FEW_LEVELS = 16
-"""Most different values of a channel that counts as coarse. A repeated estimate takes another value at each
-renewal."""
+"""Most different values of a channel that counts as coarse. An estimate that is sent several times takes
+another value at each renewal."""
 
 _MOST_COPIES = 4
 """Most times that a sender is supposed to send one message. A test input has steps of at least as many

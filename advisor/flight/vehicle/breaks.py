@@ -1,7 +1,7 @@
 """Breaks in the stamps of one power-on: times in which the advisor did not listen, and leaps of the clock.
 
 The process of the link writes a text into its own stream when it listens again. A log and a link both blame
-such a gap on the advisor, and neither on the radio nor on the pilot.
+a gap while the advisor was down on the advisor, not on radio or pilot.
 """
 
 import numpy as np

@@ -59,8 +59,9 @@ IMU = Variant(
     apply_with=_late_imu, prior_std=(_FILTERS_S,), is_nuisance=True,
 )  # fmt: skip
 """Nuisance parameter of every model without an autopilot's angle of attack: the delay that unstated filters
-of gyro and accelerometer cause. Neither a vane nor the attitude passes these filters. With filters of 15 to
-30 Hz the first answer was wrong in 15 of 27 flights without this parameter, and in 3 with it."""
+of gyro and accelerometer cause. Neither a vane nor the attitude passes the filters of gyro and
+accelerometer. With filters of 15 to 30 Hz the first answer was wrong in 15 of 27 flights without this
+parameter, and in 3 with it."""
 
 
 def latency(flights: PreparedManeuvers) -> Variant:

@@ -59,8 +59,8 @@ def folds_of(n: int, shifted: bool = False) -> list[list[int]]:
 def folds_for(flights: PreparedManeuvers) -> list[list[int]]:
     """Return folds that keep rare sources of information apart, so that each can be confirmed.
 
-    Throttle, height or air speed may vary in two manoeuvres only. If one fold held both, the others would
-    know nothing.
+    Where throttle, height or air speed varies in two manoeuvres only, each fold must hold one of the two. If
+    one fold held both, the others would know nothing.
     """
     power = np.array([np.var(f.slow[list(_NEEDED)], axis=1) for f in flights.flights])
     shares = power / np.maximum(np.sum(power, axis=0), 1e-300)

@@ -170,8 +170,8 @@ def _signature_of(
     """Return the model's response to an effect, per unit of its first parameter.
 
     An effect whose search starts at zero is linear there, and its derivative is used. Others are nonlinear: a
-    limit that no command reaches leaves no signature. Their response is evaluated at the size that just
-    shows. ``vector`` is the signature at the first size.
+    limit that no command reaches leaves no signature. The response of a nonlinear effect is evaluated at the
+    size that just shows. ``vector`` is the signature at the first size.
     """
     reach = _reach(variant)
     numbers = len(variant.names)

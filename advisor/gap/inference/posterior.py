@@ -16,8 +16,8 @@ from advisor.gap.inference.stage import Flight, Stage
 _ALWAYS = frozenset({"air"})
 """Blocks with a disturbance in most flights: such a residual is no law that the simulator lacks."""
 _SEARCHED = 2
-"""Numerical: number of models, the likeliest, whose residual is searched. An alternative that is not
-searched counts with the residual of the likeliest."""
+"""Numerical: the residuals of so many models are searched for a law, the likeliest models first. An
+alternative that is not searched counts with the residual of the likeliest."""
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ def _only_skew(effect: str, channel: str, flights: PreparedManeuvers) -> Sequenc
 
 
 def skew_of(effect: str, channel: str, flights: PreparedManeuvers) -> Variant:
-    """Return the skew of one channel, positive is late."""
+    """Return the error of one channel's stamps, s, positive where the channel is late."""
     apply = partial(_whole_skew, SKEWS[OUTPUTS.index(channel)])
     return replace(skew_beyond(effect, least_delay_s(flights)), apply_with=apply, sets=True)
 

@@ -13,7 +13,7 @@ from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.equivalent import nearest
 
 _AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
-"""Record with the air speed to its field, the best record first."""
+"""Name of a record to its field with the air speed, the best record first."""
 _CLIMB = ("XKF1", "NKF1", "EKF1")
 """Records of the estimators, whose VD is the rate of descent. The newest estimator comes first."""
 

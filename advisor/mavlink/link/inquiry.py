@@ -25,7 +25,7 @@ class Inquiry(Talker):
     unanswered one is repeated and then given up, because a vehicle does not answer for a parameter that it
     lacks. The limits of an output that the vehicle has named exist, and are asked for until they are heard.
     The answers reach the advisor like every other message of the link. Answers decide here on the next
-    question only. Another vehicle is asked anew.
+    question only. A vehicle that is followed later is asked as well.
 
     Parameters
     ----------

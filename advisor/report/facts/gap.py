@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from advisor.gap.alternative import Weighed
-from advisor.gap.result import ComparedDerivative, Diagnosis, Shrink, Where
+from advisor.gap.result import ComparedDerivative, Diagnosis, Shrink
 from advisor.gap.verdict.text import in_words, place
 from advisor.report.facts.sizes import before_after, has_grown, short
 from advisor.words.digits import decimals_for, signed, with_half
@@ -33,10 +33,11 @@ def shrink_said(shrink: Shrink) -> str:
     )
 
 
-def where_said(where: Where) -> str:
-    """Return the place of a gap, and its share: ``in the lift, 93 % of the gap``."""
-    share = f", {100 * where.share:.1f} % of the gap" if where.share >= _WORTH_SAYING else ""
-    return f"{place(where.block)}{share}"
+def where_said(d: Diagnosis) -> str:
+    """Return the place of a gap: ``in the lift, 93 % of the gap``. The shrink, where there is one, is the
+    share that a reader needs."""
+    says = d.shrink is None and d.where.share >= _WORTH_SAYING
+    return f"{place(d.where.block)}{f', {100 * d.where.share:.0f} % of the gap' if says else ''}"
 
 
 def grown_said(d: Diagnosis) -> str:
