@@ -31,7 +31,7 @@ class Recount:
 def recount(maneuvers: Sequence[Maneuver], event: ElevatorRescaled) -> Recount:
     """Return what a limit that is heard late means for the manoeuvres of its log or link.
 
-    A manoeuvre on another scale than the former one keeps it: its vehicle had been set otherwise.
+    A manoeuvre that was not on the former scale keeps its own scale, because its vehicle had other settings.
     """
     before, after = event.before.scale, event.after.scale
     anew, lost = [], []

@@ -27,7 +27,7 @@ NEWEST = 7
 """Number of newest accepted manoeuvres that are estimated together in flight, as for the elevator."""
 OF_EACH = 3
 """Number of them that are kept of each control, so that inputs of one control alone do not make the estimate
-forget the other. The least number in which one contradicts two that agree."""
+forget the other. With three manoeuvres, one may contradict two that agree."""
 
 
 class LateralCampaign(AxisCampaign):

@@ -151,7 +151,7 @@ class CampaignState:
     flights: tuple[FlightHeard, ...] = ()
     """Every log and link so far. The one being heard is the last."""
     lateral: LateralState | None = None
-    """Lateral half of the campaign. None where it was not asked for."""
+    """Lateral half of the campaign. None where roll and yaw were not asked for."""
     activity: tuple[Activity, ...] = ()
     """Movements of the elevator that were no test inputs, oldest first. Similar ones in a row are one
     entry."""

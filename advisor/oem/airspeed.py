@@ -1,7 +1,7 @@
 """The air speed inside a manoeuvre, from a slow, late instrument and the accelerometers.
 
-An air speed arrives a few times per second, filtered and late (0.3 s on an ArduPlane). Within a 3-2-1-1 it
-changes by metres per second. Its rate follows from the motion alone,
+An air speed arrives a few times per second, filtered and late (0.3 s on an ArduPlane). Within a 3-2-1-1 the
+air speed changes by metres per second. Its rate follows from the motion alone,
 
     V̇ = a_x·cos α + a_z·sin α - g·sin(θ - α)
 

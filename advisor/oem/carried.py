@@ -27,14 +27,14 @@ from advisor.oem.solution import Solution, noise_floor, reported
 from advisor.oem.weighted_sums import Sums
 
 LONGEST_PROMISE = 2.0
-"""Largest change of -2 log likelihood that a step may promise. Beyond it the model is solved again over all
-samples. Nine of ten updated estimates then lie within 0.17 standard deviations of the complete ones (the
-first manoeuvre of ``logs/arduplane-calm.tlog``)."""
+"""Largest change of -2 log likelihood that a step may promise. Beyond this promise the model is solved again
+over all samples. Nine of ten updated estimates then lie within 0.17 standard deviations of the complete ones
+(the first manoeuvre of ``logs/arduplane-calm.tlog``)."""
 REST_S = 2.0
 """Length in s of the command before the new samples that is kept. Servos have forgotten earlier movements."""
 NEARLY_SINGULAR = 1e12
 """Largest sum of variances, each relative to that of the parameter alone, for a well-conditioned matrix.
-Round-off decides above it."""
+Above this sum round-off decides."""
 _INITIAL = [N_SHARED + LOCAL.index(name) for name in ("alpha_initial", "q_initial", "theta_initial")]
 _Q_BIAS = LOCAL.index("q_bias")
 _EIGHT = np.array([i if is_shared else N_SHARED + i for is_shared, i in REPORTED])

@@ -5,7 +5,7 @@
 Real residuals are a mixture of white sensor noise and small, lasting errors of the model. Sample
 autocorrelations of residuals are too small, because the fitted parameters absorb part of the slow noise.
 Restricted maximum likelihood (Patterson & Thompson, *Biometrika* 58, 1971) uses only what no parameter can
-explain, and is free of that bias.
+explain, and has no such bias.
 """
 
 import math

@@ -22,7 +22,7 @@ from advisor.oem.rows import Laid
 from advisor.words.quantiles import NORMAL_95
 
 OPEN_SHARE = 0.01
-"""Largest share of a parameter in undetermined directions. Above it the parameter is unresolved."""
+"""Largest share of a parameter in undetermined directions. Above this share the parameter is unresolved."""
 DIFFERENCE = 0.05
 LEAST_FREEDOM = 3.0
 REPORTED = NAMES.places

@@ -32,8 +32,8 @@ from advisor.oem.rows import Laid
 from advisor.oem.solution import RUNS_AWAY
 
 SETTLED = 1e-3
-"""Promised change of -2 log of the posterior at which a search ends. Such a decrease moves no parameter by
-more than 0.03 of its standard deviation."""
+"""Promised change of -2 log of the posterior at which a search ends. A decrease of this size moves no
+parameter by more than 0.03 of its standard deviation."""
 
 
 class Response(NamedTuple):
@@ -46,7 +46,8 @@ class Response(NamedTuple):
     columns: FloatArray
     """(N, k) derivatives by the nuisance parameters."""
     begun: FloatArray
-    """(m, states) rates of the states at the first event of each record. A delay may move that event."""
+    """(m, states) rates of the states at the first event of each record. A delay may move this first
+    event."""
 
 
 class Motion(Protocol):

@@ -1,9 +1,9 @@
 """Output error over several manoeuvres with any effects in the model: block-wise Gauss-Newton.
 
 Shared parameters (derivatives and parameters of effects) are few. Every manoeuvre adds nuisance parameters:
-initial state, trim, offsets and uncertain edges of the command. A Schur complement eliminates them manoeuvre
-by manoeuvre, so the cost is linear in manoeuvres. The noise of each channel is re-estimated at every step,
-which minimises det R of Eqs. (7)-(8) for a diagonal R.
+initial state, trim, offsets and uncertain edges of the command. A Schur complement eliminates a manoeuvre's
+own parameters, so the work is linear in the number of manoeuvres. The noise of each channel is re-estimated
+at every step, which minimises det R of Eqs. (7)-(8) for a diagonal R.
 """
 
 from collections.abc import Collection, Sequence
@@ -22,8 +22,8 @@ linearisation."""
 _SHORTER = 0.3
 """Numerical: factor by which a step that raises the cost is shortened."""
 _SHORTEST = 0.05
-"""Numerical: least length of a step, relative to the full step. Below it the roughness of the cost, from the
-simulation's grid, decides."""
+"""Numerical: least length of a step, relative to the full step. Below this length the roughness of the cost,
+which comes from the simulation's grid, decides."""
 _FURTHER = 5.0
 """Numerical: further decrease of the cost that a search can bring at most, in multiples of the decrease
 promised by the next step."""

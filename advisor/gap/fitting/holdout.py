@@ -157,7 +157,7 @@ def sole_informative_maneuver(fitted: EffectFit, index: int) -> int | None:
 def held_out(
     problem: EffectProblem, residuals: Sequence[FloatArray], innovations: Sequence[FloatArray] | None = None
 ) -> HeldOut:
-    """Return residuals with their mean squares. Without ``innovations`` the residuals serve as such."""
+    """Return residuals with their mean squares. Without ``innovations`` the residuals take their place."""
     whitened = tuple(residuals if innovations is None else innovations)
     return HeldOut(
         tuple(residuals), whitened,

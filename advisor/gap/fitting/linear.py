@@ -206,8 +206,8 @@ def _pulses(
 ) -> tuple[list[FloatArray], FloatArray]:
     """Return the delays and the areas of the pulses that equal a shift of each edge by its interval.
 
-    In general that is one pulse at the edge. A servo at its limit runs on after the edge, and is late all
-    that time.
+    The answer to a shifted edge is in general one pulse at the edge. A servo at its limit runs on after the
+    edge, and is late all that time.
     """
     begin = flight.edges[:, 0] + p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
     if problem.held:
@@ -230,7 +230,7 @@ def _offsets(problem: EffectProblem, flight: PreparedManeuver) -> FloatArray:
 def _own_prior(problem: EffectProblem, flight: PreparedManeuver, own: int) -> FloatArray:
     """Return the inverse prior variances of a manoeuvre's nuisance parameters, 0 if flat, shape (own,).
 
-    Edges come last. Errors of the air speed come before them, in units of their own standard deviation.
+    Edges come last. Errors of the air speed come before the edges, in units of their own standard deviation.
     Initial states and trim come first, then offsets.
     """
     prior = np.zeros(own)
@@ -278,8 +278,8 @@ def linearise(
     edges are reused. ``shared`` is False where no sensitivities to shared parameters are needed.
 
     Edges may lie far from their stamps, as in a command logged 25 times per second. A search that kept their
-    sensitivities while a delay changes would go astray. It would end where its gradient vanishes and that of
-    the cost does not.
+    sensitivities while a delay changes would go astray. The search would end where its own gradient vanishes
+    and the gradient of the cost does not.
     """
     p, steps = problem.driving(point), shared_steps(point) if shared else np.empty(0)
     there = shifted_points(point, range(len(steps)))

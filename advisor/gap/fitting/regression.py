@@ -46,7 +46,8 @@ def regressions(flights: PreparedManeuvers) -> list[FloatArray]:
     """Return starting values of the derivatives, each of shape (6,).
 
     A channel that is late by a large part of a radian of the short period leads the regression astray, even
-    in sign. No search recovers from that. The regression with that channel shifted is then a start too.
+    in sign. No search recovers from such a start. The regression with that channel shifted is then a start
+    too.
     """
     as_stamped, left_share = _regressed(flights, Late())
     if left_share < _SIMULTANEOUS:

@@ -105,7 +105,8 @@ def _with_offset(
 ) -> list[Row[PitchModel]]:
     """Return the rows with a constant offset of α as one more explanation.
 
-    Trims absorb an offset, so that it goes with every other explanation. Only "nothing" excludes it.
+    Trims absorb an offset, so that an offset goes with every other explanation. Only the answer "nothing"
+    excludes an offset.
     """
     offset = kinematics.offset
     if "alpha" not in problem.channels or not offset.stays or not np.isfinite(offset.rad):

@@ -77,8 +77,8 @@ class FlightProblem(EffectProblem):
 def temperature(problem: EffectProblem, fitted: EffectFit) -> float:
     """Return the number of nats of white noise that count as one, at least 1.
 
-    The residual's colour within a manoeuvre leaves fewer independent samples. Power beyond the known noise is
-    a misfit that all manoeuvres share, so that they are one witness.
+    The residual's colour within a manoeuvre leaves fewer independent samples. Power beyond the known noise
+    is a misfit that all manoeuvres share, so that the manoeuvres count as one.
     """
     power = float(np.mean(fitted.noise**2)) if problem.knows_the_noise else 1.0
     shared = max(0.0, 1.0 - 1.0 / max(power, 1e-9))

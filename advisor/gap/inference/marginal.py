@@ -24,7 +24,7 @@ def marginal(
     """Return the log marginal likelihood with all derivatives right, and with some of them wrong.
 
     Where the two priors differ, the file states a derivative, which goes both ways and is integrated out by
-    itself. All of them are right in half of the flights.
+    itself. All derivatives of the file are right in half of the flights.
 
     Parameters
     ----------

@@ -135,8 +135,8 @@ def _pairs(
 ) -> Iterator[Row[E]]:
     """Yield the ways in which an effect is true together with a second one.
 
-    Where a law outside the table is the second, both may be one law that the effect resembles. The more the
-    effect leaves to the law, the likelier that is.
+    Where a law outside the table is the second, both may be one law that the effect resembles. One law is
+    the likelier, the larger the share that the effect leaves to the law.
     """
     first = next(way for way in ways if way.explanation is lead and way.alternative.is_effect)
     of_first = max(lead.evidence.either - plain.evidence.either, 0.0)
@@ -166,7 +166,7 @@ def _row(alternative: Alternative, one: E, evidence: float, share: float) -> Row
 def _with_residual(way: Row[E], residual: Residual, prior: FieldPrior) -> Iterator[Row[E]]:
     """Yield the way as right, and as one that only resembles a law outside the table.
 
-    Such a law leaves a residual that a disturbance of free course explains, in one block.
+    A law without a name leaves a residual that a disturbance of free course in one block explains.
     """
     size = residual.beside_air if way.in_moving_air else residual.size
     yield replace(way, terms={**way.terms, "residual": if_right(size)})

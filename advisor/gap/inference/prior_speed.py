@@ -19,8 +19,8 @@ from advisor.gap.simulator.layout import DERIVATIVES, SPEED
 _POWERS = np.array([float(SPEED_EXPONENTS[name]) for name in DERIVATIVES])
 """Power of the air speed with which each derivative grows."""
 _FARTHEST = 0.06
-"""Prior: largest relative distance of the speed from the mean. Derivatives that hold at no speed within it
-are wrong ones."""
+"""Prior: largest relative distance of the speed from the mean. Derivatives that hold at no speed within this
+distance are wrong."""
 _TRIED = 25
 """Numerical: number of speeds that are tried."""
 
@@ -28,7 +28,8 @@ _TRIED = 25
 def prior_speed(problem: EffectProblem, baseline: EffectFit) -> float | None:
     """Return the speed in m/s, within those flown, at which the file's derivatives are right.
 
-    None where they may be right at the mean speed of the manoeuvres, or are wrong at every speed.
+    None where the file's derivatives may be right at the mean speed of the manoeuvres, or are wrong at every
+    speed.
     """
     flights, prior = problem.flights, problem.prior_derivatives
     if prior is None or not flights.speed_measured:

@@ -29,7 +29,7 @@ class Residual:
 
     size: float
     """Motion beyond the noise that the likeliest disturbance explains, over what every simulator leaves. The
-    channel counts in which that ratio is largest."""
+    channel with the largest ratio counts."""
     blocks: Mapping[str, float]
     """Probability of each block, given that something without a name acts in one."""
     size_beside_air: float | None = None

@@ -1,7 +1,7 @@
 """Prior width of every number of every effect, before a flight is looked at.
 
 A width says how large the number is on an aircraft that has the effect. Widths follow from physics and from
-data sheets of servos and sensors. No test flight set them.
+data sheets of servos and sensors. No test flight set these widths.
 """
 
 from dataclasses import replace
@@ -41,7 +41,7 @@ _OF_EFFECT = {
 _ARM = {"alpha_vane_offset": 0.2, "accelerometer_offset": 0.1}
 """Prior: standard deviation of an arm, as a share of the way flown in one radian of the short period.
 
-A small UAV flies 2.5 m in that time. A jet with a nose boom of 13 m flies 50 m."""
+A small UAV flies 2.5 m in one radian of its short period. A jet with a nose boom of 13 m flies 50 m."""
 _NATURAL, _OF_A_SERVO = 0.02, 0.2
 """Prior: size of an effect that every aircraft has, as a share of its size on an aircraft with the effect.
 The lag and the delay of a servo are known to 10 ms, play to 0.2 mrad, scales to 0.2 %."""

@@ -12,7 +12,7 @@ LAWS = 2
 """Numerical: number of laws outside the catalogue that are fitted in full."""
 AT_THE_FILE = 3
 """Numerical: number of effects that are fitted in full because they are the likeliest with the file's
-derivatives. A wrong derivative hides such an effect from the fit in which all are free."""
+derivatives. A wrong derivative hides such an effect from the fit in which all derivatives are free."""
 _FORMS = 2
 """Numerical: number of descriptions of one effect that are fitted in full."""
 _REFINED = 120.0
@@ -70,7 +70,7 @@ class Flight(Protocol[E]):
     def explained(self, base: E | None, most: int) -> tuple[float, list[E]]:
         """Return the temperature, the model ``base`` alone, and with each likely effect or law in addition.
 
-        ``most`` is the number of effects that are fitted in full. A model that cannot be fitted is absent.
+        ``most`` is the number of effects that are fitted in full. A model that cannot be fitted is left out.
         None is the plain model.
         """
 

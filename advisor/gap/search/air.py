@@ -28,7 +28,8 @@ turbulence."""
 LEAST_GUST_ANGLE = 0.001
 """Least standard deviation of the gust angle, rad, for which the air counts as moving: 0.025 m/s at 25 m/s.
 Five calm logs of ArduPlane's simulator show 0.0002 to 0.0006, with gains of 340 to 400 nats: a rest of the
-model that gusts imitate. An improved simulator is flattered where that passes for air."""
+model that gusts imitate. An improved simulator looks too good where an error of the model passes for moving
+air."""
 NATURAL_GUST_ANGLE = 0.006
 """Largest standard deviation of the gust angle, rad, as found, that is part of every flight and no cause. At
 25 m/s that is 0.15 m/s, the lightest turbulence that the development flights of three generators name."""
@@ -37,7 +38,7 @@ _LEAST_GUST_PEAK = 0.0025
 standard deviation."""
 _STANDS_OUT = 4.0
 """Residual power of one manoeuvre over the median of all, above which a gust is sought in it alone. Noise of
-equal colour in all manoeuvres does not explain that one."""
+equal colour in all manoeuvres does not explain a manoeuvre that stands out."""
 _TRIED = 6
 """Numerical: number of prior sizes of a gust that are tried, from that of turbulence up to any."""
 _AS_MUCH = 0.995
@@ -145,7 +146,7 @@ def _of_a_gust(
 ) -> DisturbanceCourse:
     """Return the gentlest course of a gust that explains as much as the largest one that the flight shows.
 
-    A course of any size would wander far where the instruments hardly show it.
+    A course of unlimited size would wander far where the instruments hardly show the air.
     """
     most = largest_gust(problem.flights, float(fitted.point.derivatives[0]))
     sizes = [*np.geomspace(least, most, _TRIED)] if least < most else [most]

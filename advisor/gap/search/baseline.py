@@ -41,7 +41,8 @@ which no other start is tried."""
 def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float = 0.0) -> SearchPoint:
     """Return the point with all nuisance parameters that are part of every model.
 
-    The latency is that of a loop; ``with_telemetry`` widens it once the reading of the command is known.
+    The latency is one loop of the autopilot; ``with_telemetry`` widens the latency once the reading of the
+    command is known.
     """
     late = point.with_effect(LOOP, (latency_s,))
     if flights.alpha_is_derived:
@@ -96,8 +97,9 @@ def prior_derivatives(aircraft: Aircraft) -> FloatArray | None:
 def first_fit(problem: EffectProblem, aircraft: Aircraft) -> EffectFit:
     """Return the baseline model fitted from the aircraft file's derivatives, or by a regression of rates.
 
-    The file's derivatives are usually nearer. Where a sign or a unit in the file is wrong, no step leads away
-    from them. All starts are tried where the regression differs strongly, or the fit leaves a large residual.
+    The file's derivatives are usually nearer. Where a sign or a unit in the file is wrong, no step leads
+    away from the file's derivatives. All starts are tried where the regression differs strongly, or the fit
+    leaves a large residual.
     """
     flights = problem.flights
     own = np.zeros((len(flights), len(NUISANCES)))
@@ -146,7 +148,8 @@ def _at_rest(problem: EffectProblem, fitted: EffectFit, aircraft: Aircraft) -> E
 def of_this_flight(flights: PreparedManeuvers, aircraft: Aircraft) -> Aircraft:
     """Return the aircraft without the file's changes in flight, if these manoeuvres are likelier without.
 
-    Such a change belongs to one flight. A file that the flight improved has the change already.
+    Such a change belongs to one flight. An aircraft file that this flight improved contains the change
+    already.
     """
     others = replace(aircraft, effects=lasting(aircraft.effects))
     if others == aircraft:
@@ -179,8 +182,8 @@ def quietest(problem: EffectProblem, fitted: EffectFit) -> EffectFit:
     """Return the model through which the noise is estimated, with the likeliest effects where the residual
     gets quieter.
 
-    Motion from a missing effect decays long after the last step, and would pass for coloured noise. The right
-    effect removes it; no effect removes motion that exists in still flight.
+    Motion from a missing effect decays long after the last step, and would pass for coloured noise. The
+    right effect removes such motion; no effect removes motion that exists in still flight.
     """
     best, loud = fitted, loudness(problem, fitted)
     for _ in range(_AT_MOST):

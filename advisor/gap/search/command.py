@@ -18,8 +18,8 @@ def read_command(linear: EffectProblem, fitted: EffectFit) -> tuple[EffectProble
     """Return the baseline model with the command held or linear between its stamps, as the data decide.
 
     A held command looks like a linear one with a delay of half an interval. The linear reading may have a
-    delay and a lag, at their price (Schwarz). The held one is chosen where it explains more without them.
-    Otherwise half an interval goes into the delay's error.
+    delay and a lag, at their price (Schwarz). The held command is chosen where it explains more without a
+    delay and a lag. Otherwise half an interval goes into the delay's error.
     """
     best = min(Screen(linear, fitted).quick_fits((DELAY, LAG)), key=lambda s: s.cost, default=None)
     if best is None:

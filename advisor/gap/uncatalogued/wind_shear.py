@@ -87,7 +87,7 @@ class _Path:
 def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Shear | None:
     """Return the gradient of the wind; None where the air speed follows from the accelerations.
 
-    A wind that changes in a layer only depends on the height of every sample.
+    The effect of a wind that changes in one layer depends on the height of every sample.
 
     Parameters
     ----------

@@ -116,7 +116,7 @@ _GUST_ERROR = 0.25
 _TURBULENCE_ERROR = 0.5
 """Prior: relative error of the strength of turbulence. Waves longer than a record pass for its trim. Where
 Dryden's scale length takes at least three seconds to fly through, 0.5 to 0.7 of the strength is found. Where
-it takes one second, 1.2 is found."""
+the scale length takes one second, 1.2 of the strength is found."""
 _GUST_TIME_ERROR_S = 0.1
 """Prior: error of a gust's time, s: the distance between two knots of its course."""
 

@@ -97,7 +97,8 @@ def _removed_beyond_air(models: Sequence[Model]) -> float | None:
     """Return the share of the residual beyond moving air that the effects remove, on held-out manoeuvres.
 
     The innovations contain no moving air. A right model's k parameters come from two of three folds, so its
-    squared innovations exceed 1 by 1.5 k over the samples. That is subtracted. None where nothing exceeds it.
+    squared innovations exceed 1 by 1.5 k over the samples. That is subtracted. None where no power exceeds
+    the noise.
     """
     last = models[-1]
     noise, samples = last.fitted.noise**2, sum(map(len, last.fitted.innovations))

@@ -62,7 +62,7 @@ class Announcer(Talker):
         Parameters
         ----------
         maneuver
-            Number of the manoeuvre. A later verdict on it is not sent.
+            Number of the manoeuvre. A later verdict on a manoeuvre is not sent.
         sentence
             Sentence of the verdict.
         stop

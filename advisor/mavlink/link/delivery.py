@@ -18,8 +18,8 @@ _CLOCK = DEFINITIONS["ATTITUDE"].id
 class Delivery:
     """Counts messages of some ids. A window with a pause of the vehicle, or of its clock, gives no rates.
 
-    A window is over after its length by the clock of arrival. Its rates are those of the vehicle's clock;
-    without that clock, those of arrival.
+    A window is over after its length by the clock of arrival. The rates count by the vehicle's clock, or by
+    arrival without that clock.
 
     Parameters
     ----------

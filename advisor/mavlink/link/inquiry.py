@@ -22,10 +22,10 @@ class Inquiry(Talker):
     """Reads the parameters that give the elevator's output and its scale.
 
     ArduPilot's questions are asked until a heartbeat shows PX4. A few questions are open at a time. An
-    unanswered one is repeated and then given up, because a vehicle does not answer for a parameter that it
-    lacks. The limits of an output that the vehicle has named exist, and are asked for until they are heard.
-    The answers reach the advisor like every other message of the link. Answers decide here on the next
-    question only. A vehicle that is followed later is asked as well.
+    unanswered question is repeated and then given up, because a vehicle does not answer for a parameter that
+    it lacks. The limits of an output that the vehicle has named exist, and are asked for until they are
+    heard. The answers reach the advisor like every other message of the link. Answers decide here on the
+    next question only. A vehicle that is followed later is asked as well.
 
     Parameters
     ----------

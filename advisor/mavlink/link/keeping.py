@@ -149,7 +149,8 @@ class Guard:
 
 @dataclass(frozen=True, slots=True)
 class Alive:
-    """Asks for the time since the slowest thread of the link was last at work. The answer is that time, s."""
+    """Asks for the time since the slowest thread of the link was last at work. The answer is the time in
+    s."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,8 @@ SHORTEST_REST_S, LONGEST_REST_S = 5.0, 60.0
 """Rest after a round without success, s, doubled with each round up to the second value. No message is given
 up for good."""
 AT_ONCE = 3
-"""Falls of a granted rate that are answered with a request at once. After that another station may win."""
+"""Falls of a granted rate that are answered with a request at once. After so many requests at once another
+station may win."""
 HELD_S = 60.0
 """Time for which a rate must hold before falls are counted anew, s."""
 

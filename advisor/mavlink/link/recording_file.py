@@ -109,7 +109,8 @@ def take_up(path: Path) -> tuple[Path, BinaryIO]:
 
 
 def _end_of_whole_records(file: BinaryIO, path: Path) -> int:
-    """Return the end of the last whole record, bytes. A power cut broke the bytes after it."""
+    """Return the end of the last whole record, bytes. Bytes after the last whole record were broken by a
+    power cut."""
     size = file.seek(0, os.SEEK_END)
     start = max(0, size - _TAIL_BYTES)
     file.seek(start)

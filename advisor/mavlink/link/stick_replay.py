@@ -1,8 +1,8 @@
 """A flight's recorded sticks, sent to a simulated vehicle as an override of its receiver.
 
 RC_CHANNELS_OVERRIDE (MAVLink common.xml, 70) replaces the receiver's pulses; 0 releases a channel. An
-autopilot takes it from its ground station's id alone. A vehicle must prove to be a simulation by a parameter
-that only simulations have, before anything is sent.
+autopilot accepts an override only from the system id of its ground station. A vehicle must prove to be a
+simulation by a parameter that only simulations have, before anything is sent.
 """
 
 from typing import Any

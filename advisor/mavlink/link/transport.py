@@ -20,7 +20,8 @@ class ConnectionCutError(Exception):
     why
         Reason in words.
     listening
-        Whether the transport waits for the next caller itself. Otherwise the caller opens it again.
+        Whether the transport waits for the next caller itself. Otherwise the caller opens the transport
+        again.
     """
 
     def __init__(self, why: str, listening: bool = False) -> None:

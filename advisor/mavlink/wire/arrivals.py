@@ -21,7 +21,8 @@ REPEAT_US = 18_000_000
 """Longest time after which a packet may repeat an earlier one, us. Radios and routers hold packets up to 15
 s."""
 LATE_US = 2_000_000
-"""Lateness of a path, us, above which it brings nothing but repeats. Channels accept up to this age."""
+"""Lateness of a path, us, above which it brings nothing but repeats. Channels accept samples up to this
+age."""
 _PATH_US = 2_000_000
 """Time after its last packet for which a path is remembered, us. A heartbeat comes once a second."""
 _RUN = 8
@@ -78,7 +79,8 @@ def _has_path(senders: Ints, source: int, now_us: int) -> bool:
 def _is_heard_again(
     senders: Ints, packets: Ints, newest: Ints, source: int, sequence: int, mark: int, now_us: int
 ) -> bool:
-    """Return whether a packet repeats an earlier one. The second path's state then moves to this packet.
+    """Return whether a packet repeats an earlier one. The state of the second path then moves to the
+    repeated packet.
 
     Without a second path, a message that a vehicle sends again with its next sequence number is new.
     """

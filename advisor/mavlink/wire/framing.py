@@ -41,8 +41,8 @@ class FrameCutter:
 
     A frame of a known message must pass its checksum. The MAVLink serialisation guide defines it as
     CRC-16/MCRF4XX over everything after the magic byte and the definition's CRC_EXTRA. For a frame of an
-    unknown message, some CRC_EXTRA gives any checksum in one case of 256. So such a frame is accepted only
-    where one is due: right after a good one, and followed by another or by nothing.
+    unknown message, some CRC_EXTRA gives any checksum in one case of 256. A frame of an unknown message is
+    accepted only right after a good frame, and followed by another frame or by nothing.
     """
 
     def __init__(self, crc_extra: Mapping[int, int]) -> None:

@@ -1,9 +1,9 @@
 """The inner loop of the frame scanner, compiled.
 
 A stream is a row of records: 8 bytes of time stamp, then one frame. ``scan`` steps from record to record.
-Where a good frame is due and missing, it looks at every byte for the next one. A decision never depends on
-the length of the stream at hand. Where bytes are missing the function stops and returns the place to go on.
-Each good frame passes `arrivals`, which skips a packet that a second path repeats.
+Where a good frame is due and missing, the scanner looks at every byte for the next frame. A decision never
+depends on the length of the stream at hand. Where bytes are missing the function stops and returns the place
+to go on. Each good frame passes `arrivals`, which skips a packet that a second path repeats.
 """
 
 import numpy as np
