@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import FmuTrim, FmuVariables
@@ -41,23 +42,21 @@ both = pytest.mark.parametrize("fmi", [2, 3])
 
 
 def exact(elevator: FloatArray, condition: Condition, force: float = 0.0, damping: float = 0.0) -> FloatArray:
-    """Return α, q and θ at multiples of 0.01 s, from the C model's equations by the midpoint rule at 0.1
-    ms."""
+    """Return α, q and θ at multiples of 0.01 s, from the C model's linear equations by their exponential."""
     v = condition.airspeed_m_s
     # Steady: lift balances weight and the moment is zero.
     alpha, delta = np.linalg.solve([[LIFT * v, LIFT * v * C], [MA, MD]], [GRAVITY / v, -M0])
-    x, rows, h = np.array([alpha, 0.0, alpha]), [], 1e-4
-
-    def rate(x: FloatArray, e: float) -> FloatArray:
-        a_dot = x[1] + GRAVITY / v - LIFT * v * (x[0] + C * e) + force
-        return np.array([a_dot, v * v * (M0 + MA * x[0] + MD * e) + (MQ * v + damping) * x[1], x[1]])
-
-    for k in range(300):
+    # State α, q, θ, and the constants 1 and elevator of one step.
+    rates = np.zeros((5, 5))
+    rates[0] = -LIFT * v, 1.0, 0.0, GRAVITY / v + force, -LIFT * v * C
+    rates[1] = v * v * MA, MQ * v + damping, 0.0, v * v * M0, v * v * MD
+    rates[2, 1] = 1.0
+    over_a_step, x = expm(0.01 * rates), np.array([alpha, 0.0, alpha])
+    rows = [x]
+    for e in delta + np.interp(0.01 * np.arange(300) + 0.005, T, elevator):
+        x = (over_a_step @ [*x, 1.0, e])[:3]
         rows.append(x)
-        e = delta + float(np.interp(0.01 * k + 0.005, T, elevator))
-        for _ in range(100):
-            x = x + h * rate(x + 0.5 * h * rate(x, e), e)
-    return np.array([*rows, x]).T
+    return np.array(rows).T
 
 
 def assert_flown(flown: Replay, alpha: FloatArray, q: FloatArray, theta: FloatArray, within: float) -> None:
@@ -71,7 +70,7 @@ def simulator(folder: Path, fmi: int, names: FmuVariables = NAMES) -> FmuSimulat
 
 
 @both
-@pytest.mark.parametrize("speed", [25.0, 30.0, 40.0])
+@pytest.mark.parametrize("speed", [25.0, 40.0])
 def test_an_fmu_trims_at_the_flown_speed_and_answers_by_its_own_equations(
     tmp_path: Path, fmi: int, speed: float
 ) -> None:
@@ -152,9 +151,8 @@ def test_an_fmu_whose_elevator_moves_nothing_does_not_trim(tmp_path: Path) -> No
         fmu.replay(LEVEL, Inputs(T, DOUBLET))
 
 
-@both
-def test_in_a_process_of_its_own_an_fmu_flies_the_same(tmp_path: Path, fmi: int) -> None:
-    here = simulator(tmp_path, fmi).replay(LEVEL, Inputs(T, DOUBLET))
+def test_in_a_process_of_its_own_an_fmu_flies_the_same(tmp_path: Path) -> None:
+    here = simulator(tmp_path, 3).replay(LEVEL, Inputs(T, DOUBLET))
     apart = make_fmu(str(tmp_path / "short_period.fmu"), Aircraft(fmu=NAMES))
     there = apart.replay(LEVEL, Inputs(T, DOUBLET))
     assert apart.takes_increments
@@ -163,16 +161,14 @@ def test_in_a_process_of_its_own_an_fmu_flies_the_same(tmp_path: Path, fmi: int)
     assert there.q.tolist() == here.q.tolist()
 
 
-@both
 @pytest.mark.parametrize(
-    ("fault", "words"),
+    ("fmi", "fault", "words"),
     [
-        (1, "FMU short_period.fmu ended during a replay by signal SIGABRT"),
-        (2, "FMU short_period.fmu does not finish a replay within 1 s"),
-        (3, r"short_period.fmu fails at 0.06 s: fmi\dDoStep failed with status 3"),
+        (2, 1, "FMU short_period.fmu ended during a replay by signal SIGABRT"),
+        (3, 2, "FMU short_period.fmu does not finish a replay within 1 s"),
     ],
 )
-def test_an_fmu_that_crashes_hangs_or_refuses_is_one_sentence(
+def test_an_fmu_that_crashes_or_hangs_is_one_sentence(
     tmp_path: Path, fmi: int, fault: int, words: str
 ) -> None:
     fmu = make_fmu(str(build(tmp_path, fmi, fault)), Aircraft(fmu=NAMES))
@@ -180,6 +176,14 @@ def test_an_fmu_that_crashes_hangs_or_refuses_is_one_sentence(
     with pytest.raises(UnusableInputError, match=words):
         fmu.replay(LEVEL, Inputs(T, DOUBLET))
     fmu.close()
+
+
+@both
+def test_an_fmu_that_refuses_a_step_is_one_sentence(tmp_path: Path, fmi: int) -> None:
+    fmu = FmuSimulator(build(tmp_path, fmi, fault=3), NAMES, 15.0)
+    words = r"short_period.fmu fails at 0.06 s: fmi\dDoStep failed with status 3"
+    with pytest.raises(UnusableInputError, match=words):
+        fmu.replay(LEVEL, Inputs(T, DOUBLET))
 
 
 @both
@@ -197,15 +201,15 @@ def test_an_fmu_that_crashes_hangs_or_refuses_is_one_sentence(
 def test_a_variable_that_the_fmu_has_not_is_named(
     tmp_path: Path, fmi: int, names: FmuVariables, words: str
 ) -> None:
-    with pytest.raises(ConfigurationError, match=words):
-        make_fmu(str(build(tmp_path, fmi)), Aircraft(fmu=names))
+    with pytest.raises(UnusableInputError, match=words):
+        simulator(tmp_path, fmi, names)
 
 
 @both
 def test_an_fmu_of_another_platform_is_refused_with_those_it_has(tmp_path: Path, fmi: int) -> None:
     file = build(tmp_path, fmi, platform="darwin64" if fmi == 2 else "aarch64-darwin")
-    with pytest.raises(ConfigurationError, match=r"has no binary for .*; it has: .*darwin"):
-        make_fmu(str(file), Aircraft(fmu=NAMES))
+    with pytest.raises(UnusableInputError, match=r"has no binary for .*; it has: .*darwin"):
+        FmuSimulator(file, NAMES, 15.0)
 
 
 def test_a_file_that_is_no_fmu_is_one_sentence(tmp_path: Path) -> None:
@@ -215,8 +219,8 @@ def test_a_file_that_is_no_fmu_is_one_sentence(tmp_path: Path) -> None:
         make_fmu(str(file), Aircraft(fmu=NAMES))
     with zipfile.ZipFile(file, "w") as archive:
         archive.writestr("readme", "nothing")
-    with pytest.raises(ConfigurationError, match=r"x.fmu is no FMU: .*modelDescription.xml"):
-        make_fmu(str(file), Aircraft(fmu=NAMES))
+    with pytest.raises(UnusableInputError, match=r"x.fmu is no FMU: .*modelDescription.xml"):
+        FmuSimulator(file, NAMES, 15.0)
     with pytest.raises(UnusableInputError, match="Give the path of an"):
         make_fmu(str(tmp_path / "y.fmu"), Aircraft(fmu=NAMES))
 
@@ -225,8 +229,8 @@ def test_neither_co_simulation_nor_model_exchange_is_refused(tmp_path: Path) -> 
     file = tmp_path / "scheduled.fmu"
     with zipfile.ZipFile(file, "w") as archive:
         archive.writestr("modelDescription.xml", described(3).replace("<CoSim", "<ScheduledExec"))
-    with pytest.raises(ConfigurationError, match=r"scheduled.fmu .*"):
-        make_fmu(str(file), Aircraft(fmu=NAMES))
+    with pytest.raises(UnusableInputError, match=r"scheduled.fmu .*"):
+        FmuSimulator(file, NAMES, 15.0)
 
 
 def test_an_aircraft_file_without_names_is_told_what_to_add(tmp_path: Path) -> None:
