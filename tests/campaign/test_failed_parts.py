@@ -9,7 +9,7 @@ from advisor.campaign import axis_campaign, elevator, joint_estimate, lateral
 from advisor.campaign import campaign as whole_campaign
 from advisor.report.document import analysis_document
 from tests.campaign.test_lateral import ended, wired
-from tests.flights import FOUR, recorded
+from tests.flights import TWO, recorded
 
 
 def broken(*_, **__):
@@ -28,7 +28,7 @@ def breaking(function, call):
 
 
 def analysed(axis="pitch"):
-    log = recorded("uav", 1.0, maneuvers=FOUR)
+    log = recorded("uav", 1.0, maneuvers=TWO)
     flights = read_whole([log], Aircraft(), axis=axis)
     return analysis_document(flights.state, [str(log)], Aircraft())
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -48,6 +49,13 @@ def both(log: str, fault: Fault, aircraft: Aircraft | None = None) -> tuple[Camp
     return campaign.state, examiner.findings()
 
 
+@cache
+def sound() -> CampaignState:
+    """Return what analyze tells of the log without a fault."""
+    state, _ = both("t_base.tlog", lambda columns: columns)
+    return state
+
+
 def told(found: Sequence[InstrumentFinding]) -> list[tuple[str, bool]]:
     return [(one.code, one.used) for one in found if one.contradicts]
 
@@ -86,13 +94,13 @@ def test_a_force_in_counts_is_estimated_as_the_sound_log() -> None:
             columns = changed("RAW_IMU", field, lambda y: np.round(2.048 * y))(columns)
         return columns
 
-    sound, _ = both("t_base.tlog", lambda columns: columns)
     state, examined = both("t_base.tlog", counts)
-    assert told(sound.instruments) == []
+    assert told(sound().instruments) == []
     assert told(state.instruments) == told(examined.instruments) == [("a_z_unit", True)]
     assert state.model is not None
-    assert sound.model is not None
-    np.testing.assert_allclose(state.model.theta, sound.model.theta, rtol=0.02, atol=0.02)
+    model = sound().model
+    assert model is not None
+    np.testing.assert_allclose(state.model.theta, model.theta, rtol=0.02, atol=0.02)
 
 
 @pytest.mark.parametrize(
@@ -150,8 +158,7 @@ def test_each_contradiction_is_told_once_as_the_newest_manoeuvre_tells_it() -> N
 
 
 def test_what_the_fit_tells_stands_among_the_instruments_without_contradicting() -> None:
-    sound, _ = both("t_base.tlog", lambda columns: columns)
-    assert {"elevator_lag_s", "elevator_delay_s"} <= {one.code for one in sound.instruments}
+    assert {"elevator_lag_s", "elevator_delay_s"} <= {one.code for one in sound().instruments}
 
 
 def test_an_elevator_typed_with_the_other_sign_is_refused_on_its_manoeuvre() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.campaign import joint_estimate
+from advisor.campaign import elevator, joint_estimate
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.joint_estimate import Together
 from advisor.campaign.learning import may_learn
@@ -18,15 +18,13 @@ from advisor.mavlink.logs.logs import open_log
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.known_instruments import FoundInstruments, with_found
-from sim.scenario import Scenario
-from tests.flights import TWO, recorded
+from tests.flights import FOUR, TWO, recorded
 
 NEWEST = 7
 """Manoeuvres that one estimate shares: those of a whole campaign of the paper."""
 
 KNOWN = Aircraft(elevator=Elevator(lag_s=0.0))
 LEARNT = with_found(Aircraft(), FoundInstruments((), np.empty(0), np.empty(0), np.eye(8), None))
-LONGER = (*Scenario().maneuvers, *Scenario().maneuvers[:2])
 
 
 def numbers(state: CampaignState) -> tuple[int, ...]:
@@ -44,20 +42,24 @@ def joint(state: CampaignState) -> Estimate:
 
 @pytest.fixture(scope="module")
 def states() -> tuple[CampaignState, CampaignState]:
-    """A campaign longer than the newest that are estimated together: before its end, and after it."""
+    """A campaign longer than the two newest that are estimated together here: before its end, and after."""
     campaign = Campaign(KNOWN)
-    for batch in open_log(recorded("linear", 1.0, maneuvers=LONGER)):
-        campaign.feed(batch)
-    before = campaign.state
-    campaign.finish()
-    return before, campaign.state
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (elevator, joint_estimate):
+            patch.setattr(module, "NEWEST", 2)
+        for batch in open_log(recorded("linear", 1.0, maneuvers=FOUR[:3])):
+            campaign.feed(batch)
+        before = campaign.state
+        assert before.model is not None  # computed where it is read
+        campaign.finish()
+        return before, campaign.state
 
 
 def test_during_the_flight_the_newest_accepted_manoeuvres_are_estimated_together(
     states: tuple[CampaignState, CampaignState],
 ) -> None:
     flying, _ = states
-    assert flying.estimate_from == numbers(flying)[-NEWEST:] != numbers(flying)
+    assert flying.estimate_from == numbers(flying)[-2:] != numbers(flying)
     assert flying.model is not None
     np.testing.assert_array_equal(flying.model.theta, joint(flying).theta)
 

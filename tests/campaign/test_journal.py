@@ -93,9 +93,9 @@ def _logged(log: Path, rows: int | None) -> tuple[str, ...]:
 
 
 def test_the_event_log_does_not_depend_on_how_messages_arrive_and_its_times_run_forward():
-    log = recorded("linear", 1.0, maneuvers=TWO)
+    log = recorded("linear", 1.0, maneuvers=TWO[:1])
     whole = _logged(log, None)
-    assert _logged(log, 20_000) == whole
+    assert _logged(log, 10_000) == whole
     times = [line[:7].strip() for line in whole if line[:7].strip() != "–"]
     seconds = [60.0 * int(m) + float(s) for m, _, s in (t.partition(":") for t in times)]
     assert len(seconds) > 3

@@ -23,7 +23,7 @@ TRUTH = -4.93
 
 @pytest.fixture(scope="module")
 def states() -> list[CampaignState]:
-    """States during the first two manoeuvres of the bundled demonstration, about three a second."""
+    """States during the first two manoeuvres of the bundled demonstration, about two a second."""
     return _during_two_manoeuvres(Aircraft(elevator=Elevator(lag_s=0.0)))
 
 
@@ -31,7 +31,7 @@ def _during_two_manoeuvres(aircraft: Aircraft) -> list[CampaignState]:
     campaign = Campaign(aircraft, settle=True)
     states: list[CampaignState] = []
     timeline = Timeline([columns for batch in open_log(SHIPPED / "bundled-demo.tlog") for columns in batch])
-    for position_s in np.arange(0.0, timeline.duration_s, 0.35):
+    for position_s in np.arange(0.0, timeline.duration_s, 0.5):
         campaign.feed(timeline.up_to(float(position_s)))
         state = campaign.state
         if state.flying is not None:

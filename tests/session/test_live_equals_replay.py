@@ -1,6 +1,7 @@
 """What is decided in the air is decided again from the recording, to the last bit."""
 
 from copy import deepcopy
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +13,11 @@ from advisor.bundled.demo import Demonstration
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.campaign.state import CampaignState
-from advisor.flight.signals.messages import Columns
+from advisor.flight.vehicle.pieces import rows_between
 from advisor.mavlink.logs.logs import open_log
 from advisor.oem.estimate import Estimate
 from advisor.session.live import LinkSource
-from tests.flights import FOUR, TWO, recorded
+from tests.flights import TWO, recorded
 
 pytestmark = pytest.mark.xdist_group("links")
 
@@ -42,12 +43,12 @@ def replayed(log: Path, by_hand: ByHand = NOTHING) -> Campaign:
 
 @pytest.fixture(scope="module")
 def flown() -> Campaign:
-    return replayed(recorded("linear", 1.0, maneuvers=FOUR))
+    return replayed(recorded("linear", 1.0, maneuvers=TWO))
 
 
 @pytest.fixture
 def campaign(flown: Campaign) -> Campaign:
-    """A campaign of four manoeuvres, to do with as one likes."""
+    """A campaign of two manoeuvres, to do with as one likes."""
     return deepcopy(flown)
 
 
@@ -80,29 +81,14 @@ def test_a_flight_followed_live_with_a_mark_and_its_recording_with_the_file_besi
     assert facts(again) == facts(campaign.state)
 
 
-def one_by_one(columns: list[Columns]) -> list[Columns]:
-    """Every message by itself, in order of arrival."""
-    singles = [
-        Columns(
-            piece.name,
-            piece.system,
-            piece.component,
-            piece.order[i : i + 1],
-            piece.arrival_s[i : i + 1],
-            {name: values[i : i + 1] for name, values in piece.fields.items()},
-        )
-        for piece in columns
-        for i in range(len(piece))
-    ]
-    return sorted(singles, key=lambda single: int(single.order[0]))
-
-
 def test_it_does_not_matter_how_the_stream_is_cut_into_batches() -> None:
     log = recorded("linear", 1.0, maneuvers=TWO[:1])
     columns = [piece for batch in open_log(log) for piece in batch]
     campaign = Campaign(Aircraft())
-    for single in one_by_one(columns):
-        campaign.feed([single])
+    past = max(int(piece.order[-1]) for piece in columns) + 1
+    cuts = np.random.default_rng(3).choice(past, 300, replace=False)
+    for first, after in pairwise([0, *sorted(cuts), past]):
+        campaign.feed(rows_between(columns, first, after))
     campaign.finish()
     assert len(campaign.state.maneuvers) == 1
     assert facts(campaign.state) == facts(replayed(log).state)
@@ -112,15 +98,15 @@ def test_taking_a_manoeuvre_out_by_hand_decides_everything_again_and_putting_it_
     campaign: Campaign,
 ) -> None:
     before = facts(campaign.state)
-    campaign.exclude(3, "a gust")
+    campaign.exclude(2, "a gust")
     state = campaign.state
-    assert 3 not in state.estimate_from
-    assert state.maneuvers[2].excluded_because == "a gust"
-    assert not state.maneuvers[2].verdict.accepted
-    assert state.flight_test.stopped_at != 3
+    assert 2 not in state.estimate_from
+    assert state.maneuvers[1].excluded_because == "a gust"
+    assert not state.maneuvers[1].verdict.accepted
+    assert state.flight_test.stopped_at != 2
     assert state.model is not None
     assert np.any(np.frombuffer(before[-1]) != state.model.theta)  # type: ignore[call-overload]
-    campaign.include(3)
+    campaign.include(2)
     assert facts(campaign.state) == before
 
 

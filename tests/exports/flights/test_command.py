@@ -27,14 +27,14 @@ def test_the_default_is_csv(advisor: Advisor, tmp_path: Path) -> None:
 @pytest.fixture
 def of_two_logs(advisor: Advisor, tmp_path: Path) -> Path:
     """Return the folder into which two logs were exported."""
-    logs = [recorded("linear", 1.0, seed, TWO) for seed in (11, 12)]
+    logs = [recorded("linear", 1.0, seed, TWO[:1]) for seed in (11, 12)]
     assert advisor("export", *logs, "-o", tmp_path / "out").returncode == 0
     return tmp_path / "out"
 
 
 def test_two_logs_are_two_records_of_one_campaign(of_two_logs: Path) -> None:
     rows = (of_two_logs / "maneuvers.csv").read_text(encoding="utf-8").splitlines()[1:]
-    assert [row.split(",")[:2] for row in rows] == [["1", "1"], ["2", "1"], ["3", "2"], ["4", "2"]]
+    assert [row.split(",")[:2] for row in rows] == [["1", "1"], ["2", "2"]]
     assert (of_two_logs / "record_2" / "grid.csv").exists()
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import advisor as library
 from tests.conftest import Advisor
 from tests.exports.flights.conftest import Exported
 from tests.flights import SHIPPED, TWO, recorded
@@ -45,16 +46,17 @@ def test_analyze_finds_the_manoeuvre_in_the_cut_log_with_the_estimate_of_the_who
 
 
 def test_the_packets_of_a_cut_log_are_those_of_the_whole_log_in_their_order_packed_or_not(
-    exported: Exported, advisor: Advisor, tmp_path: Path
+    advisor: Advisor, tmp_path: Path
 ) -> None:
+    flight = recorded("linear", 1.0, maneuvers=TWO)
     packed, cut, unpacked = tmp_path / "flight.tlog.gz", tmp_path / "m2.tlog", tmp_path / "unpacked.tlog"
-    packed.write_bytes(gzip.compress(exported.log.read_bytes()))
-    for log, out in ((exported.log, cut), (packed, unpacked)):
+    packed.write_bytes(gzip.compress(flight.read_bytes()))
+    for log, out in ((flight, cut), (packed, unpacked)):
         assert advisor("export", log, "--cut", "2", "-o", out).returncode == 0
     assert unpacked.read_bytes() == cut.read_bytes()
-    whole, taken = iter(records(exported.log.read_bytes())), records(cut.read_bytes())
+    whole, taken = iter(records(flight.read_bytes())), records(cut.read_bytes())
     assert all(any(record == other for other in whole) for record in taken)
-    assert len(cut.read_bytes()) < 0.5 * exported.log.stat().st_size
+    assert len(cut.read_bytes()) < 0.7 * flight.stat().st_size
 
 
 @pytest.mark.parametrize(
@@ -81,14 +83,14 @@ def assert_cut_alone(log: Path, number: int, advisor: Advisor, folder: Path) -> 
     """One manoeuvre of the log is cut, and found alone in the cut log."""
     cut = folder / "cut.tlog"
     assert advisor("export", log, "--cut", number, "-o", cut).returncode == 0
-    assert len(json.loads(advisor("analyze", cut, "--json").stdout)["maneuvers"]) == 1
+    assert len(library.find(library.read(cut))) == 1
 
 
 def test_a_manoeuvre_after_a_reboot_is_cut_from_its_own_power_on(advisor: Advisor, tmp_path: Path) -> None:
-    first, second = (recorded("linear", 1.0, seed, TWO).read_bytes() for seed in (11, 12))
+    first, second = (recorded("linear", 1.0, seed, TWO[:1]).read_bytes() for seed in (11, 12))
     (tmp_path / "two.tlog").write_bytes(first + second)
-    cut = tmp_path / "m3.tlog"
-    assert advisor("export", tmp_path / "two.tlog", "--cut", "3", "-o", cut).returncode == 0
+    cut = tmp_path / "m2.tlog"
+    assert advisor("export", tmp_path / "two.tlog", "--cut", "2", "-o", cut).returncode == 0
     assert set(records(cut.read_bytes())[-100:]) <= set(records(second))
 
 
