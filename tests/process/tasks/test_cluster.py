@@ -52,7 +52,7 @@ def started(workers: int) -> LocalCluster:
 
 @pytest.fixture(scope="module")
 def scheduler() -> Iterator[str]:
-    with started(workers=2) as cluster:
+    with started(workers=1) as cluster:
         yield cluster.scheduler_address
 
 
