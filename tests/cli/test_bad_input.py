@@ -1,8 +1,6 @@
 """Bad input: one clear sentence, the right exit code, the document still comes, never a traceback."""
 
 import json
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,13 +9,7 @@ import pytest
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.logs.tlog import read_tlog
 from tests.conftest import Advisor
-from tests.flights import FOUR, TWO, recorded
-
-
-def process(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    """The command as a program of its own."""
-    command = [sys.executable, "-m", "advisor", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+from tests.flights import TWO, recorded
 
 
 def without(log: Path, name: str, to: Path) -> Path:
@@ -79,16 +71,16 @@ def test_with_json_the_document_still_comes_and_names_the_problem(
 
 
 def test_a_log_cut_off_inside_a_frame_is_used_up_to_the_cut(advisor: Advisor, tmp_path: Path) -> None:
-    data = recorded("linear", 1.0, maneuvers=FOUR).read_bytes()
+    data = recorded("linear", 1.0, maneuvers=TWO).read_bytes()
     cut = tmp_path / "cut.tlog"
-    cut.write_bytes(data[: len(data) * 2 // 3 + 5])
+    cut.write_bytes(data[: len(data) * 3 // 5 + 5])
     result = advisor("analyze", cut, "--json")
     assert result.returncode == 0
-    assert len(json.loads(result.stdout)["maneuvers"]) >= 2
+    assert len(json.loads(result.stdout)["maneuvers"]) >= 1
 
 
 def test_without_measured_angle_of_attack_it_is_derived_and_said_so(advisor: Advisor, tmp_path: Path) -> None:
-    log = without(recorded("uav", 1.0, maneuvers=TWO), "AOA_SSA", tmp_path / "no-alpha.tlog")
+    log = without(recorded("uav", 1.0, maneuvers=TWO[:1]), "AOA_SSA", tmp_path / "no-alpha.tlog")
     result = advisor("analyze", log, "--json")
     document = json.loads(result.stdout)
     assert result.returncode == 0
@@ -104,16 +96,16 @@ def test_without_any_way_to_an_angle_of_attack_the_mend_is_named(advisor: Adviso
     assert "Traceback" not in result.stderr
 
 
-def test_a_missing_file_is_told(tmp_path: Path) -> None:
-    result = process("analyze", tmp_path / "none.tlog")
+def test_a_missing_file_is_told(advisor: Advisor, tmp_path: Path) -> None:
+    result = advisor("analyze", tmp_path / "none.tlog")
     assert result.returncode == 3
     assert "none.tlog" in result.stderr
 
 
-def test_an_unknown_key_in_the_aircraft_file_is_wrong_configuration(tmp_path: Path) -> None:
+def test_an_unknown_key_in_the_aircraft_file_is_wrong_configuration(advisor: Advisor, tmp_path: Path) -> None:
     aircraft = tmp_path / "aircraft.yaml"
     aircraft.write_text("elevator: {calibrations: []}\nwings: 2\n")
-    result = process("analyze", recorded("linear", 1.0, maneuvers=TWO), "--aircraft", aircraft)
+    result = advisor("analyze", recorded("linear", 1.0, maneuvers=TWO), "--aircraft", aircraft)
     assert result.returncode == 2
     assert "elevator.calibrations" in result.stderr
     assert "wings" in result.stderr

@@ -13,7 +13,7 @@ import pytest
 
 from advisor.mavlink.logs.tlog import read_tlog
 from advisor.process.interrupt import in_order
-from tests.cli.processes import flight, start
+from tests.cli.processes import flight, short_flight, start
 from tests.mavlink.link.builders import free_port, wait_until
 
 _STARTS_S = 0.15
@@ -77,7 +77,9 @@ def test_ctrl_c_at_a_random_moment_ends_in_one_sentence(command: str, times: int
             assert told == [b"Stopped."]
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "code"), [pytest.param(signal.SIGINT, 130, marks=pytest.mark.study), (signal.SIGTERM, 143)]
+)
 def test_a_signal_leaves_a_whole_recording_and_says_where(
     number: signal.Signals, code: int, tmp_path: Path
 ) -> None:
@@ -110,7 +112,7 @@ def test_a_signal_that_the_shell_ignores_stays_ignored() -> None:
     code = (
         "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); from advisor.start import main; main()"
     )
-    command = [sys.executable, "-c", code, "doctor", str(flight())]
+    command = [sys.executable, "-c", code, "doctor", str(short_flight())]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         time.sleep(0.5)
         process.send_signal(signal.SIGINT)

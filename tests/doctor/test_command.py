@@ -13,16 +13,6 @@ from tests.mavlink.link.builders import free_port
 LOGS = Path(__file__).parents[2] / "logs"
 
 
-def doctor(*arguments: str) -> subprocess.CompletedProcess[str]:
-    """The command as a program of its own, beside a link's other end."""
-    return subprocess.run(
-        [sys.executable, "-c", "from advisor.cli.group import main; main()", "doctor", *arguments],
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-
-
 def test_a_log_at_default_rates_ends_with_3_a_sentence_and_still_a_document(advisor: Advisor) -> None:
     run = advisor("doctor", LOGS / "arduplane-default-rates.tlog", "--json")
     assert run.returncode == 3
@@ -63,13 +53,15 @@ def test_what_cannot_be_examined_is_refused_in_one_sentence(
     assert "Traceback" not in run.stderr
 
 
-def test_a_silent_link_is_not_usable() -> None:
-    run = doctor(f"udpin:127.0.0.1:{free_port()}", "--seconds", "1", "--json")
+def test_a_silent_link_is_not_usable(advisor: Advisor) -> None:
+    run = advisor("doctor", f"udpin:127.0.0.1:{free_port()}", "--seconds", "1", "--json")
     assert run.returncode == 3
     assert json.loads(run.stdout)["problems"][0]["code"] == "no_vehicle"
 
 
-def test_before_the_flight_rates_are_asked_for_and_the_elevator_is_found(tmp_path: Path) -> None:
+def test_before_the_flight_rates_are_asked_for_and_the_elevator_is_found(
+    advisor: Advisor, tmp_path: Path
+) -> None:
     port = free_port()
     scenario = tmp_path / "slow.yaml"
     scenario.write_text("rates: {ATTITUDE: 4.0, AOA_SSA: 4.0, SERVO_OUTPUT_RAW: 2.0, HEARTBEAT: 1.0}\n")
@@ -78,7 +70,7 @@ def test_before_the_flight_rates_are_asked_for_and_the_elevator_is_found(tmp_pat
         [*sim, "--scenario", str(scenario)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )
     try:
-        run = doctor(f"udpin:127.0.0.1:{port}", "--seconds", "6", "--request-rates", "--json")
+        run = advisor("doctor", f"udpin:127.0.0.1:{port}", "--seconds", "6", "--request-rates", "--json")
     finally:
         process.kill()
         process.communicate()
