@@ -10,7 +10,7 @@ from advisor.flight.maneuvers.segmentation import Segmenter
 from tests.flight.elevator.elevators import PATTERNS, Stream, coloured, length, slewed, stamps, steps
 
 DEG = np.radians(1.0)
-SEEDS = range(8)
+SEEDS = range(4)
 
 
 def found(stream):

@@ -174,7 +174,7 @@ any_damage = st.lists(st.integers(0, len(DAMAGES) - 1), min_size=1, max_size=8)
 seeds = st.integers(0, 2**32 - 1)
 
 
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(seed=seeds, damages=any_damage, cuts=st.integers(1, 50))
 def test_intact_messages_survive_and_none_is_invented(seed: int, damages: list[int], cuts: int) -> None:
     records = damaged_flight(seed, damages)
@@ -183,7 +183,7 @@ def test_intact_messages_survive_and_none_is_invented(seed: int, damages: list[i
     assert read(stream, cuts) == intact
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=30, deadline=None, derandomize=True)
 @given(seed=seeds, damages=any_damage)
 def test_pymavlink_never_reads_more_of_a_damaged_log(seed: int, damages: list[int]) -> None:
     records = damaged_flight(seed, damages)
