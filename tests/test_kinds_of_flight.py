@@ -25,7 +25,7 @@ FOLDER = Path(mkdtemp(prefix="kinds-"))
 SCALED = ((1100.0, -25.0), (1500.0, 0.0), (1900.0, 25.0))
 INSTRUMENTS = Noise(alpha_deg=0.1, pitch_rate_deg_s=0.3, pitch_deg=0.1, accelerometer_m_s2=0.15)
 RATES = {"ATTITUDE": 50.0, "AOA_SSA": 50.0, "SERVO_OUTPUT_RAW": 50.0, "RAW_IMU": 50.0, "VFR_HUD": 20.0}
-FIVE = tuple(Maneuver(name, slew_s=0.1) for name in ("3211", "rev", "rev", "3211", "rev"))
+THREE = tuple(Maneuver(name, slew_s=0.1) for name in ("3211", "rev", "rev"))
 
 
 def analysed(name, flight, aircraft):
@@ -56,14 +56,14 @@ def without_a_vane():
         servo=Servo(lag_s=0.09),
         air=Air(turbulence_m_s=0.4),
         noise=INSTRUMENTS,
-        maneuvers=FIVE,
+        maneuvers=THREE,
     )
     aircraft = Aircraft(elevator=Elevator(calibration=SCALED), alpha=Alpha(source="none"))
     return analysed("no-vane", Flight(scenario), aircraft)
 
 
 def test_in_light_turbulence_without_a_vane_most_manoeuvres_are_accepted():
-    assert sum(judged.verdict.accepted for judged in without_a_vane().maneuvers) >= 4
+    assert sum(judged.verdict.accepted for judged in without_a_vane().maneuvers) >= 2
 
 
 def test_without_a_vane_the_servos_lag_is_found():
@@ -86,7 +86,7 @@ def slow_log():
         servo=Servo(lag_s=0.14),
         alpha=AlphaSensor(source="derived"),
         noise=INSTRUMENTS,
-        maneuvers=FIVE,
+        maneuvers=THREE,
     )
     return analysed("slow-log", Flight(scenario), Aircraft(elevator=Elevator(calibration=SCALED)))
 

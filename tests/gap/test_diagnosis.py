@@ -26,7 +26,7 @@ MODEL = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, -52.0)
 
 @pytest.fixture(scope="module")
 def delayed():
-    return diagnose(fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=3)), Aircraft(name="test"))
+    return diagnose(fly(Setup(maneuvers=4, switches={"delay": 0.06}, seed=3)), Aircraft(name="test"))
 
 
 def test_a_delay_is_named_sized_and_removed_on_manoeuvres_kept_out(delayed):

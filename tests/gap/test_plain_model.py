@@ -51,7 +51,7 @@ def test_the_delay_of_the_command_has_one_prior_in_estimate_and_diagnosis():
     ("delay_s", "named"), [(0.02, []), pytest.param(0.05, ["transport_delay"], marks=pytest.mark.study)]
 )
 def test_a_transport_delay_is_named_only_beyond_that_of_telemetry(delay_s, named):
-    found = diagnose(fly(Setup(maneuvers=6, switches={"delay": delay_s}, seed=72)), Aircraft())
+    found = diagnose(fly(Setup(maneuvers=4, switches={"delay": delay_s}, seed=72)), Aircraft())
     assert [cause.effect for cause in found.causes if cause.present] == named
 
 
