@@ -37,6 +37,14 @@ def analyzed(log: Path, *options: str) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
+def two_of_seven(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The first two manoeuvres of a flight that nobody here simulated."""
+    log, whole = tmp_path_factory.mktemp("real") / "two.tlog", (SHIPPED / "arduplane-calm.tlog").read_bytes()
+    log.write_bytes(whole[: len(whole) // 3])
+    return log
+
+
+@pytest.fixture(scope="module")
 def uav(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What is known of the aircraft that ArduPilot flew."""
     aircraft = tmp_path_factory.mktemp("flown") / "uav.yaml"
@@ -82,15 +90,18 @@ def test_the_nonlinear_aircraft_gives_its_own_linearisation_within_5_percent(par
     assert model[parameter]["value"] == pytest.approx(truth("uav")[parameter], rel=0.05)
 
 
-def test_a_flight_that_nobody_here_simulated_gives_seven_judged_manoeuvres_and_a_model(uav: Path) -> None:
-    document = analyzed(SHIPPED / "arduplane-calm.tlog", "--aircraft", str(uav))
-    flown = [82.28, 113.34, 136.86, 162.60, 188.08, 208.04, 236.32]
+def test_a_flight_that_nobody_here_simulated_gives_judged_manoeuvres_and_a_model(
+    two_of_seven: Path, uav: Path
+) -> None:
+    document = analyzed(two_of_seven, "--aircraft", str(uav))
+    flown = [82.28, 113.34]
     assert [m["start_boot_s"] for m in document["maneuvers"]] == pytest.approx(flown, abs=1.0)
     assert document["log"]["channels"]["alpha"]["provenance"] == "derived"
     assert set(PARAMETERS) <= set(document["model"])
     assert document["model"]["M_delta_e"]["value"] < 0.0 > document["model"]["M_alpha"]["value"]
 
 
+@pytest.mark.study
 def test_on_a_real_autopilot_the_default_rule_says_stop_within_seven_manoeuvres(uav: Path) -> None:
     flight_test = analyzed(SHIPPED / "arduplane-calm.tlog", "--aircraft", str(uav))["flight_test"]
     assert flight_test["rule"] == "information"
