@@ -22,7 +22,7 @@ from tests.conftest import Advisor
 from tests.flights import TWO, recorded
 from tests.mavlink.ardupilot.test_autopilot_logs import FIRST_STEP_S, dataflash_flight, px4_flight
 
-CASES = int(os.environ.get("DAMAGE_CASES", "60"))
+CASES = int(os.environ.get("DAMAGE_CASES", "30"))
 """Cases of each kind of log that are read; one in twenty is analysed by the command as well."""
 SEED = int(os.environ.get("DAMAGE_SEED", "0"))
 SECONDS = FIRST_STEP_S + 6.0

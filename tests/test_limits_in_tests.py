@@ -72,16 +72,17 @@ def test_every_module_of_the_list_has_numbers(module: str) -> None:
 def taken_from_the_code(tree: ast.Module) -> Iterator[tuple[str, str]]:
     """Yield module and name of every number that a test takes from a module of the advisor."""
     modules: dict[str, str] = {}
+    read: list[tuple[str, str]] = []
     for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
+        if isinstance(node, ast.Attribute):
+            if node.attr.isupper() and isinstance(node.value, ast.Name):
+                read.append((node.value.id, node.attr))
+        elif isinstance(node, ast.Import):
             modules.update({one.asname: one.name for one in node.names if one.asname})
         elif isinstance(node, ast.ImportFrom) and node.module:
             modules.update({one.asname or one.name: f"{node.module}.{one.name}" for one in node.names})
             yield from ((node.module, one.name) for one in node.names if decides(node.module, one.name))
-    for node in ast.walk(tree):
-        match node:
-            case ast.Attribute(value=ast.Name(id=known), attr=name) if decides(modules.get(known, ""), name):
-                yield modules[known], name
+    yield from ((modules[known], name) for known, name in read if decides(modules.get(known, ""), name))
 
 
 def decides(module: str, name: str) -> bool:

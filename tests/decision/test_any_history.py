@@ -41,7 +41,7 @@ def odd_manoeuvre(rng: np.random.Generator) -> CandidateManeuver:
 def test_every_history_gets_verdicts_a_decision_and_advice(rule: Rule) -> None:
     rng = np.random.default_rng(31)
     plan = CampaignPlan(rule=rule)
-    for limit in (None, 5.0) * 10:
+    for limit in (None, 5.0) * 4:
         history = [odd_manoeuvre(rng) for _ in range(int(rng.integers(1, 7)))]
         assert len(judge_campaign(history, plan)) == len(history)
         verdict = flight_test(history, plan, Aircraft(limits=Limits(alpha_deg=limit)))

@@ -58,7 +58,7 @@ def test_the_control_anticipation_parameter_is_initial_pitch_acceleration_over_f
 
 def test_the_intervals_are_those_of_many_draws() -> None:
     rng = np.random.default_rng(5)
-    draws = rng.multivariate_normal(THETA, np.diag((0.01 * THETA) ** 2), 4000)
+    draws = rng.multivariate_normal(THETA, np.diag((0.01 * THETA) ** 2), 1000)
     many = [found(theta).qualities for theta in draws]
     for name, quality in found().qualities.items():
         assert quality.std == pytest.approx(np.std([one[name].value for one in many]), rel=0.06)

@@ -46,10 +46,10 @@ def test_what_another_process_sends_twice_can_be_compared():
 
 
 def test_another_process_comes_to_the_same_bits():
-    here = last_report(Conductor(elsewhere.first_manoeuvres(), elsewhere.campaign), ended)
-    task = ConductorTask(elsewhere.first_manoeuvres, elsewhere.campaign)
+    here = last_report(Conductor(elsewhere.first_manoeuvre(), elsewhere.campaign), ended)
+    task = ConductorTask(elsewhere.first_manoeuvre, elsewhere.campaign)
     there = last_report(RemoteConductor(task), ended)
-    assert len(here.state.maneuvers) == len(there.state.maneuvers) == 2
+    assert len(here.state.maneuvers) == len(there.state.maneuvers) == 1
     for a, b in zip(here.state.maneuvers, there.state.maneuvers, strict=True):
         assert isinstance(a.estimate, Estimate)
         assert isinstance(b.estimate, Estimate)

@@ -10,7 +10,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.simulators.around import lagging
 from advisor.simulators.by_python import make_python
-from advisor.simulators.fmu import make_fmu
+from advisor.simulators.fmu import FmuSimulator
 from advisor.simulators.jsbsim import make_jsbsim
 from advisor.simulators.jsbsim_model import find_model
 from advisor.simulators.protocol import Condition, Inputs, Replay, Simulator
@@ -32,7 +32,7 @@ def of_fmu(folder: Path, lags: bool) -> tuple[Simulator, Condition]:
     from tests.simulators.small_fmu import build
 
     file = build(folder, 2, lag_s=LAG_S if lags else None)
-    return make_fmu(str(file), Aircraft(fmu=NAMES)), Condition(30.0, 500.0)
+    return FmuSimulator(file, NAMES, 15.0), Condition(30.0, 500.0)
 
 
 def of_jsbsim(folder: Path, lags: bool) -> tuple[Simulator, Condition]:

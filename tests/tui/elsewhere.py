@@ -20,15 +20,18 @@ from tests.tui import flights
 from tests.tui.stand_ins import HandFedSource, StagedCampaign
 
 LOG = Path(__file__).parents[2] / "logs" / "bundled-demo.tlog"
-FLOWN_S = 45.0
 FIRST_JUDGED_S = 27.0
 BUSY_S = 4.0
 
 
-def first_manoeuvres() -> LogPlayer:
-    """The bundled log's first two manoeuvres, as fast as they can be played."""
+def first_manoeuvre() -> LogPlayer:
+    """The bundled log's first manoeuvre, as fast as it can be played."""
+    return _played(26.0)
+
+
+def _played(flown_s: float) -> LogPlayer:
     pieces = [piece for batch in open_log(LOG) for piece in batch]
-    end_s = min(piece.arrival_s[0] for piece in pieces) + FLOWN_S
+    end_s = min(piece.arrival_s[0] for piece in pieces) + flown_s
     return LogPlayer(LOG.name, lambda: [_until(piece, end_s) for piece in pieces], inf)
 
 
@@ -49,7 +52,7 @@ class Traced(LogPlayer):
 
 def traced() -> Traced:
     """The bundled log's first two manoeuvres, at ten times their speed."""
-    player = first_manoeuvres()
+    player = _played(45.0)
     return Traced(LOG.name, player._load, 10.0)
 
 
