@@ -28,7 +28,7 @@ from advisor.simulators.specification import simulator_of
 from advisor.simulators.speed_kind import by_the_motion
 from advisor.simulators.static_errors import with_static_errors
 from advisor.simulators.taken_back import with_unseen_shrink
-from advisor.simulators.unseen import changes_something, other_finding, unseen_of
+from advisor.simulators.unseen import changes_something, unseen_of
 from advisor.words.printable import printable
 from advisor.words.problems import Problem, UnusableInputError
 
@@ -201,12 +201,11 @@ def compare_flown(
         if prior_derivatives(aircraft) is None:
             told = without_simulator(told)
         elif changes_something(told):
-            progress("searching again without the manoeuvres kept apart", 0.9)
-            unseen = unseen_of(whole, chosen.maneuvers, at_true_speed, holdout, prior)
+            progress("measuring the shrink on manoeuvres kept apart", 0.9)
+            unseen = unseen_of(whole, holdout)
             if unseen is not None:
                 stays = with_unseen_shrink(whole, unseen, at_true_speed)
-                notes_first = (*other_finding(whole.diagnosis, unseen), *stays.diagnosis.notes)
-                told = replace(stays.diagnosis, notes=notes_first)
+                told = stays.diagnosis
         told = with_static_errors(told, whole)
         compared = Compared(told, aircraft, stays.findings)
     notes = [*chosen.notes, *flown.notes]

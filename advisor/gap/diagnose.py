@@ -103,19 +103,7 @@ def examine(
     aircraft = _with_speed(usable_of(maneuvers), aircraft)
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
     maneuvers = alpha_by_motion([_without_offset(m, offset) for m in maneuvers], aircraft)
-    found = _explained(maneuvers, aircraft, holdout, prior, progress)
-    used = {flight.number for flight in found.findings.problem.flights.flights}
-    return _noted(found, left_out([m for m in maneuvers if m.number not in used]))
-
-
-def _noted(found: Examined, notes: Sequence[str]) -> Examined:
-    """Return a diagnosis with further notes, with all effects and with fewer."""
-    fewer = found.fewer
-    return replace(
-        found,
-        diagnosis=replace(found.diagnosis, notes=(*found.diagnosis.notes, *notes)),
-        fewer=None if fewer is None else lambda most: _noted(fewer(most), notes),
-    )
+    return _explained(maneuvers, aircraft, holdout, prior, progress)
 
 
 def _explained(
@@ -134,7 +122,7 @@ def _explained(
     measured = "alpha" in flights.channels
     checks = [check_alpha(m, aircraft.stated_airspeed_m_s, *arms) for m in flown if measured]
     kinematics = combine(checks)
-    progress("fitting the simulator's model", 0.1)
+    progress("fitting the simulator's model", 0.01)
     if kinematics.offset.stays and abs(kinematics.offset.rad) > least_offset_rad(kinematics.offset.std_rad):
         # The offset that the climb rate shows is removed first: the trim would carry it into the lift.
         maneuvers = [_without_offset(m, kinematics.offset.rad) for m in maneuvers]
@@ -153,14 +141,19 @@ def _explained(
         flights = prepare(maneuvers, aircraft, over_read)
         problem, baseline = at_another_speed(problem, baseline, flights)
     shear = wind_shear(flown, over_read) if measured else None
+    notes = left_out([m for m in maneuvers if m.number not in numbers])
+
+    def noted(diagnosis: Diagnosis, findings: Findings) -> Examined:
+        return Examined(replace(diagnosis, notes=(*diagnosis.notes, *notes)), findings)
+
     if len(flights) == 1:
-        return Examined(*answer_of_one(problem, baseline, aircraft, kinematics))
+        return noted(*answer_of_one(problem, baseline, aircraft, kinematics))
     found = infer(problem, baseline, aircraft, kinematics, prior, progress)
-    progress("measuring the gap", 0.9)
+    progress("measuring the gap", 0.97)
     aside = left_aside(given, aircraft.effects, () if found.sought_air.found is None else AIR)
     circumstances = Circumstances(shear, weight, given, aside)
     answer = partial(answer_of, found, aircraft, kinematics, holdout, circumstances)
-    return Examined(*answer(), lambda most: Examined(*answer(most)))
+    return replace(noted(*answer()), fewer=lambda most: noted(*answer(most)))
 
 
 def _refuse(flights: PreparedManeuvers, maneuvers: Sequence[Maneuver]) -> None:

@@ -50,15 +50,14 @@ from advisor.simulators.trims import trim_differences
 from advisor.simulators.unseen import (
     UnseenManeuvers,
     changes_something,
-    other_finding,
     resaid,
     shrink_on,
     unseen_of,
 )
 
-_FLIES, _DIAGNOSED, _FOUND = 0.2, 0.6, 0.9
-"""Shares of the work that are done after the first replays, after the diagnosis, and after the search without
-the manoeuvres kept apart."""
+_FLIES, _DIAGNOSED, _FOUND = 0.2, 0.9, 0.95
+"""Shares of the work that are done after the first replays, after the diagnosis, and after the replays with
+the correction."""
 
 
 @dataclass(frozen=True)
@@ -132,14 +131,12 @@ def compare(
         lambda what, share: progress(what, _FLIES + (_DIAGNOSED - _FLIES) * share),
         prior,
     )
-    again = replace(flying, progress=lambda w, s: progress(w, _FOUND + (1.0 - _FOUND) * s))
+    again = replace(flying, progress=lambda w, s: progress(w, _DIAGNOSED + (_FOUND - _DIAGNOSED) * s))
     if isinstance(simulator, LinearSimulator):
         reference = examined.findings.problem.flights.reference_m_s
         surrogate = replace(surrogate, reference_m_s=reference)
         again = replace(again, simulator=replace(simulator, reference_m_s=reference))
-    progress("searching again without the manoeuvres kept apart", _DIAGNOSED)
-    changes = changes_something(examined.diagnosis)
-    unseen = unseen_of(examined, beside, as_file, holdout, prior) if changes else None
+    unseen = unseen_of(examined, holdout) if changes_something(examined.diagnosis) else None
     fly = partial(in_simulator, examined, flying=again, surrogate=surrogate, as_flown=as_flown)
     stays, flown = (examined, fly(None)) if unseen is None else without_worse(examined, unseen, fly)
     if unseen is not None and not changes_something(stays.diagnosis):
@@ -147,13 +144,12 @@ def compare(
     found = _measured(stays, unseen, as_file, flown, as_flown)
     if replays:
         progress("looking for what only the simulator has", _FOUND)
-        mirror = mirrored(examined, maneuvers, flying, replays, aircraft)
+        mirror = mirrored(examined, maneuvers, flying, replays, aircraft, as_flown)
         found = found if mirror is None else mirror.said(found)
     found = with_static_errors(found, examined, trims)
     notes = (
         *getattr(simulator, "notes", ()),
         *still_air_said(simulator, blown),
-        *other_finding(examined.diagnosis, unseen),
     )
     return Compared(replace(found, notes=(*notes, *found.notes)), as_file, stays.findings)
 

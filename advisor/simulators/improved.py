@@ -58,6 +58,11 @@ class Flown:
         """Gap of the simulator as given."""
         return self.gap.before
 
+    @property
+    def on_paper(self) -> tuple[str, ...]:
+        """Corrections that the simulator cannot take."""
+        return self.gap.on_paper
+
 
 def in_simulator(
     whole: Examined,
@@ -88,7 +93,7 @@ def in_simulator(
     given = SearchPoint(derivatives, whole.findings.last.fitted.point.own)
     before = predicted(problem, given, floor, kept, unknown_offset(whole.diagnosis, None))
     was = whole_gap(before.mean_square, floor)
-    original = _with(problem, [as_flown[f.number].beyond for f in flights], 1.0)
+    original = with_series(problem, [as_flown[f.number].beyond for f in flights], 1.0)
     unchanged = InSimulator(
         flying.simulator.description, tuple(flights[i].number for i in kept), was, was, 0.0, (),
         qualified(original, before, None, kept),
@@ -111,8 +116,8 @@ def in_simulator(
     after = predicted(now, part.point, floor, kept, offset)
     here = whole_gap(after.mean_square, floor)
     if here > was:
-        # Nothing is added that raises the gap, as the rest may without the part on paper.
-        return replace(as_it_was, gap_after=was if part.on_paper else here)
+        # Nothing is added that raises the gap.
+        return replace(as_it_was, gap_after=here)
     found = replace(
         unchanged,
         after=here,
@@ -143,7 +148,7 @@ def _flown_with(
     replays = measured.replays(without_servo(found, surrogate), problem.held, increments)
     grids = dict(zip(kept, beyond(measured, replays, found, problem.held), strict=True))
     differs = [grids.get(i, one.beyond) - one.beyond for i, one in enumerate(given)]
-    return _with(problem, differs, -1.0)
+    return with_series(problem, differs, -1.0)
 
 
 def _carried(point: SearchPoint, problem: EffectProblem, surrogate: Surrogate, flying: Flying) -> CarriedPart:
@@ -168,7 +173,7 @@ def _carried(point: SearchPoint, problem: EffectProblem, surrogate: Surrogate, f
     return CarriedPart(replace(point, values=tuple(values)), tuple(dict.fromkeys(on_paper)))
 
 
-def _with(problem: EffectProblem, grids: Sequence[FloatArray], sign: float) -> EffectProblem:
+def with_series(problem: EffectProblem, grids: Sequence[FloatArray], sign: float) -> EffectProblem:
     """Return the problem with series on the grid, times ``sign``, added to the measurements."""
     flights = []
     for flight, grid in zip(problem.flights.flights, grids, strict=True):

@@ -1,9 +1,9 @@
 """An effect that only the simulator has: a rate limit, play, a filter that the aircraft does not show.
 
 A fit to the flight cannot take such an effect out of a simulator, because its size would be negative. The
-aircraft and the simulator then exchange roles. The simulator's own replays are diagnosed without any model,
-and the effect found there joins the surrogate. Where the aircraft then flies like that surrogate without it,
-the simulator has too much.
+aircraft and the simulator then exchange roles. A quick look at the simulator's own replays finds their
+likeliest effect, which joins the surrogate. Where the aircraft then flies like that surrogate without the
+effect, the replays are diagnosed in full.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,27 +18,33 @@ from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
 from advisor.gap.diagnose import Examined, examine
+from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.records.prepare import prepare
 from advisor.gap.result import VISIBLE, Cause, Diagnosis, Value
-from advisor.gap.search.baseline import base_entries
+from advisor.gap.search.baseline import base_entries, fit_baseline
+from advisor.gap.search.screen import Screen
 from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES
+from advisor.gap.verdict.causes import parameters_of
 from advisor.gap.verdict.statements import what
 from advisor.gap.verdict.text import answers_of
 from advisor.simulators.around import skewed
 from advisor.simulators.contradicted import answered_by, with_share
-from advisor.simulators.flying import AsGiven, Flying, without_difference
+from advisor.simulators.flying import AsGiven, Flying
+from advisor.simulators.improved import with_series
 from advisor.simulators.inputs import on_grid
 from advisor.simulators.protocol import Replay
 from advisor.simulators.rate_filter import cause_of, lateness, unfiltered
 from advisor.simulators.surrogate import trimmed_at
+from advisor.simulators.unseen import floor_of, predicted, unknown_offset
 from advisor.words.certainty import as_sure
 from advisor.words.problems import UnusableInputError
 
 _BLOCKS = frozenset({"input", "alpha_sensor", "pitch_rate_sensor", "accelerometer", "timing"})
 """Blocks whose effects lie around the physics: in the actuator and in the instruments."""
 _CLEARLY = 0.5
-"""Largest gap without the simulator's effect, relative to that with every effect found for the aircraft, or
-to that of the simulator as it is. Two fits of one flight that differ by less are no evidence of a role."""
+"""Largest gap without the simulator's effect, relative to that of the simulator as it is. Two fits of one
+flight that differ by less are no evidence of a role."""
 _MOTION = ("alpha", "q", "theta", "a_z")
 
 
@@ -61,7 +67,9 @@ class Mirrored:
         simulated = diagnosis.in_simulator
         if simulated is not None:
             names = tuple(cause.effect for cause in self.causes)
-            simulated = replace(simulated, after=simulated.before, percent=0.0, on_paper=names)
+            simulated = replace(
+                simulated, after=simulated.before, percent=0.0, on_paper=simulated.on_paper or names
+            )
         mine = Alternative("effect", first.effect, first.block)
         known = diagnosis.evidence
         evidence = with_share(known, mine, first.probability) if known else ()
@@ -78,6 +86,7 @@ def mirrored(
     flying: Flying,
     replays: Sequence[Replay],
     aircraft: Aircraft,
+    as_flown: Mapping[int, AsGiven],
 ) -> Mirrored | None:
     """Return the effects that only the simulator has; None where there is none.
 
@@ -91,13 +100,29 @@ def mirrored(
         The simulator, and its replays without added effects.
     aircraft
         The aircraft file.
+    as_flown
+        Manoeuvre number to the simulator's difference to its surrogate, which the diagnosis went without.
     """
-    if not _may_be(whole.diagnosis):
+    if whole.diagnosis.verdict not in ("effect", "parameters", "unknown"):
         return None
     unknown = replace(aircraft, model={}, effects={}, simulator=None)
     unknown = replace(unknown, elevator=replace(aircraft.elevator, lag_s=None, delay_s=None))
+    gap = whole.diagnosis.gap
+    # What is unknown explains nothing, whatever of it the likeliest course of the air removes. Fitted numbers
+    # of the aircraft imitate a dead band of the simulator, whose own size no flight has fitted.
+    is_effect = whole.diagnosis.verdict == "effect"
+    most = gap.after + VISIBLE if is_effect else _CLEARLY * gap.before
+
+    def without(model: Mapping[str, float], effects: Mapping[str, Mapping[str, float]]) -> float:
+        as_file = replace(unknown, model=dict(model), reference_airspeed_m_s=flying.flights.reference_m_s)
+        return _gap_without(whole, flying, as_flown, _beyond(flying, replays, as_file, effects), as_file)
+
     try:
-        own = examine(_as_flights(maneuvers, flying, replays), unknown).diagnosis
+        as_flights = _as_flights(maneuvers, flying, replays)
+        looks = _quick_look(as_flights, unknown)
+        if looks is None or without(*looks) > _CLEARLY * gap.before:
+            return None
+        own = examine(as_flights, unknown).diagnosis
     except UnusableInputError:
         return None
     late = None
@@ -108,30 +133,53 @@ def mirrored(
     if not causes and late is None:
         return None
     effects = {c.effect: own.effects[c.effect] for c in causes if c.effect in own.effects}
-    model = {name: own.model[name].value for name in DERIVATIVES}
-    reference = flying.flights.reference_m_s
-    as_file = replace(unknown, model=model, reference_airspeed_m_s=reference)
-    grids = _beyond(flying, replays, as_file, effects)
-    beside = [without_difference(m, grids) for m in maneuvers]
-    found = examine(beside, as_file).diagnosis
-    gap = whole.diagnosis.gap
-    # What is unknown explains nothing, whatever of it the likeliest course of the air removes. Fitted numbers
-    # of the aircraft imitate a dead band of the simulator, whose own size no flight has fitted.
-    rival = gap.after if whole.diagnosis.verdict == "effect" else gap.before
-    if found.gap.before > _CLEARLY * rival:
+    after = without({name: own.model[name].value for name in DERIVATIVES}, effects)
+    if after > most:
         return None
-    filtered = () if late is None else (cause_of(late, found),)
-    return Mirrored((*filtered, *map(_negative, causes)), gap.before, found.gap.before)
+    filtered = () if late is None else (cause_of(late, after, own),)
+    return Mirrored((*filtered, *map(_negative, causes)), gap.before, after)
 
 
-def _may_be(diagnosis: Diagnosis) -> bool:
-    """Return whether an effect of the simulator may be behind the diagnosis."""
-    first = next((c for c in diagnosis.causes if c.present), None)
-    of_around = first is not None and first.block in _BLOCKS
-    leaves_a_gap = diagnosis.gap.after >= VISIBLE
-    if diagnosis.verdict == "effect":
-        return of_around and leaves_a_gap
-    return diagnosis.verdict in ("unknown", "parameters")
+def _quick_look(
+    as_flights: Sequence[Maneuver], unknown: Aircraft
+) -> tuple[Mapping[str, float], Mapping[str, Mapping[str, float]]] | None:
+    """Return the derivatives of replays, and their likeliest effect around the physics with its sizes; None
+    where no effect lowers the cost."""
+    problem, plain = fit_baseline(prepare(as_flights, unknown), unknown)
+    around = [variant for variant in variants_for(problem.flights) if variant.block in _BLOCKS]
+    found = Screen(problem, plain).likeliest(around)
+    if found is None:
+        return None
+    values = found.point.values[-1]
+    sizes = parameters_of(found.variant, values, np.zeros(len(values)))
+    model = dict(zip(DERIVATIVES, map(float, found.point.derivatives), strict=True))
+    return model, {found.name: {name: size.value for name, size in sizes.items()}}
+
+
+def _gap_without(
+    whole: Examined,
+    flying: Flying,
+    as_flown: Mapping[int, AsGiven],
+    grids: Mapping[int, AsGiven],
+    as_file: Aircraft,
+) -> float:
+    """Return the gap of the flight to the simulator without its effects, no number fitted to the flight.
+
+    Parameters
+    ----------
+    as_flown, grids
+        Manoeuvre number to the simulator's difference to its surrogate, and to that with its effects.
+    as_file
+        The aircraft file of the surrogate without the effects.
+    """
+    problem, floor = whole.findings.problem, floor_of(whole)
+    flights = problem.flights.flights
+    differs = [grids[f.number].beyond - as_flown[f.number].beyond for f in flights]
+    now = replace(with_series(problem, differs, -1.0), base=base_entries(as_file), changes=())
+    derivatives = np.array([as_file.model[name] for name in DERIVATIVES])
+    given = SearchPoint(derivatives, whole.findings.last.fitted.point.own)
+    offset = unknown_offset(whole.diagnosis, None)
+    return whole_gap(predicted(now, given, floor, range(len(flights)), offset).mean_square, floor)
 
 
 def _as_flights(maneuvers: Sequence[Maneuver], flying: Flying, replays: Sequence[Replay]) -> list[Maneuver]:

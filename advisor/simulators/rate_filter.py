@@ -38,23 +38,24 @@ def lateness(replays: Sequence[Replay]) -> Value:
     return Value(lag_s, float(np.sqrt(np.mean(rest**2) / information)))
 
 
-def cause_of(late: Value, without: Diagnosis) -> Cause:
+def cause_of(late: Value, after: float, own: Diagnosis) -> Cause:
     """Return the lateness as a cause, with the size that the aircraft has less of.
 
     Parameters
     ----------
     late
         Lag of the simulator's pitch rate, s.
-    without
-        Diagnosis of the flight against the simulator without that lag. The probability of the cause is that
-        of nothing else but numbers.
+    after
+        Gap of the flight to the simulator without that lag.
+    own
+        Diagnosis of the replays without that lag. The probability of the cause is that they lack nothing.
     """
-    told = without.probabilities
+    told = own.probabilities
     likeliness = 0.0 if told is None else told.none + told.parameters
     assert EFFECT.imitated_by is not None
     looks, way = EFFECT.imitated_by
     size = {"skew_s": Value(-late.value, late.std)}
-    return Cause(EFFECT.name, EFFECT.block, likeliness, size, (looks,), way, without.gap.before, present=True)
+    return Cause(EFFECT.name, EFFECT.block, likeliness, size, (looks,), way, after, present=True)
 
 
 def _departure(replay: Replay) -> tuple[FloatArray, FloatArray]:

@@ -1,7 +1,7 @@
-"""The gap on manoeuvres that neither the search nor the fit has used.
+"""The gap on manoeuvres that the fit has not used.
 
-The whole search is repeated on the other manoeuvres. A cross-validated fit alone flatters: a search that has
-seen all manoeuvres passes its luck for shrink (Varma and Simon 2006).
+All manoeuvres name the effects. The fits of derivatives and sizes leave out the manoeuvres kept apart.
+``advisor gap --prove`` leaves them out of the whole search.
 """
 
 from collections.abc import Collection, Sequence
@@ -10,18 +10,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.nuisances import PROPELLER
-from advisor.gap.diagnose import Examined, examine
+from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import shrink_interval, whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.refit import own_refitted
-from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.kit.variant import Variant
-from advisor.gap.result import Diagnosis, Shrink, spelled
+from advisor.gap.result import Diagnosis, Shrink
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.verdict.causes import parameters_of
 from advisor.gap.verdict.holdout_numbers import over_maneuvers, with_offset
@@ -30,7 +27,7 @@ from advisor.gap.verdict.text import answers_of, sentence_of
 from advisor.words.certainty import as_sure
 
 LEAST_TRAINED = 2
-"""Least number of manoeuvres for a search, which holds one of them out to confirm an effect."""
+"""Least number of manoeuvres for a fit: a single one names no effect."""
 _EVERY = 3
 """One manoeuvre of so many is kept apart, as in the folds of the search."""
 _OFFSET = "alpha_bias"
@@ -43,10 +40,7 @@ class UnseenManeuvers:
     kept: tuple[int, ...]
     """Indices of the manoeuvres kept apart, in the problem of the whole diagnosis."""
     found: Examined
-    """Diagnosis of the others. Where their answer is another one: that of all manoeuvres, with derivatives
-    and sizes fitted without those kept apart."""
-    alone: Diagnosis
-    """Diagnosis of the others."""
+    """Diagnosis of all manoeuvres, with derivatives and sizes fitted without those kept apart."""
 
 
 def kept_apart(n: int, holdout: int | None) -> tuple[int, ...]:
@@ -68,31 +62,14 @@ def changes_something(diagnosis: Diagnosis) -> bool:
     return diagnosis.verdict == "parameters" or named or of_numbers
 
 
-def unseen_of(
-    whole: Examined,
-    maneuvers: Sequence[Maneuver],
-    aircraft: Aircraft,
-    holdout: int | None,
-    prior: FieldPrior = FIELD,
-) -> UnseenManeuvers | None:
-    """Diagnose all manoeuvres but those kept apart; None where they are too few.
+def unseen_of(whole: Examined, holdout: int | None) -> UnseenManeuvers | None:
+    """Return a diagnosis with sizes fitted without the manoeuvres kept apart; None where too few remain.
 
-    Parameters
-    ----------
-    whole
-        Diagnosis of all ``maneuvers`` against ``aircraft``.
-    holdout, prior
-        Arguments of ``advisor.gap.diagnose.diagnose``.
+    ``holdout`` is that of ``advisor.gap.diagnose.diagnose``.
     """
     numbers = [flight.number for flight in whole.findings.problem.flights.flights]
     kept = kept_apart(len(numbers), holdout)
-    if not kept:
-        return None
-    apart = {numbers[i] for i in kept}
-    others = [m for m in maneuvers if m.number in numbers and m.number not in apart]
-    found = examine(others, aircraft, prior=prior)
-    same = _finding(found.diagnosis) == _finding(whole.diagnosis)
-    return UnseenManeuvers(kept, found if same else sized_without(whole, apart), found.diagnosis)
+    return UnseenManeuvers(kept, sized_without(whole, [numbers[i] for i in kept])) if kept else None
 
 
 def sized_without(found: Examined, apart: Collection[int]) -> Examined:
@@ -134,32 +111,7 @@ def as_changed(unseen: UnseenManeuvers, whole: Examined) -> SearchPoint:
         for k, effect in enumerate(point.effects)
         if (with_propeller if effect == PROPELLER else not effect.is_nuisance and effect.effect in written)
     ]
-    point = replace(point.keeping(kept), own=everything.own, sides=everything.sides, edges=None)
-    effects = [
-        _since(effect, values, unseen.kept, whole)
-        for effect, values in zip(point.effects, point.values, strict=True)
-    ]
-    return replace(point, effects=tuple(effects))
-
-
-def _since(effect: Variant, values: FloatArray, kept: Sequence[int], whole: Examined) -> Variant:
-    """Return a change in flight with its time by the whole diagnosis, if the other manoeuvres do not
-    contradict that time.
-
-    The others cannot tell on which side of the change a manoeuvre between them lies.
-    """
-    if not effect.comes_at_any_time:
-        return effect
-    problem, point = whole.findings.problem, whole.findings.last.fitted.point
-    others = [i for i in range(len(problem.flights)) if i not in kept]
-
-    def driven(one: Variant) -> FloatArray:
-        p = problem.driving(point.keeping([]))
-        one.apply(p, values, problem.flights)
-        return p[others]
-
-    alike = (one for one in point.effects if one.effect == effect.effect and one.names == effect.names)
-    return next((one for one in alike if np.array_equal(driven(one), driven(effect))), effect)
+    return replace(point.keeping(kept), own=everything.own, sides=everything.sides, edges=None)
 
 
 def with_nuisances(point: SearchPoint, unseen: UnseenManeuvers) -> SearchPoint:
@@ -217,6 +169,8 @@ class ByTheFile:
     """Residuals with the corrections of the other manoeuvres."""
     gap_before: float
     gap_after: float
+    on_paper: tuple[str, ...] = ()
+    """Corrections that the file cannot take: none."""
 
 
 def by_the_file(whole: Examined, unseen: UnseenManeuvers) -> ByTheFile:
@@ -246,24 +200,6 @@ def shrink_on(whole: Examined, unseen: UnseenManeuvers, before: HeldOut, after: 
         holdout=tuple(flights[i].number for i in kept),
         before=was, after=now, percent=percent, ci95_percent=(min(low, percent), max(high, percent)),
     )  # fmt: skip
-
-
-def other_finding(whole: Diagnosis, unseen: UnseenManeuvers | None) -> tuple[str, ...]:
-    """Return a sentence where the search without the manoeuvres kept apart has found something else."""
-    if unseen is None or _finding(whole) == _finding(unseen.alone):
-        return ()
-    kept = {*whole.maneuvers} - {*unseen.alone.maneuvers}
-    return (
-        f"Without manoeuvre {', '.join(map(str, sorted(kept)))} the search finds {_finding(unseen.alone)} "
-        "instead. The shrink is that of the answer, with sizes fitted without them: fly more manoeuvres.",
-    )
-
-
-def _finding(diagnosis: Diagnosis) -> str:
-    """Return what a diagnosis found first, in words."""
-    words = {"none": "nothing to correct", "parameters": "wrong numbers", "unknown": "nothing with a name"}
-    named = next((c.effect for c in diagnosis.causes if c.present), "")
-    return words.get(diagnosis.verdict, spelled(named))
 
 
 def resaid(diagnosis: Diagnosis, shrink: Shrink | None, aircraft: Aircraft) -> Diagnosis:

@@ -61,10 +61,6 @@ def test_an_instrument_that_reads_too_much_is_named_and_carried_around_the_simul
     assert found.in_simulator.after < 0.1 * found.in_simulator.before + 0.05
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="three of five manoeuvres tell an early pitch rate and a vane's place, which the simulator takes",
-)
 @pytest.mark.study
 def test_a_delay_that_only_the_simulator_has_is_said_to_be_too_long_and_stays_on_paper():
     found = of(PLAIN, replace(PLAIN, delay_s=0.06)).diagnosis
@@ -108,7 +104,7 @@ def test_the_linear_simulator_gives_the_diagnosis_that_the_aircraft_file_gives()
     maneuvers = flown(replace(PLAIN, lag_s=0.08))
     file = Aircraft(model=model)
     whole, beside = examine(maneuvers, file), compare(maneuvers, LinearSimulator(model), file).diagnosis
-    plain = with_unseen_shrink(whole, unseen_of(whole, maneuvers, file, None), file).diagnosis
+    plain = with_unseen_shrink(whole, unseen_of(whole, None), file).diagnosis
     assert beside.causes == plain.causes
     assert beside.gap == plain.gap
     assert beside.shrink.holdout == plain.shrink.holdout

@@ -1,4 +1,4 @@
-"""Shrink on manoeuvres that neither the search nor the fit has used, and models refitted within reason."""
+"""Shrink on manoeuvres that the fit has not used, and models refitted within reason."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -23,21 +23,18 @@ MODEL = dict(zip(DERIVATIVES, (-2.7, 0.02, -0.15, -23.0, -3.4, -29.0), strict=Tr
     ("flown", "holdout", "kept"),
     [(9, None, (1, 4, 7)), (4, None, (1,)), (3, None, (1,)), (9, 2, (7, 8)), (2, None, ()), (3, 2, ())],
 )
-def test_a_third_is_kept_apart_unless_too_few_remain_for_a_search(flown, holdout, kept):
+def test_a_third_is_kept_apart_unless_too_few_remain_for_a_fit(flown, holdout, kept):
     assert kept_apart(flown, holdout) == kept
 
 
-def test_the_search_never_meets_the_manoeuvres_kept_apart(monkeypatch):
-    seen = []
-    told = SimpleNamespace(diagnosis=SimpleNamespace(verdict="none", causes=[]))
-    monkeypatch.setattr(unseen, "examine", lambda maneuvers, *_, **__: seen.extend(maneuvers) or told)
+def test_the_fits_never_meet_the_manoeuvres_kept_apart(monkeypatch):
+    left_out = []
+    monkeypatch.setattr(unseen, "sized_without", lambda _, apart: left_out.extend(apart))
     numbered = [SimpleNamespace(number=n) for n in range(1, 7)]
     problem = SimpleNamespace(flights=SimpleNamespace(flights=numbered))
-    whole = SimpleNamespace(findings=SimpleNamespace(problem=problem), diagnosis=told.diagnosis)
-    unusable = SimpleNamespace(number=9)
-    found = unseen.unseen_of(whole, [*numbered, unusable], Aircraft(), None)
+    found = unseen.unseen_of(SimpleNamespace(findings=SimpleNamespace(problem=problem)), None)
     assert found.kept == (1, 4)
-    assert [m.number for m in seen] == [1, 3, 4, 6]
+    assert left_out == [2, 5]
 
 
 def said(block: str, verdict: str = "effect", **shrink: float | None):
@@ -51,23 +48,6 @@ def test_moving_air_alone_changes_nothing_in_a_simulator():
     assert changes_something(said("input"))
     assert changes_something(said("air", beyond_air_percent=12.0))
     assert changes_something(said("air", verdict="parameters"))
-
-
-def test_another_finding_without_the_manoeuvres_kept_apart_is_said():
-    def told(effect, verdict="effect", maneuvers=(1, 3, 4)):
-        cause = SimpleNamespace(present=True, effect=effect)
-        return SimpleNamespace(verdict=verdict, causes=[cause], maneuvers=maneuvers)
-
-    whole = told("transport_delay", maneuvers=(1, 2, 3, 4))
-
-    def without(found):
-        return unseen.other_finding(whole, SimpleNamespace(alone=found))
-
-    assert without(told("transport_delay")) == unseen.other_finding(whole, None) == ()
-    assert without(told("actuator_backlash"))[0].startswith(
-        "Without manoeuvre 2 the search finds actuator backlash instead"
-    )
-    assert "finds wrong numbers instead" in without(told("transport_delay", "parameters"))[0]
 
 
 def test_a_sentence_with_another_shrink_keeps_its_doubt():

@@ -122,7 +122,12 @@ def prove(
     if kept is None:
         some, last = parted(flown.maneuvers)
         fitted, kept = replace(flown, maneuvers=list(some)), replace(flown, maneuvers=list(last))
-    first = _compared(fitted, aircraft, target_system, progress, prior)
+
+    def part(k: int) -> Progress:
+        """Return the progress of one of the three comparisons."""
+        return lambda what, share: progress(what, (k + share) / 3.0)
+
+    first = _compared(fitted, aircraft, target_system, part(0), prior)
     found, alone = first.diagnosis, ""
     if fresh is None and not found.improves and whole is not None and whole.findings is not None:
         alone = found.sentence
@@ -135,9 +140,9 @@ def prove(
     def asked_again(improved: Diagnosis) -> tuple[Diagnosis, tuple[str, ...]]:
         with tempfile.TemporaryDirectory() as folder:
             better, left = _improved(replace(first, diagnosis=improved), aircraft, Path(folder))
-            return _compared(kept, better, target_system, progress, prior).diagnosis, left
+            return _compared(kept, better, target_system, part(2), prior).diagnosis, left
 
-    before = _compared(kept, aircraft, target_system, progress, prior).diagnosis
+    before = _compared(kept, aircraft, target_system, part(1), prior).diagnosis
     after, left = every, _ = asked_again(found)
     taken: tuple[str, ...] = ()
     if every.gap.before >= before.gap.before:

@@ -67,9 +67,9 @@ def infer(
     begun = FlightProblem.of(problem, baseline)
     table, laws = _table(problem, begun, aircraft)
     flight = PitchFlight(begun, baseline, table, laws)
-    progress(f"trying {len(table) + len(laws)} ways to explain the residual", 0.2)
+    progress(f"trying {len(table) + len(laws)} ways to explain the residual", 0.12)
     stage = first_stage(flight)
-    progress("looking at the air", 0.6)
+    progress("looking at the air", 0.5)
     sought = moving_air(problem, stage.best.fitted)
     floor = floor_of(problem, stage.best.fitted, stage.best.held_out)
     known = _known_air(problem, aircraft)
@@ -78,7 +78,7 @@ def infer(
         with_offset = _with_offset(rows, kinematics, problem, prior, flight.tried[0])
         return _with_air(with_offset, stage.plain, sought, known, floor)
 
-    progress("looking for a second cause", 0.7)
+    progress("looking for a second cause", 0.52)
     found = decided(flight, stage, prior, beyond)
     return Inference(found.posteriors, found.chosen, found.heat, problem, sought, floor)
 

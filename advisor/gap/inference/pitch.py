@@ -1,7 +1,7 @@
 """Pitch, as the engine asks for it: fits with an effect, their evidence, and what they leave."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,9 +15,9 @@ from advisor.gap.inference.explanation import Explanation
 from advisor.gap.inference.posterior import UNKNOWN, stated_as
 from advisor.gap.inference.residual import Residual, residual_of
 from advisor.gap.inference.sizes import natural_share
-from advisor.gap.inference.stage import AT_THE_FILE, LAWS, Pairs, Stage, likeliest
+from advisor.gap.inference.stage import AT_THE_FILE, LAWS, REFINED, Pairs, Stage, likeliest
 from advisor.gap.kit.variant import Variant
-from advisor.gap.search.screen import Screen
+from advisor.gap.search.screen import Screen, Screened
 
 _SYMMETRIC = float(np.log(2.0))
 """Log prior gain, nats, of a number that cannot be negative: its Gaussian prior has half the range."""
@@ -49,6 +49,8 @@ class PitchFlight:
     table: Sequence[Variant]
     laws: Sequence[Variant]
     """Effects of the catalogue, and laws outside of it, with a prior on each number."""
+    looked: dict[int, list[Screened]] = field(default_factory=dict)
+    """Quick looks at a second effect, by the identity of the fit with the first."""
 
     @property
     def tried(self) -> tuple[int, int]:
@@ -67,14 +69,16 @@ class PitchFlight:
         loose = problem.within(ERROR_IF_WRONG)
         plain = fit(loose, begin.point, begin.noise, iterations=4)
         screen = Screen(loose, plain)
-        chosen = [*likeliest(screen.quick_fits(table), most), *likeliest(screen.quick_fits(self.laws), LAWS)]
+        quick = screen.quick_fits(table) if base is None else self._looks(base)
+        chosen = [*likeliest(quick, most), *likeliest(screen.quick_fits(self.laws), LAWS)]
         if problem.is_stated:
             seen = {one.name for one in chosen}
             near = problem.within(ERROR_IF_RIGHT)
             tight = Screen(near, fit(near, plain.point, plain.noise, iterations=4))
             others = [variant for variant in table if variant.effect not in seen]
             chosen += likeliest(tight.quick_fits(others), AT_THE_FILE)
-        fits = [(one.variant, fit(loose, one.point, one.noise, iterations=8)) for one in chosen]
+        far = min([plain.cost, *(q.cost for q in chosen)]) + 2.0 * REFINED * temperature(problem, plain)
+        fits = [(q.variant, fit(loose, q.point, q.noise, iterations=8, beaten_by=far)) for q in chosen]
         fits = [(variant, made) for variant, made in fits if np.isfinite(made.cost)]
         heat = temperature(problem, min((plain, *(made for _, made in fits)), key=lambda made: made.cost))
         return heat, [
@@ -101,9 +105,14 @@ class PitchFlight:
 
     def pairs(self, stage: Stage[PitchModel], leads: Sequence[PitchModel]) -> Pairs:
         """Yield the price of each lead with each other effect, and both names."""
-        for lead in leads:
-            for quick in Screen(lead.problem, lead.fitted).quick_fits(self._beside(lead)):
-                yield quick.cost, lead.name, quick.name
+        yield from ((quick.cost, lead.name, quick.name) for lead in leads for quick in self._looks(lead))
+
+    def _looks(self, lead: PitchModel) -> list[Screened]:
+        """Return a quick look at each effect next to that of a model, which is taken once."""
+        if id(lead.fitted) not in self.looked:
+            screen = Screen(lead.problem, lead.fitted)
+            self.looked[id(lead.fitted)] = screen.quick_fits(self._beside(lead))
+        return self.looked[id(lead.fitted)]
 
     def _beside(self, base: PitchModel | None) -> list[Variant]:
         """Return the effects that may act next to that of a model."""

@@ -15,8 +15,8 @@ AT_THE_FILE = 3
 derivatives. A wrong derivative hides such an effect from the fit in which all derivatives are free."""
 _FORMS = 2
 """Numerical: number of descriptions of one effect that are fitted in full."""
-_REFINED = 120.0
-"""Numerical: nats behind the best explanation beyond which none is fitted at the file's derivatives."""
+REFINED = 120.0
+"""Numerical: nats behind the best explanation beyond which none is fitted further."""
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ def _at_the_files(flight: Flight[E], one: E, plain: E, heat: float, best: float)
 
     The quadratic expansion about fitted derivatives does not reach far.
     """
-    if not flight.is_stated or max(one.evidence.wrong, one.evidence.right) < best - _REFINED:
+    if not flight.is_stated or max(one.evidence.wrong, one.evidence.right) < best - REFINED:
         return one
     right = flight.at_the_files(one, plain, heat)
     if right is None:

@@ -13,8 +13,8 @@ from advisor.gap.kit.variant import Variant
 
 _STEPS = 4
 """Numerical: most Gauss-Newton steps of a quick fit."""
-_AT_ONCE = 16
-"""Numerical: points that are simulated together: enough to fill the packs, few enough for the cache."""
+_AT_ONCE = 64
+"""Numerical: points that are simulated together: enough to fill the packs, few enough for the memory."""
 _HARDLY = 6.0
 """Numerical: decrease of the cost (twice the log likelihood) below which a description is not followed
 further."""
