@@ -1,7 +1,7 @@
 """From logs to the gap of the lateral axis, over the accepted manoeuvres of aileron and rudder."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -31,9 +31,7 @@ class SideCompared:
     aircraft: Aircraft
     """The aircraft file."""
     maneuvers: Sequence[Maneuver] = ()
-    """Accepted manoeuvres, without the difference of the user's simulator to its surrogate."""
-    against: Aircraft = field(default_factory=Aircraft)
-    """The aircraft file, or that of the surrogate."""
+    """Accepted manoeuvres as flown."""
 
 
 def compare_side_logs(
@@ -54,21 +52,30 @@ def compare_side_logs(
     UnusableInputError
         No log can be used, no manoeuvre of aileron or rudder is accepted, or the simulator does not fly them.
     """
-    given = aircraft
     state = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral").state
     accepted = accepted_of(state)
+    compared, against = beside_simulator(accepted, aircraft, progress)
+    progress("comparing", 1.0)
+    return SideCompared(answered(compare_side(compared, against, prior)), state, aircraft, accepted)
+
+
+def beside_simulator(
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, progress: Progress = lambda *_: None
+) -> tuple[Sequence[Maneuver], Aircraft]:
+    """Return manoeuvres without the difference of the file's simulator to its surrogate, and the surrogate.
+
+    The model of the aircraft file is its own surrogate, as is the model that a simulator's log shows.
+    """
     kind, _, rest = (aircraft.simulator or "linear").partition(":")
     if kind == "log":
-        aircraft = _identified(Path(rest), aircraft)
-    elif kind != "linear":
-        simulator = simulator_of(str(aircraft.simulator), aircraft, lambda _: [])
-        try:
-            accepted, aircraft = side_without_difference(accepted, simulator, aircraft, progress)
-        finally:
-            simulator.close()
-    progress("comparing", 1.0)
-    gap = answered(compare_side(accepted, aircraft, prior))
-    return SideCompared(gap, state, given, accepted, aircraft)
+        return maneuvers, _identified(Path(rest), aircraft)
+    if kind == "linear":
+        return maneuvers, aircraft
+    simulator = simulator_of(str(aircraft.simulator), aircraft, lambda _: [])
+    try:
+        return side_without_difference(maneuvers, simulator, aircraft, progress)
+    finally:
+        simulator.close()
 
 
 def accepted_of(state: CampaignState) -> list[Maneuver]:

@@ -95,4 +95,4 @@ def _prove(
             named, compared.aircraft, asked.target_system, no_marks=asked.no_marks, axis="lateral"
         )
         fresh = accepted_of(read.state)
-    return prove_side(compared, fresh, prior)
+    return prove_side(compared, fresh, prior, tell)

@@ -182,7 +182,8 @@ def by_the_file(whole: Examined, unseen: UnseenManeuvers) -> ByTheFile:
     if changes_something(unseen.found.diagnosis):
         offset = unknown_offset(diagnosis, unseen.found.diagnosis)
         after = predicted(problem, as_changed(unseen, whole), floor, unseen.kept, offset)
-    return ByTheFile(before, after, *(whole_gap(held.mean_square, floor) for held in (before, after)))
+    was, now = (whole_gap(held.mean_square, floor) for held in (before, after))
+    return ByTheFile(before, after, was, now)
 
 
 def shrink_on(whole: Examined, unseen: UnseenManeuvers, before: HeldOut, after: HeldOut) -> Shrink | None:

@@ -145,7 +145,7 @@ def prove(
     before = _compared(kept, aircraft, target_system, part(1), prior).diagnosis
     after, left = every, _ = asked_again(found)
     taken: tuple[str, ...] = ()
-    if every.gap.before >= before.gap.before:
+    if every.gap.before > before.gap.before:
         parts = [*found.effects, NUMBERS]
         tried = [(*asked_again(without(found, part, first.aircraft.model)), (part,)) for part in parts]
         nothing = (before, (), tuple(parts))

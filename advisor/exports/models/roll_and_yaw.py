@@ -1,17 +1,26 @@
 """Roll and yaw for other programs, from logs and from a diagnosis of them, and their proof."""
 
+import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.analysis.side_gap import SideCompared, accepted_of, answered, with_derivatives
+from advisor.analysis.side_gap import (
+    SideCompared,
+    accepted_of,
+    answered,
+    beside_simulator,
+    with_derivatives,
+)
 from advisor.analysis.whole_flights import read_whole
 from advisor.exports.models.flown import FlownModel, SideModel, flown_model, side_flown, side_of
+from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
 from advisor.exports.models.improvement import ExportedServo, servo_of
 from advisor.exports.models.proof import Proof, parted, refuse_unimproved
 from advisor.exports.models.proved_finding import NUMBERS
@@ -35,9 +44,11 @@ from advisor.oem.lateral_prediction import predicted_lateral
 from advisor.side_gap.comparison import compare_side, sentence_of_side
 from advisor.side_gap.diagnosis import SideDiagnosis
 from advisor.simulators.contradicted import handed_over
+from advisor.simulators.flying import Progress
 from advisor.simulators.taken_back import taken_back_said, unused
 from advisor.words.certainty import as_sure
 from advisor.words.problems import UnusableInputError
+from advisor.words.quantiles import NORMAL_95
 
 _Found = TypeVar("_Found")
 
@@ -113,9 +124,12 @@ def _servos_found(diagnosis: SideDiagnosis | None, aircraft: Aircraft) -> Mappin
 
 
 def prove_side(
-    compared: SideCompared, fresh: Sequence[Maneuver] | None = None, prior: FieldPrior = FIELD
+    compared: SideCompared,
+    fresh: Sequence[Maneuver] | None = None,
+    prior: FieldPrior = FIELD,
+    progress: Progress = lambda *_: None,
 ) -> Proof:
-    """Improve roll and yaw by some manoeuvres, and fly others.
+    """Improve roll and yaw of the simulator by some manoeuvres, and fly others.
 
     Parameters
     ----------
@@ -129,47 +143,118 @@ def prove_side(
     UnusableInputError
         There are too few manoeuvres, nothing was improved, or the fit does not fly every control.
     """
-    aircraft = compared.against
+    given = compared.aircraft
     fitted, kept = (compared.maneuvers, fresh) if fresh is not None else parted(compared.maneuvers)
-    first = _flown(compare_side(fitted, aircraft, prior))
+    fitted, against = beside_simulator(fitted, given, progress)
+    first = _flown(compare_side(fitted, against, prior))
     refuse_unimproved(first.verdict in IMPROVING, first.sentence, len(fitted))
-    behind = behind_found(first.diagnosis, aircraft)
-    plain, found = (_flown(estimate_lateral(fitted, one)) for one in (aircraft, behind))
-    given = np.array([aircraft.model.get(n, x) for n, x in zip(SIDE_PARAMETERS, plain.theta, strict=True)])
+    behind = behind_found(first.diagnosis, against)
+    plain, found = (_flown(estimate_lateral(fitted, one)) for one in (against, behind))
     present = tuple(
         one.name for one in (first.diagnosis.causes if first.diagnosis else ()) if one.cause.present
     )
 
-    def flown(model: LateralEstimate, against: Aircraft, theta: FloatArray) -> list[float]:
-        return [_gap(m, model, against, theta) for m in kept]
+    def flown(model: LateralEstimate, simulator: Aircraft) -> _OnKept:
+        seen, there = beside_simulator(kept, simulator, progress)
+        theta = np.array([there.model.get(n, x) for n, x in zip(SIDE_PARAMETERS, model.theta, strict=True)])
+        return _OnKept(seen, there, [_gap(m, model, there, theta) for m in seen])
 
-    before, every = flown(plain, aircraft, given), flown(found, behind, found.theta)
-    after: list[float] = every
-    stays: tuple[LateralEstimate, Aircraft] | None = (found, behind)
-    taken: tuple[str, ...] = ()
-    if np.mean(every) >= np.mean(before):
-        by_numbers = flown(plain, aircraft, plain.theta)
-        none = before, None, (*present, NUMBERS)
-        tried = [none, (by_numbers, (plain, aircraft), present)] if present else [none]
-        after, stays, taken = min(tried, key=lambda one: float(np.mean(one[0])))
-    improved = aircraft
-    if stays is not None:
-        speed = stays[0].airspeed_m_s
-        read = None if speed is None else air_flown(fitted).read_speed(speed)
-        improved = with_derivatives(stays[1], stays[0], read)
-    second = _flown(compare_side(kept, improved, prior))
+    with tempfile.TemporaryDirectory() as folder:
+
+        def improved(model: LateralEstimate, servos: Aircraft) -> tuple[Aircraft, tuple[str, ...]]:
+            return _improved(model, against, servos, compared, fitted, Path(tempfile.mkdtemp(dir=folder)))
+
+        better, left = improved(found, behind)
+        before, every = flown(plain, given), flown(found, better)
+        after = every
+        taken: tuple[str, ...] = ()
+        if every.gap > before.gap:
+            after, taken = before, (*present, NUMBERS)
+            by_numbers = flown(plain, improved(plain, against)[0]) if present else before
+            if by_numbers.gap < before.gap:
+                after, taken = by_numbers, present
+    second = _flown(compare_side(after.maneuvers, after.against, prior))
+    pairs = zip(kept, before.gaps, after.gaps, strict=True)
     return Proof(
         maneuvers=tuple(m.number for m in kept),
-        before=float(np.mean(before)),
-        after=float(np.mean(after)),
+        before=before.gap,
+        after=after.gap,
         floor={name: fit.noise for name, fit in found.fits[0].items()},
-        by_maneuver=tuple((m.number, b, a) for m, b, a in zip(kept, before, after, strict=True)),
+        by_maneuver=tuple((m.number, was, now) for m, was, now in pairs),
         first=" + ".join(present) or str(first.verdict),
         second=second.verdict,
         sentence=second.sentence,
+        not_carried=left,
         taken_back=taken,
-        gap_with_them=float(np.mean(every)) if taken else None,
+        gap_with_them=every.gap if taken else None,
     )
+
+
+@dataclass(frozen=True)
+class _OnKept:
+    """The manoeuvres kept apart next to a simulator."""
+
+    maneuvers: Sequence[Maneuver]
+    """Manoeuvres without the difference of the simulator to its surrogate."""
+    against: Aircraft
+    gaps: Sequence[float]
+    """Gap of each manoeuvre."""
+
+    @property
+    def gap(self) -> float:
+        """Mean over the manoeuvres."""
+        return float(np.mean(self.gaps))
+
+
+def _improved(
+    found: LateralEstimate,
+    against: Aircraft,
+    servos: Aircraft,
+    compared: SideCompared,
+    fitted: Sequence[Maneuver],
+    folder: Path,
+) -> tuple[Aircraft, tuple[str, ...]]:
+    """Return the aircraft file with the improved simulator, and the parts that the simulator cannot take.
+
+    Parameters
+    ----------
+    found
+        Estimate behind ``servos``.
+    against, servos
+        The aircraft file of the surrogate, and that with the servos that were found.
+    """
+    given = compared.aircraft
+    kind, _, _ = (given.simulator or "linear").partition(":")
+    if kind in ("linear", "log"):
+        speed = found.airspeed_m_s
+        read = None if speed is None else air_flown(fitted).read_speed(speed)
+        return replace(with_derivatives(servos, found, read), simulator="linear"), ()
+    ahead: dict[str, Any] = {
+        name: _ahead(*(getattr(one, name) for one in (given, against, servos))) for name in LATERAL.inputs
+    }
+    better = replace(given, **ahead)
+    told = zip(SIDE_PARAMETERS, found.theta, found.std, strict=True)
+    wrong = tuple(
+        n for n, x, std in told if n in against.model and abs(x - against.model[n]) > NORMAL_95 * std
+    )
+    model = flown_model(compared.state, given) if kind == "jsbsim" else None
+    if model is None or model.side is None:
+        return better, wrong
+    file = folder / f"{Path(str(given.simulator).partition(':')[2]).stem}.xml"
+    side = replace(side_of(found, model.side.trim, model.side.air, servos), servos={})
+    made = JSBSIM.made(replace(model, pitch=None, side=side), file)
+    file.write_text(made.text, encoding="utf-8")
+    return replace(better, simulator=f"jsbsim:{file}"), made.left_out
+
+
+def _ahead(given: SideControl, against: SideControl, found: SideControl) -> SideControl:
+    """Return the servo ahead of a simulator that has ``against`` behind ``given``, for ``found`` in all."""
+
+    def less(name: str) -> float:
+        first, own, whole = (getattr(one, name) or 0.0 for one in (given, against, found))
+        return max(first + whole - own, 0.0)
+
+    return given if found == against else replace(given, lag_s=less("lag_s"), delay_s=less("delay_s"))
 
 
 def stays_of_side(compared: SideCompared, proof: Proof | None) -> SideCompared:

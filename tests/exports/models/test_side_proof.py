@@ -6,12 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.analysis.side_gap import SideCompared
 from advisor.exports.models import roll_and_yaw
 from advisor.exports.models.proof import Proof
 from advisor.exports.models.proved_finding import NUMBERS
-from advisor.exports.models.roll_and_yaw import prove_side, stays_of_side
+from advisor.exports.models.roll_and_yaw import _ahead, prove_side, stays_of_side
 from advisor.side_gap.comparison import SideGap
 from tests.oem.lateral_builders import JET
 from tests.side_gap.test_comparison import AIRCRAFT, TRUE, maneuvers
@@ -28,7 +29,7 @@ PROOF = Proof(
 
 
 def stays(*taken: str) -> SideGap:
-    compared = SideCompared(FOUND, None, AIRCRAFT, (), AIRCRAFT)  # type: ignore[arg-type]
+    compared = SideCompared(FOUND, None, AIRCRAFT)  # type: ignore[arg-type]
     return stays_of_side(compared, replace(PROOF, taken_back=taken)).gap
 
 
@@ -58,23 +59,33 @@ def test_numbers_with_which_the_gap_grows_on_the_proof_are_taken_back(monkeypatc
     asked = []
     monkeypatch.setattr(roll_and_yaw, "estimate_lateral", lambda *_: model)
     monkeypatch.setattr(roll_and_yaw, "compare_side", lambda _, one, __: asked.append(one) or plain)
-    monkeypatch.setattr(roll_and_yaw, "with_derivatives", lambda *_: "improved")
+    improved = replace(AIRCRAFT, model=dict.fromkeys(SIDE_PARAMETERS, 1.0), simulator="linear")
+    monkeypatch.setattr(roll_and_yaw, "with_derivatives", lambda *_: improved)
     monkeypatch.setattr(
         roll_and_yaw, "_gap", lambda _, __, ___, theta: after if np.all(theta == 1.0) else 2.0
     )
     flown = [SimpleNamespace(number=n) for n in range(1, 7)]
     aircraft = replace(AIRCRAFT, model=dict.fromkeys(SIDE_PARAMETERS, 7.0))
-    made = prove_side(SideCompared(None, None, aircraft, flown, aircraft))  # type: ignore[arg-type]
+    made = prove_side(SideCompared(None, None, aircraft, flown))  # type: ignore[arg-type]
     assert made.taken_back == taken
     assert made.after == min(after, 2.0)
-    assert (asked[-1] == "improved") == (not taken)
+    assert (asked[-1] == improved) == (not taken)
+
+
+def test_the_servo_ahead_of_a_simulator_leaves_out_the_lag_of_the_simulator_itself():
+    """The file states 20 ms, the simulator lags by 30 ms, and the flight by 120 ms in all."""
+    found = SideControl(lag_s=0.12, delay_s=0.04)
+    ahead = _ahead(SideControl(lag_s=0.02), SideControl(lag_s=0.05), found)
+    assert (ahead.lag_s, ahead.delay_s) == (pytest.approx(0.09), 0.04)
+    # No servo ahead of a simulator makes the simulator quicker.
+    assert _ahead(SideControl(lag_s=0.0), SideControl(lag_s=0.15), SideControl(lag_s=0.05)).lag_s == 0.0
 
 
 @pytest.fixture(scope="module")
 def proof():
     """Wrong numbers, found by three manoeuvres and proved on three of the same kinds."""
     flown = maneuvers()
-    compared = SideCompared(None, None, WEAK, flown, WEAK)  # type: ignore[arg-type]
+    compared = SideCompared(None, None, WEAK, flown)  # type: ignore[arg-type]
     return prove_side(compared, [replace(m, number=m.number + 3) for m in flown])
 
 
