@@ -53,7 +53,7 @@ def next_input(
     known = course.knowledge(usable_ones(history))
     choice = None if mend else _choose(conditions, known, plan)
     chosen = choice[0] if choice else None
-    spoken = chosen.spoken(conditions.travel_rad) if chosen else mend or "the same again"
+    spoken = chosen.spoken(conditions.travel_rad) if chosen else mend or "the elevator's last input again"
     remaining, held_by = forecast(history, course), _held_by(history, plan, known)
     return NextInput(f"next: {spoken}", remaining, held_by, chosen, conditions.travel_rad)
 
@@ -110,7 +110,8 @@ def _same_but_better(flown: CandidateManeuver) -> str:
     """Return the advice while no manoeuvre was usable: repeat the input, with the remedy of the newest one's
     first reason."""
     remedy = _remedy(flown)
-    return f"the same again, {remedy}" if remedy else "the same again"
+    kind = flown.maneuver.span.kind if flown.maneuver is not None and is_named(flown) else "last input"
+    return f"the elevator's {kind} again{f', {remedy}' if remedy else ''}"
 
 
 def _mend(flown: CandidateManeuver) -> str:

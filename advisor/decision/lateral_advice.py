@@ -85,13 +85,10 @@ def next_lateral(
     wanted = StepInput(
         "doublet", _unit_s(control, accepted), min(amplitude, ALPHA_MARGIN * travel), True, control
     ).rounded(travel)
-    said = [wanted.spoken(travel)]
-    if before is None:
-        said.append("to begin gently")
-    elif flown[-1].remedy:
-        said.append(flown[-1].remedy)
-    said.append(_after(control, wanted.unit_s))
-    return NextInput(f"next: {', '.join(said)}", None, holding_back, wanted, travel)
+    gently = ", to begin gently" if before is None else ""
+    remedy = f"; {flown[-1].remedy}" if before is not None and flown[-1].remedy else ""
+    said = f"{wanted.spoken(travel)}{gently}, {_after(control, wanted.unit_s)}{remedy}"
+    return NextInput(f"next: {said}", None, holding_back, wanted, travel)
 
 
 def _larger(before: FlownInput, percent: float, aircraft: Aircraft) -> float:

@@ -73,7 +73,7 @@ def test_while_no_manoeuvre_was_usable_nothing_is_foretold(rule) -> None:
 def test_while_none_was_usable_the_remedy_of_the_newest_is_repeated() -> None:
     rough = Reason("turbulence", "rough air, 15 % of the pitch rate; fly it in calmer air", 15.0, 8.0)
     advice = next_input([replace(flown(), reasons=(rough,))], AIRCRAFT, stopped=False)
-    assert advice.advice == "next: the same again, fly it in calmer air"
+    assert advice.advice == "next: the elevator's 3-2-1-1 again, fly it in calmer air"
 
 
 def test_a_movement_without_a_name_cannot_be_repeated_so_the_first_input_is_advised() -> None:

@@ -40,7 +40,7 @@ def test_the_bank_s_limit_bounds_the_next_input():
 def test_a_bank_beyond_its_limit_asks_for_less_and_repeats_the_remedy():
     found = advised(flown=[aileron(10.0, 60.0, "less aileron, or shorter")])
     assert found.input.amplitude_rad == pytest.approx(radians(6.25))
-    assert "25 % stick, less aileron, or shorter, then stick still" in found.advice
+    assert "25 % stick, then stick still; less aileron, or shorter" in found.advice
 
 
 def test_the_travel_of_the_file_is_100_percent_of_the_stick():
