@@ -40,7 +40,7 @@ def lacks_of(aircraft: Aircraft, facts: LogFacts | None = None) -> tuple[Lack, .
     aircraft
         Aircraft file as read.
     facts
-        Facts of a log of this aircraft. None: no log is at hand.
+        Facts of a log of this aircraft. None: the file is checked without a log.
     """
     found = [
         Lack(key.path, key.cost, key.mend)

@@ -20,7 +20,8 @@ from advisor.words.problems import ConfigurationError
 
 SUFFIX = ".maneuvers.yaml"
 _TEXT_KEYS = {"excluded": "because", "notes": "text", "remarks": "text"}
-"""Section of sentences, named as the field of ``ByHand``, to the key that holds each sentence."""
+"""Section of the file with sentences, to the key that holds each sentence. Sections have the names of the
+fields of ``ByHand``."""
 _SECTIONS = ("maneuvers", *_TEXT_KEYS)
 _MEND = "Fix the file, move it away, or give --no-marks."
 _HEADING = (

@@ -75,7 +75,7 @@ def read_map(path: Path) -> AircraftMap:
     Raises
     ------
     ConfigurationError
-        The file cannot be read, or is no such list.
+        The file cannot be read, or is no list of patterns and aircraft files.
     """
     content = read_yaml(path)
     if not isinstance(content, dict) or not all(

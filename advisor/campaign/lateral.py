@@ -77,7 +77,8 @@ class LateralCampaign(AxisCampaign):
         Parameters
         ----------
         unknown
-            Reason for which aileron or rudder cannot be followed. None: their outputs are known.
+            Reason for which aileron or rudder cannot be followed. None: the outputs of aileron and rudder
+            are known.
         """
         if self._state is None or unknown != self._unknown:
             self._unknown = unknown

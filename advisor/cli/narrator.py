@@ -177,7 +177,7 @@ def narrate_here(
 
 
 def _printing_backlog() -> Callable[[Beat], None]:
-    """Return a listener to beats that prints a backlog on standard error."""
+    """Return a function that hears the state of the link and prints a backlog on standard error."""
     teller = BehindTeller()
 
     def listen(beat: Beat) -> None:

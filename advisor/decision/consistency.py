@@ -37,7 +37,8 @@ class Outlier:
     limit: float
     """Distance that chance exceeds once in a thousand cases."""
     alpha: AlphaApart | None = None
-    """Angle of attack that separates the manoeuvre from the others. None: no angle of attack does."""
+    """Angle of attack that separates the manoeuvre from the others. None: no angle of attack separates the
+    manoeuvre."""
 
 
 def outliers(posteriors: Sequence[Posterior]) -> Mapping[int, Outlier]:

@@ -127,7 +127,7 @@ def response_from_trim(
     Parameters
     ----------
     sensitivities
-        (n, N_PARAMETERS), filled in. None: not wanted.
+        (n, N_PARAMETERS) array that receives the sensitivities. None: not wanted.
     """
     local = local_at_trim(theta, assembly)
     if local is None:

@@ -16,7 +16,7 @@ class Heard:
     """Stop criterion of every rule after one manoeuvre, by the estimates of that moment."""
 
     percent: Mapping[str, float | None]
-    """Rule to its stop criterion, per cent. None: no value yet."""
+    """Rule to its stop criterion, per cent. None: the rule has no value yet."""
     stops: frozenset[str]
     """Rules whose stop criterion held."""
     usable: frozenset[int] = frozenset()

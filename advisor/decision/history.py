@@ -36,7 +36,8 @@ class CandidateManeuver:
 
     @property
     def usable(self) -> Estimate | None:
-        """Estimate of a manoeuvre that a rule may judge. None: excluded, rejected or not estimated."""
+        """Estimate of a manoeuvre that a rule may judge. None: the manoeuvre is excluded, rejected or not
+        estimated."""
         if isinstance(self.estimate, Estimate) and not self.reasons and self.excluded_because is None:
             return self.estimate
         return None

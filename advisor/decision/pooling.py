@@ -56,7 +56,8 @@ class Posterior:
     common: FloatArray = field(default_factory=lambda: np.zeros((len(PARAMETERS), len(PARAMETERS))))
     """Covariance by the errors of given instruments, which all estimates share, shape (p, p)."""
     alpha_rad: tuple[float, float] = (nan, nan)
-    """Lowest and highest measured angle of attack of the manoeuvre, rad. NaN where not measured."""
+    """Lowest and highest measured angle of attack of the manoeuvre, rad. NaN where the angle of attack was
+    not measured."""
     names: tuple[str, ...] = PARAMETERS
     """Names of the parameters. Names that end in ``_0`` are intercepts, which are each manoeuvre's own."""
 

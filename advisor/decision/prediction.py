@@ -99,7 +99,7 @@ def predict(
     derivatives
         (6,), order of ``DERIVATIVES``.
     airspeed_m_s
-        Air speed of the derivatives. None: each manoeuvre's own.
+        Air speed of the derivatives. None: each manoeuvre's own air speed.
     """
     slopes: dict[str, list[FloatArray]] = {}
     for one in flown[-MOST_INPUTS:]:

@@ -79,7 +79,7 @@ class RuleProgress:
     parameter_percent: Mapping[str, float | None] = field(default_factory=dict)
     """Under ``information``: named parameter to its 95 % half-width, % of its own tolerance."""
     now_percent: float | None = None
-    """Criterion now, by the newest estimates. None: no value yet."""
+    """Criterion now, by the newest estimates. None: the rule has no value yet."""
     hindsight_percent: tuple[float | None, ...] = ()
     """Criterion after each manoeuvre by the newest estimates. Empty where no past is computed anew."""
     hindsight_stopped_at: int | None = None

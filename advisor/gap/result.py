@@ -127,8 +127,8 @@ class Shrink:
     manoeuvres. The filter of the innovations knows the moving air. Without an effect: share of the gap that
     fitted derivatives remove. None in still air."""
     by_numbers_percent: float | None = None
-    """Share of the gap, in per cent, that fitted derivatives remove without any effect. None where the file's
-    are right."""
+    """Share of the gap, in per cent, that fitted derivatives remove without any effect. None where the
+    file's derivatives are right."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,7 +75,7 @@ class Fit:
     """A problem at one setting of all parameters."""
 
     problem: Any
-    """Records, with servos and clocks at their values."""
+    """Records, with the present values of servos and clocks."""
     assembly: Any
     optimum: Optimum
     extra: Extra

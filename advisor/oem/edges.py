@@ -26,7 +26,8 @@ from advisor.oem.weighing import Weighing
 LARGE = 0.25
 """Least share of the command's range that a step covers within one interval."""
 ISOLATED = 0.3
-"""Largest change in the neighbouring intervals, as a share of the step."""
+"""Largest change in the intervals before and after a step, as a share of the step, for a step that stands
+alone."""
 WIDTH_S = 1e-4
 """Duration of a sharpened step, s."""
 ROUNDS = 2

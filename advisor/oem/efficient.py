@@ -42,7 +42,7 @@ class Step:
     """A step from the lowest cost to the smallest error."""
 
     change: FloatArray
-    """(8,) change of the parameters."""
+    """(8,) change of the eight parameters by the efficient fit."""
     covariance: FloatArray
     """(8, 8) covariance of the parameters after the step, widened for the uncertainty of the noise model."""
     systematic: FloatArray

@@ -63,7 +63,7 @@ class InstrumentEstimate:
     std: float
     """Standard deviation of ``value``, corrected for coloured residuals."""
     stated: float | None = None
-    """Value in the aircraft file. None: the file states none."""
+    """Value in the aircraft file. None: the file states no value."""
     unstated_value: float = nan
     """Value that the data tell without the statement; NaN without a statement."""
     unstated_std: float = nan
@@ -87,7 +87,7 @@ class Estimate:
     covariance_cr: FloatArray
     """Shape (8, 8). Cramér-Rao bound, which holds for white residuals."""
     covariance: FloatArray
-    """Shape (8, 8). Corrected for coloured residuals."""
+    """Shape (8, 8). The covariance is corrected for coloured residuals."""
     cost: float
     """Lowest J = det R of Eq. (7) over angle of attack and pitch rate; without an angle of attack over pitch
     rate and a_z."""

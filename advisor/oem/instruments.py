@@ -84,7 +84,7 @@ class Instrument:
         return replace(problem, **changed)
 
     def moved(self, problem: OutputErrorProblem, change: float) -> OutputErrorProblem:
-        """Return the problem with the value changed, within its range."""
+        """Return the problem with another value of the instrument, kept within its range."""
         return self.write(problem, float(np.clip(self.read(problem) + change, self.lowest, self.highest)))
 
     def open(self, problem: OutputErrorProblem) -> "Instrument":

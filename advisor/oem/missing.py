@@ -22,7 +22,8 @@ WORTH_NAMING = 1.05
 
 
 def price(solution: Solution) -> FloatArray | None:
-    """Return each parameter's error without a_z over that with it, shape (8,), as in ``PARAMETERS``.
+    """Return the ratio of each parameter's error without a_z to its error with a_z, shape (8,), as in
+    ``PARAMETERS``.
 
     Returns
     -------

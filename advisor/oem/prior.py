@@ -94,7 +94,7 @@ class Priors:
 
     @property
     def precision(self) -> FloatArray:
-        """(15,) inverse variances, as white noise weighs the priors."""
+        """(15,) inverse variances of the priors, in the weights of white noise."""
         return np.asarray((self.std * self.share) ** -2)
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 
 _INDIFFERENT = 1e-6
-"""Relative singular value below which a direction of the common coefficients is left out. Integrals over a
-motion that is excited at all have 1e-3 or more."""
+"""Relative singular value below which a direction of the common coefficients is left out. Where the motion
+is excited, the relative singular value is at least 1e-3."""
 
 
 class Equations(NamedTuple):

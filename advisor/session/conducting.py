@@ -51,7 +51,7 @@ class Conducting(Protocol):
         Raises
         ------
         UnusableInputError
-            The input can never serve.
+            The data of the log or link can never serve.
         """
 
     def stop(self) -> None:
@@ -141,7 +141,7 @@ class Changes:
     report: dict[str, Any]
     state: dict[str, Any]
     maneuvers: tuple[JudgedManeuver | Again, ...] | None = None
-    """The manoeuvres. None where none was judged."""
+    """The manoeuvres. None where no manoeuvre was judged."""
 
     def applied_to(self, last: SessionReport) -> SessionReport:
         """Return the newer report."""

@@ -40,7 +40,8 @@ class ConductorTask:
     """Function that reads the decisions by hand since the start. None: the source cannot be read again from
     its beginning."""
     door: Door | None = None
-    """Address of the link's process, which tells the link's health without delay. None: no such process."""
+    """Address of the link's process, which tells the link's health without delay. None: no process keeps a
+    link."""
 
 
 class RemoteConductor(AskedElsewhere):

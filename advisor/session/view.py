@@ -54,7 +54,7 @@ class View:
 
     @property
     def judged(self) -> JudgedManeuver | None:
-        """Manoeuvre that is shown in detail. None before the first."""
+        """Manoeuvre that is shown in detail. None before the first manoeuvre."""
         maneuvers = self.state.maneuvers
         newest = maneuvers[-1] if maneuvers else None
         return next((j for j in maneuvers if j.maneuver.number == self.selected), newest)

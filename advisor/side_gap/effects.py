@@ -75,7 +75,8 @@ class SideEffect:
 
     @property
     def sides(self) -> tuple[Place, tuple[float, ...]] | None:
-        """Place with a choice of values in each manoeuvre, and these values; None without one."""
+        """Place of the parameter whose value differs by manoeuvre, and the values to choose from; None
+        without such a parameter."""
         return None if self.variant.sides is None else ((self.of, self.variant.sides[0]), (-1.0, 0.0, 1.0))
 
 

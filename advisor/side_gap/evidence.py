@@ -89,7 +89,8 @@ class Gain(NamedTuple):
 
 
 def gain_of(before: FloatArray, after: FloatArray, counts: FloatArray, share: float) -> Gain:
-    """Return the gain between sums of squares (m, outputs), with ``counts`` (outputs,) samples."""
+    """Return the gain in log likelihood from the first to the second sum of squares, (m, outputs) each, of
+    ``counts`` (outputs,) samples."""
     told = counts > 0.0
     sums = before[:, told].sum(axis=0), after[:, told].sum(axis=0)
     total = 0.5 * share**2 * float(np.sum(counts[told] * np.log(sums[0] / sums[1])))

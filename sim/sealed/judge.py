@@ -21,7 +21,7 @@ NO_ANSWER = "no answer"
 """Verdict of a case without a usable answer. An empty answer is right nowhere, so that silence gains
 nothing."""
 QUIET = ("none", None)
-"""Verdicts that claim nothing. ``null`` is said where no simulator is given."""
+"""Verdicts that claim nothing. The verdict is ``null`` where no simulator is given."""
 LEFT_ALONE = ("none", "parameters")
 """Verdicts that call the structure of a simulator right."""
 Z95 = 1.959964

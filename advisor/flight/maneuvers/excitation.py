@@ -42,7 +42,8 @@ class Excitation:
     rate: float
     """Half of the range of the rate, rad/s."""
     relative_error: float
-    """Relative standard error of the elevator's effect: 1/√(3·F). Infinite without an effect."""
+    """Relative standard error of the elevator's effect: 1/√(3·F). The relative error is infinite without an
+    effect."""
     external_error: float
     """Relative standard error for the external input alone, as in a closed loop."""
     effect: float
@@ -56,8 +57,8 @@ def excitation(maneuver: Maneuver, loop: Loop = PITCH) -> Excitation | None:
     Parameters
     ----------
     maneuver
-        Record with the channels of the control and the rate. Without the angle the integral of the rate
-        serves.
+        Record with the channels of the control and the rate. Without the angle, the integral of the rate
+        takes its place.
     loop
         Control, and the rate that answers.
 

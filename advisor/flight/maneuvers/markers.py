@@ -101,7 +101,7 @@ def marked_span(mark: Mark, elevator: Channel | None) -> Span:
     mark
         Marked stretch, in seconds since boot.
     elevator
-        Elevator from one lead-in before the mark to its end, rad. None where not received.
+        Elevator from one lead-in before the mark to its end, rad. None where the channel was not received.
 
     Returns
     -------

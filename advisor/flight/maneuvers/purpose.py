@@ -28,9 +28,9 @@ LEAST_PITCH_RATE_DEG_S = 1.0
 """Least answer of the pitch rate to a test input, deg/s. Smaller pitch rates drown in light turbulence. The
 gentlest test input on record has 1.3 (a jet); a correction between inputs of another jet has 0.7."""
 LARGEST_ERROR = 0.3
-"""Largest relative standard error of the elevator's effect on the pitch rate; 0.3 is significant at 2 %. Test
-inputs on record have 0.01 to 0.12 in calm air and 0.16 in gusts of 0.5 m/s. Where only the external input
-counts they have up to 0.21, and an attitude hold in such gusts has 0.3 to 2."""
+"""Largest relative standard error of the elevator's effect on the pitch rate; 0.3 is significant at 2 %.
+Recorded test inputs have an error of 0.01 to 0.12 in calm air, and of 0.16 in gusts of 0.5 m/s. Where only
+the external input counts they have up to 0.21, and an attitude hold in such gusts has 0.3 to 2."""
 _MOSTLY = 0.5
 """Share of a movement's variation that feedback of the motion may explain. Beyond one half the movement is
 mostly an answer. Recoveries of an attitude by hand on record have 0.63 to 0.94. Test inputs that bring the
@@ -95,12 +95,12 @@ def not_an_input(
     maneuver
         Record of the movement. Channels ``q`` and ``airspeed`` are used where present.
     on_ground
-        Other evidence in words that the aircraft did not fly. None: no such evidence.
+        Other evidence in words that the aircraft did not fly. None: the record gives no such evidence.
     motion
-        Channels ``q`` and ``theta`` from a time before the movement, for `explained_by_feedback`. None: those
-        of the record.
+        Channels ``q`` and ``theta`` from a time before the movement, for `explained_by_feedback`. None: the
+        channels of the record.
     limits
-        Limits of bank and air speed. None: the usual ones.
+        Limits of bank and air speed. None: the usual limits.
     loop
         Control that moved, and the motion that answers. Slow flying elsewhere concerns the elevator alone.
     """

@@ -36,7 +36,7 @@ def at_steady_speed(span: Span, airspeed: Channel | None, change_percent: float)
     span
         Extent of the movement and its free response.
     airspeed
-        Air speed over the record, m/s. None where not received.
+        Air speed over the record, m/s. None where no air speed was received.
     change_percent
         Largest change of the air speed that the user allows, % of its value before the first step. The span
         ends at ``FOLLOWED_PERCENT`` at the latest.

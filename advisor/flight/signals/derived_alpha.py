@@ -94,7 +94,8 @@ class DerivedAlpha:
 def derived_alpha(
     climb_m_s: FloatArray, airspeed_m_s: FloatArray, theta: FloatArray, bank: FloatArray
 ) -> FloatArray:
-    """Return θ − γ with sin γ = climb rate / air speed, in rad; banked, the α that gives γ. NaN if too slow.
+    """Return θ − γ with sin γ = climb rate / air speed, in rad; banked, the α that gives γ. NaN where the
+    air speed is too low.
 
     Parameters
     ----------

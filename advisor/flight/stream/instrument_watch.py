@@ -34,7 +34,8 @@ class InstrumentWatch:
     def begin(self) -> None:
         """Begin another power-on, or another vehicle."""
         self.findings: tuple[InstrumentFinding, ...] = ()
-        """Contradictions by all stretches so far. None is used, because nothing is estimated from them."""
+        """Contradictions by all stretches so far. No finding is used, because nothing is estimated from
+        these records."""
         self.side_findings: tuple[InstrumentFinding, ...] = ()
         """Contradictions in roll and yaw, likewise."""
         self._evidence: Evidence = {}

@@ -4,8 +4,8 @@ An output counts as a share of its travel and rises with its demand. A control i
 with its weight. The weights undo the mixer, so that every other demand cancels.
 
 ArduPlane: ``servos.cpp`` (channel_function_mixer, flaperon_update, dspoiler_update) and ``SRV_Channel.h``.
-PX4 since 1.13: the rules in ``control_allocator/module.yaml``. Horizontal and mixed surfaces are positive
-upwards there, and vertical ones to the right.
+PX4 since 1.13: the rules in ``control_allocator/module.yaml``. PX4 counts horizontal and mixed surfaces
+positive upwards, and vertical ones positive to the right.
 """
 
 from collections.abc import Mapping

@@ -77,7 +77,8 @@ def beyond_servo(aircraft: Aircraft, variants: Sequence[Variant]) -> list[Varian
 def less_of_the_servo(
     aircraft: Aircraft, effects: Effects
 ) -> tuple[Aircraft, dict[str, Mapping[str, float]]]:
-    """Return the aircraft with a quicker servo than its file states, and the positive effects.
+    """Return the aircraft with a quicker servo than its file states, and the effects that then have positive
+    sizes.
 
     No simulator flies a negative lag or delay, so such a value is subtracted from the file's.
     """

@@ -71,7 +71,7 @@ class Flight(Protocol[E]):
         """Return the temperature, the model ``base`` alone, and with each likely effect or law in addition.
 
         ``most`` is the number of effects that are fitted in full. A model that cannot be fitted is left out.
-        None is the plain model.
+        The effect None stands for the plain model.
         """
 
     def at_the_files(self, one: E, plain: E, heat: float) -> E | None:

@@ -31,8 +31,8 @@ _AT_MOST = 2
 _MAIN = [DERIVATIVES.index(name) for name in ("Z_alpha", "M_alpha", "M_delta_e")]
 """Indices of the derivatives that a regression hardly ever misses by a factor of three."""
 _ALIKE = 1.0 / 3.0
-"""Numerical: least ratio of these derivatives between regression and aircraft file for which the file's are
-the only start."""
+"""Numerical: least ratio of Z_α, M_α and M_δe between regression and aircraft file, above which the file's
+derivatives are the only start."""
 _MUCH = 0.1
 """Numerical: largest residual of the fit from the file's derivatives, as a share of a channel's peak, for
 which no other start is tried."""

@@ -18,7 +18,7 @@ from advisor.gap.uncatalogued.weight_check import WeightReading
 from advisor.words.quantiles import NORMAL_95
 
 _REPORTED = 0.03
-"""Least relative difference that is reported, and may be that of an indicated air speed."""
+"""Least relative difference that is reported. A larger one may come from an indicated air speed."""
 _ITS_OWN = 0.5
 """Largest error of the weight that the accelerometer reads, as a share of the difference, for an indicated
 air speed."""
@@ -62,7 +62,8 @@ def airspeed_excess(fitted: EffectFit) -> float:
 
 
 def airspeed_scale_of(problem: EffectProblem, fitted: EffectFit) -> AirspeedScale | None:
-    """Return the difference that the fitted model shows; None where it is insignificant, or not measured."""
+    """Return the difference of the air speed that the fitted model shows; None where the difference is
+    insignificant or not measured."""
     point, scale = fitted.point, airspeed_excess(fitted)
     if not scale:
         return None

@@ -141,7 +141,8 @@ class Observe:
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """Says that the sender looks after the process, which is alone when the sender goes without ``Stop``.
+    """Says that the sender looks after the link's process. Where the sender goes without ``Stop``, nobody
+    does.
 
     The answer says whether the descriptor of a UDP socket follows.
     """

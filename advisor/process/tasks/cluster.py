@@ -191,7 +191,7 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
     if refused:
         raise ConfigurationError(
             f"--scheduler: workers need this advisor and this Python, but there is {'; '.join(refused)}. "
-            "Install the versions of this computer there."
+            "Install this computer's versions on the workers."
         )
     return f"Results may differ in the last digits: {'; '.join(differing.values())}." if differing else ""
 

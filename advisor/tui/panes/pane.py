@@ -23,7 +23,7 @@ class Pane(Part, Vertical):
     HELP = ""
     """Content and use of the pane, for the help key."""
     can_focus = True
-    """Whether the pane takes the focus. One whose content takes the keys (a table, a scroll) does not."""
+    """Whether the pane takes the focus. A pane whose table or text takes the keys does not take the focus."""
 
     _parts: tuple[object, ...] = ()
     """Parts of the last moment that was painted."""
