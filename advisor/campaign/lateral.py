@@ -10,11 +10,11 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.single_maneuver import failed, untold
 from advisor.campaign.state import JudgedManeuver, LateralState
 from advisor.decision.axes.lateral import RESPONSES, judge_lateral
+from advisor.decision.axes.lateral_input import FlownInput
+from advisor.decision.axes.lateral_stop import lateral_flight_test
 from advisor.decision.change import find_change
 from advisor.decision.heard import Heard
 from advisor.decision.history import CandidateManeuver
-from advisor.decision.lateral_advice import FlownInput
-from advisor.decision.lateral_test import lateral_flight_test
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.lateral import LATERAL

@@ -22,8 +22,6 @@ from advisor.model.short_period import ShortPeriod
 GENTLE = 0.1
 """Amplitude of the first input, as a share of the elevator's travel. Nothing is known of the aircraft yet.
 Larger inputs follow step by step (``conditions.BOLDER``)."""
-ENOUGH = NextInput("no further manoeuvre needed", Remaining(0, 0))
-"""Advice after the stop."""
 Choice = tuple[StepInput, FloatArray]
 """An input, and the (8, 8) covariance of the errors expected from flying the input."""
 PASSING = {"separate": 0.5}
@@ -33,7 +31,6 @@ PASSING = {"separate": 0.5}
 def next_input(
     history: Sequence[CandidateManeuver],
     aircraft: Aircraft,
-    stopped: bool,
     course: CriterionCourse | None = None,
 ) -> NextInput:
     """Return the input to fly after the last of ``history``. ``course`` is explained in ``flight_test``.
@@ -41,8 +38,6 @@ def next_input(
     The number of further manoeuvres is foretold after the first usable manoeuvre.
     """
     plan = aircraft.campaign
-    if stopped:
-        return ENOUGH
     course = course or CriterionCourse(plan)
     conditions = find_conditions(history, aircraft, course)
     mend = _mend(history[-1]) if history else ""

@@ -13,7 +13,7 @@ from advisor.decision.inverses import covariance_of, information_of
 from advisor.decision.paper_rules import SCATTER_FACTOR
 from advisor.decision.pooling import DERIVATIVES, Posterior
 from advisor.decision.verdict import Remaining
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray, IntArray
 from advisor.words.quantiles import NORMAL_95
 
 
@@ -70,7 +70,19 @@ def by_information(known: Knowledge, next_covariance: FloatArray, odds: Odds) ->
     usable, predicted = odds.usable.draw(rng), odds.predicted.draw(rng)
     # The test stops with a manoeuvre that was predicted. Each one that was not costs another.
     needed = np.maximum(good, 1) - 1 + rng.geometric(predicted)
-    flights = needed + rng.negative_binomial(needed, usable)
+    return _told(needed + rng.negative_binomial(needed, usable))
+
+
+def until_usable(needed: int, usable: Share) -> Remaining:
+    """Return the number of further manoeuvres until ``needed`` of them are usable, at least one."""
+    if needed > MOST:
+        return Remaining(None, None)
+    rng = np.random.default_rng(0)
+    return _told(needed + rng.negative_binomial(needed, usable.draw(rng)))
+
+
+def _told(flights: FloatArray | IntArray) -> Remaining:
+    """Return the forecast from draws of the number of further manoeuvres, shape (draws,)."""
     median, p90 = np.quantile(flights, [0.5, 0.9], method="higher")
     return Remaining(*(int(n) if n <= MOST else None for n in (median, p90)))
 
@@ -122,9 +134,7 @@ def by_scatter(
     # The windows before the first full one end in manoeuvres that cannot stop the test yet.
     accepted = np.argmax(agree, axis=1) + plan.window - len(kept)
     flights = np.cumsum(rng.geometric(accepted_share, (_DRAWS, MOST)), axis=1)
-    needed = np.where(agree.any(axis=1), flights[np.arange(_DRAWS), accepted - 1].astype(float), np.inf)
-    median, p90 = np.quantile(needed, [0.5, 0.9], method="higher")
-    return Remaining(*(int(n) if n <= MOST else None for n in (median, p90)))
+    return _told(np.where(agree.any(axis=1), flights[np.arange(_DRAWS), accepted - 1].astype(float), np.inf))
 
 
 def odds_of(history: Sequence[CandidateManeuver], course: CriterionCourse) -> Odds:

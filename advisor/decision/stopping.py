@@ -8,8 +8,9 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Rule
 from advisor.decision.advice import next_input
 from advisor.decision.change import find_change
+from advisor.decision.conclusion import Criterion, concluded
 from advisor.decision.course import CriterionCourse
-from advisor.decision.heard import Heard, as_heard, spoken_after, stays
+from advisor.decision.heard import Heard, as_heard
 from advisor.decision.history import CandidateManeuver, estimates_of, nothing_tested, usable_ones
 from advisor.decision.information import evidence, sentence
 from advisor.decision.judge import accepted_estimates, results_of
@@ -32,9 +33,6 @@ def flight_test(
 ) -> FlightTestVerdict:
     """Return whether testing may stop, and the next input, after the last manoeuvre of ``history``.
 
-    A stop holds where the chosen rule's criterion holds now. A stop that the crew has heard stays. The stop
-    ends where a change of the aircraft is found, or where one of its manoeuvres is no longer usable.
-
     Parameters
     ----------
     aircraft
@@ -49,37 +47,24 @@ def flight_test(
         rule: as_heard(progress(history, rule, plan, course), rule, heard) for rule in MANEUVER_RULES
     }
     chosen = by_rule[plan.rule]
-    criterion = chosen.now_percent
     usable = usable_ones(history)
     known = course.knowledge(usable) if usable else None
+
+    def said(stop: bool) -> str:
+        if known is None:
+            return nothing_tested(history)
+        if plan.rule == "information":
+            return sentence(known, stop)
+        return _scatter_sentence(history, plan, chosen.now_percent, stop)
+
+    crews = replace(aircraft or Aircraft(), campaign=plan)
+    criterion = Criterion(
+        plan.rule, by_rule, said, lambda: next_input(history, crews, course), len(history),
+        {i for i, flown in enumerate(history) if flown.usable},
+    )  # fmt: skip
     change = find_change(history)
-    changed = change.sentence if change is not None and change.confirmed else ""
-    now = {i for i, flown in enumerate(history) if flown.usable}
-    stop = chosen.holds or (not changed and stays(heard, plan.rule, now))
-    said = nothing_tested(history)
-    if stop and not chosen.holds:
-        said = (
-            f"TEST COMPLETE since manoeuvre {chosen.stopped_at}: no change of the aircraft was found since."
-        )
-    elif not stop and changed and chosen.stopped_at is not None:
-        said = f"CONTINUE: {changed}"
-    elif known is not None:
-        by_information = plan.rule == "information"
-        said = sentence(known, stop) if by_information else _scatter_sentence(history, plan, criterion, stop)
-    following = next_input(history, replace(aircraft or Aircraft(), campaign=plan), stop, course)
-    before = heard[len(history) - 2] if 1 < len(history) <= len(heard) + 1 else None
-    return FlightTestVerdict(
-        rule=plan.rule,
-        decision="stop" if stop else "continue",
-        sentence=said,
-        criterion_percent=criterion,
-        limit_percent=chosen.limit_percent,
-        stopped_at=chosen.stopped_at,
-        by_rule=by_rule,
-        next=following and replace(following, remaining=spoken_after(before, following.remaining)),
-        warnings=warnings(history, chosen, change, course),
-        evidence=evidence(known) if known else (),
-    )
+    told = evidence(known) if known else ()
+    return concluded(criterion, heard, change, warnings(history, chosen, change, course), told)
 
 
 def progress(

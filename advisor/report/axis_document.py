@@ -3,6 +3,7 @@
 from typing import Any
 
 from advisor.campaign.state import JudgedManeuver
+from advisor.decision.verdict import FlightTestVerdict, Remaining
 from advisor.oem.estimate import Estimate
 from advisor.words.plain import picked, plain
 from advisor.words.quantiles import NORMAL_95
@@ -21,6 +22,29 @@ def flown(judged: JudgedManeuver) -> dict[str, Any]:
         "verdict": "accepted" if verdict.accepted else "rejected",
         **picked(verdict, "sentence reasons cautions rules"),
         **picked(judged, "excluded_because notes"),
+    }
+
+
+def concluded(verdict: FlightTestVerdict) -> dict[str, Any]:
+    """Return stop or continue, every rule's criterion, and the next input."""
+    following = verdict.next
+    return {
+        **picked(verdict, "rule decision sentence criterion_percent limit_percent stopped_at warnings"),
+        "by_rule": {
+            # Only the rule ``information`` holds quantities to their tolerances.
+            name: picked(one, "stopped_at history_percent hindsight_stopped_at hindsight_percent")
+            | (
+                picked(one, "prediction_percent parameter_percent")
+                if one.prediction_percent or one.parameter_percent
+                else {}
+            )
+            for name, one in verdict.by_rule.items()
+        },
+        "next": following
+        and {
+            **picked(following, "advice holding_back"),
+            "remaining_maneuvers": plain(following.remaining or Remaining(None, None)),
+        },
     }
 
 

@@ -7,11 +7,10 @@ from typing import Any
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.crew_plan import CrewPlan
-from advisor.decision.verdict import FlightTestVerdict, Remaining
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.stream.flights import FlightHeard
 from advisor.oem.estimate import Estimate
-from advisor.report.axis_document import fitted, flown, parameters, with_intervals
+from advisor.report.axis_document import concluded, fitted, flown, parameters, with_intervals
 from advisor.report.lateral import lateral_document
 from advisor.report.qualities import coefficients_of, qualities_document, qualities_of
 from advisor.words.plain import picked, plain
@@ -92,7 +91,7 @@ def _campaign(
     found = coefficients_of(state, aircraft.reference)
     return {
         "maneuvers": [{**_maneuver(m), **of_log(m.maneuver.flight)} for m in state.maneuvers],
-        "flight_test": _flight_test(state.flight_test),
+        "flight_test": concluded(state.flight_test),
         "model": _model(state.model),
         "coefficients": {name: picked(one, "value std") for name, one in found.items()},
         "flying_qualities": qualities_document(qualities_of(state, aircraft.reference)),
@@ -159,28 +158,6 @@ def identifiability(estimate: Estimate | None) -> dict[str, Any] | None:
             {"parameters": [first, second], "correlation": plain(value)}
             for first, second, value in estimate.correlated
         ],
-    }
-
-
-def _flight_test(verdict: FlightTestVerdict) -> dict[str, Any]:
-    following = verdict.next
-    return {
-        **picked(verdict, "rule decision sentence criterion_percent limit_percent stopped_at warnings"),
-        "by_rule": {
-            # Only the rule ``information`` holds quantities to their tolerances.
-            name: picked(one, "stopped_at history_percent hindsight_stopped_at hindsight_percent")
-            | (
-                picked(one, "prediction_percent parameter_percent")
-                if one.prediction_percent or one.parameter_percent
-                else {}
-            )
-            for name, one in verdict.by_rule.items()
-        },
-        "next": following
-        and {
-            **picked(following, "advice holding_back"),
-            "remaining_maneuvers": plain(following.remaining or Remaining(None, None)),
-        },
     }
 
 

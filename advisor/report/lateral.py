@@ -10,7 +10,7 @@ from advisor.decision.axes.lateral_levels import GROUPS, SOURCE
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.estimate import Estimate
 from advisor.oem.lateral_estimate import LateralEstimate, LateralModes
-from advisor.report.axis_document import fitted, flown, with_intervals
+from advisor.report.axis_document import concluded, fitted, flown, with_intervals
 from advisor.report.facts.estimates import estimated_parameter, untold
 from advisor.report.qualities import levels_document, levels_of, mode_facts, tests_document, tests_of
 from advisor.report.result_rows import maneuver_line
@@ -21,20 +21,10 @@ _quality = partial(picked, names="value std ci95")
 
 def lateral_document(state: LateralState, aircraft: Aircraft) -> dict[str, Any]:
     """Return the block ``lateral`` of ``advisor analyze --json``, in SI units."""
-    verdict, model = state.flight_test, state.model
+    model = state.model
     return {
         "maneuvers": [_maneuver(judged) for judged in state.maneuvers],
-        "flight_test": {
-            **picked(verdict, "rule decision sentence criterion_percent limit_percent stopped_at warnings"),
-            "by_rule": {
-                name: picked(
-                    one,
-                    "stopped_at history_percent hindsight_stopped_at hindsight_percent parameter_percent",
-                )
-                for name, one in verdict.by_rule.items()
-            },
-            "next": verdict.next and picked(verdict.next, "advice holding_back"),
-        },
+        "flight_test": concluded(state.flight_test),
         "model": _model(model),
         "modes": _modes(model.modes) if model else None,
         "levels": levels_document(levels_of(state)),

@@ -120,7 +120,7 @@ def fly(pair: Pair) -> tuple[int, int]:
         return named["rev" if len(history) % 2 else "3211"]
 
     def advised(history: list[CandidateManeuver]) -> NoiselessManeuver:
-        option = next_input(history, crew, stopped=False).input
+        option = next_input(history, crew).input
         return standard(history) if option is None else fly_input(scene, option)
 
     return _needed(scene, first, standard, noise, rng), _needed(scene, first, advised, noise, rng)

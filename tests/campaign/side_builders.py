@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.state import JudgedManeuver, LateralState
-from advisor.decision.lateral_test import lateral_flight_test
+from advisor.decision.axes.lateral_stop import lateral_flight_test
 from advisor.decision.verdict import ManeuverVerdict, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel

@@ -56,7 +56,7 @@ def percent_stick(advice: str) -> float:
 
 
 def test_before_the_first_manoeuvre_the_textbook_input_is_advised_gently() -> None:
-    advice = next_input([], AIRCRAFT, stopped=False)
+    advice = next_input([], AIRCRAFT)
     assert advice.advice == "next: 3-2-1-1, 0.5 s steps, 10 % stick, to begin gently"
 
 
@@ -65,14 +65,14 @@ def test_while_no_manoeuvre_was_usable_nothing_is_foretold(rule) -> None:
     aircraft = replace(AIRCRAFT, campaign=CampaignPlan(rule=rule))
     rough = Reason("turbulence", "rough air, 15 % of the pitch rate; fly it in calmer air", 15.0, 8.0)
     for history in ([], [replace(flown(), reasons=(rough,))] * 3):
-        advice = next_input(history, aircraft, stopped=False)
+        advice = next_input(history, aircraft)
         assert advice.remaining is None
         assert advice.foretold == ""
 
 
 def test_while_none_was_usable_the_remedy_of_the_newest_is_repeated() -> None:
     rough = Reason("turbulence", "rough air, 15 % of the pitch rate; fly it in calmer air", 15.0, 8.0)
-    advice = next_input([replace(flown(), reasons=(rough,))], AIRCRAFT, stopped=False)
+    advice = next_input([replace(flown(), reasons=(rough,))], AIRCRAFT)
     assert advice.advice == "next: the elevator's 3-2-1-1 again, fly it in calmer air"
 
 
@@ -80,14 +80,14 @@ def test_a_movement_without_a_name_cannot_be_repeated_so_the_first_input_is_advi
     short = Reason("aborted", "free response too short; let the recording run on", 0.0, 0.7)
     moved = flown()
     unnamed = replace(moved.maneuver, span=replace(moved.maneuver.span, kind="other"))
-    advice = next_input([replace(moved, maneuver=unnamed, reasons=(short,))], AIRCRAFT, stopped=False)
+    advice = next_input([replace(moved, maneuver=unnamed, reasons=(short,))], AIRCRAFT)
     assert advice.advice == "next: 3-2-1-1, 0.5 s steps, 10 % stick, to begin gently"
 
 
 @pytest.mark.parametrize("code", sorted(NO_CURE_BY_INPUT))
 def test_while_a_channel_is_wrong_the_next_thing_is_its_mend(code: str) -> None:
     wrong = Reason(code, "pitch rate stands still at 0 deg/s; check the gyro", 0.0, 0.0)
-    advice = next_input([flown(), replace(flown(), reasons=(wrong,))], AIRCRAFT, stopped=False)
+    advice = next_input([flown(), replace(flown(), reasons=(wrong,))], AIRCRAFT)
     assert advice.advice == "next: check the gyro"
 
 
@@ -96,23 +96,17 @@ def test_while_a_channel_stands_still_the_next_thing_is_its_mend() -> None:
         "frozen", "airspeed", "air speed stands still at 20 m/s", "check the air speed sensor", 20.0
     )
     newest = replace(flown(), maneuver=replace(manoeuvre(), distrusts=(dead,)))
-    assert next_input([flown(), newest], AIRCRAFT, stopped=False).advice == "next: check the air speed sensor"
+    assert next_input([flown(), newest], AIRCRAFT).advice == "next: check the air speed sensor"
 
 
 def test_a_prior_model_times_the_first_input() -> None:
     prior = replace(AIRCRAFT, model=dict(zip(PARAMETERS, THETA.tolist(), strict=True)))
-    assert ", 0.6 s steps, " in next_input([], prior, stopped=False).advice
-
-
-def test_after_the_stop_nothing_more_is_needed() -> None:
-    advice = next_input([flown()] * 3, AIRCRAFT, stopped=True)
-    assert (advice.remaining.median, advice.remaining.p90) == (0, 0)
-    assert advice.advice == "no further manoeuvre needed"
+    assert ", 0.6 s steps, " in next_input([], prior).advice
 
 
 def test_the_advised_input_is_better_than_the_one_flown() -> None:
     strict = replace(AIRCRAFT, campaign=CampaignPlan(rule="information", tolerance={"M_q": 0.01}))
-    advice = next_input([flown()], strict, stopped=False)
+    advice = next_input([flown()], strict)
     spoken = advice.advice.removeprefix("next: ").removeprefix("reverse ")
     order, unit, _ = spoken.split(", ")
     option = StepInput(
@@ -128,28 +122,28 @@ def test_the_advised_input_is_better_than_the_one_flown() -> None:
 
 
 def test_the_direction_alternates() -> None:
-    assert "reverse" in next_input([flown()], AIRCRAFT, stopped=False).advice
+    assert "reverse" in next_input([flown()], AIRCRAFT).advice
     other = replace(STANDARD, nose_up_first=False)
-    assert "reverse" not in next_input([flown(option=other)], AIRCRAFT, stopped=False).advice
+    assert "reverse" not in next_input([flown(option=other)], AIRCRAFT).advice
 
 
 def test_an_angle_of_attack_limit_keeps_the_stick_small() -> None:
-    wide = next_input([flown()], replace(AIRCRAFT, limits=Limits(alpha_deg=8.0)), stopped=False)
-    narrow = next_input([flown()], replace(AIRCRAFT, limits=Limits(alpha_deg=2.0)), stopped=False)
+    wide = next_input([flown()], replace(AIRCRAFT, limits=Limits(alpha_deg=8.0)))
+    narrow = next_input([flown()], replace(AIRCRAFT, limits=Limits(alpha_deg=2.0)))
     assert percent_stick(narrow.advice) < percent_stick(wide.advice)
 
 
 def test_the_next_input_is_at_most_half_as_large_again_as_any_flown() -> None:
     gentle = replace(STANDARD, amplitude_rad=float(np.radians(0.5)))
     unlimited = replace(AIRCRAFT, limits=Limits(alpha_deg=30.0))
-    advice = next_input([flown(option=gentle)], unlimited, stopped=False)
+    advice = next_input([flown(option=gentle)], unlimited)
     assert percent_stick(advice.advice) <= round(100.0 * 0.75 / 25.0)
 
 
 def test_full_stick_is_the_travel_of_the_calibration() -> None:
     short = replace(AIRCRAFT, elevator=Elevator(calibration=((1000, -10.0), (1500, 0.0), (2000, 10.0))))
-    assert percent_stick(next_input([flown()], short, stopped=False).advice) > percent_stick(
-        next_input([flown()], AIRCRAFT, stopped=False).advice
+    assert percent_stick(next_input([flown()], short).advice) > percent_stick(
+        next_input([flown()], AIRCRAFT).advice
     )
 
 
@@ -157,7 +151,7 @@ def test_fewer_manoeuvres_remain_the_more_have_been_flown() -> None:
     strict = replace(AIRCRAFT, campaign=CampaignPlan(rule="information", tolerance={"M_alpha": 0.03}))
     remaining = []
     for n in (1, 6, 11):
-        median = next_input([flown(2.0)] * n, strict, stopped=False).remaining.median
+        median = next_input([flown(2.0)] * n, strict).remaining.median
         assert median is not None
         remaining.append(median)
     assert remaining[0] > remaining[1] > remaining[2] > 0
@@ -166,7 +160,7 @@ def test_fewer_manoeuvres_remain_the_more_have_been_flown() -> None:
 @pytest.mark.parametrize("rule", ["continuous", "separate"])
 def test_where_chance_decides_ninety_per_cent_need_more_than_half_and_the_more_the_noisier(rule) -> None:
     aircraft = replace(AIRCRAFT, campaign=CampaignPlan(rule=rule))
-    calm, noisy = (next_input([flown(n)], aircraft, stopped=False).remaining for n in (1.0, 2.0))
+    calm, noisy = (next_input([flown(n)], aircraft).remaining for n in (1.0, 2.0))
     assert calm.median is not None
     assert calm.p90 is not None
     assert noisy.p90 is not None
@@ -175,15 +169,15 @@ def test_where_chance_decides_ninety_per_cent_need_more_than_half_and_the_more_t
 
 def test_one_time_in_ten_a_manoeuvre_is_spoilt_or_not_predicted() -> None:
     aircraft = replace(AIRCRAFT, campaign=CampaignPlan(rule="information"))
-    remaining = next_input([flown(1.0)], aircraft, stopped=False).remaining
+    remaining = next_input([flown(1.0)], aircraft).remaining
     assert (remaining.median, remaining.p90) == (1, 2)
 
 
 def test_a_crew_that_spoils_half_of_its_manoeuvres_is_promised_more() -> None:
     aircraft = replace(AIRCRAFT, campaign=CampaignPlan(rule="information", tolerance={"M_alpha": 0.05}))
     spoilt = replace(flown(2.0), reasons=(Reason("bank", "banked", 40.0, 30.0),))
-    clean = next_input([flown(2.0)] * 8, aircraft, stopped=False).remaining
-    poor = next_input([spoilt, flown(2.0)] * 8, aircraft, stopped=False).remaining
+    clean = next_input([flown(2.0)] * 8, aircraft).remaining
+    poor = next_input([spoilt, flown(2.0)] * 8, aircraft).remaining
     assert None not in (clean.p90, poor.p90)
     assert poor.median > clean.median
     assert poor.p90 > clean.p90
@@ -196,12 +190,12 @@ def test_the_forecast_is_of_inputs_as_flown_and_not_of_the_advised_one() -> None
     needed = 1
     while share_after(known, history[0].estimate.covariance, needed) >= 1.0:
         needed += 1
-    assert next_input(history, strict, stopped=False).remaining.median >= needed
+    assert next_input(history, strict).remaining.median >= needed
 
 
 def test_no_end_in_sight_is_said_as_none() -> None:
     aircraft = replace(AIRCRAFT, campaign=CampaignPlan(rule="continuous"))
-    assert next_input([flown(30.0)] * 3, aircraft, stopped=False).remaining.median is None
+    assert next_input([flown(30.0)] * 3, aircraft).remaining.median is None
 
 
 def test_what_remains_is_said_as_a_pilot_hears_it() -> None:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from advisor.decision.advice import ENOUGH
+from advisor.decision.conclusion import ENOUGH
 from advisor.decision.crew_plan import crew_plan
 from advisor.decision.verdict import FlightTestVerdict, NextInput
 

@@ -8,7 +8,7 @@ from typing import Any, cast
 import pytest
 
 from advisor.campaign.campaign import Campaign, ManeuverJudged
-from advisor.decision.advice import ENOUGH
+from advisor.decision.conclusion import ENOUGH
 from advisor.decision.crew_plan import crew_plan
 from advisor.decision.verdict import FlightTestVerdict, NextInput
 from advisor.flight.maneuvers.events import DataAgain, NoData

@@ -1,8 +1,8 @@
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.axes.lateral_stop import lateral_flight_test
 from advisor.decision.heard import Heard
-from advisor.decision.lateral_test import lateral_flight_test
 from advisor.model.lateral import LATERAL, Trim
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.oem.lateral_estimator import Errors, lateral_modes
@@ -65,7 +65,7 @@ def test_a_stop_that_the_crew_has_heard_stays():
     verdict = lateral_flight_test([*history, told("rudder")], worse, AIRCRAFT, (), heard)
     assert verdict.decision == "stop"
     assert verdict.stopped_at == 4
-    assert verdict.sentence == "TEST COMPLETE since manoeuvre 4 of aileron and rudder."
+    assert verdict.sentence == "TEST COMPLETE since manoeuvre 4: no change of the aircraft was found since."
     assert verdict.by_rule["information"].history_percent[3] == first.criterion_percent
 
 
@@ -89,3 +89,30 @@ def test_without_a_joint_estimate_nothing_is_known():
     verdict = lateral_flight_test([told("aileron"), told("rudder")] * 2, None, AIRCRAFT)
     assert verdict.decision == "continue"
     assert verdict.sentence == "CONTINUE: the error of L_p is unknown."
+
+
+def test_the_forecast_counts_the_manoeuvres_that_the_worst_derivative_of_each_control_lacks():
+    # Two inputs of each control leave 196 % of the tolerance: the variance must fall to a quarter.
+    history = [told("aileron"), told("rudder")] * 2
+    poor = told("aileron", "rudder", percent=10.0)
+    remaining = lateral_flight_test(history, poor, AIRCRAFT).next.remaining
+    assert 12 <= remaining.median <= 14
+    assert remaining.median < remaining.p90 <= 20
+
+
+def test_a_control_to_be_checked_lacks_one_manoeuvre():
+    history = [told("aileron"), told("rudder"), told("aileron")]
+    remaining = lateral_flight_test(history, told("aileron", "rudder"), AIRCRAFT).next.remaining
+    assert remaining.median == 1
+
+
+def test_refused_manoeuvres_lengthen_the_forecast():
+    history = [told("aileron"), told("rudder")] * 2
+    poor = told("aileron", "rudder", percent=10.0)
+    clean = lateral_flight_test(history, poor, AIRCRAFT).next.remaining
+    spoilt = lateral_flight_test([*history, *[None] * 8], poor, AIRCRAFT).next.remaining
+    assert spoilt.median > clean.median
+
+
+def test_nothing_is_foretold_before_both_controls_have_moved():
+    assert lateral_flight_test([told("aileron")], told("aileron"), AIRCRAFT).next.remaining is None

@@ -5,14 +5,22 @@ The joint estimate that every face shows is the one that decides.
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from advisor.aircraft.aircraft import Aircraft, Rule
-from advisor.decision.advice import ENOUGH
+from advisor.decision.axes.lateral_input import FlownInput, next_lateral
 from advisor.decision.change import Change
-from advisor.decision.heard import Heard, first_stop, stays
-from advisor.decision.lateral_advice import FlownInput, next_lateral
+from advisor.decision.conclusion import Criterion, concluded
+from advisor.decision.heard import Heard, first_stop
+from advisor.decision.remaining import Share, until_usable
 from advisor.decision.tolerance import SHARE
-from advisor.decision.verdict import INFORMATION_LIMIT_PERCENT, FlightTestVerdict, NextInput, RuleProgress
+from advisor.decision.verdict import (
+    INFORMATION_LIMIT_PERCENT,
+    FlightTestVerdict,
+    NextInput,
+    Remaining,
+    RuleProgress,
+)
 from advisor.model.lateral import LATERAL
 from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.words.quantiles import NORMAL_95
@@ -68,9 +76,9 @@ def lateral_flight_test(
     flown
         Inputs of all manoeuvres, accepted or not.
     heard
-        What the crew heard after each earlier manoeuvre. A stop that the crew has heard stays.
+        What the crew heard after each earlier manoeuvre.
     change
-        Change of the aircraft between manoeuvres, which ends a stop; None where noise explains all.
+        Change of the aircraft between manoeuvres; None where noise explains all differences.
     """
     accepted = [one for one in history if one is not None]
     shares = shares_of(joint, aircraft.campaign.tolerance_percent)
@@ -78,35 +86,24 @@ def lateral_flight_test(
     holds = worst < INFORMATION_LIMIT_PERCENT and not _flown_fewer_than(CHECKED, accepted)
     now = worst if math.isfinite(worst) else None
     told = tuple(one.percent.get(_RULE) for one in heard)
-    now_usable = {i for i, one in enumerate(history) if one is not None}
-    stopped_at = len(history) if holds else None
-    changed = change.sentence if change is not None and change.confirmed else ""
-    if not changed and stays(heard, _RULE, now_usable):
-        stopped_at = first_stop(heard, _RULE)
-    stop = stopped_at is not None
-    said = _sentence(shares, accepted, stopped_at, holds) if history else NOT_FLOWN
-    if changed and not stop and first_stop(heard, _RULE) is not None:
-        said = f"CONTINUE: {changed}"
-    return FlightTestVerdict(
-        rule=_RULE,
-        decision="stop" if stop else "continue",
-        sentence=said,
-        criterion_percent=now,
-        limit_percent=INFORMATION_LIMIT_PERCENT,
-        stopped_at=stopped_at,
-        by_rule={
-            _RULE: RuleProgress(
-                stopped_at,
-                (*told, now) if len(told) < len(history) else told,
-                INFORMATION_LIMIT_PERCENT,
-                parameter_percent={k: v if math.isfinite(v) else None for k, v in shares.items()},
-                now_percent=now,
-                holds=holds,
-            )
-        },
-        next=ENOUGH if stop else _next(shares, accepted, flown, aircraft),
-        warnings=() if change is None else (change.sentence,),
+    progress = RuleProgress(
+        first_stop(heard, _RULE) or (len(history) if holds else None),
+        (*told, now) if len(told) < len(history) else told,
+        INFORMATION_LIMIT_PERCENT,
+        parameter_percent={k: v if math.isfinite(v) else None for k, v in shares.items()},
+        now_percent=now,
+        holds=holds,
     )
+
+    def following() -> NextInput:
+        advised = _next(shares, accepted, flown, aircraft)
+        return replace(advised, remaining=_remaining(shares, accepted, len(history)))
+
+    criterion = Criterion(
+        _RULE, {_RULE: progress}, lambda stop: _sentence(shares, accepted, stop) if history else NOT_FLOWN,
+        following, len(history), {i for i, one in enumerate(history) if one is not None},
+    )  # fmt: skip
+    return concluded(criterion, heard, change, () if change is None else (change.sentence,))
 
 
 def _flown_fewer_than(n: int, accepted: Sequence[LateralEstimate]) -> list[str]:
@@ -114,12 +111,27 @@ def _flown_fewer_than(n: int, accepted: Sequence[LateralEstimate]) -> list[str]:
     return [name for name in LATERAL.inputs if sum(name in one.flown for one in accepted) < n]
 
 
-def _sentence(
-    shares: Mapping[str, float], accepted: Sequence[LateralEstimate], stopped_at: int | None, holds: bool
-) -> str:
-    if stopped_at is not None and not holds:
-        return f"TEST COMPLETE since manoeuvre {stopped_at} of aileron and rudder."
-    if holds:
+def _remaining(
+    shares: Mapping[str, float], accepted: Sequence[LateralEstimate], flown: int
+) -> Remaining | None:
+    """Return the expected number of further manoeuvres of a crew that flies on as it has flown.
+
+    The variance of a derivative falls with the number of manoeuvres that move its control. None while an
+    accepted manoeuvre of a control, or the error of a derivative, is lacking.
+    """
+    needed = 0
+    for control in LATERAL.inputs:
+        times = sum(control in one.flown for one in accepted)
+        worst = max(share for name, share in shares.items() if JUDGED[name] == control)
+        if not times or not math.isfinite(worst):
+            return None
+        within = times * (worst / INFORMATION_LIMIT_PERCENT) ** 2
+        needed += max(CHECKED, math.ceil(within), times) - times
+    return until_usable(max(needed, 1), Share(len(accepted), flown - len(accepted)))
+
+
+def _sentence(shares: Mapping[str, float], accepted: Sequence[LateralEstimate], stop: bool) -> str:
+    if stop:
         return (
             f"TEST COMPLETE: roll and yaw are known within their tolerance from {len(accepted)} accepted "
             "manoeuvres."

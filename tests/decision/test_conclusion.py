@@ -1,0 +1,65 @@
+"""Stop or continue, from a hand-made criterion of any axis."""
+
+from dataclasses import replace
+
+import pytest
+
+from advisor.decision.change import Change
+from advisor.decision.conclusion import Criterion, concluded
+from advisor.decision.heard import Heard
+from advisor.decision.verdict import NextInput, Remaining, RuleProgress
+
+CHANGED = Change(2, confirmed=True, moved=(), looks_like="", sentence="M_alpha has changed.")
+
+
+def criterion(holds, stopped_at=None, flown=4, usable=(0, 1, 2, 3), remaining=None):
+    """Return a criterion at 80 % of its tolerance, or at 120 %."""
+    now = 80.0 if holds else 120.0
+    progress = RuleProgress(stopped_at, (None,) * flown, 100.0, now_percent=now, holds=holds)
+    said = NextInput("next: one more", remaining)
+    by_rule = {"information": progress}
+    return Criterion("information", by_rule, lambda stop: f"stop is {stop}", lambda: said, flown, set(usable))
+
+
+def heard(stops, usable=(0, 1), remaining=None):
+    """Return what was heard after one manoeuvre."""
+    return Heard(
+        {"information": 80.0}, frozenset({"information"} if stops else ()), frozenset(usable), remaining
+    )
+
+
+def test_a_criterion_that_holds_stops_the_test_and_asks_for_nothing_more():
+    verdict = concluded(criterion(True, stopped_at=4), [])
+    assert verdict.decision == "stop"
+    assert verdict.sentence == "stop is True"
+    assert verdict.next.advice == "no further manoeuvre needed"
+    assert verdict.next.remaining == Remaining(0, 0)
+
+
+def test_a_criterion_that_does_not_hold_continues_with_the_input_of_its_axis():
+    verdict = concluded(criterion(False), [])
+    assert (verdict.decision, verdict.sentence) == ("continue", "stop is False")
+    assert verdict.next.advice == "next: one more"
+
+
+def test_a_stop_that_was_heard_stays_while_its_manoeuvres_are_usable():
+    before = [heard(False), heard(True), heard(False)]
+    stays = concluded(criterion(False, stopped_at=2), before)
+    assert stays.decision == "stop"
+    assert stays.sentence == "TEST COMPLETE since manoeuvre 2: no change of the aircraft was found since."
+    assert concluded(criterion(False, stopped_at=2, usable=(0, 2, 3)), before).decision == "continue"
+
+
+def test_a_confirmed_change_of_the_aircraft_ends_a_stop_that_was_heard():
+    before = [heard(False), heard(True), heard(False)]
+    verdict = concluded(criterion(False, stopped_at=2), before, CHANGED)
+    assert (verdict.decision, verdict.sentence) == ("continue", "CONTINUE: M_alpha has changed.")
+    suspected = replace(CHANGED, confirmed=False)
+    assert concluded(criterion(False, stopped_at=2), before, suspected).decision == "stop"
+
+
+@pytest.mark.parametrize(("now", "spoken"), [(3, True), (4, True), (7, False)])
+def test_a_forecast_that_jumps_by_more_than_its_band_is_not_spoken(now, spoken):
+    before = [heard(False), heard(False), heard(False, remaining=Remaining(4, 6))]
+    said = concluded(criterion(False, remaining=Remaining(now, 9)), before).next.remaining
+    assert (said is not None) == spoken
