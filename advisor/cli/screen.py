@@ -4,6 +4,8 @@ import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from shutil import get_terminal_size
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import click
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
     from advisor.session.remote import ConductorTask
 
 Listener = Callable[[object], object]
+_HANGS = 4
+"""Columns by which the second row of a wrapped line lies behind the first."""
 Show = Callable[["ConductorTask", Aircraft, str, Tempo | None], object]
 """Shows the campaign of a task until it is left: aircraft, title, and how a replay starts."""
 
@@ -102,9 +106,17 @@ def advise(
         (show or partial(_show, tuple(logs), aircraft_file))(task, aircraft, title, tempo)
     elif kept is not None:
         task = ConductorTask(open_source, partial(make_campaign, False), before, kept, door)
-        narrate(task, click.echo, partial(click.echo, err=True))
+        narrate(task, say, partial(click.echo, err=True))
     else:
-        narrate_here(open_source(), make_campaign(False, before), click.echo)
+        narrate_here(open_source(), make_campaign(False, before), say)
+
+
+def say(line: str) -> None:
+    """Print a line; on a terminal, wrap the line between words, as a terminal does not."""
+    if sys.stdout.isatty():
+        behind = " " * (len(line) - len(line.lstrip()) + _HANGS)
+        line = fill(line, get_terminal_size().columns, subsequent_indent=behind, break_on_hyphens=False)
+    click.echo(line)
 
 
 def _campaign(
