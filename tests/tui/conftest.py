@@ -1,16 +1,10 @@
-"""Styles are parsed once in a process of tests, and no test speaks through the machine's own program."""
+"""Styles are parsed once in a process of tests, instead of at each start of the application."""
 
 import pytest
 from textual.css.stylesheet import Stylesheet
 
 _parse_rules = Stylesheet._parse_rules
 _PARSED: dict[object, list[object]] = {}
-
-
-@pytest.fixture(autouse=True)
-def silent(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Find no program that speaks."""
-    monkeypatch.setattr("advisor.tui.sound._PROGRAMS", ())
 
 
 def _parsed_once(sheet: Stylesheet, css: str, read_from: object, *how: object, **so: object) -> list[object]:
