@@ -1,5 +1,9 @@
 """Lateral flights for tests: an independent coding of the equations, integrated by SciPy."""
 
+from collections.abc import Sequence
+from math import cos, sin, tan
+from typing import TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
@@ -10,6 +14,7 @@ from advisor.oem.lateral_problem import LateralProblem, LateralRecord
 from advisor.oem.rows import Signal
 
 FloatArray = NDArray[np.float64]
+Number = TypeVar("Number", float, NDArray[np.float64])
 
 JET = {
     "Y_beta": -0.2, "Y_p": 0.01, "Y_r": 0.01, "Y_delta_a": 0.0, "Y_delta_r": 0.04,
@@ -60,32 +65,39 @@ def flown(
     d = theta | TRIM
     inputs = {n: s for n, s in (("aileron", aileron), ("rudder", rudder)) if s is not None}
 
-    def at(name: str, now: float | FloatArray) -> float | FloatArray:
-        return inputs[name].at(np.asarray(now)) if name in inputs else 0.0 * np.asarray(now)
+    def at(name: str, now: Number) -> Number:
+        return np.interp(now, inputs[name].t, inputs[name].y) if name in inputs else 0.0 * now
 
-    def force(now: float | FloatArray, x: FloatArray) -> FloatArray:
-        beta, p, r, _ = x
-        a, rud = at("aileron", now), at("rudder", now)
-        return np.asarray(
+    def force(x: Sequence[Number], a: Number, rud: Number) -> Number:
+        beta, p, r = x
+        return (
             d["Y_beta"] * beta + d["Y_p"] * p + d["Y_r"] * r + d["Y_delta_a"] * a + d["Y_delta_r"] * rud
             + d["Y_0"]
         )  # fmt: skip
 
     def rates(now: float, x: FloatArray) -> list[float]:
-        beta, p, r, bank = x
+        beta, p, r, bank = x.tolist()
         a, rud = float(at("aileron", now)), float(at("rudder", now))
         moments = [
             d[f"{m}_beta"] * beta + d[f"{m}_p"] * p + d[f"{m}_r"] * r + d[f"{m}_delta_a"] * a
             + d[f"{m}_delta_r"] * rud + d[f"{m}_0"]
             for m in "LN"
         ]  # fmt: skip
-        side = float(force(now, x)) + np.sin(alpha) * p - np.cos(alpha) * r
-        side += GRAVITY_M_S2 / airspeed * np.cos(pitch) * np.sin(bank)
-        turn = p + np.tan(pitch) * (q * np.sin(bank) + r * np.cos(bank))
+        side = force((beta, p, r), a, rud) + sin(alpha) * p - cos(alpha) * r
+        side += GRAVITY_M_S2 / airspeed * cos(pitch) * sin(bank)
+        turn = p + tan(pitch) * (q * sin(bank) + r * cos(bank))
         return [side, *moments, turn]
 
-    x = solve_ivp(rates, (0.0, t[-1]), initial, t_eval=t, rtol=1e-10, atol=1e-12, max_step=0.02).y
-    clean = {"p": x[1], "r": x[2], "bank": x[3], "a_y": airspeed * force(t, x), "beta": x[0]}
+    x = solve_ivp(
+        rates, (0.0, t[-1]), initial, t_eval=t, rtol=1e-10, atol=1e-12, method="DOP853", max_step=0.25
+    ).y
+    clean = {
+        "p": x[1],
+        "r": x[2],
+        "bank": x[3],
+        "a_y": airspeed * force(x[:3], at("aileron", t), at("rudder", t)),
+        "beta": x[0],
+    }
     noise = {n: 0.0 if rng is None else rng.normal(0.0, NOISE[n], len(t)) for n in measured}
     level = {"airspeed": airspeed, "alpha": alpha, "theta": pitch, "q": q}
     known = {n: Signal(t[[0, -1]], np.full(2, v)) for n, v in level.items()}
