@@ -14,11 +14,6 @@ def flight() -> Path:
     return recorded("uav", 1.0, maneuvers=TWO)
 
 
-def short_flight() -> Path:
-    """A log of one manoeuvre."""
-    return recorded("uav", 1.0, maneuvers=TWO[:1])
-
-
 def start(*arguments: object, **environment: str) -> "subprocess.Popen[bytes]":
     """The command without a screen, its output in pipes."""
     return subprocess.Popen(
