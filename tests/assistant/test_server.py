@@ -114,7 +114,7 @@ async def test_a_command_that_prints_no_document_is_refused_with_its_sentence() 
         await Calls(60.0).document(["none of theirs"])
 
 
-@pytest.mark.parametrize("reads_on", [True, False])
+@pytest.mark.parametrize("reads_on", [pytest.param(True, marks=pytest.mark.study), False])
 def test_a_client_that_leaves_during_a_call_ends_the_server_quietly(reads_on: bool) -> None:
     command = [sys.executable, "-m", "advisor", "mcp", str(LOGS)]
     process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)

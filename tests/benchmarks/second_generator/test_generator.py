@@ -217,17 +217,24 @@ def messages_of(log: bytes) -> list[mavlink.MAVLink_message]:
     return found
 
 
-def test_log_holds_every_message(quiet_case: Case) -> None:
+@pytest.fixture(scope="module")
+def quiet_log(quiet_case: Case) -> list[mavlink.MAVLink_message]:
+    return messages_of(log_bytes(quiet_case))
+
+
+def test_log_holds_every_message(quiet_case: Case, quiet_log: list[mavlink.MAVLink_message]) -> None:
     expected = {"HEARTBEAT", "PARAM_VALUE", "AOA_SSA", "ATTITUDE", "SERVO_OUTPUT_RAW", "VFR_HUD"}
     expected |= {"GLOBAL_POSITION_INT", quiet_case.wiring.imu}
-    assert {message.get_type() for message in messages_of(log_bytes(quiet_case))} == expected
+    assert {message.get_type() for message in quiet_log} == expected
 
 
-def test_log_and_calibration_tell_the_command(quiet_case: Case) -> None:
+def test_log_and_calibration_tell_the_command(
+    quiet_case: Case, quiet_log: list[mavlink.MAVLink_message]
+) -> None:
     case = quiet_case
     assert case.recorder.low_pass is None
     field = f"servo{case.wiring.elevator_output}_raw"
-    servo = [m for m in messages_of(log_bytes(case)) if m.get_type() == "SERVO_OUTPUT_RAW"]
+    servo = [m for m in quiet_log if m.get_type() == "SERVO_OUTPUT_RAW"]
     stamps = np.array([m.time_usec for m in servo]) * 1e-6 - case.wiring.boot_s
     widths, degrees = np.array(aircraft_file(case)["elevator"]["calibration"]).T
     told = np.radians(np.interp([getattr(m, field) for m in servo], widths, degrees))

@@ -332,12 +332,18 @@ def eventful() -> Wire:
     return wire
 
 
+@pytest.fixture(scope="module")
+def whole(eventful: Wire) -> list[object]:
+    """What is told of that flight where all of it arrives at once."""
+    _, events = flown(eventful, BY_SWITCH)
+    return events
+
+
 @settings(max_examples=8, deadline=None)
 @given(data=st.data())
-def test_no_mark_depends_on_how_messages_are_batched(eventful, data):
+def test_no_mark_depends_on_how_messages_are_batched(eventful, whole, data):
     n = len(eventful)
     cuts = sorted(data.draw(st.sets(st.integers(1, n - 1), max_size=40)))
-    _, whole = flown(eventful, BY_SWITCH)
     _, cut = flown(eventful, BY_SWITCH, batches=[range(a, b) for a, b in pairwise([0, *cuts, n])])
     # The sweep does not move this aircraft, so that it is an activity.
     assert len(maneuvers(whole)) == sum(isinstance(event, Activity) for event in whole) == 1

@@ -69,20 +69,25 @@ def eventful():
     return wire
 
 
+@pytest.fixture(scope="module")
+def whole(eventful):
+    """What is told of that flight where all of it arrives at once."""
+    _, events = flown(eventful)
+    return events
+
+
 @settings(max_examples=8, deadline=None)
 @given(data=st.data())
-def test_no_result_depends_on_how_messages_are_batched(eventful, data):
+def test_no_result_depends_on_how_messages_are_batched(eventful, whole, data):
     n = len(eventful)
     cuts = sorted(data.draw(st.sets(st.integers(1, n - 1), max_size=40)))
     edges = [0, *cuts, n]
-    _, whole = flown(eventful)
     _, cut = flown(eventful, batches=[range(a, b) for a, b in pairwise(edges)])
     assert len(maneuvers(whole)) == 2
     assert as_plain(cut) == as_plain(whole)
 
 
-def test_one_message_at_a_time_gives_what_the_whole_log_gives(eventful):
-    _, whole = flown(eventful)
+def test_one_message_at_a_time_gives_what_the_whole_log_gives(eventful, whole):
     _, single = flown(eventful, batches=[[i] for i in range(len(eventful))])
     assert as_plain(single) == as_plain(whole)
 
