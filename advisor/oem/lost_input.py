@@ -25,6 +25,7 @@ STEP_SHARE = 0.05
 """Least change of the command across the gap, as a share of the input's range."""
 MOST_ROUNDS = 6
 _SETTLED = 1e-3
+"""Numerical: change of the lost samples, as a share of the input's range, at which the search ends."""
 
 
 def restored(problem: OutputErrorProblem) -> OutputErrorProblem:

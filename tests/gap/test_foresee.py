@@ -249,3 +249,9 @@ def test_flown_by_another_generator_twice_the_foreseen_size_is_named_and_a_third
     )
     assert twice.causes[0].effect == effect
     assert effect not in {cause.effect for cause in third.causes if cause.present}
+
+
+def test_a_curve_that_no_flight_of_the_plan_shows_has_no_share():
+    hidden = [f for f in foresee_plan(PLANE, PLAN[:2], 50.0, 0.02) if np.isinf(f.smallest)]
+    assert "elevator_nonlinearity" in {f.effect for f in hidden}
+    assert {f.share for f in hidden} == {None}

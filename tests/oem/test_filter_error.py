@@ -11,7 +11,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.campaign.single_maneuver import assess, cautions_of
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem import estimator
+from advisor.oem import estimator, turbulence
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
 from advisor.oem.filter_error import filter_error, moving_air
@@ -175,3 +175,18 @@ def test_a_search_that_diverges_from_the_instruments_starts_again_without_them(m
     assert isinstance(found, Estimate)
     assert found.filtered
     assert starts[1].problem.servo == Servo(0.0, 0.0)
+
+
+@pytest.mark.parametrize(("gain", "looks"), [(4.9, False), (5.1, True)])
+def test_moving_air_is_sought_where_colour_gains_five_nats_over_white_noise(monkeypatch, gain, looks):
+    searches = []
+
+    def descend(rows, system, start, moving, steps, start_variance):
+        searches.append(moving)
+        return start, 100.0
+
+    monkeypatch.setattr(turbulence, "_descend", descend)
+    monkeypatch.setattr(turbulence, "cost_of", lambda *_: 100.0 + 2.0 * gain)
+    rows = Rows(np.arange(8.0), np.tile(np.arange(4), 2), np.ones(8), 25.0)
+    find_turbulence([rows], np.array([-4.0, 0.0, -40.0, -4.0]), np.full(4, 1e-3), True)
+    assert (True in searches) is looks

@@ -14,10 +14,12 @@ from advisor.oem.airspeed import airspeed
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.extra import Prior
-from advisor.oem.instruments import SERVO_LAG, unknown_instruments
+from advisor.oem.instrument_fit import _identified
+from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, unknown_instruments
 from advisor.oem.lateral_instruments import nuisances_of
 from advisor.oem.lateral_problem import LateralProblem
 from advisor.oem.prepare import prepare
+from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 from tests.oem.builders import UAV, elevator_3211, flown, maneuver, simulate, trim_alpha, trim_elevator
@@ -349,3 +351,14 @@ def test_a_lag_that_the_file_leaves_open_has_one_prior_on_every_axis():
     rolled = LateralProblem((doublet,), servos={"aileron": Servo()})
     roll = {x.name: x.prior for x in nuisances_of(rolled, Aircraft())}
     assert pitch["servo_lag_s"] == roll["aileron_lag_s"] == Prior(0.05, 0.05)
+
+
+@pytest.mark.parametrize(("instrument", "contradicts"), [(COMMAND_DELAY, True), (SERVO_LAG, False)])
+def test_a_value_far_from_its_prior_contradicts_a_delay_and_not_a_lag_that_other_flights_told(
+    instrument, contradicts
+):
+    t = np.arange(0.0, 5.0, 0.02)
+    record = Record(Signal(t, np.sin(t)), {})
+    problem = OutputErrorProblem((record,), servo=Servo(lag_s=0.2, delay_s=0.2))
+    far = replace(instrument, prior=Prior(0.05, 0.01))
+    assert _identified(far, problem, 0.005).found.contradicts is contradicts

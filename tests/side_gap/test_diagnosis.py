@@ -233,3 +233,8 @@ def test_a_second_cause_is_as_probable_as_both_together(monkeypatch):
     monkeypatch.setattr(diagnosis, "_cause", lambda case, one, fit, tolerance, p, share, present: p)
     case = SimpleNamespace(fit=lambda *_: None)
     assert list(diagnosis._causes(case, found, None)) == [pytest.approx(0.9), pytest.approx(0.45)]
+
+
+def test_a_gap_that_no_other_manoeuvre_has_seen_is_stated_by_no_channel():
+    alone = replace(FOUND, diagnosis=replace(DIAGNOSIS, before={"p": 3.0}, after={}))
+    assert side_gap_document(alone)["gap"] == {"before": None, "by_channel": {}, "by_channel_after": {}}

@@ -79,3 +79,12 @@ def test_a_link_and_a_log_guess_the_same(size):
     whole = run(wire)[0].guess
     assert whole is not None
     assert run(wire, size)[0].guess == whole
+
+
+def test_an_output_that_a_hand_took_before_any_vehicle_was_heard_is_not_taken():
+    early, flight = Wire(), passive_flight()
+    text(early, START_S - 1.0, TAKE.decode() + "2", system=254, component=190)
+    stream = FlightStream(Aircraft())
+    assert stream.feed(early.columns(range(len(early)))) == []
+    events = [*stream.feed(flight.columns(range(len(flight)))), *stream.finish()]
+    assert not any(isinstance(e, ManeuverFlown) for e in events)

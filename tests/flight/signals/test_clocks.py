@@ -80,3 +80,11 @@ def test_packets_of_a_path_that_is_seconds_late_are_left_out_and_are_no_reboot(l
     assert np.isnan(stamps.t[1:6]).all()
     assert stamps.t[6] == 300.02
     assert clock.boot == 0
+
+
+@pytest.mark.parametrize(("age_s", "boot"), [(19, 0), (21, 1)])
+def test_stamps_of_a_second_path_up_to_20_s_old_are_no_reboot_and_older_ones_are(age_s, boot):
+    old = [60_000 - 1000 * age_s + 20 * k for k in range(4)]
+    stamps, clock = advanced(60_000, 60_020, *old)
+    assert clock.boot == boot
+    assert np.isnan(stamps.t[2:4]).all()

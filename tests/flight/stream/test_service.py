@@ -7,7 +7,10 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import DataAgain, ManeuverFlown, NoData
+from advisor.flight.signals.messages import Columns
+from advisor.flight.stream.service import Service
 from advisor.flight.stream.stream import FlightStream
+from advisor.words.problems import Problem
 from tests.flight.columns import Wire, aoa, attitude, fly, heartbeat, hud, plane_parameters, servo
 
 START_S = 1000.0
@@ -150,3 +153,15 @@ def test_a_log_tells_the_same_as_a_link_however_its_messages_are_batched(slow_fo
     live = [event for _, event in by_message]
     for size in (21, 501, len(wire)):
         assert [event for _, event in told(wire, size)] == live
+
+
+def test_the_vehicles_time_of_what_is_told_is_its_newest_and_old_readings_are_forgotten():
+    late = Problem("rate", "ATTITUDE arrives too slowly.", "Raise its rate.")
+    service = Service(lambda channels, now_s: [late] if now_s > 600.0 else [])
+    arrival_s = np.arange(0.0, 620.0, 0.25)
+    service.take_clock(arrival_s, arrival_s + 70.0)
+    service.take("q", "ATTITUDE", arrival_s)
+    columns = Columns("ATTITUDE", 1, 1, np.arange(len(arrival_s)), arrival_s, {})
+    (event,) = service.advance([columns])
+    assert 671.0 < event.at_s < 673.0
+    assert len(service._clock) < 20, "readings of the last seconds alone are kept"
