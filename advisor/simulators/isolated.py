@@ -96,10 +96,11 @@ class Isolated:
         context = spawning()
         self._connection, theirs = context.Pipe()
         make, arguments = self._call
-        self._process = context.Process(
+        process = context.Process(
             target=_serve, args=(theirs, self._folder.name, make, arguments), daemon=True
         )
-        self._process.start()
+        process.start()
+        self._process = process
         theirs.close()
         takes_increments, takes, notes = self._answer("its start", self._start_limit_s)
         return bool(takes_increments), frozenset(map(str, takes)), tuple(map(str, notes))

@@ -1,5 +1,6 @@
 """A simulator in its own process: what comes back of it, and what of its faults."""
 
+import multiprocessing
 import os
 import subprocess
 import sys
@@ -8,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from advisor.simulators import isolated
 from advisor.simulators.isolated import Isolated
 from advisor.simulators.protocol import Condition, Inputs
 from advisor.words.problems import ConfigurationError, UnusableInputError
@@ -28,6 +30,21 @@ def complaint(simulator: Isolated) -> UnusableInputError:
         simulator.replay(CONDITION, INPUTS)
     simulator.close()
     return caught.value
+
+
+def test_a_process_that_cannot_start_says_why(monkeypatch) -> None:
+    """A script without ``if __name__ == "__main__"`` starts itself again in the child."""
+
+    class Unstarted:
+        Pipe, Process = staticmethod(multiprocessing.Pipe), multiprocessing.Process
+
+    def refuse(_: object) -> None:
+        raise RuntimeError("before the current process has finished its bootstrapping phase")
+
+    monkeypatch.setattr(isolated, "spawning", Unstarted)
+    monkeypatch.setattr(multiprocessing.Process, "start", refuse)
+    with pytest.raises(RuntimeError, match="bootstrapping"):
+        Isolated(f"{HERE}:Level", description="level")
 
 
 def test_a_replay_and_a_linearisation_come_back_as_numbers() -> None:
