@@ -217,8 +217,8 @@ def test_a_lost_link_that_hangs_keeps_no_new_flight_test_from_its_connection(adv
 
 
 def test_a_full_disk_is_said_and_nothing_is_lost_when_there_is_room_again(advising: Advising):
-    flight = until(FLIGHT, 24.0)
-    full, room = (len(until(flight, at_s)) for at_s in (4.0, 14.0))
+    flight = until(FLIGHT, 12.0)
+    full, room = (len(until(flight, at_s)) for at_s in (2.0, 7.0))
     advising.start()
 
     def limit(size: int) -> None:
