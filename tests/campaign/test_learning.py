@@ -7,9 +7,11 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
+from advisor.campaign.elevator import ElevatorCampaign
 from advisor.campaign.learning import lag_said, learnt, of_another_power_on
 from advisor.oem.estimate import InstrumentEstimate
 from advisor.oem.known_instruments import FoundInstruments, found_of, with_found
+from advisor.process.parts import Parts
 from tests.decision.campaigns import estimate
 
 
@@ -84,3 +86,16 @@ def test_a_lag_within_its_own_error_of_the_one_used_changes_nothing_but_at_the_e
     used = learnt(Aircraft(), with_lag(0.14, 0.01))
     assert learnt(used, with_lag(0.145, 0.01)) is used
     assert lag_of(learnt(used, with_lag(0.145, 0.01), exactly=True)) == 0.145
+
+
+def test_a_lag_that_reads_as_before_is_not_said_again(monkeypatch):
+    said = []
+    campaign = ElevatorCampaign(Aircraft(), said.append, Parts())
+    monkeypatch.setattr(ElevatorCampaign, "_judge", lambda self: None)
+    for lag_s, std_s in ((0.1431, 0.012), (0.1432, 0.005), (0.151, 0.004)):
+        monkeypatch.setattr(ElevatorCampaign, "_of_lag", with_lag(lag_s, std_s))
+        campaign._learn()
+    assert [sentence.split(" by all")[0] for sentence in said] == [
+        "the servo's lag is 0.143 s", "the servo's lag is 0.151 s"
+    ]  # fmt: skip
+    assert lag_of(campaign.learnt) == 0.151
