@@ -1,4 +1,7 @@
-"""What the tests let run in a process of its own, where it must be found by its name."""
+"""What the tests let run in a process of its own, where it must be found by its name.
+
+The estimator takes a second to import: only what estimates imports it.
+"""
 
 import os
 import signal
@@ -7,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import inf
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.campaign import Campaign, CampaignEvent
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.logs.logs import open_log
@@ -18,6 +21,9 @@ from advisor.session.source import LinkHealth
 from advisor.words.problems import UnusableInputError
 from tests.tui import flights
 from tests.tui.stand_ins import HandFedSource, StagedCampaign
+
+if TYPE_CHECKING:
+    from advisor.campaign.campaign import Campaign, CampaignEvent
 
 LOG = Path(__file__).parents[2] / "logs" / "bundled-demo.tlog"
 FIRST_JUDGED_S = 27.0
@@ -56,8 +62,10 @@ def traced() -> Traced:
     return Traced(LOG.name, player._load, 10.0)
 
 
-def campaign(by_hand: ByHand = NOTHING) -> Campaign:
+def campaign(by_hand: ByHand = NOTHING) -> "Campaign":
     """A real one."""
+    from advisor.campaign.campaign import Campaign
+
     return Campaign(Aircraft(), settle=True, by_hand=by_hand)
 
 
@@ -77,17 +85,17 @@ def _estimate() -> None:
         sum(k * k for k in range(1000))
 
 
-class _Slow(Campaign):
-    """Takes 6 s for each batch."""
+def slow(by_hand: ByHand) -> "Campaign":
+    """A real one on a computer that is too slow: it takes 6 s for each batch."""
+    real = campaign(by_hand)
+    feed = real.feed
 
-    def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
+    def feed_slowly(columns: Sequence[Columns]) -> "list[CampaignEvent]":
         time.sleep(6.0)
-        return super().feed(columns)
+        return feed(columns)
 
-
-def slow(by_hand: ByHand) -> Campaign:
-    """A real one on a computer that is too slow."""
-    return _Slow(Aircraft(), by_hand=by_hand)
+    real.feed = feed_slowly  # type: ignore[method-assign]
+    return real
 
 
 def ending(by_hand: ByHand) -> StagedCampaign:
