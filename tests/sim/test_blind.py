@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import yaml
 
-from sim.blind import simulated
+from sim.blind import draw, simulated
 from sim.blind.draw import SMALLEST_GAP, draw_case
 from sim.blind.generate import aircraft_file, generate
 from sim.blind.simulated import draw_simulated
@@ -25,6 +25,21 @@ from sim.tlog import read_tlog
 
 # Cases take seconds to draw.
 pytestmark = pytest.mark.xdist_group("sealed cases")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def brief():
+    """Draw flights of two manoeuvres instead of nine."""
+    scenario_of = draw.scenario_of
+
+    def of_two(*given):
+        scenario, background = scenario_of(*given)
+        return replace(scenario, maneuvers=scenario.maneuvers[:2]), background
+
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (draw, simulated):
+            patch.setattr(module, "scenario_of", of_two)
+        yield
 
 
 @cache
@@ -111,7 +126,7 @@ def test_a_key_of_an_earlier_version_is_refused_in_a_sentence(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "group", ["outside", *(pytest.param(g, marks=pytest.mark.study) for g in ("two", "clean", "jsbsim"))]
+    "group", ["outside", "two", *(pytest.param(g, marks=pytest.mark.study) for g in ("clean", "jsbsim"))]
 )
 def test_a_drawn_effect_is_visible_above_the_noise(group):
     case = drawn(group)
