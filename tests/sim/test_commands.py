@@ -3,11 +3,13 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 import yaml
 
 from sim.__main__ import run
+from sim.blind import draw
 from sim.linear import RESEARCH_JET
 from sim.sealed.cases import key_beside
 
@@ -70,7 +72,14 @@ def test_an_aircraft_file_is_flown_and_its_flight_flown_again(tmp_path, sim):
     assert again.stat().st_size == pytest.approx(first.stat().st_size, rel=0.02)
 
 
-def test_sealed_cases_are_made_committed_and_revealed(tmp_path, sim):
+def test_sealed_cases_are_made_committed_and_revealed(tmp_path, sim, monkeypatch):
+    scenario_of = draw.scenario_of
+
+    def of_two(*given):
+        scenario, background = scenario_of(*given)
+        return replace(scenario, maneuvers=scenario.maneuvers[:2]), background
+
+    monkeypatch.setattr(draw, "scenario_of", of_two)
     folder, answers = tmp_path / "cases", tmp_path / "answers.jsonl"
     assert sim("blind", "--cases", 2, "--seed", 4, "--out", folder, "--only", "none")[0] == 0
     names = sorted(path.name for path in folder.iterdir() if path.is_dir())
