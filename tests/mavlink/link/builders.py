@@ -14,10 +14,11 @@ from advisor.mavlink.wire.framing import CRC_EXTRA, Frame, FrameCutter
 
 def wait_until(condition: Callable[[], bool], timeout_s: float = 10.0) -> None:
     """Return as soon as the condition holds; fail the test when it never does."""
-    give_up_s = time.monotonic() + timeout_s
+    give_up_s, pause_s = time.monotonic() + timeout_s, 0.005
     while not condition():
         assert time.monotonic() < give_up_s, "waited in vain"
-        time.sleep(0.005)
+        time.sleep(pause_s)
+        pause_s = min(1.5 * pause_s, 0.1)  # what is waited for needs the processor as well
 
 
 def attitude(milliseconds: int, pitch: float = 0.1) -> Any:
