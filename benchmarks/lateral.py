@@ -152,12 +152,19 @@ def rows_of(known: Known, folder: Path) -> Iterator[str]:
             value = estimate.value(name)
             std = float(estimate.std[estimate.names.index(name)])
         within = -tolerance if tolerance < 0.0 else tolerance * abs(truth)
-        holds = abs(value - truth) <= max(within, 1.96 * std)
         percent = 100.0 * (value / truth - 1.0)
-        row = f"{truth:g} | {value:.4g} ± {1.96 * std:.2g} | {percent:+.1f} % | {'yes' if holds else 'NO'} |"
+        word = held(value - truth, 1.96 * std, within)
+        row = f"{truth:g} | {value:.4g} ± {1.96 * std:.2g} | {percent:+.1f} % | {word} |"
         yield f"| {name_of_row} | {name} | {row}"
     if known.withheld:
         yield from _predicted(name_of_row, state.model, folder / known.withheld)
+
+
+def held(off: float, half: float, within: float) -> str:
+    """Return whether the interval of this half-width holds the known value, or the tolerance alone does."""
+    if abs(off) <= half:
+        return "yes"
+    return "by tolerance" if abs(off) <= within else "NO"
 
 
 LEAST_R2 = 0.90

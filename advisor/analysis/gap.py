@@ -158,8 +158,14 @@ def compare_logs(
     progress: Callable[[str, float], None] = lambda *_: None,
     by_hand: Sequence[ByHand] = (),
     prior: FieldPrior = FIELD,
+    flown: GapFlights | None = None,
 ) -> Compared:
     """Read logs and diagnose their gap to a simulator, or to the aircraft file's model where there is none.
+
+    Parameters
+    ----------
+    flown
+        Manoeuvres of the logs where they are read already.
 
     Raises
     ------
@@ -167,7 +173,7 @@ def compare_logs(
         A log cannot be read or cannot serve, or the simulator does not fly.
     """
     progress("reading", 0.0)
-    flown = maneuvers_of(logs, aircraft, target_system, by_hand)
+    flown = flown or maneuvers_of(logs, aircraft, target_system, by_hand)
     return compare_flown(flown, aircraft, simulator, holdout, progress, prior)
 
 

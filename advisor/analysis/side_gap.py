@@ -3,11 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeVar
+from typing import Literal, TypeVar
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
+from advisor.analysis.gap import GapFlights, maneuvers_of
+from advisor.analysis.refused import without_refused
 from advisor.analysis.whole_flights import read_whole
+from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
@@ -57,6 +60,33 @@ def compare_side_logs(
     compared, against = beside_simulator(accepted, aircraft, progress)
     progress("comparing", 1.0)
     return SideCompared(answered(compare_side(compared, against, prior)), state, aircraft, accepted)
+
+
+def axis_flown(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    target_system: int | None = None,
+    by_hand: Sequence[ByHand] = (),
+    marks: Sequence[Mark] = (),
+    no_marks: bool = False,
+) -> tuple[Literal["pitch", "lateral"], GapFlights | None]:
+    """Return the axis to diagnose, and the elevator's manoeuvres where they can be read.
+
+    The axis is pitch, unless the elevator has no accepted manoeuvre and aileron or rudder has one.
+    """
+    flown = None
+    try:
+        flown = maneuvers_of(logs, aircraft, target_system, by_hand)
+        chosen = without_refused(flown.maneuvers, aircraft)
+        if len(chosen.although_refused) < len(chosen.maneuvers):
+            return "pitch", flown
+    except UnusableInputError:
+        pass  # The diagnosis of pitch gives the reason, where roll and yaw have no manoeuvre either.
+    try:
+        accepted_of(read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral").state)
+    except UnusableInputError:
+        return "pitch", flown
+    return "lateral", flown
 
 
 def beside_simulator(

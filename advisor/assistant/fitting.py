@@ -7,7 +7,9 @@ from typing import Any
 from advisor.assistant.folders import RefusedError
 
 MOST_BYTES = 20_000
-"""Longest answer, bytes: some 7,000 tokens, a small share of an assistant's context."""
+"""Longest answer as sent, bytes: some 7,000 tokens, a small share of an assistant's context."""
+_ENVELOPE_BYTES = 200
+"""Most bytes of an answer around its text: the protocol's envelope, with the number of the request."""
 _LEAST_BYTES = 200
 """Least share of an answer, bytes, that a part is shortened to. A smaller share is left out."""
 _ITEM_BYTES = 800
@@ -57,9 +59,14 @@ def written(document: Any, path: str = "", without: Sequence[str] = ()) -> str:
     if not path and isinstance(whole, dict):
         whole = {k: _left_out(v, k) if k in without and v else v for k, v in whole.items()}
     budget = MOST_BYTES
-    while _size(shortened := _shortened(whole, budget, path)) > MOST_BYTES:
+    while not fits(told := _json(_shortened(whole, budget, path))):
         budget = budget * 9 // 10
-    return _json(shortened)
+    return told
+
+
+def fits(text: str) -> bool:
+    """Return whether an answer with this text, which the protocol sends as a JSON string, is short enough."""
+    return len(_json(text).encode()) <= MOST_BYTES - _ENVELOPE_BYTES
 
 
 def _shortened(value: Any, budget: int, path: str) -> Any:

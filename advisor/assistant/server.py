@@ -13,7 +13,7 @@ from mcp.types import ToolAnnotations
 from advisor import __version__
 from advisor.aircraft_file.read import load_aircraft
 from advisor.assistant.calls import Calls
-from advisor.assistant.fitting import MOST_BYTES, written
+from advisor.assistant.fitting import fits, written
 from advisor.assistant.folders import Folders, RefusedError
 from advisor.words.problems import ConfigurationError
 
@@ -85,9 +85,12 @@ def server_of(folders: Folders, calls: Calls) -> MCPServer[Any]:
             page = Path(folder) / "report.md"
             words = ["report", *_files(folders, log, logs), *_aircraft(folders, aircraft), "-o", str(page)]
             await calls.done(words)
-            text = page.read_text(encoding="utf-8").encode()
-        cut = text[: MOST_BYTES - 100].decode(errors="ignore")
-        return text.decode() if len(text) <= MOST_BYTES else f"{cut}\n\nCut here: analyze has the rest."
+            text = page.read_text(encoding="utf-8")
+        told, lines = text, text.splitlines()
+        while not fits(told):
+            lines = lines[:-1]
+            told = "\n".join([*lines, "", "Cut here: analyze has the rest."])
+        return told
 
     for tool in (doctor, analyze, gap, report):
         server.add_tool(_answering(tool), name=tool.__name__, annotations=_READS, structured_output=False)

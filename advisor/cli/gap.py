@@ -23,6 +23,7 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 
 if TYPE_CHECKING:
     from advisor.aircraft.aircraft import Aircraft
+    from advisor.analysis.gap import GapFlights
     from advisor.campaign.hand_decisions import ByHand
     from advisor.exports.models.flown import FlownModel, SideModel
     from advisor.exports.models.formats import AxisAsked
@@ -44,6 +45,10 @@ _OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "everything", 
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
 }  # fmt: skip
+_LATERAL = (
+    "No manoeuvre of the elevator is accepted, but some of the aileron or the rudder are: "
+    "the diagnosis is of roll and yaw."
+)
 
 
 @click.command
@@ -73,9 +78,8 @@ _OF_A_PLAN = {
 @click.option(
     "--axis",
     type=click.Choice(["pitch", "lateral"]),
-    default="pitch",
-    show_default=True,
-    help="Axis that is diagnosed: the elevator's, or that of roll and yaw.",
+    help="Axis that is diagnosed: the elevator's, or that of roll and yaw. "
+    "Default: pitch, unless roll and yaw alone have accepted manoeuvres.",
 )
 @click.option(
     "--all",
@@ -114,7 +118,7 @@ def command(
     out: Path | None,
     figure: Path | None,
     exports: tuple[str, ...],
-    axis: "AxisAsked",
+    axis: "AxisAsked | None",
     everything: bool,
     proving: tuple[str, ...],
     why: bool,
@@ -161,13 +165,17 @@ def command(
     if out is not None:
         _refuse_out(out, asked.aircraft_file)
     refuse_figure(figure, [*asked.inputs, out])
-    orders = orders_of(exports, aircraft, [*asked.inputs, out], axis)
+    orders = orders_of(exports, aircraft, [*asked.inputs, out], axis or "pitch")  # before the logs are read
+    decided = [decided_on(log, asked.no_marks) for log in asked.logs]
+    by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
+    flown = None
+    if axis is None and not (holdout or everything or figure):
+        axis, flown = _axis_flown(asked, aircraft, by_hand)
     if axis == "lateral":
+        orders = orders_of(exports, aircraft, [*asked.inputs, out], axis)
         from advisor.cli.side_gap import compare_lateral
 
         return compare_lateral(asked, aircraft, as_json, prior, out, orders, proving, why)
-    decided = [decided_on(log, asked.no_marks) for log in asked.logs]
-    by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.exports.models.flown import FlownModel
     from advisor.gap.inference.prior import FIELD, field_prior
@@ -182,7 +190,15 @@ def command(
         simulator = named_simulator(aircraft, asked.target_system)
         try:
             return compare_logs(
-                asked.logs, aircraft, simulator, holdout, asked.target_system, progress, by_hand, shares
+                asked.logs,
+                aircraft,
+                simulator,
+                holdout,
+                asked.target_system,
+                progress,
+                by_hand,
+                shares,
+                flown,
             )
         finally:
             if simulator is not None:
@@ -218,6 +234,22 @@ def command(
         PlainConsole().print(GapScreen(found, written, why, steps, everything))
         print_proof(proof)
     return USAGE if any(one.problem for one in outcomes) else 0
+
+
+def _axis_flown(
+    asked: LogsAsked, aircraft: "Aircraft", by_hand: "Sequence[ByHand]"
+) -> "tuple[AxisAsked, GapFlights | None]":
+    """Return the axis to diagnose, said where it is not pitch, and the elevator's manoeuvres."""
+    from advisor.analysis.side_gap import axis_flown
+
+    with Stages() as tell:
+        tell("reading", 0.0)
+        axis, flown = axis_flown(
+            asked.logs, aircraft, asked.target_system, by_hand, asked.marks, asked.no_marks
+        )
+    if axis == "lateral":
+        click.echo(_LATERAL, err=True)
+    return axis, flown
 
 
 def compared_or_code(part: str, compare: "Callable[[], Found]", as_json: bool) -> "Found | int":

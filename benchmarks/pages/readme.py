@@ -20,10 +20,7 @@ def _example(name: str) -> Callable[[], str]:
 def _records() -> str:
     rows, measured = real.read(REAL)
     shown = [next(row for row in rows if row.log == log) for log in _RECORDS]
-    lines = [
-        f"| {row.what} | {symbol(row.asked)} | {symbol(row.got)} | {'yes' if row.holds else '**no**'} |"
-        for row in shown
-    ]
+    lines = [f"| {row.what} | {symbol(row.asked)} | {symbol(row.got)} | {row.word} |" for row in shown]
     held = sum(row.holds for row in rows)
     last = f"{held} of {len(rows)} records hold. Measured {measured}."
     return "\n".join(["| record | asked | result | holds |", "|---|---|---|---|", *lines, "", last])

@@ -8,7 +8,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import side_gap
-from advisor.words.problems import ConfigurationError
+from advisor.words.problems import ConfigurationError, UnusableInputError
 
 
 @pytest.fixture
@@ -76,3 +76,38 @@ def test_the_derivatives_of_a_simulators_log_are_its_numbers(compared, monkeypat
 def test_a_log_that_is_not_there_is_one_sentence(compared):
     with pytest.raises(ConfigurationError, match="there is no such file"):
         side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator="log:nowhere.tlog"))
+
+
+@pytest.mark.parametrize(
+    ("found", "refused", "sideways", "axis"),
+    [
+        (1, 1, True, "lateral"),
+        (0, 0, True, "lateral"),
+        (2, 1, True, "pitch"),
+        (1, 1, False, "pitch"),
+        (None, 0, True, "lateral"),
+        (None, 0, False, "pitch"),
+    ],
+)
+def test_the_axis_is_pitch_unless_roll_and_yaw_alone_have_accepted_manoeuvres(
+    monkeypatch, found, refused, sideways, axis
+):
+    def read(*_, **__):
+        if found is None:
+            raise UnusableInputError("no_maneuver", "none", "fly")
+        return SimpleNamespace(maneuvers=[0] * found)
+
+    def whole(*_, **__):
+        if not sideways:
+            raise UnusableInputError("no_maneuver", "none", "fly")
+        return SimpleNamespace(state=None)
+
+    monkeypatch.setattr(side_gap, "maneuvers_of", read)
+    monkeypatch.setattr(side_gap, "read_whole", whole)
+    monkeypatch.setattr(side_gap, "accepted_of", lambda _: [0])
+    monkeypatch.setattr(
+        side_gap,
+        "without_refused",
+        lambda m, _: SimpleNamespace(maneuvers=m, although_refused=tuple(range(refused))),
+    )
+    assert side_gap.axis_flown([Path("a.tlog")], Aircraft())[0] == axis
