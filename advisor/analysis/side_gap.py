@@ -56,6 +56,13 @@ def compare_side_logs(
         No log can be used, no manoeuvre of aileron or rudder is accepted, or the simulator does not fly them.
     """
     state = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral").state
+    return compare_side_flown(state, aircraft, prior, progress)
+
+
+def compare_side_flown(
+    state: CampaignState, aircraft: Aircraft, prior: FieldPrior = FIELD, progress: Progress = lambda *_: None
+) -> SideCompared:
+    """Compare a flight with roll and yaw of the aircraft file, or of its simulator; raise as above."""
     accepted = accepted_of(state)
     compared, against = beside_simulator(accepted, aircraft, progress)
     progress("comparing", 1.0)

@@ -6,8 +6,10 @@ from types import SimpleNamespace
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.cli import page_content
 from advisor.report.lateral import lateral_document, lateral_lines
 from advisor.report.page.blocks import Gallery, Listing, Paragraph
+from advisor.report.page.gap import gap
 from advisor.report.page.headline import headline
 from advisor.report.page.lateral import lateral
 from advisor.report.table import Table
@@ -112,3 +114,31 @@ def test_the_first_page_of_a_lateral_flight_has_the_lateral_verdict_and_table_an
     assert said[0].endswith(FLOWN.flight_test.sentence)
     assert said[-1] == "No test input of the elevator has been flown."
     assert not any("3-2-1-1" in one for one in said)
+
+
+def test_the_gap_of_a_lateral_flight_stands_with_its_changes_and_shown_causes():
+    side = {
+        "title": "LIKELY", "sentence": "The aileron is weak.",
+        "parameters_changed": [{"text": "L_p: more"}],
+        "causes": [{"sentence": "a", "probability": 0.9}, {"sentence": "b", "probability": 0.001}],
+    }  # fmt: skip
+    first, changed, causes = gap(SimpleNamespace(gap={"lateral": side})).blocks
+    assert first.text == "Roll and yaw. LIKELY: The aileron is weak."
+    assert (changed.items, causes.items) == (("L_p: more",), ("a (90 %).",))
+
+
+@pytest.mark.parametrize(
+    ("pitch", "side", "axis"),
+    [(False, True, "lateral"), (True, True, "pitch"), (False, False, "pitch")],
+)
+def test_the_gap_of_a_page_is_of_roll_and_yaw_where_they_alone_are_accepted(monkeypatch, pitch, side, axis):
+    def one(accepted):
+        return SimpleNamespace(verdict=SimpleNamespace(accepted=accepted))
+
+    flown = SimpleNamespace(maneuvers=[one(pitch)], lateral=SimpleNamespace(maneuvers=[one(side)]))
+    flights = SimpleNamespace(state=flown, logs=[], left_out={})
+    asked = SimpleNamespace(aircraft_file=None, reading=[], target_system=None)
+    monkeypatch.setattr(page_content, "compare_side_flown", lambda *_, **__: SimpleNamespace(gap=None))
+    monkeypatch.setattr(page_content, "side_gap_document", lambda _: {"of": "lateral"})
+    monkeypatch.setattr(page_content, "diagnosed", lambda *_: {"lateral": {"of": "pitch"}})
+    assert page_content._gap(flights, Aircraft(), asked, print)["lateral"]["of"] == axis

@@ -29,6 +29,12 @@ def gap(content: Content) -> Section | None:
 
 
 def _blocks(found: Document) -> Iterator[Block]:
+    if (side := found.get("lateral")) is not None:
+        yield Paragraph(f"Roll and yaw. {side['title']}: {side['sentence']}", "verdict")
+        yield from listing([one["text"] for one in side["parameters_changed"]])
+        likely = [(one["sentence"], one["probability"]) for one in side["causes"]]
+        yield from listing([f"{said} ({in_percent(p)})." for said, p in likely if is_shown(p)])
+        return
     if found["gap"] is None:
         yield Paragraph("The gap could not be diagnosed.")
         yield from listing([f"{p['text']} {p['fix']}" for p in found["problems"]])
