@@ -35,7 +35,7 @@ from advisor.exports.models.write import carry_out, order_of
 from advisor.flight.instruments.atmosphere import AirData
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.gap.result import Value
-from advisor.model.lateral import Trim
+from advisor.model.axes.lateral import Trim
 
 STEP_S = 1.0 / 400.0
 GRAVITY = 9.80665

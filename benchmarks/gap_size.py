@@ -2,7 +2,7 @@
 
     python -m benchmarks.gap_size
 
-Counted over ``advisor/gap`` and ``advisor/side_gap``, which share one engine, are lines of code, without
+Counted over ``advisor/gap`` are lines of code, without
 docstrings, comments and blank lines, so that an explanation costs nothing; constants, which are names of
 numbers; those among them that decide, by the kind in their docstring (``benchmarks.pages.constants``);
 comparisons with the name of an effect or a block; and functions of a cyclomatic complexity above 15
@@ -22,7 +22,7 @@ from advisor.gap.kit.effect import BLOCKS as BLOCKS_OF_EFFECTS
 from benchmarks.pages.constants import DECIDES, rows_in
 
 ROOM = Path(__file__).parents[1] / "advisor" / "gap"
-ROOMS = (ROOM, ROOM.parent / "side_gap")
+ROOMS = (ROOM,)
 EFFECTS = (
     ROOM / "candidates",
     ROOM / "effects",

@@ -25,12 +25,12 @@ from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis.log_series import LogSeries
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import LateralState
-from advisor.model.lateral import LATERAL
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axes.lateral.prediction import predicted_lateral
+from advisor.oem.axes.lateral.problem import LateralProblem, LateralRecord
+from advisor.oem.axes.lateral.solution import LateralSolution, solve_lateral
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.lateral_estimate import LateralEstimate
-from advisor.oem.lateral_prediction import predicted_lateral
-from advisor.oem.lateral_problem import LateralProblem, LateralRecord
-from advisor.oem.lateral_solution import LateralSolution, solve_lateral
 from advisor.oem.rows import Signal
 from benchmarks.public.segments import is_rolled, maneuver_of, read_segments, rolled
 

@@ -16,10 +16,10 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import SideControl
+from advisor.campaign.axes.lateral import LateralCampaign
 from advisor.campaign.hand_decisions import ByHand
-from advisor.campaign.lateral import LateralCampaign
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.lateral_estimate import LateralEstimate
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.process.parts import Parts
 from benchmarks.lateral_gap import recordings, scenario_of
 from benchmarks.studies.forecast import Forecast, score

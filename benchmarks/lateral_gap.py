@@ -21,10 +21,10 @@ from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
+from advisor.gap.axes.lateral.comparison import compare_side
+from advisor.gap.axes.lateral.diagnosis import SideDiagnosis, diagnose_side
+from advisor.gap.axes.lateral.models import case_of
 from advisor.oem.estimate import NoEstimate
-from advisor.side_gap.comparison import compare_side
-from advisor.side_gap.diagnosis import SideDiagnosis, diagnose_side
-from advisor.side_gap.models import case_of
 from advisor.simulators.side import side_without_difference
 from advisor.simulators.specification import simulator_of
 from advisor.words.quantiles import NORMAL_95

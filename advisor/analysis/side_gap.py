@@ -14,10 +14,10 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
+from advisor.gap.axes.lateral.comparison import SideGap, compare_side
 from advisor.gap.inference.prior import FIELD, FieldPrior
+from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.oem.lateral_estimator import estimate_lateral
-from advisor.side_gap.comparison import SideGap, compare_side
 from advisor.simulators.flying import Progress
 from advisor.simulators.side import side_without_difference
 from advisor.simulators.specification import simulator_of

@@ -5,13 +5,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.campaign.axes.lateral import LateralCampaign
+from advisor.campaign.axes.pitch import ElevatorCampaign
 from advisor.campaign.axis_campaign import AxisCampaign
-from advisor.campaign.elevator import ElevatorCampaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.instruments import side_signs, together, with_fit
 from advisor.campaign.journal import Journal
 from advisor.campaign.late_limits import recount
-from advisor.campaign.lateral import LateralCampaign
 from advisor.campaign.running_estimate import Settled, Settling
 from advisor.campaign.state import OF_ELEVATOR, AxisName, CampaignState, JudgedManeuver, WholeFlights
 from advisor.decision.crew_plan import CrewPlan, crew_plan
@@ -33,8 +33,8 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.flights import Flights
 from advisor.flight.stream.stream import FlightStream
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
-from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.process.parts import Parts
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock

@@ -6,9 +6,9 @@ from dataclasses import replace
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.findings import findings_of
-from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.words.digits import with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol

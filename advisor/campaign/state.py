@@ -16,8 +16,8 @@ from advisor.flight.signals.power_on import Course
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.stream.flights import FlightHeard
 from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.process.parts import FailedPart
 from advisor.words.problems import Problem
 

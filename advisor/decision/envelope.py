@@ -16,7 +16,7 @@ from advisor.flight.maneuvers.steady_speed import LEFT, speed_before
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import distrusted
-from advisor.oem.lateral_problem import LEAST_PART
+from advisor.oem.axes.lateral.problem import LEAST_PART
 from advisor.words.digits import distinct_texts
 
 SAMPLES_PER_PERIOD = 8.0

@@ -11,10 +11,10 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
+from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.following import Follower
-from advisor.oem.lateral_estimator import estimate_lateral
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.solution import Solution, solve
 

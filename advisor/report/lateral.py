@@ -8,8 +8,8 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.state import JudgedManeuver, LateralState
 from advisor.decision.axes.lateral_levels import GROUPS, SOURCE
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
+from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
 from advisor.oem.estimate import Estimate
-from advisor.oem.lateral_estimate import LateralEstimate, LateralModes
 from advisor.report.axis_document import concluded, fitted, flown, with_intervals
 from advisor.report.facts.estimates import estimated_parameter, untold
 from advisor.report.qualities import levels_document, levels_of, mode_facts, tests_document, tests_of

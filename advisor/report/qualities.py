@@ -14,11 +14,11 @@ from advisor.decision.axes.lateral_levels import SOURCE as LATERAL_SOURCE
 from advisor.decision.axes.lateral_qualification import LateralTest, lateral_qualification
 from advisor.flight.instruments.atmosphere import AirData, air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.model.lateral import Trim
+from advisor.model.axes.lateral import Trim
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED, SOURCE, LevelFound
+from advisor.oem.axes.lateral.estimate import LateralModes
 from advisor.oem.coefficients import CONVENTION, Coefficient, coefficients
 from advisor.oem.flying_qualities import UNITS, FlyingQualities, flying_qualities
-from advisor.oem.lateral_estimate import LateralModes
 from advisor.report.facts.fact import Fact, fact_of
 from advisor.words.plain import picked
 

@@ -5,6 +5,9 @@ from collections.abc import Iterator
 from typing import Any
 
 from advisor.gap.alternative import Weighed
+from advisor.gap.axes.lateral.comparison import SideGap
+from advisor.gap.axes.lateral.diagnosis import SideDiagnosis
+from advisor.gap.axes.lateral.flight import LIKELY
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.verdict.text import title_of_verdict
 from advisor.report.facts.gap import changes, counted
@@ -12,9 +15,6 @@ from advisor.report.facts.reasons import how_sure, in_percent
 from advisor.report.facts.sizes import named, sizes_of, with_error
 from advisor.report.gap_document import changed_document, weighed_document
 from advisor.report.gap_steps import GapStep, to_decide
-from advisor.side_gap.comparison import SideGap
-from advisor.side_gap.diagnosis import SideDiagnosis
-from advisor.side_gap.flight import LIKELY
 from advisor.words.certainty import is_decided
 from advisor.words.plain import picked, plain
 

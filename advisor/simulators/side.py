@@ -16,13 +16,13 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.transport_delay import DELAY
-from advisor.model.lateral import LATERAL
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axes.lateral.instruments import FIRST_LAG_S, Nuisance
+from advisor.oem.axes.lateral.prepare import prepare_lateral
+from advisor.oem.axes.lateral.problem import NEEDED, LateralProblem, LateralRecord
+from advisor.oem.axes.lateral.solution import LateralSolution, lateral_not_identifiable, solve_lateral
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.extra import Prior
-from advisor.oem.lateral_instruments import FIRST_LAG_S, Nuisance
-from advisor.oem.lateral_prepare import prepare_lateral
-from advisor.oem.lateral_problem import NEEDED, LateralProblem, LateralRecord
-from advisor.oem.lateral_solution import LateralSolution, lateral_not_identifiable, solve_lateral
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 from advisor.simulators.air import refuse_unknown_air, standard_heights, winds

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from benchmarks.mutants.lines import Change, changes_of, compared_names
 
-ROOMS = ("campaign", "decision", "doctor", "exports", "flight", "gap", "mavlink", "oem", "report", "side_gap")
+ROOMS = ("campaign", "decision", "doctor", "exports", "flight", "gap", "mavlink", "oem", "report")
 """Rooms of ``advisor`` that decide what is found, kept, estimated, judged or written."""
 LEFT_OUT = tuple(
     f"gap/{room}/" for room in ("evidence", "fitting", "judge", "search", "uncatalogued", "verdict")

@@ -15,9 +15,9 @@ from advisor.aircraft.sensors import Alpha, Beta
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.library import estimate
+from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.oem.lateral_estimate import LateralEstimate
-from advisor.oem.lateral_estimator import estimate_lateral
 from benchmarks.public.segments import (
     STROKE_RAD,
     FloatArray,

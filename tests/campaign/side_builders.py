@@ -10,11 +10,11 @@ from advisor.decision.axes.lateral_stop import lateral_flight_test
 from advisor.decision.verdict import ManeuverVerdict, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
-from advisor.model.lateral import LATERAL, Trim
+from advisor.model.axes.lateral import LATERAL, Trim
+from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axes.lateral.estimator import Errors, lateral_modes
 from advisor.oem.estimate import ChannelFit
-from advisor.oem.lateral_estimate import LateralEstimate
-from advisor.oem.lateral_estimator import Errors, lateral_modes
-from tests.oem.lateral_builders import JET, vector
+from tests.oem.axes.lateral.builders import JET, vector
 
 T = np.arange(0.0, 10.0, 0.04)
 AIRCRAFT = Aircraft(name="jet", model=JET)

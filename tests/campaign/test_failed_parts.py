@@ -5,10 +5,12 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.whole_flights import read_whole
-from advisor.campaign import axis_campaign, elevator, joint_estimate, lateral
+from advisor.campaign import axis_campaign, joint_estimate
 from advisor.campaign import campaign as whole_campaign
+from advisor.campaign.axes import lateral
+from advisor.campaign.axes import pitch as elevator
 from advisor.report.document import analysis_document
-from tests.campaign.test_lateral import ended, wired
+from tests.campaign.axes.test_lateral import ended, wired
 from tests.flights import TWO, recorded
 
 

@@ -21,7 +21,7 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
-from advisor.oem.lateral_estimate import LateralEstimate
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 from tests.campaign import side_builders
 
 CASES = Path(__file__).parents[1] / "cases"

@@ -5,8 +5,8 @@ from math import log
 import pytest
 
 from advisor.decision.axes.lateral_levels import lateral_levels
+from advisor.oem.axes.lateral.estimate import LateralModes
 from advisor.oem.flying_qualities import Quality
-from advisor.oem.lateral_estimate import LateralModes
 
 BELOW, ABOVE = 1.0 - 1e-9, 1.0 + 1e-9
 GOOD = {"omega": 3.0, "zeta": 0.5, "roll": 0.5, "pole": -0.01}

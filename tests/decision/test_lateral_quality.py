@@ -10,7 +10,7 @@ from advisor.decision.axes.lateral import judge_lateral
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
-from advisor.model.lateral import LATERAL
+from advisor.model.axes.lateral import LATERAL
 from advisor.oem.estimate import ChannelFit, NoEstimate
 from tests.campaign.side_builders import estimate
 

@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
+from advisor.model.axes.lateral import LATERAL
 from advisor.model.axis_response import AxisGrid, respond_axis
-from advisor.model.lateral import LATERAL
 from advisor.model.response import respond
-from advisor.oem.lateral_problem import CAUSES, LateralProblem, assemble_lateral
+from advisor.oem.axes.lateral.problem import CAUSES, LateralProblem, assemble_lateral
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
-from tests.oem.lateral_builders import JET, TRIM, aileron_doublet, flown, rudder_doublet, vector
+from tests.oem.axes.lateral.builders import JET, TRIM, aileron_doublet, flown, rudder_doublet, vector
 
 T = np.arange(0.0, 8.0, 0.025)
 INITIAL = (0.002, 0.01, -0.004, 0.05)

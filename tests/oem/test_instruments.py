@@ -11,20 +11,20 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.sensors import Accelerometer, Alpha
 from advisor.flight.signals.record import Channel
 from advisor.oem.airspeed import airspeed
+from advisor.oem.axes.lateral.instruments import nuisances_of
+from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.extra import Prior
 from advisor.oem.instrument_fit import _identified
 from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, unknown_instruments
-from advisor.oem.lateral_instruments import nuisances_of
-from advisor.oem.lateral_problem import LateralProblem
 from advisor.oem.prepare import prepare
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
+from tests.oem.axes.lateral.builders import JET, aileron_doublet
+from tests.oem.axes.lateral.builders import flown as flown_sideways
 from tests.oem.builders import UAV, elevator_3211, flown, maneuver, simulate, trim_alpha, trim_elevator
-from tests.oem.lateral_builders import JET, aileron_doublet
-from tests.oem.lateral_builders import flown as flown_sideways
 
 SPEED = 25.0
 GRAVITY = 9.80665

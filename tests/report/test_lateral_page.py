@@ -14,7 +14,7 @@ from advisor.report.page.headline import headline
 from advisor.report.page.lateral import lateral
 from advisor.report.table import Table
 from tests.campaign.side_builders import AIRCRAFT, estimate, judged, state
-from tests.oem.lateral_builders import JET
+from tests.oem.axes.lateral.builders import JET
 from tests.schemas import breaches
 
 UNTOLD = {"Y_p": "the record does not depend on it; fly a rudder doublet"}

@@ -14,9 +14,9 @@ from advisor.oem.surface import Servo
 from advisor.simulators.protocol import Replay
 from advisor.simulators.side import side_without_difference
 from advisor.words.problems import UnusableInputError
-from tests.oem import lateral_builders as builders
-from tests.oem.lateral_builders import JET
-from tests.side_gap import test_comparison as flights
+from tests.gap.axes.lateral import test_comparison as flights
+from tests.oem.axes.lateral import builders
+from tests.oem.axes.lateral.builders import JET
 
 KNOWN = SideControl(lag_s=0.0, delay_s=0.0)
 AIRCRAFT = Aircraft(aileron=KNOWN, rudder=KNOWN, beta=Beta("none"))

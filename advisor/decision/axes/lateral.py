@@ -23,8 +23,8 @@ from advisor.decision.envelope import (
 from advisor.decision.quality import WIDEST_PREDICTION_PERCENT, Examined, Response, objections
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.words.digits import distinct_texts
 from advisor.words.quantiles import NORMAL_95
 

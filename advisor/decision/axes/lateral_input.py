@@ -17,7 +17,7 @@ from advisor.decision.conditions import ALPHA_MARGIN, BOLDER, FULL_TRAVEL_RAD
 from advisor.decision.inputs import SHORTEST_UNIT_S, StepInput
 from advisor.decision.verdict import INFORMATION_LIMIT_PERCENT, NextInput, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.lateral_estimate import LateralEstimate
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 
 FIRST_UNIT_S = 1.0
 """Step of the first doublet, s, before any mode is known. The step lies between half a Dutch roll of a small

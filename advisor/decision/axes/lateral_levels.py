@@ -12,8 +12,8 @@ from math import inf, log
 from typing import Literal
 
 from advisor.model.mil_f_8785c import CATEGORIES, WORSE, Category, LevelFound
+from advisor.oem.axes.lateral.estimate import LateralModes
 from advisor.oem.flying_qualities import Quality
-from advisor.oem.lateral_estimate import LateralModes
 
 SOURCE = "MIL-F-8785C, paragraphs 3.3.1.1 to 3.3.1.3"
 Group = Literal["I, II-C, IV", "II-L, III"]

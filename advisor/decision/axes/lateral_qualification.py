@@ -13,7 +13,7 @@ from math import degrees, inf, isfinite, log, pi
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.lateral import LATERAL, Trim, modes_of, state_matrix
+from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 
 SHARE = 0.10
 """Largest error of roll rate, period and time to half amplitude, over the value flown."""

@@ -21,8 +21,8 @@ from advisor.decision.verdict import (
     Remaining,
     RuleProgress,
 )
-from advisor.model.lateral import LATERAL
-from advisor.oem.lateral_estimate import LateralEstimate
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 

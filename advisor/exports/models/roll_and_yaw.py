@@ -31,18 +31,18 @@ from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.stream.stream import FlightStream
 from advisor.gap.alternative import Alternative
+from advisor.gap.axes.lateral.comparison import compare_side, sentence_of_side
+from advisor.gap.axes.lateral.diagnosis import SideDiagnosis
 from advisor.gap.effects import EFFECTS
 from advisor.gap.inference.posterior import PARAMETERS
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import IMPROVING
 from advisor.mavlink.logs.whole import read_whole_log
-from advisor.model.lateral import LATERAL
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.oem.axes.lateral.prediction import predicted_lateral
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.lateral_estimate import LateralEstimate
-from advisor.oem.lateral_estimator import estimate_lateral
-from advisor.oem.lateral_prediction import predicted_lateral
-from advisor.side_gap.comparison import compare_side, sentence_of_side
-from advisor.side_gap.diagnosis import SideDiagnosis
 from advisor.simulators.contradicted import handed_over
 from advisor.simulators.flying import Progress
 from advisor.simulators.taken_back import taken_back_said, unused

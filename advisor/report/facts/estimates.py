@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from math import nan
 
 from advisor.flight.signals.track import ChannelStatus
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
-from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.report.facts.fact import Fact, fact_of
 from advisor.words.digits import decimals_for, signed
 from advisor.words.quantiles import NORMAL_95

@@ -6,10 +6,10 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.decision.axes.lateral_levels import GROUPS, SOURCE
 from advisor.decision.axes.lateral_qualification import LateralTest
-from advisor.model.lateral import LATERAL
+from advisor.model.axes.lateral import LATERAL
 from advisor.model.mil_f_8785c import MANNED
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
-from advisor.oem.lateral_estimate import LateralEstimate
 from advisor.report.facts.decision import INDENT, decisions
 from advisor.report.facts.estimates import estimated_parameter, joint_source, untold
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing

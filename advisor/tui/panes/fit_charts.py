@@ -6,7 +6,7 @@ import numpy as np
 
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.lateral import LATERAL
+from advisor.model.axes.lateral import LATERAL
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.tui.plot.chart import Chart, Ink, Mark, Series
 from advisor.tui.table_rows import TableRows

@@ -3,10 +3,10 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.axes.lateral_stop import lateral_flight_test
 from advisor.decision.heard import Heard
-from advisor.model.lateral import LATERAL, Trim
-from advisor.oem.lateral_estimate import LateralEstimate
-from advisor.oem.lateral_estimator import Errors, lateral_modes
-from tests.oem.lateral_builders import JET, vector
+from advisor.model.axes.lateral import LATERAL, Trim
+from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axes.lateral.estimator import Errors, lateral_modes
+from tests.oem.axes.lateral.builders import JET, vector
 
 N = len(LATERAL.shared)
 AIRCRAFT = Aircraft()

@@ -15,11 +15,11 @@ from advisor.exports.models.formats.ardupilot_format import plane_text
 from advisor.exports.models.improvement import STILL_AIR
 from advisor.exports.models.write import carry_out, order_of
 from advisor.gap.result import Value
-from advisor.model.lateral import Trim
+from advisor.model.axes.lateral import Trim
 from advisor.words.problems import ConfigurationError
 from tests.campaign.side_builders import estimate
 from tests.exports.models.cases import REFERENCE, improvement
-from tests.oem.lateral_builders import JET
+from tests.oem.axes.lateral.builders import JET
 
 SPEED, DENSITY = 130.0, 1.225
 RIGHT_ROLLS = SideControl(calibration=((1000.0, 20.0), (1500.0, 0.0), (2000.0, -20.0)))

@@ -11,7 +11,7 @@ from advisor.aircraft.reference import SIDE_PARAMETERS, Reference
 from advisor.exports.models.flown import FlownModel, side_of
 from advisor.exports.models.formats.sdf_format import plugins_text
 from advisor.exports.models.improvement import STILL_AIR
-from advisor.model.lateral import Trim
+from advisor.model.axes.lateral import Trim
 from tests.campaign.side_builders import estimate
 
 SPEED = 130.0

@@ -19,13 +19,13 @@ from advisor.exports.models.jsbsim.side import side_text
 from advisor.exports.models.jsbsim.side_slopes import SideRequest
 from advisor.exports.models.jsbsim.slopes import Request
 from advisor.gap.result import Value
-from advisor.model.lateral import Trim, state_matrix
+from advisor.model.axes.lateral import Trim, state_matrix
 from advisor.words.problems import ConfigurationError
 from tests.campaign.side_builders import estimate
 from tests.exports.models.cases import air_at, improvement
 from tests.exports.models.test_jsbsim import placed, trimmed
 from tests.exports.models.test_matlab import OCTAVE, needs_octave
-from tests.oem.lateral_builders import JET
+from tests.oem.axes.lateral.builders import JET
 
 JET_SIDE = side_of(estimate("aileron", "rudder"), Trim(130.0, 0.07, 0.105), STILL_AIR, Aircraft())
 ASKED = SideRequest(53.0, 1000.0)

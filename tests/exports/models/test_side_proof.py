@@ -13,10 +13,10 @@ from advisor.exports.models import roll_and_yaw
 from advisor.exports.models.proof import Proof
 from advisor.exports.models.proved_finding import NUMBERS
 from advisor.exports.models.roll_and_yaw import _ahead, prove_side, stays_of_side
-from advisor.side_gap.comparison import SideGap
-from tests.oem.lateral_builders import JET
-from tests.side_gap.test_comparison import AIRCRAFT, TRUE, maneuvers
-from tests.side_gap.test_diagnosis import FOUND
+from advisor.gap.axes.lateral.comparison import SideGap
+from tests.gap.axes.lateral.test_comparison import AIRCRAFT, TRUE, maneuvers
+from tests.gap.axes.lateral.test_diagnosis import FOUND
+from tests.oem.axes.lateral.builders import JET
 
 OFF = {"L_delta_a": 0.6 * JET["L_delta_a"], "N_delta_r": 1.5 * JET["N_delta_r"]}
 WEAK = replace(AIRCRAFT, model=TRUE | OFF)

@@ -10,7 +10,7 @@ from advisor.flight.instruments.measured import pooled
 from advisor.flight.instruments.side_examination import examine_side
 from advisor.flight.signals.record import Channel
 from advisor.oem.rows import Signal
-from tests.oem.lateral_builders import JET, flown, rudder_doublet, steps
+from tests.oem.axes.lateral.builders import JET, flown, rudder_doublet, steps
 
 SMALL = JET | {"Y_beta": -0.5}
 SOURCE = {"a_y": "RAW_IMU.yacc", "beta": "AOA_SSA.SSA"}

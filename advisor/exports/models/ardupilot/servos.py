@@ -13,7 +13,7 @@ from advisor.aircraft.controls import Pairs
 from advisor.exports.models.exported import Exported, commented, effects_beside
 from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.improvement import ExportedServo
-from advisor.model.lateral import LATERAL
+from advisor.model.axes.lateral import LATERAL
 from advisor.words.problems import ConfigurationError
 
 NEUTRAL_US, HALF_TRAVEL_US = 1500.0, 500.0

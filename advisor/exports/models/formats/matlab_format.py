@@ -21,7 +21,7 @@ from advisor.exports.models.formats import ModelFormat
 from advisor.exports.models.improvement import Improvement, air_note, zero_said
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Value
-from advisor.model.lateral import state_matrix
+from advisor.model.axes.lateral import state_matrix
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import SIDE_PARAMETERS as QUANTITIES
 

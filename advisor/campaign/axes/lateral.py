@@ -1,0 +1,153 @@
+"""The lateral half of a campaign: its manoeuvres, their estimates and verdicts, and the joint estimate."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.campaign.axis_campaign import AxisCampaign
+from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.single_maneuver import failed, untold
+from advisor.campaign.state import JudgedManeuver, LateralState
+from advisor.decision.axes.lateral import RESPONSES, judge_lateral
+from advisor.decision.axes.lateral_input import FlownInput
+from advisor.decision.axes.lateral_stop import lateral_flight_test
+from advisor.decision.change import find_change
+from advisor.decision.heard import Heard
+from advisor.decision.history import CandidateManeuver
+from advisor.decision.verdict import FlightTestVerdict
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.process.parts import Parts
+from advisor.words.problems import Problem
+
+NEWEST = 7
+"""Number of newest accepted manoeuvres that are estimated together in flight, as for the elevator."""
+OF_EACH = 3
+"""Number of them that are kept of each control, so that inputs of one control alone do not make the estimate
+forget the other. With three manoeuvres, one may contradict two that agree."""
+
+
+class LateralCampaign(AxisCampaign):
+    """Estimates and judges lateral manoeuvres as they come.
+
+    Parameters
+    ----------
+    aircraft
+        The crew's aircraft file. The rule is ``information``, whatever the file chooses for pitch.
+    parts
+        Makes manoeuvres, decision and joint estimate, each of which may fail alone.
+    """
+
+    def __init__(self, aircraft: Aircraft, parts: Parts) -> None:
+        self._state: LateralState | None = None
+        self._unknown: Problem | None = None
+        self._joint: tuple[tuple[int, ...], LateralEstimate | None] | None = None
+        super().__init__("lateral", aircraft, replace(aircraft.campaign, rule="information"), parts)
+
+    def take(self, maneuver: Maneuver, by_hand: ByHand) -> JudgedManeuver:
+        """Estimate and judge a manoeuvre that has just been flown, and decide anew whether to stop."""
+        examined = self._parts.make(
+            f"lateral, manoeuvre {maneuver.number}",
+            lambda: self._examined(maneuver),
+            partial(failed, maneuver),
+        )
+        self._add(maneuver, examined, by_hand)
+        self.decide()
+        self._hear()
+        return self.judged[-1]
+
+    def _examined(self, maneuver: Maneuver) -> CandidateManeuver:
+        """Estimate a manoeuvre and examine it, before any rule compares it with other manoeuvres."""
+        estimate = estimate_lateral([maneuver], self._aircraft)
+        controls = estimate.flown if isinstance(estimate, LateralEstimate) else ()
+        return CandidateManeuver(
+            estimate,
+            judge_lateral(maneuver, estimate, self._aircraft),
+            maneuver.data_notes,
+            maneuver=maneuver,
+            responses=tuple(RESPONSES[control].output for control in controls),
+        )
+
+    def state(self, unknown: Problem | None = None) -> LateralState:
+        """Return the state after the newest manoeuvre; the identical object while nothing is added.
+
+        Parameters
+        ----------
+        unknown
+            Reason for which aileron or rudder cannot be followed. None: the outputs of aileron and rudder
+            are known.
+        """
+        if self._state is None or unknown != self._unknown:
+            self._unknown = unknown
+            model = self._joint_estimate
+            verdict = self._by(model, self._still_heard)
+            if unknown is not None and not self._flown:
+                verdict = replace(verdict, sentence=str(unknown), next=None)
+            numbers = tuple(self.judged[i].maneuver.number for i in self._joined()) if model else ()
+            self._state = LateralState(self.judged, verdict, model, numbers)
+        return self._state
+
+    def _decided(self, history: Sequence[CandidateManeuver], heard: Sequence[Heard]) -> FlightTestVerdict:
+        """Return the decision as the crew hears it after the newest manoeuvre."""
+        self._state = None
+        return self._by(self._joint_estimate if self._may_stop else None, heard)
+
+    def _by(self, joint: LateralEstimate | None, heard: Sequence[Heard]) -> FlightTestVerdict:
+        """Return the decision by a joint estimate."""
+        return self._parts.make(
+            "lateral, stop or continue",
+            lambda: lateral_flight_test(
+                self._told, joint, self._aircraft, self._inputs, heard, find_change(self._examinations)
+            ),
+            lambda _: lateral_flight_test([], None, self._aircraft),
+        )
+
+    @property
+    def _inputs(self) -> list[FlownInput]:
+        """Inputs of all manoeuvres, accepted or not."""
+        return [FlownInput.of(one.maneuver, one.verdict.reasons) for one in self.judged]
+
+    @property
+    def _may_stop(self) -> bool:
+        """Whether the newest manoeuvre can decide: both controls were flown, and no stop was heard before.
+
+        Without both, nothing is known of one control. A joint estimate takes a second.
+        """
+        moved = {control for one in self._told if one is not None for control in one.flown}
+        return moved >= set(LATERAL.inputs) and not any(one.stops for one in self._still_heard)
+
+    @property
+    def _told(self) -> list[LateralEstimate | None]:
+        """Estimate of every manoeuvre; None for one that is not accepted."""
+        return [
+            one.estimate if one.verdict.accepted and isinstance(one.estimate, LateralEstimate) else None
+            for one in self.judged
+        ]
+
+    @property
+    def _joint_estimate(self) -> LateralEstimate | None:
+        """Joint estimate, computed once for the same manoeuvres; None where there is none."""
+        joined = self._joined()
+        if self._joint is None or self._joint[0] != joined:
+            maneuvers = [self.judged[i].maneuver for i in joined]
+            found = self._parts.make(
+                "lateral, joint estimate", lambda: estimate_lateral(maneuvers, self._aircraft), untold
+            )
+            self._joint = joined, found if isinstance(found, LateralEstimate) else None
+        return self._joint[1]
+
+    def _joined(self) -> tuple[int, ...]:
+        """Return the places of the manoeuvres of the joint estimate: the newest accepted ones of each control
+        in flight, all at the end."""
+        accepted = [i for i, one in enumerate(self.judged) if one.verdict.accepted]
+        if self._ended:
+            return tuple(accepted)
+        kept: set[int] = set()
+        inputs = self._inputs
+        for control in LATERAL.inputs:
+            kept |= set([i for i in accepted if inputs[i].control == control][-OF_EACH:])
+        others = [i for i in accepted if i not in kept]
+        return tuple(sorted(kept.union(others[max(len(others) + len(kept) - NEWEST, 0) :])))

@@ -1,0 +1,1 @@
+"""The engine's axes other than pitch."""

@@ -1,0 +1,1 @@
+"""Roll and yaw as the engine asks for them: effects, fits, gusts and evidence."""

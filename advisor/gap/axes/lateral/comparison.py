@@ -1,0 +1,85 @@
+"""The gap of the lateral axis: the simulator's derivatives and effects against those of the flight.
+
+Derivatives are compared with their intervals, servos and clocks as the estimate tells them. ``diagnosis``
+weighs right derivatives, wrong ones and effects. Each manoeuvre's gap is measured with the derivatives of
+all other manoeuvres.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import SIDE_PARAMETERS
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.gap.axes.lateral.diagnosis import Kind, SideDiagnosis, diagnose_side
+from advisor.gap.axes.lateral.models import case_of
+from advisor.gap.inference.prior import FIELD, FieldPrior
+from advisor.gap.result import ComparedDerivative, Value
+from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.oem.estimate import NoEstimate
+from advisor.words.certainty import as_sure
+
+
+@dataclass(frozen=True, slots=True)
+class SideGap:
+    """Comparison of the aircraft file's lateral derivatives with the flight."""
+
+    verdict: Kind | None
+    """None: no model fits, or the file states no derivative that the flight tells and no effect was found."""
+    sentence: str
+    derivatives: tuple[ComparedDerivative, ...]
+    instruments: Mapping[str, Value]
+    """Lag or delay of servos and clocks, as the fit tells it."""
+    not_identifiable: Mapping[str, str]
+    maneuvers: tuple[int, ...]
+    diagnosis: SideDiagnosis | None
+    """Probabilities of all explanations; None where no model fits."""
+
+
+def compare_side(
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, prior: FieldPrior = FIELD
+) -> SideGap | NoEstimate:
+    """Compare roll and yaw of the aircraft file with accepted manoeuvres.
+
+    A derivative that the file does not state counts as that of the flight. ``prior`` holds the shares of the
+    answers before the flight.
+    """
+    model = estimate_lateral(maneuvers, aircraft)
+    if isinstance(model, NoEstimate):
+        return model
+    stated = tuple(
+        ComparedDerivative(name, aircraft.model[name], Value(float(value), float(std)))
+        for name, value, std in zip(SIDE_PARAMETERS, model.theta, model.std, strict=True)
+        if name in aircraft.model and name not in model.not_identifiable
+    )
+    case = case_of(maneuvers, aircraft, model.theta)
+    diagnosis = None if isinstance(case, NoEstimate) else diagnose_side(case, prior)
+    answer = diagnosis.verdict if diagnosis else None
+    verdict = answer if stated or answer in ("effect", "unknown") else None
+    acts = diagnosis if verdict in ("effect", "unknown") else None
+    sentence = acts.sentence if acts else sentence_of_side(verdict, stated)
+    return SideGap(
+        verdict,
+        as_sure(sentence, diagnosis.answers) if verdict and diagnosis else sentence,
+        stated,
+        {name: Value(*told) for name, told in model.nuisances.items()},
+        model.not_identifiable,
+        tuple(m.number for m in maneuvers),
+        diagnosis,
+    )
+
+
+def sentence_of_side(verdict: str | None, derivatives: Sequence[ComparedDerivative]) -> str:
+    """Return the sentence of an answer without an effect."""
+    if verdict is None:
+        return (
+            "The aircraft file states no derivative of roll and yaw that the flight tells: give model.L_p "
+            "and the like."
+        )
+    if verdict == "none":
+        return (
+            "The simulator's derivatives of roll and yaw are those of the flight, and no effect is missing."
+        )
+    wrong = [one.name for one in derivatives if one.differs]
+    listed = f": {', '.join(wrong)}" if wrong else " together, though none alone"
+    return f"The simulator's derivatives of roll and yaw are not those of the flight{listed}."

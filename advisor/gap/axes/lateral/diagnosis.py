@@ -1,0 +1,253 @@
+"""Explanations of a lateral flight: no gap, wrong numbers, side gusts, one effect, or two at once."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from statistics import fmean
+from typing import Literal
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.alternative import Alternative, Weighed
+from advisor.gap.axes.lateral.effects import block_of, side_effects, unseen
+from advisor.gap.axes.lateral.evidence import Gain, information_of, posterior_of, share_of, squares_of
+from advisor.gap.axes.lateral.fit import Fit, N
+from advisor.gap.axes.lateral.flight import SideFlight, SideModel
+from advisor.gap.axes.lateral.gusts import coloured_likelihood
+from advisor.gap.axes.lateral.laws import side_laws
+from advisor.gap.axes.lateral.models import Case, base_of, free_near
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
+from advisor.gap.inference.engine import Decided, decided, first_stage
+from advisor.gap.inference.explanation import Row
+from advisor.gap.inference.posterior import NONE, relabelled
+from advisor.gap.inference.prior import FIELD, FieldPrior
+from advisor.gap.result import Cause, Value, Where, ranked
+from advisor.gap.search.air import NATURAL_GUST_ANGLE
+from advisor.gap.verdict.causes import MOST_CAUSES
+from advisor.gap.verdict.reasons import weighed
+from advisor.gap.verdict.statements import what
+from advisor.gap.verdict.text import answers_of, place
+from advisor.model.axes.lateral import LATERAL
+from advisor.words.certainty import Answers
+
+PEAKS = ("p", "r")
+"""Outputs whose largest errors are reported."""
+AIR = "side gusts"
+SIDE_GUSTS = Alternative("air", "side_gusts", "air")
+Kind = Literal["none", "parameters", "effect", "unknown"]
+
+
+@dataclass(frozen=True, slots=True)
+class SideCause:
+    """One effect as the explanation of the gap."""
+
+    of: str
+    """Control or output; ``air`` for side gusts."""
+    named: str
+    """Name of the effect as people write it."""
+    cause: Cause
+    """Effect by its name of the pitch axis, with sizes and probability."""
+    sentence: str
+    gain: Gain
+    """Log likelihood gained on unseen manoeuvres over fitted derivatives alone, nats."""
+    peaks: Mapping[str, float]
+    """Largest error of roll and yaw rate with the effect, rad/s."""
+
+    @property
+    def name(self) -> str:
+        """Name of the effect in documents."""
+        return self.named.replace(" ", "_")
+
+    @property
+    def block(self) -> str:
+        """Block of the simulator in which the effect acts."""
+        return block_of(self.of)
+
+
+@dataclass(frozen=True)
+class SideDiagnosis(Weighed):
+    """All explanations with their evidence, and the likeliest effects."""
+
+    causes: tuple[SideCause, ...]
+    """Effects of the model in the order in which they were found, then alternatives, likeliest first."""
+    peaks: Mapping[str, float]
+    """Largest error of roll and yaw rate with the simulator's derivatives, rad/s."""
+    peaks_by_numbers: Mapping[str, float]
+    """Largest error with the flight's derivatives and no effect, rad/s."""
+    cannot_see: Mapping[str, str]
+    """Causes that these records cannot show, with the reason."""
+    before: Mapping[str, float] = field(default_factory=dict)
+    """Output to the simulator's gap: the mean square of its error over that of the noise, minus 1."""
+    after: Mapping[str, float] = field(default_factory=dict)
+    """Output to the gap with the derivatives of the flight, each manoeuvre predicted from all others."""
+    waterfall: tuple[tuple[str, float], ...] = ()
+    """Name of each effect of the model, and the gap that remains with it: the mean square over that of the
+    whole model, minus 1."""
+
+    @property
+    def mean_gap(self) -> tuple[float, float] | None:
+        """Mean gap of the outputs, of the simulator and of the flight's derivatives; None without both."""
+        return (fmean(self.before.values()), fmean(self.after.values())) if self.after else None
+
+    @property
+    def shrink_percent(self) -> float | None:
+        """Share of the mean gap that the flight's derivatives remove, per cent; None without a gap."""
+        gap = self.mean_gap
+        return 100.0 * (1.0 - gap[1] / gap[0]) if gap and gap[0] > 0.0 else None
+
+    @property
+    def verdict(self) -> Kind:
+        """Kind of the likeliest alternative."""
+        assert self.answer is not None
+        return "effect" if self.answer.is_effect else self.answer.kind  # type: ignore[return-value]
+
+    @property
+    def answers(self) -> Answers:
+        """Every answer in words with its probability, the likeliest first."""
+        return answers_of(self.evidence)
+
+    @property
+    def where(self) -> Where | None:
+        """Block of the named effect, or else the likeliest one of a law without a name; None without both."""
+        each = {a.block: one.probability for one in self.evidence if (a := one.alternative).kind == "unknown"}
+        without = sum(each.values())
+        shares = {block: p / without for block, p in each.items() if without > 0.0}
+        if self.verdict == "effect" and self.causes:
+            first = {self.causes[0].block: 1.0}
+            shares = first | shares | first
+        if not shares:
+            return None
+        ranking = ranked(shares)
+        return Where(ranking[0][0], shares[ranking[0][0]], ranking)
+
+    @property
+    def sentence(self) -> str:
+        """Statements about all effects of the model, or about the place of a law without a name."""
+        if self.verdict == "unknown" and self.where is not None:
+            return f"Something acts {place(self.where.block)} that no known effect explains."
+        return ". ".join(one.sentence for one in self.causes if one.cause.present)
+
+
+def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None:
+    """Return the probabilities of all explanations; None where no plain fit exists.
+
+    Where one effect is the likeliest explanation, a second one is sought in the model with the first.
+
+    Parameters
+    ----------
+    prior : shares of the answers before the flight.
+    """
+    first = case.fit(case.begin, case.natural)
+    plain = first and case.fit(first.point, first.free, share=share_of(first))
+    as_given = plain and case.fit(
+        plain.point._replace(theta=case.theta), free_near(case, plain), ERROR_IF_RIGHT * 1e-3
+    )
+    if plain is None or as_given is None:
+        return None
+    table = list(side_effects(case.flown))
+    flight = SideFlight(case, plain, table, list(side_laws(case, plain)))
+    found = decided(flight, first_stage(flight), prior, lambda rows: [_named_air(row) for row in rows])
+    told = weighed(found.posteriors[0])
+    unseen_by = squares_of(plain, information_of(plain, 1.0), case.prior_of(ERROR_IF_WRONG, plain.free))
+    return SideDiagnosis(
+        evidence=told.evidence, why=told.why, answer=told.answer, rival=told.rival, decisions=told.decisions,
+        causes=tuple(_causes(case, found, as_given))[:MOST_CAUSES],
+        peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain),
+        before=_gap(plain, np.asarray(np.bincount(plain.assembly.channel, as_given.residual**2), float)),
+        after=_gap(plain, np.sum(unseen_by.held_out, axis=0)) if len(case.flown) > 1 else {},
+        cannot_see=unseen(case.flown), waterfall=_waterfall(found.chosen[1:]),
+    )  # fmt: skip
+
+
+def _gap(plain: Fit, squares: FloatArray) -> Mapping[str, float]:
+    """Return the gap of each output from sums of squares (outputs,)."""
+    counts = np.bincount(plain.assembly.channel)
+    return {
+        LATERAL.outputs[k]: max(0.0, float(squares[k] / counts[k] / plain.noise[k] ** 2) - 1.0)
+        for k in np.flatnonzero(counts)
+    }
+
+
+def _named_air(row: Row[SideModel]) -> Row[SideModel]:
+    """Return the row with side gusts as its answer, where they alone are beyond the natural ones."""
+    gusts = row.explanation.gusts
+    blown = row.alternative == NONE and gusts is not None and gusts.angle > NATURAL_GUST_ANGLE
+    return relabelled(row, SIDE_GUSTS) if blown else row
+
+
+def _causes(case: Case, found: Decided[SideModel], as_given: Fit) -> Iterator[SideCause]:
+    """Yield the effects of the model, then the alternatives to the first of them."""
+    posterior, together = found.posteriors[0], 1.0
+    added = found.chosen[1:]
+    if added:
+        last = added[-1].fit
+        # The whole model leaves less colour than the model in which its last effect was sought.
+        share = share_of(last)
+        fit = case.fit(last.point, last.free, added[-1].tolerance, share) or last
+        for stage, one in zip(found.posteriors, added, strict=False):
+            assert one.alternative is not None
+            together *= stage.of(one.alternative)
+            yield _cause(case, one, fit, added[-1].tolerance, together, share, present=True)
+    share = found.heat**-0.5
+    taken = {one.alternative for one in added}
+    for alternative, probability in posterior.by_alternative.items():
+        if not alternative.is_effect or alternative in taken:
+            continue
+        other = posterior.explanation_of(alternative)
+        if alternative == SIDE_GUSTS:
+            yield _air(case, other, probability, posterior.answer == SIDE_GUSTS, as_given)
+            continue
+        yield _cause(case, other, other.fit, other.tolerance, probability, share, present=False)
+
+
+def _cause(
+    case: Case, tried: SideModel, fit: Fit, tolerance: float, probability: float, share: float, present: bool
+) -> SideCause:
+    """Return an effect with its sizes in a fit that has the effect."""
+    effect = tried.effect
+    assert effect is not None
+    mean, covariance = posterior_of(fit, information_of(fit, share), case.prior_of(tolerance, fit.free))
+    places = [one.place for one in fit.free]
+    at = [N + places.index(place) for place in effect.places]
+    sizes = mean[at] - base_of(case, effect)
+    std = np.sqrt(np.diag(covariance)[at])
+    parameters = {
+        name: Value(float(size), float(error))
+        for name, size, error in zip(effect.variant.names, sizes, std, strict=True)
+    }
+    if effect.variant.inverted:
+        name = effect.variant.names[0]
+        inverse, error = max(parameters[name].value, effect.variant.smallest), parameters[name].std
+        parameters[name] = Value(1.0 / inverse, error / inverse**2)
+    cause = Cause(
+        effect.variant.effect, effect.variant.block, probability, parameters, (), "", float(np.nan), present
+    )
+    return SideCause(effect.of, effect.named, cause, effect.said(what(cause)), tried.gain, peaks_of(fit))
+
+
+def _air(case: Case, one: SideModel, probability: float, is_found: bool, as_given: Fit) -> SideCause:
+    """Return side gusts as a cause."""
+    assert one.gusts is not None
+    speed = float(np.mean([np.mean(record.airspeed.y) for record in case.flown.problem.records]))
+    size = Value(one.gusts.angle * speed, one.gusts.angle_std * speed)
+    cause = Cause("turbulence", "air", probability, {"sigma_v_m_s": size}, (), "", float(np.nan), is_found)
+    said = f"The air was not still: side gusts of about {size.value:.2g} m/s"
+    gain = Gain(one.gusts.likelihood - coloured_likelihood(one.fit), 0.0)
+    return SideCause("air", AIR, cause, said, gain, peaks_of(as_given))
+
+
+def _waterfall(added: Sequence[SideModel]) -> tuple[tuple[str, float], ...]:
+    """Return the gap that remains with each effect of the model."""
+    if not added:
+        return ()
+    told = np.unique(added[-1].fit.assembly.channel)
+    last = added[-1].fit.noise[told]
+    return tuple((one.name, float(np.mean((one.fit.noise[told] / last) ** 2)) - 1.0) for one in added)
+
+
+def peaks_of(fit: Fit) -> Mapping[str, float]:
+    """Return the largest error of roll and yaw rate, rad/s."""
+    return {
+        name: max(float(np.max(np.abs(fit.residual[rows[name]]))) for rows in fit.assembly.rows)
+        for name in PEAKS
+    }

@@ -1,0 +1,154 @@
+"""Response of all outputs of roll and yaw to a disturbance in one block of the simulator.
+
+A disturbance is added to a control's deflection, to one equation, to the air or to one sensor of the fitted
+model. A gust adds its angle to the sideslip that fin, wing and vane meet, so it enters side force, roll and
+yaw together. A disturbance is linear between knots.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import expm
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.axes.lateral.fit import Fit, N
+from advisor.gap.axes.lateral.setting import Flown
+from advisor.gap.noise.probes import KNOTS_S
+from advisor.model.axes.lateral import LATERAL, Trim, state_matrix
+
+AIR = "air"
+EQUATIONS = {"side_force": "beta", "rolling_moment": "p", "yawing_moment": "r"}
+"""Block to the state in whose equation it stands."""
+SENSORS = {
+    "roll_rate_sensor": "p",
+    "yaw_rate_sensor": "r",
+    "attitude_sensor": "bank",
+    "accelerometer": "a_y",
+    "sideslip_sensor": "beta",
+}
+"""Block to the output that it reads."""
+STEP_S = 0.02
+"""Step of the motion that a disturbance causes, s: a fifth of the distance of the knots."""
+_STATES = {name: k for k, name in enumerate(LATERAL.states)}
+_BETA, _P, _R, _BANK = range(len(LATERAL.states))
+
+
+class Course(NamedTuple):
+    """A disturbance in one manoeuvre."""
+
+    knots: FloatArray
+    """(k,) times of its knots, s."""
+    columns: FloatArray
+    """(n, k) change of the manoeuvre's rows by 1 at each knot, free of what its own parameters absorb."""
+
+
+def blocks_of(fit: Fit, flown: Flown) -> Iterator[str]:
+    """Yield the blocks in which these records show a disturbance."""
+    yield from filter(flown.problem.flies, LATERAL.inputs)
+    yield from EQUATIONS
+    yield AIR
+    there = {LATERAL.outputs[k] for k in np.unique(fit.assembly.channel)}
+    yield from (block for block, output in SENSORS.items() if output in there)
+
+
+def courses_of(fit: Fit, flown: Flown, block: str = AIR) -> tuple[Course, ...]:
+    """Return what a disturbance changes in every manoeuvre, by the derivatives of a fit.
+
+    Its unit is rad at a control and in the air, 1/s or rad/s² in an equation, and that of its output at a
+    sensor.
+    """
+    return tuple(_course(fit, flown, m, block) for m in range(len(flown)))
+
+
+def _course(fit: Fit, flown: Flown, m: int, block: str) -> Course:
+    own = np.flatnonzero(fit.assembly.owner == m)
+    stamps = fit.assembly.t[own]
+    knots = np.arange(np.min(stamps), np.max(stamps) + KNOTS_S, KNOTS_S)
+    t = np.arange(knots[0], knots[-1] + STEP_S, STEP_S)
+    weight = fit.weight[own][:, None]
+    local = fit.sensitivities[own][:, fit.assembly.free[fit.assembly.free >= N]] * weight
+    basis = np.linalg.svd(local, full_matrices=False)[0]
+    # Speed and trim are constant: every knot but the first changes the outputs like the second one, later.
+    begun = _outputs(fit.point.theta, flown, m, block, _hats(t, knots[:2]))
+    seen = {name: _later(two, len(knots)) for name, two in begun.items()}
+    weighed = _read(fit, m, t, seen) * weight
+    return Course(knots, (weighed - basis @ (basis.T @ weighed)) / weight)
+
+
+def _later(two: FloatArray, knots: int) -> FloatArray:
+    """Return the changes (n, knots) by a disturbance at every knot, given those at the first two (n, 2)."""
+    step = round(KNOTS_S / STEP_S)
+    changes = np.zeros((len(two), knots))
+    changes[:, 0] = two[:, 0]
+    for k in range(1, knots):
+        late = (k - 1) * step
+        changes[late:, k] = two[: len(two) - late, 1]
+    return changes
+
+
+def answered(fit: Fit, flown: Flown, m: int, block: str, t: FloatArray, course: FloatArray) -> FloatArray:
+    """Return the change of a manoeuvre's rows by ``k`` disturbances in a block, whose values (n, k) belong
+    to the times ``t``."""
+    return _read(fit, m, t, _outputs(fit.point.theta, flown, m, block, course))
+
+
+def _read(fit: Fit, m: int, t: FloatArray, seen: Mapping[str, FloatArray]) -> FloatArray:
+    """Return changes of outputs (n, k) by their names, of values at ``t``, as rows of a manoeuvre."""
+    parts = []
+    for name, rows in fit.assembly.rows[m].items():
+        change = seen.get(name, np.zeros((len(t), next(iter(seen.values())).shape[1])))
+        at = (fit.assembly.t[rows] - t[0]) / STEP_S
+        k = np.clip(at.astype(int), 0, len(t) - 2)
+        share = (at - k)[:, None]
+        parts.append((1.0 - share) * change[k] + share * change[k + 1])
+    return np.concatenate(parts)
+
+
+def _outputs(
+    theta: FloatArray, flown: Flown, m: int, block: str, course: FloatArray
+) -> Mapping[str, FloatArray]:
+    """Return by output what disturbances (n, k), one value a step, change (n, k)."""
+    if block in SENSORS:
+        return {SENSORS[block]: course}
+    problem, record = flown.problem, flown.problem.records[m]
+    speed = float(np.mean(record.airspeed.y))
+    ratio = speed / (problem.reference_airspeed_m_s or speed)
+    trim = Trim(speed, float(np.mean(record.alpha.y)), float(np.mean(record.theta.y)))
+    scaled = theta * np.array([ratio**term.power for term in LATERAL.shared])
+    a = state_matrix(scaled, trim)
+    aerodynamic = a - state_matrix(np.zeros(len(theta)), trim)
+    drives = _drives(block, scaled, aerodynamic)
+    whole = np.zeros((6, 6))
+    whole[:4, :4], whole[:4, 4], whole[4, 5] = a, drives, 1.0 / STEP_S
+    step = expm(STEP_S * whole)
+    x = np.zeros((len(course), 4, course.shape[1]))
+    x[1:] = step[:4, 4, None] * course[:-1, None] + step[:4, 5, None] * np.diff(course, axis=0)[:, None]
+    for i in range(len(course) - 1):
+        x[i + 1] += step[:4, :4] @ x[i]
+    force, turn = (np.einsum("s,nsk->nk", aerodynamic[k], x) + drives[k] * course for k in (_BETA, _R))
+    return {
+        "p": x[:, _P],
+        "r": x[:, _R],
+        "bank": x[:, _BANK],
+        "a_y": speed * force + problem.accelerometer_arm_m * turn,
+        "beta": x[:, _BETA] + (course if block == AIR else 0.0) + problem.beta_arm_m / speed * x[:, _R],
+    }
+
+
+def _drives(block: str, theta: FloatArray, aerodynamic: FloatArray) -> FloatArray:
+    """Return how a disturbance of a block enters each state equation, shape (4,)."""
+    if block == AIR:
+        return np.asarray(aerodynamic[:, _BETA])
+    drives = np.zeros(len(LATERAL.states))
+    if block in EQUATIONS:
+        drives[_STATES[EQUATIONS[block]]] = 1.0
+    for term, value in zip(LATERAL.shared, theta, strict=True):
+        if term.factor == block:
+            drives[_STATES[term.state]] += value
+    return drives
+
+
+def _hats(t: FloatArray, knots: FloatArray) -> FloatArray:
+    """Return the share (n, k) of every knot at times ``t``, linear between knots."""
+    return np.maximum(0.0, 1.0 - np.abs(t[:, None] - knots) / KNOTS_S)

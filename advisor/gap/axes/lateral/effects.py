@@ -1,0 +1,157 @@
+"""Effects of roll and yaw, one row each: those of the pitch axis at aileron, rudder and lateral instruments.
+
+Names, blocks, bounds, starts, least sizes and sentences are those of ``gap.effects``. A row adds the control
+or output, the places that the parameters set, and the standard deviation of each before the flight.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.axes.lateral.disturbance import SENSORS
+from advisor.gap.axes.lateral.setting import PROPELLER, Flown, Place
+from advisor.gap.effects.accelerometer_offset import ARM
+from advisor.gap.effects.actuator_backlash import BACKLASH
+from advisor.gap.effects.actuator_deadband import DEADBAND_ABOUT_TRIM
+from advisor.gap.effects.actuator_lag import LAG
+from advisor.gap.effects.actuator_rate_limit import RATE_LIMIT
+from advisor.gap.effects.pitch_rate_scale import SCALE
+from advisor.gap.effects.thrust_moment import EFFECT as THRUST
+from advisor.gap.effects.transport_delay import DELAY
+from advisor.gap.kit.effect import without_sizes
+from advisor.gap.kit.least import FILTERED_S
+from advisor.gap.kit.skew import skew_beyond
+from advisor.gap.kit.variant import Variant
+from advisor.gap.result import spelled
+from advisor.model.axes.lateral import LATERAL
+
+THROTTLE_MOVES = 0.02
+"""Least change of the throttle within a record that makes it informative, as for the pitching moment."""
+
+
+@dataclass(frozen=True, slots=True)
+class SideEffect:
+    """One row of the table: an effect at one control or output."""
+
+    of: str
+    """Control or output; ``throttle`` for the propeller."""
+    variant: Variant
+    places: tuple[Place, ...]
+    """Place of each parameter."""
+    std: tuple[float, ...]
+    """Standard deviation of each parameter about zero before the flight, over the aircraft with the effect.
+    Where the bounds exclude negative sizes, the prior is half of a Gaussian."""
+    words: Mapping[str, str] = field(default_factory=dict)
+    """Words of the pitch axis' sentence to those of this axis."""
+    columns: FloatArray | None = field(default=None, compare=False)
+    """(N, k) change of the outputs per unit of each parameter, where it is linear."""
+
+    @property
+    def named(self) -> str:
+        """Name of the effect as people write it: ``aileron actuator lag``, ``roll rate scale``."""
+        spoken = spelled(self.variant.effect)
+        for old, new in self.words.items():
+            spoken = spoken.replace(old, new)
+        return f"{self.of} {spoken}" if self.of in LATERAL.inputs else spoken
+
+    @property
+    def name(self) -> str:
+        """Name of the effect in documents: ``aileron_actuator_lag``, ``roll_rate_scale``."""
+        return self.named.replace(" ", "_")
+
+    def said(self, sentence: str) -> str:
+        """Return the pitch axis' sentence in the words of this axis; the control leads where none changes."""
+        for old, new in self.words.items():
+            if old in sentence:
+                return sentence.replace(old, new)
+        return sentence if not self.words else f"{self.of.capitalize()}: {sentence[0].lower()}{sentence[1:]}"
+
+    @property
+    def starts(self) -> tuple[tuple[float, ...], ...]:
+        """Sizes at which a search starts; none where the outputs are linear in the size."""
+        return tuple(start for start in self.variant.starts if start[0])
+
+    @property
+    def sides(self) -> tuple[Place, tuple[float, ...]] | None:
+        """Place of the parameter whose value differs by manoeuvre, and the values to choose from; None
+        without such a parameter."""
+        return None if self.variant.sides is None else ((self.of, self.variant.sides[0]), (-1.0, 0.0, 1.0))
+
+
+_BLOCKS = {**{output: block for block, output in SENSORS.items()}, "throttle": "rolling_moment"}
+"""Output, or the throttle, to its block; a control is a block itself."""
+_SERVO = (
+    (LAG, ("lag_s",), (0.05,)),
+    (DELAY, ("delay_s",), (0.05,)),
+    (RATE_LIMIT, ("slowness_s_rad",), (1.5,)),
+    (BACKLASH, ("half_play_rad",), (0.01,)),
+    (DEADBAND_ABOUT_TRIM, ("half_deadband_rad", "neutral_rad"), (0.01, 0.005)),
+)
+"""Effects of a servo, with entries and prior standard deviations. Servos of small aircraft lag by 50 ms. A
+slowness of 1.5 s/rad is a rate of 40 deg/s. Worn linkages have half a degree of play."""
+_READINGS = {
+    "p": ("roll rate", "pitch_rate_skew", "pitch_rate_sensor"),
+    "r": ("yaw rate", "pitch_rate_skew", "pitch_rate_sensor"),
+    "bank": ("attitude", "attitude_skew", ""),
+    "a_y": ("lateral acceleration", "accelerometer_skew", "accelerometer"),
+    "beta": ("sideslip", "alpha_skew", "alpha_sensor"),
+}
+"""Output to its name, to its late stamps in pitch, and to the block of a scale there, if any."""
+_SCALE_STD, _SKEW_STD_S, _ARM_STD_M = 0.1, 0.1, 0.3
+"""Prior standard deviations of a scale error, 1, of late stamps, s, and of an accelerometer's arm, m."""
+
+
+def block_of(of: str) -> str:
+    """Return the block of a control, an output, the throttle or the air."""
+    return _BLOCKS.get(of, of)
+
+
+def side_effects(flown: Flown) -> Iterator[SideEffect]:
+    """Yield every effect that the records can show."""
+    problem = flown.problem
+    for of in filter(problem.flies, LATERAL.inputs):
+        for variant, entries, std in _SERVO:
+            yield SideEffect(of, variant, tuple((of, e) for e in entries), std, {"elevator": of})
+    measured = set.intersection(*(set(record.outputs) for record in problem.records))
+    readings = {of: told for of, told in _READINGS.items() if of in measured}
+    for of, (spoken, skew, _) in readings.items():
+        words = dict.fromkeys(("pitch rate", "angle of attack"), spoken)
+        yield SideEffect(of, skew_beyond(skew, FILTERED_S), ((of, "skew_s"),), (_SKEW_STD_S,), words)
+    for of, (spoken, _, block) in readings.items():
+        if block:
+            scale = replace(SCALE, block=block)
+            yield SideEffect(of, scale, ((of, "scale"),), (_SCALE_STD,), {"pitch rate": spoken})
+    if "a_y" in measured:
+        yield SideEffect("a_y", ARM, (("a_y", "arm_m"),), (_ARM_STD_M,))
+    if "beta" in measured and flown.arm_is_stated:
+        vane = replace(ARM, effect="alpha_vane_offset", block="alpha_sensor")
+        yield SideEffect("beta", vane, (("beta", "arm_m"),), (_ARM_STD_M,))
+    if _throttle_moves(flown):
+        yield _propeller()
+
+
+def unseen(flown: Flown) -> Mapping[str, str]:
+    """Return what the records cannot show, with the reason."""
+    problem = flown.problem
+    found = {"a constant error of p, r, φ or a_y": "each manoeuvre has its own trim and biases"}
+    for of in LATERAL.inputs:
+        if not problem.flies(of):
+            found[f"the servo of the {of}"] = f"the {of} is not flown"
+    if not _throttle_moves(flown):
+        found["roll due to the propeller"] = "the throttle stands still"
+    return found
+
+
+def _throttle_moves(flown: Flown) -> bool:
+    return any(t is not None and np.ptp(t.y) > THROTTLE_MOVES for t in flown.throttle)
+
+
+def _propeller() -> SideEffect:
+    """Return the roll due to the propeller, as the aileron that rolls as much at full throttle."""
+    torque = replace(
+        ARM, effect="thrust_moment", block="moment_equation", names=("aileron_rad",), steps=(2e-4,)
+    )
+    words = dict.fromkeys(without_sizes(THRUST.said, ""), "The propeller rolls the real aircraft")
+    return SideEffect("throttle", torque, (PROPELLER,), (0.05,), {**words, "thrust moment": "propeller roll"})

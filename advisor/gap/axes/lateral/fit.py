@@ -1,0 +1,249 @@
+"""Output error with derivatives, trims and the numbers of a setting, all free at once.
+
+The fit takes Gauss-Newton steps. Trims, initial states and biases are projected out of every manoeuvre, so
+that derivatives and numbers alone remain. Their prior is Gaussian.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.axes.lateral.setting import Flown, Place, Setting, laid_out, moved_to
+from advisor.gap.inference.marginal import Prior
+from advisor.model.axes.lateral import LATERAL
+from advisor.model.axis_response import respond_axis
+from advisor.oem.arrow import solved_within, unabsorbed
+from advisor.oem.axes.lateral.motion import FLOOR
+from advisor.oem.axes.lateral.problem import LateralAssembly
+from advisor.oem.gauss_newton import weigh
+
+ROUNDS = 12
+"""Most Gauss-Newton steps of a fit; those from the table's starts take three to six."""
+SETTLED = 0.05
+"""Decrease of the cost, -2 log likelihood, per step, below which a fit is done: far below one nat."""
+N = len(LATERAL.shared)
+_NO_MOTION = np.empty((0, 2, len(LATERAL.states)))
+
+
+class Free(NamedTuple):
+    """One number of the setting that is estimated."""
+
+    place: Place
+    std: float
+    """Standard deviation about zero, or about ``mean``, before the flight."""
+    step: float
+    """Step of the differences."""
+    bounds: tuple[float, float] = (-np.inf, np.inf)
+    mean: float = 0.0
+    column: FloatArray | None = None
+    """(N,) derivative of the outputs that an earlier fit has found; None: every step takes differences."""
+    adds: bool = False
+    """Whether the outputs are the simulated ones and as much of the column as the number says."""
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """Gaussian knowledge of derivatives and numbers before the flight."""
+
+    mean: FloatArray
+    precision: FloatArray
+    """(15 + k,) inverse variances."""
+
+    def prior(self, values: FloatArray) -> Prior:
+        """Return the prior about the values (15 + k,) of a fit."""
+        return Prior(self.precision, self.mean - values)
+
+
+class Point(NamedTuple):
+    """Parameters of a fit."""
+
+    theta: FloatArray
+    """(15,)"""
+    local: FloatArray
+    """(m, l)"""
+    setting: Setting
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """The optimum of one model."""
+
+    point: Point
+    assembly: LateralAssembly
+    free: tuple[Free, ...]
+    fitted: FloatArray
+    """(N,) outputs."""
+    noise: FloatArray
+    """(outputs,)"""
+    likelihood: float
+    """Log likelihood up to a constant, of white noise."""
+    columns: FloatArray
+    """(N, 15 + k) derivatives of the outputs, free of what trims, initial states and biases absorb."""
+    slopes: FloatArray
+    """(N, k) derivatives of the outputs by the free numbers alone."""
+    sensitivities: FloatArray
+    """(N, 15 + l) derivatives of the outputs by derivatives and local parameters."""
+
+    @property
+    def values(self) -> FloatArray:
+        """(15 + k,) derivatives and numbers."""
+        return np.concatenate([self.point.theta, _numbers(self.point, self.free)])
+
+    @property
+    def residual(self) -> FloatArray:
+        """(N,) measured minus fitted outputs."""
+        return np.asarray(self.assembly.z - self.fitted)
+
+    @property
+    def weight(self) -> FloatArray:
+        """(N,) inverse standard deviation of each row's noise."""
+        return np.asarray(1.0 / self.noise[self.assembly.channel])
+
+
+def fitted(
+    flown: Flown, begin: Point, free: Sequence[Free], known: Known, rounds: int = ROUNDS
+) -> Fit | None:
+    """Return the optimum from a start; None where the model runs away there."""
+    at = _at(flown, begin, free, known)
+    if at is None:
+        return None
+    for _ in range(rounds):
+        slopes = _slopes(flown, at)
+        step = _step(at, slopes, known)
+        trials = _trials(flown, at, known, step) if step.promise > SETTLED else iter(())
+        moved = next(filter(None, trials), None)
+        if moved is None:
+            break
+        gain, at = at.cost - moved.cost, moved
+        if gain < SETTLED:
+            break
+    # A step that gains so little changes no slope.
+    columns = np.column_stack([at.g[:, :N], slopes])
+    projected, _ = _projected(at, columns, 1.0 / at.noise[at.assembly.channel])
+    return Fit(at.point, at.assembly, tuple(at.free), at.y, at.noise, at.likelihood, projected, slopes, at.g)
+
+
+class _At(NamedTuple):
+    point: Point
+    free: Sequence[Free]
+    assembly: LateralAssembly
+    y: FloatArray
+    g: FloatArray
+    noise: FloatArray
+    likelihood: float
+    cost: float
+
+
+def _at(flown: Flown, point: Point, free: Sequence[Free], known: Known) -> _At | None:
+    assembly = laid_out(flown, point.setting)
+    y = np.empty(len(assembly.z))
+    g = np.empty((len(y), N + point.local.shape[1]))
+    if not respond_axis(assembly.grid, point.theta, point.local, y, g, _NO_MOTION):
+        return None
+    y += _added(point, free)
+    noise, minus_twice = weigh(assembly.z, y, assembly.channel, FLOOR)
+    off = np.concatenate([point.theta, _numbers(point, free)]) - known.mean
+    cost = float(minus_twice + off @ (known.precision * off))
+    return _At(point, free, assembly, y, g, noise, -0.5 * minus_twice, cost)
+
+
+class _Step(NamedTuple):
+    """A Gauss-Newton step, with the linear model that it follows."""
+
+    values: FloatArray
+    """(15 + k,) derivatives and numbers before the step."""
+    change: FloatArray
+    """(15 + k,)"""
+    columns: FloatArray
+    """(N, 15 + k) weighed derivatives of the outputs."""
+    residual: FloatArray
+    """(N,) weighed."""
+    own: list[tuple[slice, FloatArray]]
+    """Rows of each manoeuvre, and the weighed derivatives by its own parameters."""
+    promise: float
+    """Decrease of the cost that the linear model promises."""
+
+
+def _step(at: _At, slopes: FloatArray, known: Known) -> _Step:
+    """Return the step within the bounds of all numbers."""
+    columns = np.column_stack([at.g[:, :N], slopes])
+    weight = 1.0 / at.noise[at.assembly.channel]
+    residual = weight * (at.assembly.z - at.y)
+    projected, own = _projected(at, columns, weight)
+    values = np.concatenate([at.point.theta, _numbers(at.point, at.free)])
+    weighed = projected * weight[:, None]
+    information = weighed.T @ weighed + np.diag(known.precision)
+    pull = weighed.T @ residual + known.precision * (known.mean - values)
+    low, high = np.array([(-np.inf, np.inf)] * N + [f.bounds for f in at.free]).T
+    change = solved_within(information, pull, low - values, high - values)
+    promise = float(2.0 * pull @ change - change @ information @ change)
+    for rows, mine in own:
+        promise += float(residual[rows] @ mine @ np.linalg.lstsq(mine, residual[rows], rcond=None)[0])
+    return _Step(values, change, columns * weight[:, None], residual, own, promise)
+
+
+def _trials(flown: Flown, at: _At, known: Known, step: _Step) -> Iterator[_At | None]:
+    """Yield points along the step, each a quarter as far, that lower the cost; else None."""
+    for share in (1.0, 0.25, 0.06):
+        moved = share * step.change
+        left = step.residual - step.columns @ moved
+        local = at.point.local.copy()
+        for m, (rows, mine) in enumerate(step.own):
+            local[m, at.assembly.own - N] += np.linalg.lstsq(mine, left[rows], rcond=None)[0]
+        numbers = (step.values + moved)[N:]
+        setting = moved_to(at.point.setting, [f.place for f in at.free], numbers)
+        trial = _at(flown, Point(at.point.theta + moved[:N], local, setting), at.free, known)
+        yield trial if trial is not None and trial.cost < at.cost else None
+
+
+def _projected(
+    at: _At, columns: FloatArray, weight: FloatArray
+) -> tuple[FloatArray, list[tuple[slice, FloatArray]]]:
+    """Return the columns without what each manoeuvre's own parameters absorb, and its own weighed columns.
+
+    Columns of derivatives that the flight does not show are zero.
+    """
+    result, bases = columns.copy(), []
+    for rows in at.assembly.blocks:
+        mine = at.g[rows][:, at.assembly.own]
+        bases.append((rows, mine * weight[rows, None]))
+        result[rows] = unabsorbed(columns[rows], mine, weight[rows])
+    result[:, [k for k in range(N) if k not in at.assembly.free]] = 0.0
+    return result, bases
+
+
+def _slopes(flown: Flown, at: _At) -> FloatArray:
+    """Return the derivatives (N, k) of the outputs by the free numbers, by differences."""
+    found = np.zeros((len(at.y), len(at.free)))
+    for k, (one, value) in enumerate(zip(at.free, _numbers(at.point, at.free), strict=True)):
+        if one.column is not None:
+            found[:, k] = one.column
+            continue
+        step = one.step if value + one.step <= one.bounds[1] else -one.step
+        y = outputs(
+            flown,
+            at.point._replace(setting=moved_to(at.point.setting, [one.place], np.array([value + step]))),
+        )
+        found[:, k] = (y + _added(at.point, at.free) - at.y) / step
+    return found
+
+
+def _added(point: Point, free: Sequence[Free]) -> FloatArray:
+    """Return what numbers with a column of their own add to the outputs, (N,) or zero."""
+    return np.asarray(sum(x * f.column for x, f in zip(_numbers(point, free), free, strict=True) if f.adds))
+
+
+def outputs(flown: Flown, point: Point) -> FloatArray:
+    """Return the outputs (N,) of a point."""
+    assembly = laid_out(flown, point.setting)
+    y = np.empty(len(assembly.z))
+    no_slopes = np.empty((0, N + point.local.shape[1]))
+    respond_axis(assembly.grid, point.theta, point.local, y, no_slopes, _NO_MOTION)
+    return y
+
+
+def _numbers(point: Point, free: Sequence[Free]) -> FloatArray:
+    return np.array([point.setting[f.place][0] if f.place in point.setting else 0.0 for f in free])

@@ -1,0 +1,232 @@
+"""Roll and yaw, as the engine asks for it: fits with an effect, their evidence, and what they leave."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.alternative import Alternative
+from advisor.gap.axes.lateral.disturbance import courses_of
+from advisor.gap.axes.lateral.effects import SideEffect, block_of
+from advisor.gap.axes.lateral.evidence import Gain, information_of, posterior_of, share_of, squares_of
+from advisor.gap.axes.lateral.fit import Fit, Free, Known
+from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
+from advisor.gap.axes.lateral.models import Case, free_near, free_with
+from advisor.gap.axes.lateral.residual import residual_of
+from advisor.gap.axes.lateral.starts import Starts
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
+from advisor.gap.inference.explanation import Evidence, Explanation
+from advisor.gap.inference.marginal import marginal
+from advisor.gap.inference.posterior import UNKNOWN
+from advisor.gap.inference.residual import Residual
+from advisor.gap.inference.sizes import natural_share
+from advisor.gap.inference.stage import AT_THE_FILE, LAWS, Pairs, Stage, likeliest, within_model_error
+
+_TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
+LIKELY = 0.01
+"""Probability above which an effect is tried in side gusts and its sizes are stated."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SideModel(Explanation):
+    """An explanation in roll and yaw with its fit."""
+
+    effect: SideEffect | None
+    """Effect that is added; None for derivatives alone."""
+    fit: Fit
+    beyond: float
+    """Nats of the evidence beyond the marginal likelihood: sides of a prior, loss on unseen manoeuvres."""
+    gain: Gain
+    """Gain on unseen manoeuvres over fitted derivatives alone, nats."""
+    starts: Starts | None = None
+    """Starts of all effects in addition to the plain model; None elsewhere."""
+    gusts: Gusts | None = None
+    """Side gusts of the model; None in still air."""
+
+    @property
+    def solution(self) -> Fit:
+        """The fit, which explanations in still and in moving air share."""
+        return self.fit
+
+    @property
+    def tolerance(self) -> float:
+        """Likelier relative error of the derivatives."""
+        return ERROR_IF_RIGHT if self.evidence.right > self.evidence.wrong else ERROR_IF_WRONG
+
+
+@dataclass(frozen=True)
+class SideFlight:
+    """A flight in roll and yaw, with its plain fit."""
+
+    case: Case
+    plain: Fit
+    table: Sequence[SideEffect]
+    laws: Sequence[SideEffect] = ()
+    """Laws without a name."""
+
+    @property
+    def tried(self) -> tuple[int, int]:
+        """Numbers of effects and laws by name."""
+        return len(self.table), len({law.name for law in self.laws})
+
+    @property
+    def is_stated(self) -> bool:
+        """Whether the aircraft file states derivatives."""
+        return bool(self.case.stated)
+
+    def explained(self, base: SideModel | None, most: int) -> tuple[float, list[SideModel]]:
+        """Return the temperature, and a model with each likely effect in addition."""
+        begin = self.plain
+        if base is not None:
+            # With an effect, another lateness of commands and outputs changes the outputs by something else.
+            begin = replace(base.fit, free=tuple(one._replace(column=None) for one in base.fit.free))
+        share = share_of(begin)
+        plain = begin if base is None else self.case.fit(begin.point, begin.free, share=share) or base.fit
+        table = _beside(base, self.table)
+        starts = Starts(self.case, plain, table)
+        of_laws = Starts(self.case, plain, _beside(base, self.laws)).of_each
+        chosen = [(one, ERROR_IF_WRONG) for one in likeliest(starts.of_each, most)]
+        chosen += [(one, ERROR_IF_WRONG) for one in likeliest(of_laws, LAWS)]
+        near = self.is_stated and self.case.fit(
+            plain.point, free_near(self.case, plain), ERROR_IF_RIGHT, share
+        )
+        if near:
+            others = [effect for effect in table if effect.name not in {one.name for one, _ in chosen}]
+            tight = Starts(self.case, near, others, ERROR_IF_RIGHT).of_each
+            chosen += [(one, ERROR_IF_RIGHT) for one in likeliest(tight, AT_THE_FILE)]
+        everyone = [replace(self._model(None, plain, plain, share), starts=starts)]
+        for one, tolerance in chosen:
+            fit = self.case.fit(one.point, free_with(self.case, one.effect, plain), tolerance, share)
+            everyone += [] if fit is None else [self._model(one.effect, fit, plain, share)]
+        return share**-2, everyone
+
+    def at_the_files(self, one: SideModel, plain: SideModel, heat: float) -> SideModel | None:
+        """Return an explanation fitted again where the file's derivatives are right; None without a fit.
+
+        Where they are the likelier ones already, the fit is near enough for the quadratic expansion.
+        """
+        share, near = heat**-0.5, one.evidence.right > one.evidence.wrong
+        free = one.fit.free if one.effect is not None else free_near(self.case, one.fit)
+        made = None if near else self.case.fit(one.fit.point, free, ERROR_IF_RIGHT, share)
+        if made is None:
+            return None
+        return replace(self._model(one.effect, made, plain.fit, share), starts=one.starts)
+
+    def apart(self, one: SideModel, other: SideModel) -> float:
+        """Return the largest difference between two models, as a share of the peaks."""
+        return change_of(one.fit, other.fit)
+
+    def residual(self, one: SideModel, heat: float) -> Residual:
+        """Return the disturbance that explains what a model leaves."""
+        return residual_of(one.fit, self.case.flown, heat**-0.5)
+
+    def pairs(self, stage: Stage[SideModel], leads: Sequence[SideModel]) -> Pairs:
+        """Yield the price of each lead with each other effect, and both names, where that may be a cause too.
+
+        The effect's share of the prior must be made up for.
+        """
+        looked = stage.plain.starts
+        assert looked is not None
+        starts = {start.name: start for start in looked.of_each}
+        for lead in leads:
+            for other in (starts[e.name] for e in _beside(lead, self.table) if e.name in starts):
+                price = looked.together(starts[lead.name], other)
+                if price < starts[lead.name].price - 2.0 * stage.heat * np.log(len(self.table)):
+                    yield price, lead.name, other.name
+
+    def in_moving_air(self, stage: Stage[SideModel]) -> Stage[SideModel]:
+        """Return the likely explanations again, in side gusts that enter all outputs together.
+
+        The plain model in still air and in gusts differ by the likelihood of their residuals: coloured
+        instruments against gusts.
+        """
+        plain = stage.plain
+        each = float(np.log(max(len(self.table), 1)))
+        told = [plain.evidence.right, *(one.evidence.either - each for one in stage.effects)]
+        least = np.logaddexp.reduce(told) + np.log(LIKELY)
+        likely = [one for one, nats in zip(stage.effects, told[1:], strict=True) if nats > least]
+        courses = courses_of(plain.fit, self.case.flown)
+        air = side_gusts(plain.fit, courses, self._wide(plain.fit))
+        blown = [self._blown(plain, air)]
+        blown += [self._blown(one, side_gusts(one.fit, courses, self._wide(one.fit), air)) for one in likely]
+        first, *others = within_model_error(self, blown, 0.0)
+        assert first.gusts is not None
+        gain = first.gusts.likelihood - coloured_likelihood(plain.fit)
+        over = plain.evidence.right + gain - first.evidence.right
+        first, *others = (
+            replace(one.more(over), likelihood=one.likelihood + over) for one in (first, *others)
+        )
+        return Stage(first, tuple(others), (), stage.heat)
+
+    def _wide(self, fit: Fit) -> Known:
+        return self.case.prior_of(ERROR_IF_WRONG, fit.free)
+
+    def _blown(self, one: SideModel, gusts: Gusts) -> SideModel:
+        """Return an explanation in side gusts."""
+        evidence, natural = self._weighed(one.fit, one.effect, gusts.likelihood, gusts.matrix, gusts.gradient)
+        highest = gusts.highest(self._wide(one.fit))
+        blown = replace(one, gusts=gusts, evidence=evidence, natural=natural, likelihood=highest)
+        return replace(blown.more(one.beyond), model_error=0.0)
+
+    def _weighed(
+        self, fit: Fit, effect: SideEffect | None, likelihood: float, matrix: FloatArray, gradient: FloatArray
+    ) -> Iterator[Evidence]:
+        """Yield the evidence of a fit, and that with as little of its effect as every aircraft has."""
+        for free in (fit.free, _narrowed(fit.free, effect)):
+            priors = (self.case.prior_of(tolerance, free).prior(fit.values) for tolerance in _TOLERANCES)
+            yield marginal(likelihood, matrix, gradient, *priors)
+
+    def _model(self, effect: SideEffect | None, fit: Fit, plain: Fit, share: float) -> SideModel:
+        """Return a model with its evidence, which unseen manoeuvres may cut."""
+        told, likelihood = information_of(fit, share), share**2 * fit.likelihood
+        matrix, gradient = (np.sum(part, axis=0) for part in told)
+        evidence, natural = self._weighed(fit, effect, likelihood, matrix, gradient)
+        # A search that ends early, as at a bound, leaves a step to the optimum, which the evidence has taken.
+        step = posterior_of(fit, told, self._wide(fit))[0] - fit.values
+        likelihood += float(gradient @ step - 0.5 * step @ matrix @ step)
+        model = SideModel(
+            alternative=None, effect=effect, fit=fit, evidence=evidence, natural=natural,
+            likelihood=likelihood, beyond=0.0, gain=Gain(0.0, 0.0), change=change_of(plain, fit),
+        )  # fmt: skip
+        if effect is None:
+            return model
+        # Half of the prior lies below zero, where the bounds exclude a size.
+        extra = np.log(2.0) if effect.variant.bounds[0][0] >= 0.0 else 0.0
+        if effect.sides is not None:
+            extra -= len(self.case.flown) * np.log(len(effect.sides[1]))
+        was = squares_of(plain, information_of(plain, share), self._wide(plain))
+        now = squares_of(fit, told, self.case.prior_of(model.tolerance, fit.free))
+        counts = np.bincount(fit.assembly.channel, minlength=len(fit.noise)).astype(float)
+        gain = Gain.between(was.held_out, now.held_out, counts, share)
+        unseen = min(gain.total - Gain.between(was.in_fit, now.in_fit, counts, share).total, 0.0)
+        is_law = any(effect is law for law in self.laws)
+        answer = UNKNOWN if is_law else Alternative("effect", effect.name)
+        return replace(
+            model.more(extra + unseen), alternative=replace(answer, block=block_of(effect.of)),
+            name=effect.name, numbers=effect.variant.names, beyond=extra + unseen, unseen=unseen, gain=gain,
+        )  # fmt: skip
+
+
+def _beside(base: SideModel | None, table: Sequence[SideEffect]) -> list[SideEffect]:
+    """Return the effects that set no number which that of a model sets."""
+    taken = set(base.effect.places) if base is not None and base.effect is not None else set()
+    return [effect for effect in table if not taken & set(effect.places)]
+
+
+def _narrowed(free: Sequence[Free], effect: SideEffect | None) -> list[Free]:
+    """Return the free numbers with as narrow a prior of an effect's own as every aircraft has."""
+    if effect is None:
+        return list(free)
+    share = natural_share(effect.variant)
+    return [one._replace(std=share * one.std) if one.place in effect.places else one for one in free]
+
+
+def change_of(one: Fit, other: Fit) -> float:
+    """Return the largest difference between the outputs of two fits, as a share of each output's peak."""
+    shares = []
+    for channel in np.unique(one.assembly.channel):
+        rows = one.assembly.channel == channel
+        apart = one.fitted[rows] - other.fitted[rows]
+        shares.append(np.sqrt(np.mean(apart**2)) / max(float(np.ptp(one.assembly.z[rows])) / 2.0, 1e-12))
+    return float(max(shares))

@@ -1,0 +1,185 @@
+"""Side gusts in the residuals of a fit, distinguished from coloured noise of the instruments.
+
+A gust adds its angle to the sideslip that fin, wing and vane meet, so it enters side force, roll and yaw
+together. The gust's angle is linear between knots, with an exponential correlation, as in Dryden's
+turbulence across the flight path. Noise of an instrument, however coloured, enters its own output alone. The
+likelihoods of the residuals distinguish the two.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import minimize
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.axes.lateral.disturbance import Course
+from advisor.gap.axes.lateral.fit import Fit, Known
+from advisor.gap.inference.marginal import marginal
+from advisor.gap.noise.probes import KNOTS_S
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.colour import Stretch, find_colour
+from advisor.oem.whitening import schedule, whiten
+
+_MEMORY_S = 1.0
+"""Correlation time with which the search begins, s: 60 m at 25 m/s are 2.4 s."""
+_RANGE = (1e-3, 1e3)
+"""Range of every standard deviation, over its start."""
+_LONGEST_MEMORY_S = 60.0
+_MOST_STEPS = 400
+_BEND = 0.2
+"""Step of the logarithm of the gust angle for the curvature of its likelihood."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gusts:
+    """White noise of the outputs, and a gust angle in every manoeuvre."""
+
+    noise: FloatArray
+    """(outputs,) standard deviation of the white noise."""
+    angle: float
+    """Standard deviation of the gust angle, rad."""
+    memory_s: float
+    """Correlation time, s."""
+    angle_std: float
+    """Standard deviation of that number, with all other numbers at their values."""
+    likelihood: float
+    """Log likelihood of the residuals, on the scale of ``Fit.likelihood``."""
+    matrix: FloatArray
+    """(k, k) information about derivatives and numbers, where gusts colour the residuals."""
+    gradient: FloatArray
+    """(k,) gradient of the log likelihood at the fit."""
+
+    def highest(self, known: Known) -> float:
+        """Return the log likelihood at the optimum in the gusts, where a prior keeps what is not seen."""
+        whole = self.matrix + np.diag(known.precision)
+        return self.likelihood + 0.5 * float(self.gradient @ np.linalg.solve(whole, self.gradient))
+
+
+def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | None = None) -> Gusts:
+    """Return the likeliest white noise and gusts in the residuals of a fit.
+
+    Derivatives and numbers are integrated over: a fit under white noise has taken up a part of the gusts.
+
+    Parameters
+    ----------
+    known
+        Prior of derivatives and numbers.
+    near
+        Gusts of a similar fit, from which the search begins.
+    """
+    prior = known.prior(fit.values)
+    sums = [_Sums.of(fit, m, course) for m, course in enumerate(courses)]
+    there = np.unique(fit.assembly.channel)
+    reach = np.mean(
+        [
+            np.sqrt(np.mean((course.columns * fit.weight[fit.assembly.owner == m, None]) ** 2))
+            for m, course in enumerate(courses)
+        ]
+    ) * np.sqrt(len(courses[0].knots))
+    angle = 1.0 / max(float(reach), 1e-12)
+
+    def model(x: FloatArray) -> tuple[FloatArray, float, float]:
+        noise = np.ones(len(fit.noise))
+        noise[there] = np.exp(x[:-2])
+        return noise, float(np.exp(x[-2])), float(np.exp(x[-1]))
+
+    def told(x: FloatArray) -> tuple[float, FloatArray]:
+        noise, angle, memory_s = model(x)
+        # Knots are equally far apart everywhere: a shorter manoeuvre has the first part of the factor.
+        root = _root(max((one.knots for one in sums), key=len), angle, memory_s)
+        parts = [one.weighed(noise, root[: len(one.knots), : len(one.knots)]) for one in sums]
+        return sum(cost for cost, _ in parts), np.sum([inner for _, inner in parts], axis=0)
+
+    def cost(x: FloatArray) -> float:
+        volume, inner = told(x)
+        likelihood = -0.5 * (volume + float(inner[0, 0]))
+        return -2.0 * marginal(likelihood, inner[1:, 1:], inner[1:, 0], prior, prior).right
+
+    sizes = np.append(fit.noise[there], angle)
+    first = [*sizes, _MEMORY_S] if near is None else [*near.noise[there], near.angle, near.memory_s]
+    bounds = [*((np.log(_RANGE[0] * s), np.log(_RANGE[1] * s)) for s in sizes),
+              (np.log(KNOTS_S), np.log(_LONGEST_MEMORY_S))]  # fmt: skip
+    found = minimize(
+        cost,
+        np.log([np.clip(x, *np.exp(ends)) for x, ends in zip(first, bounds, strict=True)]),
+        method="Nelder-Mead",
+        bounds=bounds,
+        options={"maxfev": _MOST_STEPS, "xatol": 0.02, "fatol": 0.1},
+    )
+    step = _BEND * (np.arange(len(found.x)) == len(found.x) - 2)
+    bend = (cost(found.x + step) - 2.0 * float(found.fun) + cost(found.x - step)) / (2.0 * _BEND**2)
+    noise, angle, memory_s = model(found.x)
+    volume, inner = told(found.x)
+    return Gusts(
+        noise, angle, memory_s, angle / np.sqrt(max(bend, _BEND)),
+        -0.5 * (volume + float(inner[0, 0]) - len(fit.fitted)), inner[1:, 1:], inner[1:, 0],
+    )  # fmt: skip
+
+
+def coloured_likelihood(fit: Fit) -> float:
+    """Return the log likelihood of the residuals under instruments of any colour, on the same scale."""
+    cost = 0.0
+    for name in LATERAL.outputs:
+        parts = [fit.residual[named[name]] for named in fit.assembly.rows if name in named]
+        if not parts:
+            continue
+        colour = find_colour([Stretch(left, np.ones((len(left), 1))) for left in parts])
+        variance = max(colour.variance, float(np.finfo(float).tiny))
+        for left in parts:
+            # White noise is a first-order autoregression without memory.
+            scale, gain, determinant = schedule(len(left), colour.memory, colour.white_share)
+            white = whiten(np.ascontiguousarray(left[:, None]), colour.memory, scale, gain)[0]
+            cost += len(left) * (np.log(variance) - 1.0) + determinant + float(white @ white) / variance
+    return -0.5 * cost
+
+
+def _root(knots: FloatArray, angle: float, memory_s: float) -> FloatArray:
+    """Return the Cholesky factor (k, k) of the covariance of a gust angle at its knots."""
+    apart = np.abs(knots[:, None] - knots)
+    return np.asarray(angle * np.linalg.cholesky(np.exp(-apart / memory_s) + 1e-9 * np.eye(len(knots))))
+
+
+class _Sums(NamedTuple):
+    """Products of one manoeuvre from which the likelihood under any gusts follows.
+
+    The k columns are the residual, and the changes of the outputs by derivatives and numbers.
+    """
+
+    knots: FloatArray
+    counts: FloatArray
+    """(outputs,) rows of each output."""
+    squares: FloatArray
+    """(outputs, k, k)"""
+    pulls: FloatArray
+    """(outputs, knots, k)"""
+    grams: FloatArray
+    """(outputs, knots, knots)"""
+
+    @classmethod
+    def of(cls, fit: Fit, m: int, course: Course) -> "_Sums":
+        """Return the products of manoeuvre ``m``."""
+        rows = fit.assembly.owner == m
+        channel = fit.assembly.channel[rows]
+        columns = np.column_stack([fit.residual[rows], fit.columns[rows]])
+        parts = [(columns[channel == c], course.columns[channel == c]) for c in range(len(fit.noise))]
+        return cls(
+            course.knots,
+            np.array([float(len(left)) for left, _ in parts]),
+            np.array([left.T @ left for left, _ in parts]),
+            np.array([gust.T @ left for left, gust in parts]),
+            np.array([gust.T @ gust for _, gust in parts]),
+        )
+
+    def weighed(self, noise: FloatArray, root: FloatArray) -> tuple[float, FloatArray]:
+        """Return the log determinant of the covariance, and the products (k, k) weighed by its inverse.
+
+        White noise has standard deviations (outputs,); the gusts' covariance has a factor (knots, knots).
+        """
+        weight = noise**-2.0
+        inner = root.T @ np.tensordot(weight, self.grams, 1) @ root
+        lower = np.linalg.cholesky(inner + np.eye(len(root)))
+        explained = np.linalg.solve(lower, root.T @ np.tensordot(weight, self.pulls, 1))
+        volume = float(self.counts @ np.log(noise**2)) + 2.0 * float(np.sum(np.log(np.diag(lower))))
+        return volume, np.tensordot(weight, self.squares, 1) - explained.T @ explained

@@ -1,0 +1,85 @@
+"""Laws of roll and yaw without a name, as in pitch: surfaces that stop, stick or ring, and curves.
+
+A curve is a disturbance of one block. It grows with the square and the cube of what moves there: a control's
+deflection, states in an equation, or a sensor's reading. Left and right are alike.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.axes.lateral.disturbance import EQUATIONS, SENSORS, STEP_S, answered
+from advisor.gap.axes.lateral.effects import SideEffect, block_of
+from advisor.gap.axes.lateral.fit import Fit
+from advisor.gap.axes.lateral.models import Case
+from advisor.gap.inference.sizes import BENT, of_range
+from advisor.gap.kit.variant import Variant
+from advisor.gap.uncatalogued.candidate_laws import RINGING, STOPS, SURFACE_STOP, sticking, stops
+from advisor.model.axes.lateral import LATERAL
+from advisor.model.axis_response import respond_axis
+
+_CURVE = Variant("curve", "", ("square", "cube"), ((0.0, 0.0),), (1.0, 1.0), ((-np.inf, np.inf),) * 2, 0.0)
+_LAG_AND_DAMPING = replace(
+    RINGING, names=("lag_s", "damping"), entries=("lag_s", "lag_damping"), apply_with=None,
+    starts=tuple((2.0 * damping / omega, damping) for omega, damping in RINGING.starts),
+    steps=(5e-4, 0.01), bounds=((0.0, 0.25), RINGING.bounds[1]),
+)  # fmt: skip
+"""The servo of second order by the numbers that a surface reads."""
+
+
+def side_laws(case: Case, fit: Fit) -> Iterator[SideEffect]:
+    """Yield every law that the records of a flight can show."""
+    problem = case.flown.problem
+    for of in filter(problem.flies, LATERAL.inputs):
+        moved = np.concatenate(
+            [r.inputs[of].y - r.inputs[of].y[0] for r in problem.records if of in r.inputs]
+        )
+        most = max(float(np.max(np.abs(moved))), 1e-9)
+        for law in (*stops(SURFACE_STOP, of, STOPS, np.zeros(1), moved), sticking(most), _LAG_AND_DAMPING):
+            law = replace(law, block=of)
+            places = tuple((of, entry) for entry in law.entries or law.names)
+            yield SideEffect(of, law, places, of_range(law), {law.effect: f"{of} {law.effect}"})
+    motions = [_motion(fit, m) for m in range(len(case.flown))]
+    sizes = case.prior_of(1.0, ()).precision ** -0.5
+    slopes = {(term.state, term.factor): x for term, x in zip(LATERAL.shared, sizes, strict=True)}
+    for block in (*filter(problem.flies, LATERAL.inputs), *(b for b in SENSORS if b in motions[0])):
+        yield from _curves(case, fit, motions, block, {block: 1.0})
+    for block, state in EQUATIONS.items():
+        yield from _curves(case, fit, motions, block, {of: slopes[state, of] for of in ("beta", "p", "r")})
+
+
+def _curves(
+    case: Case, fit: Fit, motions: Sequence[Mapping[str, FloatArray]], block: str, slopes: Mapping[str, float]
+) -> Iterator[SideEffect]:
+    """Yield the curves of a block with what moves there, by the linear terms ``slopes``."""
+    most = {of: max(float(np.max(np.abs(motion[of]))) for motion in motions) + 1e-12 for of in slopes}
+    parts = []
+    for m, motion in enumerate(motions):
+        shares = [motion[of] / most[of] for of in slopes]
+        forms = np.column_stack([form for x in shares for form in (x * np.abs(x), x**3)])
+        parts.append(answered(fit, case.flown, m, block, motion["t"], forms))
+    columns = np.vstack(parts)
+    for k, (of, slope) in enumerate(slopes.items()):
+        name, std = f"{block} curve of {of}", BENT * slope * most[of]
+        places = (name, "square"), (name, "cube")
+        yield SideEffect(block, _CURVE, places, (std, std), {"curve": name}, columns[:, 2 * k : 2 * k + 2])
+
+
+def _motion(fit: Fit, m: int) -> Mapping[str, FloatArray]:
+    """Return states, deflections and readings of a manoeuvre at equal steps, the controls from trim."""
+    assembly, grid = fit.assembly, fit.assembly.grid
+    events = slice(grid.first[m], grid.first[m + 1])
+    stamps = assembly.begin[m] + np.concatenate([[0.0], np.cumsum(grid.step_s[events][:-1])])
+    own = assembly.t[assembly.owner == m]
+    t = np.arange(np.min(own), np.max(own) + STEP_S, STEP_S)
+    course = np.empty((len(grid.step_s), 2, len(LATERAL.states)))
+    nothing = np.empty((0, fit.sensitivities.shape[1]))
+    respond_axis(grid, fit.point.theta, fit.point.local, np.empty(len(assembly.z)), nothing, course)
+    told = dict(zip(LATERAL.states, course[events, 0].T, strict=True))
+    told |= {of: grid.inputs[events, k] - grid.inputs[events][0, k] for k, of in enumerate(LATERAL.inputs)}
+    moved = {name: np.interp(t, stamps, y) for name, y in told.items()}
+    for output, rows in assembly.rows[m].items():
+        moved[block_of(output)] = np.interp(t, assembly.t[rows], fit.fitted[rows])
+    return {**moved, "t": t}

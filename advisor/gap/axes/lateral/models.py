@@ -1,0 +1,134 @@
+"""Models of a lateral flight: the plain one with natural lateness, and one for each effect."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import SIDE_PARAMETERS
+from advisor.flight.instruments.lateness import lateness_std
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.axes.lateral.effects import SideEffect
+from advisor.gap.axes.lateral.fit import Fit, Free, Known, Point, fitted
+from advisor.gap.axes.lateral.setting import AIR_SPEED, COMMAND, Flown, Place
+from advisor.gap.fitting.prior import ERROR_IF_WRONG
+from advisor.model.axes.lateral import LATERAL, natural_size
+from advisor.oem.axes.lateral.instruments import beta_arm_m, nuisances_of
+from advisor.oem.axes.lateral.prepare import prepare_lateral
+from advisor.oem.axes.lateral.problem import assemble_lateral
+from advisor.oem.axes.lateral.start import lateral_start
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.prepare import signal_of
+
+SMALL_SHARE = 0.1
+"""Least size of a derivative for a relative error, over its natural size (``natural_size``)."""
+NATURAL_STEP = 1e-3
+"""Step of the differences of a natural number, s or m."""
+_PLACES = {"command": COMMAND, "air": AIR_SPEED}
+"""Kind of a nuisance parameter to its place in a setting, where it is of no control and no output."""
+_ENTRIES = {"delay": "skew_s", "arm": "arm_m", "lag": "lag_s"}
+"""Kind of a nuisance parameter to its entry in a setting."""
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One flight and one simulator, ready for the fits."""
+
+    flown: Flown
+    theta: FloatArray
+    """(15,) derivatives of the simulator; those of the flight where the file states none."""
+    stated: tuple[str, ...]
+    """Derivatives that the file states and the flight tells."""
+    natural: tuple[Free, ...]
+    """Lateness of commands and outputs, and errors of stated lags: part of every model."""
+    begin: Point
+    """Start of the plain fit."""
+
+    def prior_of(self, tolerance: float, free: Sequence[Free], share: float = 1.0) -> Known:
+        """Return the prior of derivatives, of relative error ``tolerance`` where stated, and of numbers.
+
+        ``share`` is that of white noise among coloured residuals, by which the fit weighs a prior.
+        """
+        sizes = natural_size(self.theta)
+        size = np.array([sizes[name] for name in SIDE_PARAMETERS])
+        scale = np.maximum(np.abs(self.theta), SMALL_SHARE * size)
+        told = np.array([name in self.stated for name in SIDE_PARAMETERS])
+        std = np.concatenate([np.where(told, tolerance * scale, size), [one.std for one in free]])
+        mean = np.concatenate([self.theta, [one.mean for one in free]])
+        return Known(mean, 1.0 / (share * std) ** 2)
+
+    def fit(
+        self, at: Point, free: Sequence[Free], tolerance: float = ERROR_IF_WRONG, share: float = 1.0
+    ) -> Fit | None:
+        """Return the fit from a start, with stated derivatives of this relative error."""
+        return fitted(self.flown, at, free, self.prior_of(tolerance, free, share))
+
+
+def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray) -> Case | NoEstimate:
+    """Return the flight and the simulator of an aircraft file; ``theta`` (15,) is the flight's estimate."""
+    problem = prepare_lateral(maneuvers, aircraft)
+    if isinstance(problem, NoEstimate):
+        return problem
+    throttle = tuple(
+        signal_of(m.channels["throttle"]) if "throttle" in m.channels else None for m in maneuvers
+    )
+    setting: dict[Place, FloatArray] = {COMMAND: np.zeros(len(maneuvers))}
+    natural = []
+    for name in LATERAL.inputs:
+        control = getattr(aircraft, name)
+        for entry, value in (("lag_s", control.lag_s), ("delay_s", control.delay_s)):
+            if value:
+                setting[name, entry] = np.full(len(maneuvers), value)
+    for name in filter(problem.flies, LATERAL.inputs):
+        # Held or linear between two stamps: a rate limit begins with the first, a lag with their mean.
+        stamps = np.concatenate([np.diff(r.inputs[name].t) for r in problem.records if name in r.inputs])
+        stated_s = getattr(aircraft, name).delay_s or 0.0
+        natural.append(Free((name, "delay_s"), 0.5 * float(np.median(stamps)), NATURAL_STEP, mean=stated_s))
+    for one in nuisances_of(problem, aircraft):
+        place = _PLACES.get(one.kind) or (one.of, _ENTRIES[one.kind])
+        # A lag that the file leaves open is absent from the simulator: such a lag is an effect.
+        if one.kind != "lag" or place in setting:
+            natural.append(Free(place, one.prior.std, NATURAL_STEP * one.per_second, mean=one.prior.mean))
+    forces = [record.outputs["a_y"].t for record in problem.records if "a_y" in record.outputs]
+    if forces:
+        natural.append(Free(("a_y", "skew_s"), lateness_std(forces), NATURAL_STEP))
+    told = assemble_lateral(problem).free
+    stated = tuple(name for k, name in enumerate(SIDE_PARAMETERS) if name in aircraft.model and k in told)
+    given = np.array([aircraft.model.get(n, v) for n, v in zip(SIDE_PARAMETERS, theta, strict=True)])
+    begin = Point(theta, lateral_start(problem)[1], setting)
+    flown = Flown(problem, throttle, beta_arm_m(aircraft) is not None)
+    return Case(flown, given, stated, tuple(natural), begin)
+
+
+def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
+    """Return the free numbers of a model with an effect, which replaces a natural number at its place."""
+    variant = effect.variant
+    kept = [one for one in free_near(case, plain) if one.place not in effect.places]
+    columns = [None] * len(effect.places) if effect.columns is None else effect.columns.T
+    base = base_of(case, effect)
+    numbers = zip(effect.places, effect.std, variant.steps, variant.bounds, base, columns, strict=True)
+    own = [
+        Free(place, std, step, (min(low, low + at), high + at), at, column, column is not None)
+        for place, std, step, (low, high), at, column in numbers
+    ]
+    return (*kept, *own)
+
+
+def free_near(case: Case, plain: Fit) -> tuple[Free, ...]:
+    """Return the free numbers of a model near the plain one.
+
+    The natural numbers keep the derivatives of the plain fit; those of an effect found before do not.
+    """
+    natural = {one.place for one in case.natural}
+    return tuple(
+        one._replace(column=plain.slopes[:, k] if one.place in natural else None)
+        for k, one in enumerate(plain.free)
+    )
+
+
+def base_of(case: Case, effect: SideEffect) -> FloatArray:
+    """Return the numbers that the simulator has at an effect's places."""
+    setting = case.begin.setting
+    return np.array([setting[place][0] if place in setting else 0.0 for place in effect.places])

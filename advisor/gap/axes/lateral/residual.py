@@ -1,0 +1,68 @@
+"""The residual of a lateral model: the disturbance that explains most of it, block by block."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.axes.lateral.disturbance import AIR, Course, blocks_of, courses_of
+from advisor.gap.axes.lateral.fit import Fit
+from advisor.gap.axes.lateral.setting import Flown
+from advisor.gap.inference.residual import NATURAL, Residual, shares_of
+from advisor.gap.noise.probes import Probe, at_its_size, coloured_between
+from advisor.oem.axes.lateral.motion import FLOOR
+
+
+def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
+    """Return the disturbance that explains the residual of a fit; its block is never the air.
+
+    Parameters
+    ----------
+    share
+        Share of white noise in the residuals: a nat of white noise counts as ``share``² nats.
+    """
+    noise = _white(fit)
+    probes = [_probe(fit, block, courses_of(fit, flown, block), noise) for block in blocks_of(fit, flown)]
+    probes.sort(key=lambda probe: -probe.gain)
+    sizes = []
+    for k in np.unique(fit.assembly.channel):
+        rows = fit.assembly.channel == k
+        power = float(np.mean(fit.residual[rows] ** 2))
+        peak = max(float(np.ptp(fit.assembly.z[rows])) / 2.0, 1e-12)
+        sizes.append(np.sqrt(max(power - noise[k] ** 2, 0.0)) / peak)
+    by_air = next(probe.explained for probe in probes if probe.block == AIR)
+    most = probes[0].explained
+    whole, beside = (float(np.sqrt(e) * max(sizes) / NATURAL) for e in (most, max(most - by_air, 0.0)))
+    named = [probe for probe in probes if probe.block != AIR]
+    blocks = shares_of([probe.block for probe in named], [share**2 * probe.gain for probe in named])
+    return Residual(whole, blocks, beside)
+
+
+def _probe(fit: Fit, block: str, courses: Sequence[Course], noise: FloatArray) -> Probe:
+    """Return the disturbance of a block at its likeliest size."""
+    weight = 1.0 / noise[fit.assembly.channel]
+    values, powers, total, unit = [], [], 0.0, 0.0
+    for m, course in enumerate(courses):
+        rows = fit.assembly.owner == m
+        coloured = course.columns @ coloured_between(course.knots) * weight[rows, None]
+        left = fit.residual[rows] * weight[rows]
+        gram = coloured.T @ coloured
+        unit = unit or float(np.sqrt(np.trace(gram) / len(left))) + 1e-300
+        value, vector = np.linalg.eigh(gram / unit**2)
+        values.append(np.maximum(value, 0.0))
+        powers.append((vector.T @ (coloured.T @ left) / unit) ** 2)
+        total += float(left @ left)
+    return at_its_size(block, np.hstack(values), np.hstack(powers), unit, total)
+
+
+def _white(fit: Fit) -> FloatArray:
+    """Return the white noise of every output, shape (outputs,), by the second differences of its residual."""
+    noise = FLOOR.copy()
+    for k in np.unique(fit.assembly.channel):
+        parts = [
+            np.diff(fit.residual[(fit.assembly.channel == k) & (fit.assembly.owner == m)], 2)
+            for m in range(fit.assembly.maneuvers)
+        ]
+        second = np.concatenate(parts)
+        noise[k] = max(float(np.sqrt(np.sum(second**2) / max(6.0 * len(second), 1.0))), FLOOR[k])
+    return noise

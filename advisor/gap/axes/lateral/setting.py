@@ -1,0 +1,110 @@
+"""Numbers of servos, instruments and propeller with which lateral records are simulated.
+
+Surfaces are those of the pitch axis: delay, lag, rate limit, play and dead band between command and
+deflection (``gap.simulator.surface``). Instruments act on the outputs: late stamps, a scale, an arm.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.simulator.layout import ENTRIES, INDEX
+from advisor.gap.simulator.surface import surface
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axes.lateral.problem import LateralAssembly, LateralProblem, LateralRecord, assemble_lateral
+from advisor.oem.rows import Signal
+from advisor.oem.surface import LONGEST_STEP_S, Servo
+
+Place = tuple[str, str]
+"""Control or output, and the entry of it that a number sets: ``("aileron", "lag_s")``, ``("p", "scale")``."""
+COMMAND = ("command", "delay_s")
+PROPELLER = ("throttle", "aileron_rad")
+AIR_SPEED = ("air", "scale")
+"""Relative excess of the true over the read air speed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Flown:
+    """Records of a flight for the comparison."""
+
+    problem: LateralProblem
+    """Records with the instruments of the aircraft file; servos are part of a ``Setting``."""
+    throttle: tuple[Signal | None, ...]
+    """Throttle of each record, 0..1; None where it was not recorded."""
+    arm_is_stated: bool = False
+    """Whether the aircraft file states the place of the sideslip vane."""
+
+    def __len__(self) -> int:
+        return len(self.problem.records)
+
+
+Setting = Mapping[Place, FloatArray]
+"""Numbers by their place, shape (manoeuvres,) each; an absent one is zero, as in an ideal aircraft."""
+
+
+def moved_to(setting: Setting, places: Sequence[Place], values: FloatArray) -> Setting:
+    """Return the setting with one value (k,) at each of k places, equal in all manoeuvres."""
+    count = len(next(iter(setting.values())))
+    return {**setting, **{place: np.full(count, v) for place, v in zip(places, values, strict=True)}}
+
+
+def laid_out(flown: Flown, setting: Setting) -> LateralAssembly:
+    """Return the records laid out for the kernel, under a setting."""
+
+    def whole(place: Place) -> float:
+        return float(setting[place][0]) if place in setting else 0.0
+
+    base = flown.problem
+    outputs = LATERAL.outputs
+    problem = replace(
+        base,
+        airspeed_excess=whole(AIR_SPEED),
+        records=tuple(_driven(flown, m, setting) for m in range(len(flown))),
+        servos={name: Servo() for name in LATERAL.inputs},
+        command_delay_s=whole(COMMAND),
+        delays_s={name: whole((name, "skew_s")) for name in outputs},
+        beta_arm_m=base.beta_arm_m + whole(("beta", "arm_m")),
+        accelerometer_arm_m=base.accelerometer_arm_m + whole(("a_y", "arm_m")),
+    )
+    assembly = assemble_lateral(problem, causes=())
+    scale = np.array([1.0 + whole((name, "scale")) for name in outputs])[None, :, None]
+    if np.all(scale == 1.0):
+        return assembly
+    grid = assembly.grid
+    return replace(assembly, grid=grid._replace(seen=grid.seen * scale, felt=grid.felt * scale))
+
+
+def _driven(flown: Flown, m: int, setting: Setting) -> LateralRecord:
+    """Return record ``m`` with the deflections of its surfaces as inputs."""
+    record = flown.problem.records[m]
+    return replace(record, inputs={name: deflection(flown, m, name, setting) for name in record.inputs})
+
+
+def deflection(flown: Flown, m: int, control: str, setting: Setting) -> Signal:
+    """Return the deflection of a surface in record ``m``, without the delay that all commands share."""
+    p = np.zeros(len(ENTRIES))
+    for (of, entry), values in setting.items():
+        if of == control:
+            p[INDEX[entry]] = values[m]
+    moved = _deflected(flown.problem.records[m].inputs[control], p)
+    throttle, share = flown.throttle[m], setting.get(PROPELLER)
+    if throttle is None or share is None or control != "aileron" or share[m] == 0.0:
+        return moved
+    t = np.union1d(moved.t, throttle.t)
+    return Signal(t, moved.at(t) + share[m] * (throttle.at(t) - throttle.y[0]))
+
+
+def _deflected(command: Signal, p: FloatArray) -> Signal:
+    """Return the deflection behind all parts between command and surface; ``p`` (entries,) drives them."""
+    late = float(p[INDEX["delay_s"]])
+    if np.ptp(command.y) == 0.0:
+        return Signal(command.t[[0, -1]], command.y[[0, -1]])
+    if np.count_nonzero(p) == (late != 0.0):
+        return Signal(command.t + late, command.y)
+    begin, trim = float(command.t[0]), float(command.y[0])
+    n = int(np.ceil((command.t[-1] - begin) / LONGEST_STEP_S)) + 1
+    mean = surface(LONGEST_STEP_S, n, command.t - begin, command.y, False, trim, p)
+    t = begin + LONGEST_STEP_S * (np.arange(n, dtype=np.float64) + 0.5)
+    return Signal(t, trim + mean)

@@ -1,0 +1,140 @@
+"""Starts of effects in addition to a fit: all else is refitted linearly, and so is every pair."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import nnls
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.gap.axes.lateral.change import changes_by
+from advisor.gap.axes.lateral.effects import SideEffect
+from advisor.gap.axes.lateral.fit import Fit, N, Point, outputs
+from advisor.gap.axes.lateral.models import Case, base_of
+from advisor.gap.axes.lateral.setting import moved_to
+from advisor.gap.fitting.prior import ERROR_IF_WRONG
+from advisor.model.axes.lateral import LATERAL
+
+SECANT = (0.25, 2.0)
+"""Least and greatest part of a start that the straight line from no effect may suggest."""
+
+
+class Start(NamedTuple):
+    """A start of an effect's fit."""
+
+    effect: SideEffect
+    cost: float
+    """Twice the negative log likelihood, after a linear refit of all else."""
+    point: Point
+    way: FloatArray
+    """(N,) weighed change of the outputs from no effect to the start, without what all else absorbs."""
+    saved: float = 0.0
+    """Part of the decrease of the cost that is the prior of a natural number at the effect's place."""
+
+    @property
+    def name(self) -> str:
+        """Name of the effect."""
+        return self.effect.name
+
+    @property
+    def price(self) -> float:
+        """Cost with a price for the number of numbers (Akaike's criterion)."""
+        return self.cost + 2.0 * len(self.effect.places)
+
+
+class Starts:
+    """The best start of each effect of a table."""
+
+    def __init__(
+        self, case: Case, plain: Fit, table: Sequence[SideEffect], tolerance: float = ERROR_IF_WRONG
+    ) -> None:
+        self._case, self._plain = case, plain
+        known = case.prior_of(tolerance, plain.free)
+        self._columns = plain.columns * plain.weight[:, None]
+        self._information = self._columns.T @ self._columns + np.diag(known.precision)
+        own = plain.assembly.free[plain.assembly.free >= N]
+        self._own = plain.sensitivities[:, own] * plain.weight[:, None]
+        self._parts = [plain.assembly.owner == m for m in range(plain.assembly.maneuvers)]
+        self._begin = self._without(plain.residual * plain.weight)
+        self._cost = -2.0 * plain.likelihood - float(self._begin @ self._begin)
+        self.of_each = [self._best(effect) for effect in table]
+
+    def together(self, one: Start, other: Start) -> float:
+        """Return the price of both effects at once, by the ways to their starts."""
+        left = nnls(np.column_stack([one.way, other.way]), self._begin)[1] ** 2
+        count = len(one.effect.places) + len(other.effect.places)
+        return self._cost + left - one.saved - other.saved + 2.0 * count
+
+    def _best(self, effect: SideEffect) -> Start:
+        """Return the start of an effect that leaves least.
+
+        An effect at the place of a natural number starts at that number, and saves what its prior has cost.
+        """
+        if effect.columns is not None:
+            return self._linear(effect, effect.columns)
+        plain = self._plain
+        saved = sum(
+            ((value - one.mean) / one.std) ** 2
+            for one, value in zip(plain.free, plain.values[N:], strict=True)
+            if one.place in effect.places
+        )
+        if not saved:
+            linear = effect.of in LATERAL.outputs or not effect.starts
+            tangent = [self._tangent(effect)] if linear else []
+            return min([*tangent, *self._each(effect)], key=lambda start: start.cost)
+        cost = self._cost + float(self._begin @ self._begin) - saved
+        return Start(effect, cost, plain.point, np.zeros(len(self._begin)), saved)
+
+    def _tangent(self, effect: SideEffect) -> Start:
+        """Return the start of an effect by the slope of the outputs.
+
+        Where a reading is late, the clocks of all other channels may be late too. Together they move by as
+        much without a residual, but only in small steps do they all count as linear.
+        """
+        point, step = self._plain.point, np.array(effect.variant.steps)
+        setting = moved_to(point.setting, effect.places, base_of(self._case, effect) + step)
+        moved = outputs(self._case.flown, point._replace(setting=setting))
+        return self._linear(effect, (moved - self._plain.fitted)[:, None] / step)
+
+    def _linear(self, effect: SideEffect, columns: FloatArray) -> Start:
+        """Return the best start of an effect whose outputs are linear in its numbers."""
+        ways = np.column_stack([self._without(column * self._plain.weight) for column in columns.T])
+        prior = np.array(effect.std) ** -2.0
+        values = np.asarray(np.linalg.solve(ways.T @ ways + np.diag(prior), ways.T @ self._begin))
+        way = ways @ values
+        left = self._begin - way
+        point, cost = self._plain.point, self._cost + float(left @ left + prior @ values**2)
+        setting = moved_to(point.setting, effect.places, base_of(self._case, effect) + values)
+        return Start(effect, cost, point._replace(setting=setting), way)
+
+    def _each(self, effect: SideEffect) -> Iterator[Start]:
+        """Yield every start of an effect. The outputs count as linear in an effect's size up to its start."""
+        case, point = self._case, self._plain.point
+        place, sides = effect.sides or (("", ""), (0.0,))
+        base = base_of(case, effect)
+        begun = [moved_to(point.setting, effect.places, base + values) for values in effect.starts]
+        tried = [moved_to(setting, [place], np.array([side])) for setting in begun for side in sides]
+        changes = changes_by(self._plain, case.flown, effect.of, tried).reshape(
+            len(begun), len(sides), len(self._begin)
+        )
+        for values, setting, changed in zip(effect.starts, begun, changes, strict=True):
+            ways = [self._without(change * self._plain.weight) for change in changed]
+            shares = [np.clip(way @ self._begin / (way @ way + 1e-12), *SECANT) for way in ways]
+            left = [self._begin - share * way for share, way in zip(shares, ways, strict=True)]
+            squares = np.array([[float(one[rows] @ one[rows]) for rows in self._parts] for one in left])
+            best = np.argmin(squares, axis=0)
+            if effect.sides is None:
+                setting = moved_to(setting, effect.places[:1], np.array([base[0] + shares[0] * values[0]]))
+            else:
+                setting = {**setting, place: np.array(sides)[best]}
+            way = np.sum([ways[k] * rows for k, rows in zip(best, self._parts, strict=True)], axis=0)
+            cost = self._cost + float(np.sum(np.min(squares, axis=0)))
+            yield Start(effect, cost, point._replace(setting=setting), way)
+
+    def _without(self, left: FloatArray) -> FloatArray:
+        """Return weighed rows (N,) without what all other parameters absorb."""
+        left = left.copy()
+        for rows in self._parts:
+            mine = self._own[rows]
+            left[rows] -= mine @ np.linalg.lstsq(mine, left[rows], rcond=None)[0]
+        return np.asarray(left - self._columns @ np.linalg.solve(self._information, self._columns.T @ left))

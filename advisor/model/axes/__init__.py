@@ -1,0 +1,1 @@
+"""Models of the axes, as tables of terms."""

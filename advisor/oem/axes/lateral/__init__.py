@@ -1,0 +1,1 @@
+"""Roll and yaw: records, start, motion, instruments and estimate."""

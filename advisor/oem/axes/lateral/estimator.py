@@ -1,0 +1,153 @@
+"""From lateral manoeuvres to derivatives and modes: the function that the rest of the program calls.
+
+The modes have 95 % intervals by the delta method.
+Let λ be a simple eigenvalue of A with right and left eigenvectors v and w. A change dA of the matrix changes
+it by dλ = wᵀ·dA·v/(wᵀ·v) (Wilkinson, *The Algebraic Eigenvalue Problem*, 1965, ch. 2). The Dutch roll has the
+frequency ω = |λ| and the damping ζ = -Re λ/ω, and the roll mode has the time constant -1/λ.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
+from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
+from advisor.oem.axes.lateral.instruments import nuisances_of
+from advisor.oem.axes.lateral.prepare import prepare_lateral
+from advisor.oem.axes.lateral.solution import LateralSolution, N, lateral_not_identifiable, solve_lateral
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.estimator import channel_fits
+from advisor.oem.flying_qualities import Quality
+from advisor.oem.identifiability import correlated
+from advisor.oem.prediction import prediction_band
+from advisor.oem.scatter_between import widened_by_scatter
+
+_STATES = len(LATERAL.states)
+
+
+class Errors(NamedTuple):
+    """Errors of the derivatives, for the error of a mode."""
+
+    covariance: FloatArray
+    """(15, 15) from the noise within the manoeuvres."""
+    contributions: FloatArray
+    """(m, 15) contribution of each manoeuvre."""
+    systematic: FloatArray = np.zeros((len(LATERAL.shared), len(LATERAL.shared)))
+    """(15, 15) by dynamics that the model lacks."""
+
+    def std(self, slope: FloatArray) -> float:
+        """Return the standard deviation of a quantity with derivatives ``slope`` (15,).
+
+        The variance holds the scatter of the quantity itself between the manoeuvres. A manoeuvre that alone
+        tells the quantity leaves no such scatter. So the variance grows at least as those of the derivatives
+        do on average (Birge, *Phys. Rev.* 40, 1932). A factor for each derivative would break the
+        correlations that make a mode more certain than its derivatives.
+        """
+        within = slope @ self.covariance @ slope
+        own = widened_by_scatter(np.array([[within]]), (self.contributions @ slope)[:, None])[0, 0]
+        common = slope @ self.systematic @ slope
+        return float((max(own, within * self._growth, 0.0) + common) ** 0.5)
+
+    @property
+    def _growth(self) -> float:
+        """Mean factor on the variances of the derivatives by their scatter."""
+        stated = np.diag(self.covariance)
+        known = stated > 0.0
+        widened = np.diag(widened_by_scatter(self.covariance, self.contributions))
+        return float(np.mean(widened[known] / stated[known])) if known.any() else 1.0
+
+
+def lateral_modes(theta: FloatArray, errors: Errors, trim: Trim) -> LateralModes:
+    """Return the modes at the trim of ``theta`` (15,), with their errors."""
+    a = state_matrix(theta, trim)
+    found = modes_of(a)
+    omega = zeta = roll = spiral = None
+    left_out: dict[str, str] = {}
+    if found.dutch_roll is None:
+        left_out["dutch_roll"] = "the aircraft has no oscillation in yaw at these values"
+    else:
+        value = found.dutch_roll
+        slope = _slope(a, value)
+        size = abs(value)
+        by_size = (value.conjugate() * slope).real / size
+        by_damping = -slope.real / size + value.real * by_size / size**2
+        omega = _quality(size, by_size, errors)
+        zeta = _quality(-value.real / size, by_damping, errors)
+    if found.roll is None or found.spiral is None:
+        left_out["roll"] = left_out["spiral"] = "roll and spiral oscillate together at these values"
+    else:
+        roll = _quality(-1.0 / found.roll, _slope(a, found.roll).real / found.roll**2, errors)
+        spiral = _quality(found.spiral, _slope(a, found.spiral).real, errors)
+    return LateralModes(omega, zeta, roll, spiral, left_out)
+
+
+def _slope(a: FloatArray, value: complex) -> np.ndarray:
+    """Return the derivatives of an eigenvalue of ``a`` by the 15 derivatives."""
+    values, right = np.linalg.eig(a)
+    k = int(np.argmin(np.abs(values - value)))
+    left = np.linalg.inv(right)[k]
+    moved = np.zeros(len(LATERAL.shared), np.complex128)
+    for j, (row, column, _) in enumerate(LATERAL.place[: len(LATERAL.shared)]):
+        if column < _STATES:
+            moved[j] = left[row] * right[column, k]
+    return moved
+
+
+def _quality(value: float, slope: FloatArray, errors: Errors) -> Quality:
+    return Quality(float(value), errors.std(slope))
+
+
+def estimate_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> LateralEstimate | NoEstimate:
+    """Return the lateral derivatives from manoeuvres that share them, or why there is no estimate."""
+    if not maneuvers:
+        return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")
+    problem = prepare_lateral(maneuvers, aircraft)
+    if isinstance(problem, NoEstimate):
+        return problem
+    solution = solve_lateral(problem, nuisances_of(problem, aircraft))
+    return solution if isinstance(solution, NoEstimate) else _reported(solution)
+
+
+def _reported(solution: LateralSolution) -> LateralEstimate:
+    problem = solution.problem
+    told = lateral_not_identifiable(solution)
+    bound, covariance = solution.covariance_cr[:N, :N], solution.widened[:N, :N]
+    errors = Errors(solution.covariance[:N, :N], solution.contributions[:, :N], solution.systematic[:N, :N])
+    return LateralEstimate(
+        theta=solution.theta,
+        covariance_cr=bound,
+        covariance=covariance,
+        cost=solution.cost,
+        fits=channel_fits(solution.assembly, solution.optimum),
+        iterations=solution.optimum.iterations,
+        not_identifiable=told,
+        correlated=correlated(bound, LATERAL.names.reported),
+        condition=solution.influence.condition,
+        airspeed_m_s=_airspeed(solution),
+        servo_lag_s=max((servo.lag_s for servo in problem.servos.values()), default=0.0),
+        prediction=prediction_band(solution.assembly, solution, solution.widened),
+        names=LATERAL.names.reported,
+        modes=lateral_modes(solution.theta, errors, _trim(solution)),
+        nuisances=solution.nuisances,
+        flown=tuple(name for name in LATERAL.inputs if problem.flies(name)),
+        scales_with_speed=problem.reference_airspeed_m_s is not None,
+    )
+
+
+def _airspeed(solution: LateralSolution) -> float:
+    """Return the speed of the derivatives, m/s: the reference, or the mean of a nearly constant speed."""
+    problem = solution.problem
+    return problem.reference_airspeed_m_s or float(np.mean([np.mean(r.airspeed.y) for r in problem.records]))
+
+
+def _trim(solution: LateralSolution) -> Trim:
+    records = solution.problem.records
+    alpha, theta = (
+        float(np.mean([np.mean(getattr(record, name).y) for record in records]))
+        for name in ("alpha", "theta")
+    )
+    return Trim(_airspeed(solution), alpha, theta)

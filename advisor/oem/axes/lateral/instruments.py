@@ -1,0 +1,161 @@
+"""Servos and clocks of a lateral record as nuisance parameters of the fit, each with its prior.
+
+The command acts up to half an interval and a filter's delay earlier or later than its stamps. The attitude
+may be late relative to the rates, and every time is relative to the rates. A servo that the aircraft file
+leaves open lags by an unknown time. An ignored lag of 0.08 s costs a quarter of L_p and L_δa. A sideslip vane
+ahead of the centre of gravity reads β + (x/V)·r. A vane taken as at the centre of gravity shifts N_r by
+-N_β·x/V. The true air speed differs from the read one. Each unknown quantity of an instrument is one more
+parameter, whose error is part of every interval.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.instruments.lateness import lateness_std
+from advisor.flight.signals.messages import FloatArray
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axes.lateral.problem import CAUSES, LateralAssembly, LateralProblem
+from advisor.oem.extra import Prior
+from advisor.oem.instruments import KNOWN_TO, PLACE_S, USUAL_LAG
+
+AIR_SPEED = Prior(0.0, 0.02)
+"""Relative excess of the true over the read air speed. The read speed may be an indicated one, and a static
+port reads a pressure that the wing changes."""
+LONGEST_LAG_S = 0.4
+FIRST_LAG_S = 0.01
+"""Unknown lag with which the search begins, s."""
+LARGEST_MOVE_S = 0.03
+"""Largest step of one nuisance parameter, s, within which the fit is nearly linear in it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Nuisance:
+    """One nuisance parameter, in s, or in m for an arm."""
+
+    kind: Literal["lag", "delay", "command", "arm", "air"]
+    """Lag of a control's servo, delay of an output relative to the rates, delay of all commands, place of the
+    sideslip vane. Last, the relative excess of the true air speed."""
+    of: str
+    """Control or output; empty for the commands."""
+    prior: Prior
+    per_second: float = 1.0
+    """Change of the parameter that moves the outputs as one second does: the air speed for an arm, m."""
+
+    @property
+    def name(self) -> str:
+        """Name of the parameter with its unit."""
+        if self.kind == "air":
+            return "airspeed_excess"
+        what = {"lag": "lag_s", "arm": "arm_m"}.get(self.kind, "delay_s")
+        return f"{self.of or 'command'}_{what}"
+
+    def read(self, problem: LateralProblem) -> float:
+        """Return the value in a problem, s or m."""
+        if self.kind == "lag":
+            return problem.servos[self.of].lag_s
+        if self.kind == "arm":
+            return problem.beta_arm_m
+        if self.kind == "air":
+            return problem.airspeed_excess
+        return problem.delays_s.get(self.of, 0.0) if self.kind == "delay" else problem.command_delay_s
+
+    def write(self, problem: LateralProblem, value: float) -> LateralProblem:
+        """Return the problem with another value, s or m; a lag within its range."""
+        if self.kind == "command":
+            return replace(problem, command_delay_s=value)
+        if self.kind == "arm":
+            return replace(problem, beta_arm_m=value)
+        if self.kind == "air":
+            return replace(problem, airspeed_excess=value)
+        if self.kind == "delay":
+            return replace(problem, delays_s={**problem.delays_s, self.of: value})
+        servo = replace(problem.servos[self.of], lag_s=float(np.clip(value, 0.0, LONGEST_LAG_S)))
+        return replace(problem, servos={**problem.servos, self.of: servo})
+
+    def moved(self, problem: LateralProblem, change: float) -> LateralProblem:
+        """Return the problem with the value changed by no more than ``LARGEST_MOVE_S``."""
+        most = LARGEST_MOVE_S * self.per_second
+        return self.write(problem, self.read(problem) + float(np.clip(change, -most, most)))
+
+
+def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance, ...]:
+    """Return the nuisance parameters of a problem; a still input has none."""
+    moving = [name for name in LATERAL.inputs if problem.moves(name)]
+    stamps = [record.inputs[name].t for record in problem.records for name in moving if name in record.inputs]
+    found = [Nuisance("command", "", Prior(0.0, lateness_std(stamps)))] if stamps else []
+    for name in ("bank", "beta"):
+        measured = [record.outputs[name].t for record in problem.records if name in record.outputs]
+        if measured:
+            found.append(Nuisance("delay", name, Prior(0.0, lateness_std(measured))))
+            if name == "beta" and beta_arm_m(aircraft) is None:
+                speed = float(np.mean([np.mean(record.airspeed.y) for record in problem.records]))
+                found.append(Nuisance("arm", name, Prior(0.0, PLACE_S * speed), speed))
+    for name in moving:
+        stated = getattr(aircraft, name).lag_s
+        if stated is None:
+            found.append(Nuisance("lag", name, USUAL_LAG))
+        elif stated > 0.0:
+            found.append(Nuisance("lag", name, Prior(stated, KNOWN_TO * stated)))
+    if moving and problem.tells_force:
+        found.append(Nuisance("air", "", AIR_SPEED))
+    return tuple(found)
+
+
+def beta_arm_m(aircraft: Aircraft) -> float | None:
+    """Return the stated distance of the sideslip vane ahead of the centre of gravity, m; None where unknown.
+
+    A boom that carries both vanes has one distance.
+    """
+    stated = aircraft.beta.vane_arm_m
+    return aircraft.alpha.vane_arm_m if stated is None else stated
+
+
+def begun(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProblem:
+    """Return the problem at the start of the search: a short unknown lag, all else at its prior's mean.
+
+    A lag and the roll mode act alike on the roll rate. A search from a long lag may exchange them.
+    """
+    for x in nuisances:
+        problem = x.write(problem, FIRST_LAG_S if x.prior is USUAL_LAG else x.prior.mean)
+    return problem
+
+
+def columns_of(
+    assembly: LateralAssembly,
+    by_cause: FloatArray,
+    motion: FloatArray,
+    nuisances: Sequence[Nuisance],
+    by_speed: Callable[[], FloatArray],
+) -> FloatArray:
+    """Return the derivatives of the outputs by nuisance parameters, shape (N, k).
+
+    Parameters
+    ----------
+    by_speed
+        Returns the derivative (N,) by the relative excess of the air speed.
+    by_cause
+        (N, 3) derivatives by ``CAUSES``, which change the motion.
+    motion
+        (E, 2, 4) states and their rates at the events; the instruments of the outputs read them.
+    """
+    columns = np.zeros((len(assembly.z), len(nuisances)))
+    for k, x in enumerate(nuisances):
+        if x.kind in ("command", "lag"):
+            columns[:, k] = by_cause[:, CAUSES.index(x.of or "command")]
+            continue
+        if x.kind == "air":
+            columns[:, k] = by_speed()
+            continue
+        output = LATERAL.outputs.index(x.of)
+        row = assembly.grid.row[output]
+        at, row = np.flatnonzero(row >= 0), row[row >= 0]
+        if x.kind == "delay":
+            columns[row, k] = -np.sum(assembly.grid.seen[at, output] * motion[at, 1], axis=1)
+        else:
+            speed = assembly.grid.felt[at, LATERAL.outputs.index("a_y"), LATERAL.states.index("beta")]
+            columns[row, k] = motion[at, 0, LATERAL.states.index("r")] / speed
+    return columns

@@ -1,0 +1,73 @@
+"""The motion of roll and yaw for the search over derivatives, servos and clocks."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.model.axes.lateral import LATERAL
+from advisor.model.axis_response import respond_axis
+from advisor.oem.axes.lateral.instruments import Nuisance, columns_of
+from advisor.oem.axes.lateral.problem import CAUSES, LateralAssembly, LateralProblem, assemble_lateral
+from advisor.oem.descent import Response
+
+LEAST_NOISE = {"p": 5e-4, "r": 5e-4, "bank": 5e-4, "a_y": 0.01, "beta": 5e-4}
+"""Least standard deviation of each output, SI. Gyros of 0.007 deg/s/√Hz have 5e-4 rad/s at 20 Hz, and the
+model itself is no truer: α, θ and V are constant between stamps."""
+FLOOR = np.array([LEAST_NOISE[name] for name in LATERAL.outputs])
+_SPEED_STEP = 1e-3
+"""Numerical: step of the difference by which the outputs' derivative by the air speed is taken."""
+_ALL = len(LATERAL.names.shared) + len(LATERAL.names.local)
+
+
+class LateralMotion:
+    """Response of roll and yaw, with the derivatives by all parameters."""
+
+    names = LATERAL.names
+
+    @staticmethod
+    def laid(problem: LateralProblem, /) -> LateralAssembly:
+        """Return the measurements as rows."""
+        return assemble_lateral(problem)
+
+    @staticmethod
+    def floor(_: LateralAssembly, /) -> FloatArray:
+        """Return the least standard deviation of each output, (5,), SI."""
+        return FLOOR
+
+    @staticmethod
+    def begins(laid: LateralAssembly, /) -> FloatArray:
+        """Return the time of the first event of each record, (m,), s."""
+        return laid.begin
+
+    @staticmethod
+    def respond(
+        problem: LateralProblem,
+        laid: LateralAssembly,
+        shared: FloatArray,
+        local: FloatArray,
+        nuisances: Sequence[Nuisance],
+        /,
+    ) -> Response | None:
+        """Return the response; None where the model runs away."""
+        y, g = np.empty(len(laid.z)), np.empty((len(laid.z), _ALL + len(CAUSES)))
+        motion = np.empty((len(laid.grid.step_s), 2, len(LATERAL.states)))
+        if not respond_axis(laid.grid, shared, local, y, g, motion):
+            return None
+
+        def by_speed() -> FloatArray:
+            faster = replace(problem, airspeed_excess=problem.airspeed_excess + _SPEED_STEP)
+            return (_outputs_at(faster, shared, local) - y) / _SPEED_STEP
+
+        columns = columns_of(laid, g[:, _ALL:], motion, nuisances, by_speed)
+        return Response(y, g[:, :_ALL], columns, motion[laid.grid.first[:-1], 1])
+
+
+def _outputs_at(problem: LateralProblem, shared: FloatArray, local: FloatArray) -> FloatArray:
+    """Return the outputs (N,) of a problem, without their derivatives."""
+    assembly = assemble_lateral(problem)
+    y = np.empty(len(assembly.z))
+    nothing = np.empty((0, _ALL + len(CAUSES)))
+    respond_axis(assembly.grid, shared, local, y, nothing, np.empty((0, 2, len(LATERAL.states))))
+    return y

@@ -1,0 +1,80 @@
+"""Prediction of a lateral manoeuvre by given derivatives, with its own trims, initial states and biases."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.messages import FloatArray
+from advisor.model.axes.lateral import LATERAL
+from advisor.model.axis_response import respond_axis
+from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axes.lateral.instruments import nuisances_of
+from advisor.oem.axes.lateral.prepare import prepare_lateral
+from advisor.oem.axes.lateral.problem import CAUSES, LateralAssembly, LateralProblem, assemble_lateral
+from advisor.oem.axes.lateral.start import lateral_start
+from advisor.oem.estimate import ChannelFit, NoEstimate
+
+ROUNDS = 12
+"""Gauss-Newton steps of the refit. The outputs are nearly linear in trims, initial states and biases."""
+
+
+def predicted_lateral(
+    maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: FloatArray | None = None
+) -> Mapping[str, ChannelFit] | NoEstimate:
+    """Return measured and predicted values of a manoeuvre by output.
+
+    Parameters
+    ----------
+    model
+        Estimate from other manoeuvres, with its instruments.
+    theta
+        Derivatives (15,) at the model's speed in place of its own; None: its own.
+    """
+    prepared = prepare_lateral([maneuver], aircraft)
+    if isinstance(prepared, NoEstimate):
+        return prepared
+    problem = _as_in(prepared, model, aircraft)
+    assembly = assemble_lateral(problem)
+    noise = {name: fit.noise for name, fit in model.fits[0].items()}
+    chosen = model.theta if theta is None else theta
+    fitted = _refitted(assembly, problem, chosen, noise)
+    return {
+        name: ChannelFit(name, assembly.t[rows], assembly.z[rows], fitted[rows], noise[name])
+        for name, rows in assembly.rows[0].items()
+    }
+
+
+def _as_in(problem: LateralProblem, model: LateralEstimate, aircraft: Aircraft) -> LateralProblem:
+    """Return the problem with the model's speed, outputs and instruments."""
+    outputs = model.fits[0]
+    (record,) = problem.records
+    kept = {name: signal for name, signal in record.outputs.items() if name in outputs}
+    problem = replace(problem, records=(replace(record, outputs=kept),))
+    if model.scales_with_speed:
+        problem = replace(problem, reference_airspeed_m_s=model.airspeed_m_s)
+    for x in nuisances_of(problem, aircraft):
+        if x.name in model.nuisances:
+            problem = x.write(problem, model.nuisances[x.name][0])
+    return problem
+
+
+def _refitted(
+    assembly: LateralAssembly, problem: LateralProblem, theta: FloatArray, noise: Mapping[str, float]
+) -> FloatArray:
+    """Return the outputs (N,) at the best trims, initial states and biases."""
+    n = len(LATERAL.names.shared)
+    own = assembly.own
+    weight = np.array([1.0 / noise[LATERAL.outputs[c]] for c in assembly.channel])
+    local = lateral_start(problem)[1]
+    local[0, : len(LATERAL.constants)] = 0.0
+    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), n + local.shape[1] + len(CAUSES)))
+    motion = np.empty((0, 2, len(LATERAL.states)))
+    for _ in range(ROUNDS):
+        respond_axis(assembly.grid, theta, local, y, g, motion)
+        step = np.linalg.lstsq(g[:, own] * weight[:, None], (assembly.z - y) * weight, rcond=None)[0]
+        local[0, own - n] += step
+    respond_axis(assembly.grid, theta, local, y, g, motion)
+    return y

@@ -1,0 +1,117 @@
+"""From lateral manoeuvres and the aircraft file to the estimation problem."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
+from advisor.flight.signals.record import Channel
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.airspeed import airspeed
+from advisor.oem.alpha_use import can_do_without, has, infer, why_left_out
+from advisor.oem.axes.lateral.instruments import beta_arm_m
+from advisor.oem.axes.lateral.problem import NEEDED, LateralProblem, LateralRecord
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.prepare import constant_speed, reference_speed, signal_of, stated_reference, too_few
+from advisor.oem.rows import Signal
+from advisor.oem.surface import Servo
+
+_SPOKEN = {"p": "roll rate", "r": "yaw rate", "bank": "bank angle", "theta": "pitch angle", "q": "pitch rate"}
+
+
+def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> LateralProblem | NoEstimate:
+    """Return the estimation problem of the lateral axis, or why there is none."""
+    for maneuver in maneuvers:
+        if (few := too_few(maneuver, _SPOKEN)) is not None:
+            return few
+    measured = [airspeed(m.channels) for m in maneuvers]
+    speeds = [
+        found.signal
+        if found is not None
+        else _plain_speed(m) or constant_speed(m, aircraft.stated_airspeed_m_s)
+        for found, m in zip(measured, maneuvers, strict=True)
+    ]
+    known = [speed for speed in speeds if speed is not None]
+    if len(known) < len(maneuvers):
+        return NoEstimate(
+            "no_airspeed", "No air speed is known, which the turn of the path needs: set airspeed_m_s."
+        )
+    reference = reference_speed(
+        known,
+        stated_reference(aircraft, maneuvers),
+        all(found is not None and found.smooth for found in measured),
+    )
+    outputs = _outputs(maneuvers, aircraft)
+    left_out = why_left_out(maneuvers, aircraft)
+    return LateralProblem(
+        records=tuple(
+            LateralRecord(
+                inputs={
+                    name: signal_of(m.channels[name]) for name in LATERAL.inputs if has(m.channels, name)
+                },
+                outputs={name: signal_of(m.channels[name]) for name in outputs},
+                airspeed=speed,
+                alpha=_alpha(m, aircraft, left_out),
+                theta=signal_of(m.channels["theta"]),
+                q=signal_of(m.channels["q"]),
+            )
+            for m, speed in zip(maneuvers, known, strict=True)
+        ),
+        reference_airspeed_m_s=reference,
+        servos={
+            name: Servo(control.lag_s or 0.0, control.delay_s or 0.0)
+            for name, control in (("aileron", aircraft.aileron), ("rudder", aircraft.rudder))
+        },
+        beta_arm_m=beta_arm_m(aircraft) or 0.0,
+        accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
+    )
+
+
+def _plain_speed(maneuver: Maneuver) -> Signal | None:
+    """Return the air speed of the slowest aircraft, whose readings fall below the speed of others."""
+    channel = maneuver.channels.get("airspeed")
+    if channel is None or len(channel) < 2 or not np.median(channel.y) > SLOWEST_FLIGHT_M_S:
+        return None
+    return Signal(channel.t, np.maximum(channel.y, 0.5 * SLOWEST_FLIGHT_M_S))
+
+
+def _outputs(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> list[str]:
+    """Return the outputs that every manoeuvre has."""
+    names = [*NEEDED]
+    names += [name for name in ("a_y", "beta") if all(_moves(m, name) for m in maneuvers)]
+    if "beta" in names and not all(_is_measured(m.channels["beta"], aircraft) for m in maneuvers):
+        names.remove("beta")
+    return names
+
+
+def _is_measured(beta: Channel, aircraft: Aircraft) -> bool:
+    """Return whether a vane measures the sideslip. An estimate of the autopilot's own is no sideslip.
+
+    A crew that states the place of the vane of AOA_SSA knows that the message holds vane angles.
+    """
+    if aircraft.beta.source != "auto":
+        return aircraft.beta.source != "none"
+    if aircraft.alpha.source == "aoa_ssa" and aircraft.alpha.vane_arm_m is not None:
+        return True
+    return beta.provenance in ("vane", "simulated")
+
+
+def _moves(maneuver: Maneuver, name: str) -> bool:
+    return has(maneuver.channels, name) and float(np.ptp(maneuver.channels[name].y)) > 0.0
+
+
+def _alpha(maneuver: Maneuver, aircraft: Aircraft, left_out: str) -> Signal:
+    """Return the angle of attack: measured, by the motion, or that of level flight at the mean attitude."""
+    channel: Channel | None = None
+    if not left_out and has(maneuver.channels, "alpha"):
+        channel = maneuver.channels["alpha"]
+    elif can_do_without(maneuver, aircraft):
+        channel = infer(maneuver, aircraft)
+    elif has(maneuver.channels, "alpha"):
+        channel = maneuver.channels["alpha"]
+    if channel is not None:
+        return signal_of(channel)
+    theta = maneuver.channels["theta"]
+    return Signal(theta.t[[0, -1]], np.full(2, float(np.mean(theta.y))))

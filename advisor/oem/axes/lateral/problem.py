@@ -1,0 +1,207 @@
+"""The estimation problem of the lateral axis: data of one or more manoeuvres, each channel at its stamps."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.signals.messages import FloatArray
+from advisor.model.axes.lateral import LATERAL
+from advisor.model.axis_response import AxisGrid
+from advisor.model.response import Index
+from advisor.oem.rows import Laid, Piece, Signal, events_of, lay_rows, measured_in, padded, with_samples
+from advisor.oem.surface import Servo
+
+_BETA, _P, _R, _BANK = range(len(LATERAL.states))
+LEAST_PART = 0.2
+"""Least range of an input over that of the larger one, for a test of this input. A rudder of 0.9 deg
+in an aileron test of 12 deg follows the motion. Derivatives of such a rudder would be wrong by half."""
+NEEDED = ("p", "r", "bank")
+"""Outputs that every record has."""
+CAUSES = ("command", *LATERAL.inputs)
+"""Causes that change the inputs of a grid: the delay of all commands, and the lag of each servo."""
+
+
+@dataclass(frozen=True, slots=True)
+class LateralRecord:
+    """Data of one lateral manoeuvre, in SI units."""
+
+    inputs: Mapping[str, Signal]
+    """Commands of aileron and rudder, rad; an input that was not recorded did not move."""
+    outputs: Mapping[str, Signal]
+    """Measured outputs by their names; p, r and bank always."""
+    airspeed: Signal
+    """True air speed, m/s."""
+    alpha: Signal
+    """Angle of attack, rad."""
+    theta: Signal
+    """Pitch angle, rad."""
+    q: Signal
+    """Pitch rate, rad/s."""
+
+
+@dataclass(frozen=True, slots=True)
+class LateralProblem:
+    """Records that share the lateral derivatives, with the properties of their instruments."""
+
+    records: tuple[LateralRecord, ...]
+    reference_airspeed_m_s: float | None = None
+    """Reference speed of the derivatives, m/s; None means that they do not scale with speed."""
+    servos: Mapping[str, Servo] = field(default_factory=dict)
+    """Servo of each input; an absent one has neither lag nor delay."""
+    command_delay_s: float = 0.0
+    """Delay of all commands behind their stamps, in addition to the servos', s."""
+    delays_s: Mapping[str, float] = field(default_factory=dict)
+    """Delay of an output relative to the rates, s; an absent one is 0."""
+    beta_arm_m: float = 0.0
+    """Distance of the sideslip vane ahead of the centre of gravity, m."""
+    accelerometer_arm_m: float = 0.0
+    """Distance of the accelerometer ahead of the centre of gravity, m."""
+    airspeed_excess: float = 0.0
+    """Relative excess of the true over the read air speed."""
+
+    @property
+    def tells_force(self) -> bool:
+        """Whether a record has the lateral acceleration or the sideslip."""
+        return any({"a_y", "beta"} & record.outputs.keys() for record in self.records)
+
+    def servo(self, name: str) -> Servo:
+        """Return the servo of an input, late by the delay of all commands."""
+        stated = self.servos.get(name, Servo())
+        return Servo(stated.lag_s, stated.delay_s + self.command_delay_s)
+
+    def moves(self, name: str) -> bool:
+        """Return whether an input moves in any record."""
+        return self.motion(name) > 0.0
+
+    def motion(self, name: str) -> float:
+        """Return the largest range of an input over the records, rad."""
+        return max((float(np.ptp(r.inputs[name].y)) for r in self.records if name in r.inputs), default=0.0)
+
+    def flies(self, name: str) -> bool:
+        """Return whether an input is a part of the test, and not hands that hold the wings level."""
+        return self.motion(name) > LEAST_PART * max(self.motion(other) for other in LATERAL.inputs)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LateralAssembly(Laid):
+    """A problem of the lateral axis laid out for the kernel."""
+
+    grid: AxisGrid
+    begin: FloatArray
+    """(m,) time of the first event of each record, s, to which the initial states belong."""
+
+
+def assemble_lateral(problem: LateralProblem, causes: Sequence[str] = CAUSES) -> LateralAssembly:
+    """Lay the records on the union of their stamps, with derivatives by all ``CAUSES`` or by none.
+
+    Raises
+    ------
+    ValueError
+        A record lacks p, r or bank, or has fewer than two stamps of one of them.
+    """
+    pieces = [_piece(record, problem, causes) for record in problem.records]
+    measured = {name for piece in pieces for name in piece.outputs}
+    laid = lay_rows(pieces, LATERAL.outputs)
+    grid = AxisGrid(
+        first=laid.first,
+        row=laid.row,
+        place=LATERAL.place,
+        bias=LATERAL.bias,
+        bank=_BANK,
+        yaw=_R,
+        **laid.columns,
+    )
+    return LateralAssembly(
+        names=LATERAL.names,
+        grid=grid,
+        begin=np.array([piece.t[0] for piece in pieces]),
+        **laid.measurements,
+        free=_free(problem, measured),
+    )
+
+
+def _free(problem: LateralProblem, measured: set[str]) -> Index:
+    """Return which parameters the moved inputs and the measured outputs determine.
+
+    Without a vane no output determines the level of the sideslip, and the constants of trim absorb any.
+    """
+    still = [name for name in LATERAL.inputs if not problem.moves(name)]
+    shared = [k for k, term in enumerate(LATERAL.shared) if term.factor not in still]
+    if not problem.tells_force:
+        shared = [k for k in shared if LATERAL.shared[k].name in _WITHOUT_FORCE]
+    fixed = {f"{name}_bias" for name in LATERAL.biases if name not in measured}
+    if "beta" not in measured:
+        fixed.add("beta_initial")
+    names = LATERAL.names
+    local = [len(names.shared) + j for j, name in enumerate(names.local) if name not in fixed]
+    return np.array([*shared, *local], np.int64)
+
+
+_WITHOUT_FORCE = ("Y_beta", *(term.name for term in LATERAL.shared if term.state != "beta"))
+"""Derivatives that are estimated where neither the side force nor the sideslip is measured."""
+
+
+def _piece(record: LateralRecord, problem: LateralProblem, causes: Sequence[str]) -> Piece:
+    """Return one record on the union of its stamps."""
+    outputs = measured_in(record.outputs, LATERAL.outputs, problem.delays_s)
+    with_samples(outputs, NEEDED)
+    t = events_of(outputs, [problem.servo(name).grid(command.t) for name, command in record.inputs.items()])
+    step = np.diff(t)
+    middle = t[:-1] + step / 2.0
+    read, true = padded(record.airspeed.at(middle)), 1.0 + problem.airspeed_excess
+    reference = problem.reference_airspeed_m_s
+    columns = {
+        "step_s": padded(step),
+        "ratio": np.ones(len(t)) if reference is None else read / reference,
+        **_moved(record, problem, t, causes),
+        **_known(record, middle, true * read),
+        **_outputs(true * record.airspeed.at(t), problem),
+    }
+    return Piece(t, outputs, columns)
+
+
+def _moved(
+    record: LateralRecord, problem: LateralProblem, t: FloatArray, causes: Sequence[str]
+) -> dict[str, FloatArray]:
+    """Return the inputs at the stamps, just after them, and their rates, each (E, 2), with their derivatives
+    by k causes, each (E, k, 2)."""
+    inputs = np.zeros((3, len(t), len(LATERAL.inputs)))
+    changed = np.zeros((3, len(t), len(causes), len(LATERAL.inputs)))
+    for j, name in enumerate(LATERAL.inputs):
+        if name in record.inputs:
+            servo, command = problem.servo(name), record.inputs[name]
+            inputs[:, :, j] = servo.course(*command, t)
+            if causes:
+                its = [causes.index("command"), causes.index(name)]
+                changed[:, :, its, j] = servo.changes(*command, t)[:3]
+    return dict(zip(("inputs", "start", "slope"), inputs, strict=True)) | dict(
+        zip(("changed", "changed_start", "changed_slope"), changed, strict=True)
+    )
+
+
+def _known(record: LateralRecord, middle: FloatArray, speed: FloatArray) -> dict[str, FloatArray]:
+    """Return the known matrix (E, 4, 4), and the factors (E, 4) of sin φ and of r·cos φ."""
+    alpha, theta, q = (padded(s.at(middle)) for s in (record.alpha, record.theta, record.q))
+    linear = np.zeros((len(speed), 4, 4))
+    linear[:, _BETA, _P], linear[:, _BETA, _R] = np.sin(alpha), -np.cos(alpha)
+    linear[:, _BANK, _P] = 1.0
+    sine, turn = np.zeros((len(speed), 4)), np.zeros((len(speed), 4))
+    sine[:, _BETA] = GRAVITY_M_S2 / speed * np.cos(theta)
+    sine[:, _BANK] = q * np.tan(theta)
+    turn[:, _BANK] = np.tan(theta)
+    return {"linear": linear, "sine": sine, "turn": turn}
+
+
+def _outputs(speed: FloatArray, problem: LateralProblem) -> dict[str, FloatArray]:
+    """Return the factors (E, outputs, 4) of the states, and of the parameters' part of the rates."""
+    seen = np.zeros((len(speed), len(LATERAL.outputs), 4))
+    felt = np.zeros_like(seen)
+    for name, state in (("p", _P), ("r", _R), ("bank", _BANK), ("beta", _BETA)):
+        seen[:, LATERAL.outputs.index(name), state] = 1.0
+    seen[:, LATERAL.outputs.index("beta"), _R] = problem.beta_arm_m / speed
+    force = LATERAL.outputs.index("a_y")
+    felt[:, force, _BETA] = speed
+    felt[:, force, _R] = problem.accelerometer_arm_m
+    return {"seen": seen, "felt": felt}

@@ -1,0 +1,182 @@
+"""Output error on the lateral axis: from records to derivatives, errors and identifiability.
+
+The influence of every measurement and the noise model are those of the short period. White noise makes
+coloured residuals look too certain relative to a prior. A first fit gives the colour of the noise. A second
+fit weighs the priors by the colour of the first, and a third fit by the colour of the second.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
+from advisor.oem.axes.lateral.instruments import Nuisance, begun
+from advisor.oem.axes.lateral.motion import FLOOR, LateralMotion
+from advisor.oem.axes.lateral.problem import LateralAssembly, LateralProblem
+from advisor.oem.axes.lateral.start import lateral_start
+from advisor.oem.descent import Fit, descended
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.evaluation import Evaluated, errors_of
+from advisor.oem.extra import Extra
+from advisor.oem.identifiability import LARGEST_ERROR
+from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
+from advisor.oem.solution import RUNS_AWAY, refused
+from advisor.words.quantiles import NORMAL_95
+
+N = len(LATERAL.shared)
+FIRST_LOOK = 8
+"""Iterations of the fit whose residuals give the first colour of the noise. With servos and clocks fixed, a
+longer search may leave the physical values. In a rudder doublet L_p of -10 1/s became -220 1/s."""
+NOTHING_TO_TELL = "The inputs do not excite roll and yaw enough."
+LEAST_SHARE = 0.01
+"""Least share by which white noise weighs a prior; data without noise have no colour."""
+WITHOUT_FORCE = (
+    "neither a lateral acceleration nor a sideslip was recorded, so that only the modes are told; record a_y"
+)
+_MOTION = LateralMotion()
+_FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LateralSolution(Evaluated):
+    """The optimum of one lateral problem, with its errors."""
+
+    problem: LateralProblem
+    assembly: LateralAssembly
+    extra: Extra
+    """Nuisance parameters at their values."""
+    nuisances: Mapping[str, tuple[float, float]]
+    """Name of each nuisance parameter to its value and standard deviation, in its unit."""
+
+    @property
+    def cost(self) -> float:
+        """J = σ_p²·σ_r²."""
+        noise = dict(zip(LATERAL.outputs, self.optimum.noise, strict=True))
+        return float((noise["p"] * noise["r"]) ** 2)
+
+
+def solve_lateral(
+    problem: LateralProblem, nuisances: Sequence[Nuisance] = ()
+) -> LateralSolution | NoEstimate:
+    """Estimate the lateral derivatives of a problem.
+
+    Parameters
+    ----------
+    nuisances : servos and clocks that are estimated with the derivatives.
+    """
+    problem = begun(problem, nuisances)
+    start = lateral_start(problem)
+    prior = priors_of(problem, start[0])
+    fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
+    if isinstance(fit, NoEstimate):
+        return fit
+    solution = RUNS_AWAY if _has_diverged(fit) else _evaluated(fit, prior, ())
+    for _ in range(2):
+        if isinstance(solution, NoEstimate):
+            return solution
+        share = _share(solution)
+        prior = replace(prior, share=share)
+        weighed = [replace(x, prior=replace(x.prior, share=share)) for x in nuisances]
+        fit = descended(_MOTION, problem, weighed, prior, start)
+        if isinstance(fit, NoEstimate):
+            return fit
+        if (why := refused(fit.optimum, NOTHING_TO_TELL)) is not None:
+            return why
+        problem, start = fit.problem, fit.place
+        solution = _evaluated(fit, prior, weighed)
+    return solution
+
+
+def _has_diverged(fit: Fit) -> bool:
+    """Return whether a fit explains the outputs worse than a constant value of each output does."""
+    assembly, noise = fit.assembly, fit.optimum.noise
+    gain = 0.0
+    for c in np.unique(assembly.channel):
+        z = assembly.z[assembly.channel == c]
+        still = max(float(np.std(z)), FLOOR[c])
+        gain += len(z) * float(np.log(still / noise[c]))
+    return not gain >= 0.0
+
+
+def _share(solution: LateralSolution) -> float:
+    """Return the errors by white noise over those by the residuals' colour, the median of the derivatives."""
+    stated = np.diag(solution.scattered)[:N]
+    ratio = np.diag(solution.covariance_cr)[:N] / np.where(stated > 0.0, stated, np.nan)
+    return float(np.clip(np.sqrt(np.nanmedian(ratio)), LEAST_SHARE, 1.0))
+
+
+def _evaluated(fit: Fit, prior: Priors, nuisances: Sequence[Nuisance]) -> LateralSolution | NoEstimate:
+    problem, assembly, optimum, extra = fit.problem, fit.assembly, fit.optimum, fit.extra
+    g, residual = optimum.sensitivities, assembly.z - optimum.fitted
+    errors = errors_of(
+        assembly,
+        residual,
+        g,
+        optimum.noise,
+        extra,
+        prior.precision,
+        fitted=optimum.fitted,
+        prior_share=prior.share,
+    )
+    if errors is None:
+        return NoEstimate("singular", NOTHING_TO_TELL)
+    errors["covariance"] = _at_least(errors["covariance_cr"], errors["covariance"])
+    solution = LateralSolution(
+        problem=problem,
+        assembly=assembly,
+        optimum=optimum,
+        theta=optimum.shared,
+        extra=extra,
+        nuisances={},
+        **errors,
+    )
+    std = np.sqrt(np.diag(solution.widened))[N:]
+    told = {x.name: (x.read(problem), float(s)) for x, s in zip(nuisances, std, strict=True)}
+    return replace(solution, nuisances=told)
+
+
+def _at_least(bound: FloatArray, covariance: FloatArray) -> FloatArray:
+    """Return the covariance with no error below that of ``bound``: instruments have ``FLOOR``."""
+    stated = np.diag(covariance)
+    ratio = np.divide(np.diag(bound), stated, out=np.ones_like(stated), where=stated > 0.0)
+    factor = np.sqrt(np.maximum(ratio, 1.0))
+    return np.asarray(covariance * np.outer(factor, factor))
+
+
+def lateral_not_identifiable(solution: LateralSolution) -> dict[str, str]:
+    """Return by derivative the reason why it has no usable value, with the input that would tell it."""
+    if not solution.problem.tells_force:
+        return dict.fromkeys(LATERAL.names.reported, WITHOUT_FORCE)
+    reasons: dict[str, str] = {}
+    problem = solution.problem
+    missing = [name for name in LATERAL.inputs if not problem.flies(name)]
+    for suffix, name in CONTROLS.items():
+        if name in missing:
+            moved = f"moved by {np.degrees(problem.motion(name)):.1f} deg only"
+            text = f"the {name} {moved if problem.moves(name) else 'did not move'}; fly {_FLY[name]}"
+            reasons |= {f"{letter}_{suffix}": text for letter in "YLN"}
+    advice = " and ".join(_FLY[name] for name in missing or LATERAL.inputs)
+    unresolved = "the record does not depend on it"
+    reasons |= {
+        name: f"{unresolved}; fly {advice}" for name in solution.influence.unresolved if name not in reasons
+    }
+    # Another manoeuvre does not help against dynamics that the model lacks: they are no want of excitation.
+    std = np.sqrt(np.diag(solution.scattered))
+    for name, size in natural_size(solution.theta).items():
+        error = float(std[LATERAL.names.reported.index(name)])
+        if name not in reasons and not error <= _largest_error(name) * size:
+            reasons[name] = (
+                f"its error ±{NORMAL_95 * error:.2g} is too large for the size of such a derivative"
+                f" here ({size:.2g}); fly {advice}"
+            )
+    return reasons
+
+
+def _largest_error(name: str) -> float:
+    """Return the largest usable error of a derivative, as a share of its natural size.
+
+    A derivative with a prior is told by the data only where its error is clearly below that of the prior.
+    """
+    return LARGEST_ERROR * SIDE_FORCE_STD if name in ("Y_p", "Y_r") else LARGEST_ERROR

@@ -1,0 +1,73 @@
+"""The lateral derivatives of a simulator against those of a simulated flight."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import SideControl
+from advisor.aircraft.sensors import Beta
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.record import Channel
+from advisor.gap.axes.lateral import comparison
+from advisor.gap.axes.lateral.comparison import compare_side
+from advisor.report.side_gap import side_gap_document
+from tests.oem.axes.lateral.builders import JET, aileron_doublet, flown, rudder_doublet
+
+KNOWN = SideControl(lag_s=0.0, delay_s=0.0)
+AIRCRAFT = Aircraft(aileron=KNOWN, rudder=KNOWN, beta=Beta("none"))
+T = np.arange(0.0, 8.0, 0.04)
+TRUE = {name: JET[name] for name in ("L_p", "L_delta_a", "N_beta", "N_delta_r")}
+
+
+def maneuvers():
+    """Return two doublets of the aileron around one of the rudder."""
+    rng = np.random.default_rng(9)
+    measured = ("p", "r", "bank", "a_y")
+    inputs = {"aileron": aileron_doublet(T)}, {"rudder": rudder_doublet(T)}, {"aileron": aileron_doublet(T)}
+    return [
+        numbered(number, flown(JET, **one, rng=rng, measured=measured, seconds=8.0, rate_hz=25.0))
+        for number, one in enumerate(inputs, 1)
+    ]
+
+
+def numbered(number, record):
+    known = {name: getattr(record, name).at(T) for name in ("airspeed", "alpha", "theta", "q")}
+    told = {name: signal.y for name, signal in (record.outputs | record.inputs).items()} | known
+    channels = {name: Channel(name, T, y, "HIGHRES_IMU", "measured") for name, y in told.items()}
+    return Maneuver(number, 0, Span(0.0, 1.0, 4.0, 8.0, "other", (), "quiet"), channels)
+
+
+@pytest.fixture(scope="module")
+def flight():
+    return maneuvers()
+
+
+@pytest.mark.study
+def test_the_flights_own_numbers_leave_no_gap(flight):
+    found = compare_side(flight, replace(AIRCRAFT, model=TRUE))
+    assert found.verdict == "none"
+    assert {one.name for one in found.derivatives} == set(TRUE)
+
+
+def test_a_weak_aileron_in_the_simulator_is_named_and_leaves_a_gap_on_unseen_flight(flight):
+    found = compare_side(flight, replace(AIRCRAFT, model=TRUE | {"L_delta_a": 0.8 * JET["L_delta_a"]}))
+    assert found.verdict == "parameters"
+    document = side_gap_document(found)
+    changed = {one["derivative"]: one for one in document["parameters_changed"]}
+    assert (
+        max(found.derivatives, key=lambda d: abs(d.given - d.found.value) / d.found.std).name == "L_delta_a"
+    )
+    assert document["shrink"]["holdout"] == [1, 2, 3]
+    assert document["shrink"]["percent"] > 80.0
+    low, high = changed["L_delta_a"]["ci95"]
+    assert low < JET["L_delta_a"] < high
+
+
+def test_a_file_without_lateral_numbers_has_no_verdict(flight, monkeypatch):
+    monkeypatch.setattr(comparison, "diagnose_side", lambda case, prior: None)
+    found = compare_side(flight[:2], AIRCRAFT)
+    assert found.verdict is None
+    assert "give model.L_p" in found.sentence
+    assert side_gap_document(found)["shrink"] is None

@@ -1,0 +1,240 @@
+"""The diagnosis of roll and yaw: decisions on results made by hand, and one whole flight."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import SideControl
+from advisor.aircraft.reference import SIDE_PARAMETERS
+from advisor.aircraft.sensors import Beta
+from advisor.gap.alternative import Alternative, AlternativeEvidence, together
+from advisor.gap.axes.lateral import diagnosis
+from advisor.gap.axes.lateral import flight as flight_of_side
+from advisor.gap.axes.lateral.comparison import SideGap
+from advisor.gap.axes.lateral.diagnosis import SideCause, SideDiagnosis, diagnose_side
+from advisor.gap.axes.lateral.evidence import Gain
+from advisor.gap.axes.lateral.fit import Fit, Free
+from advisor.gap.axes.lateral.flight import SideFlight, SideModel
+from advisor.gap.axes.lateral.models import case_of
+from advisor.gap.inference.explanation import Evidence, Row
+from advisor.gap.inference.posterior import NONE
+from advisor.gap.result import Cause, Value
+from advisor.report.side_gap import side_gap_document, side_gap_lines
+from tests.gap.axes.lateral.test_comparison import maneuvers
+from tests.oem.axes.lateral.builders import JET
+
+PEAKS = {"p": 0.2, "r": 0.1}
+PLAY = SideCause(
+    "aileron",
+    "aileron actuator backlash",
+    Cause(
+        "actuator_backlash", "input", 0.7, {"half_width_rad": Value(0.01, 0.001)}, (), "", 0.0, present=True
+    ),
+    "The real aileron has play of 0.57 deg to either side",
+    Gain(30.0, 4.0),
+    {"p": 0.05, "r": 0.04},
+)
+
+
+def weighed(shares):
+    """Return probabilities by label as the evidence of a diagnosis."""
+    kinds = {"none": "none", "parameters": "parameters"}
+    told = []
+    for label, p in shares.items():
+        name, _, block = label.partition("@")
+        kind = "unknown" if block else kinds.get(name, "effect")
+        told.append(AlternativeEvidence(Alternative(kind, name, block), (), p))
+    answer = together((one.alternative, one.probability) for one in told)[0][0]
+    return {"evidence": tuple(told), "answer": answer}
+
+
+DIAGNOSIS = SideDiagnosis(
+    causes=(PLAY,), peaks=PEAKS, peaks_by_numbers=PEAKS, cannot_see={},
+    **weighed(
+        {"aileron_actuator_backlash": 0.7, "none": 0.2, "parameters": 0.05, "aileron_actuator_lag": 0.05}
+    ),
+)  # fmt: skip
+FOUND = SideGap("effect", PLAY.sentence, (), {}, {}, (1, 2, 3), DIAGNOSIS)
+
+
+def test_the_blocks_of_the_unknown_count_together_and_the_likeliest_is_the_place():
+    shares = {
+        "unknown@rolling_moment": 0.35, "actuator_lag": 0.3, "unknown@aileron": 0.2, "none": 0.1,
+        "parameters": 0.05,
+    }  # fmt: skip
+    told = replace(DIAGNOSIS, **weighed(shares))
+    assert told.verdict == "unknown"
+    assert (told.where.block, told.where.share) == ("rolling_moment", pytest.approx(0.35 / 0.55))
+    assert told.sentence == "Something acts in the rolling moment that no known effect explains."
+
+
+def test_the_place_of_an_effect_is_that_of_its_control_or_sensor():
+    document = side_gap_document(FOUND)
+    assert document["where"]["block"] == "aileron"
+    assert replace(PLAY, of="p").block == "roll_rate_sensor"
+
+
+def test_the_text_says_the_cause_with_its_size_and_the_errors_that_it_removes():
+    text = "\n".join(side_gap_lines(FOUND))
+    assert "The real aileron has play of 0.57 deg to either side" in text
+    assert "aileron actuator backlash: 0.57 ± 0.11 deg (70 %)" in text
+    assert "largest error of p: 11.46 → 2.86 deg/s" in text
+    assert "nothing to correct 20 %" in text
+
+
+def test_without_a_simulator_the_text_has_neither_its_probabilities_nor_a_table_of_its_gap():
+    alone = replace(
+        FOUND,
+        verdict=None,
+        diagnosis=replace(DIAGNOSIS, before={"p": 0.0}, after={"p": 0.0}),
+        instruments={"rudder_lag_s": Value(0.06, 0.003), "airspeed_excess": Value(0.03, 0.01)},
+    )
+    text = "\n".join(side_gap_lines(alone))
+    assert text.startswith("NO SIMULATOR GIVEN: ")
+    assert "wrong numbers" not in text
+    assert "before" not in text
+    assert "Nuisance parameters of the fit, no part of the answer:" in text
+    assert "rudder lag 60.0 ± 5.9 ms" in text
+    assert "airspeed excess 3.0 ± 2.0 %" in text
+
+
+def test_an_undecided_answer_is_not_decided_in_the_document_and_has_the_flight_that_separates_the_two():
+    shares = {"none": 0.5, "aileron_actuator_backlash": 0.45, "parameters": 0.05}
+    near = replace(DIAGNOSIS, **weighed(shares))
+    document = side_gap_document(replace(FOUND, verdict="none", diagnosis=near))
+    assert document["decided"] is False
+    assert document["title"] == "NOT DECIDED BETWEEN NOTHING TO CORRECT AND AILERON ACTUATOR BACKLASH"
+    (step,) = document["next"]
+    assert step["text"].startswith(
+        "To separate nothing to correct from aileron actuator backlash: fly as many"
+    )
+    assert side_gap_document(FOUND)["decided"] is True
+    assert side_gap_document(FOUND)["next"] == []
+
+
+def test_the_document_has_probabilities_that_sum_to_one_and_the_gain_on_unseen_manoeuvres():
+    document = side_gap_document(FOUND)
+    told = document["probabilities"]
+    assert told["none"] + told["parameters"] + sum(told["effects"].values()) == pytest.approx(1.0)
+    (cause,) = document["causes"]
+    assert (cause["of"], cause["effect"], cause["block"]) == ("aileron", "actuator_backlash", "input")
+    assert cause["held_out_nats"] == {"value": 30.0, "std": 4.0}
+    assert document["peaks"]["simulator"] == PEAKS
+
+
+def diagnosed_with(reading):
+    """Return the diagnosis of a flight whose roll rate is read by a function of the true one: about 8 s."""
+    known = SideControl(lag_s=0.0, delay_s=0.0)
+    aircraft = Aircraft(aileron=known, rudder=known, beta=Beta("none"), model=dict(JET))
+    flight = []
+    for maneuver in maneuvers():
+        rate = maneuver.channels["p"]
+        read = replace(rate, y=reading(rate.y))
+        flight.append(replace(maneuver, channels={**maneuver.channels, "p": read}))
+    return diagnose_side(case_of(flight, aircraft, np.array([JET[name] for name in SIDE_PARAMETERS])))
+
+
+@pytest.mark.study
+def test_a_gyro_that_reads_too_much_is_named_with_its_size():
+    found = diagnosed_with(lambda p: 1.08 * p)
+    assert found.verdict == "effect"
+    first = found.causes[0]
+    assert first.name == "roll_rate_scale"
+    assert first.cause.parameters["scale"].value == pytest.approx(0.08, abs=0.02)
+    assert first.sentence.startswith("The roll rate reads 8")
+    assert first.peaks["p"] < found.peaks["p"]
+
+
+@pytest.mark.study
+def test_a_gyro_that_clips_is_a_law_without_a_name_in_its_channel():
+    found = diagnosed_with(lambda p: np.clip(p, -0.6 * np.max(np.abs(p)), 0.6 * np.max(np.abs(p))))
+    assert found.verdict == "unknown"
+    assert found.where.block == "roll_rate_sensor"
+    assert found.answers[0][1] > 0.6
+
+
+def test_two_effects_at_once_are_both_said_and_stand_before_the_alternatives():
+    lag = replace(PLAY, of="rudder", named="rudder actuator lag", sentence="The real rudder lags by 60 ms")
+    other = replace(PLAY, named="roll rate scale", cause=replace(PLAY.cause, present=False, probability=0.1))
+    both = replace(
+        DIAGNOSIS,
+        causes=(PLAY, lag, other),
+        waterfall=(("aileron_actuator_backlash", 0.4), ("rudder_actuator_lag", 0.0)),
+    )
+    assert both.sentence == f"{PLAY.sentence}. The real rudder lags by 60 ms"
+    document = side_gap_document(replace(FOUND, diagnosis=both))
+    assert [one["present"] for one in document["causes"]] == [True, True, False]
+    assert document["waterfall"][0] == {"effect": "aileron_actuator_backlash", "after": 0.4}
+
+
+def test_effects_that_set_the_same_number_are_never_two_causes():
+    first, same, elsewhere = (
+        SimpleNamespace(places=places) for places in ((("p", "scale"),), (("p", "scale"),), (("r", "scale"),))
+    )
+    assert flight_of_side._beside(SimpleNamespace(effect=first), [first, same, elsewhere]) == [elsewhere]
+
+
+def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_anew(monkeypatch):
+    late = Free(("aileron", "delay_s"), 0.01, 1e-3, column=np.ones(3))
+    fit = Fit(None, None, (late,), *(np.ones(3) for _ in range(2)), 0.0, *(np.ones((3, 1)) for _ in range(3)))
+    again = []
+    monkeypatch.setattr(flight_of_side, "share_of", lambda _: 1.0)
+    monkeypatch.setattr(flight_of_side, "Starts", lambda *_: SimpleNamespace(of_each=[]))
+    monkeypatch.setattr(
+        SideFlight, "_model", lambda *_: SideModel(**dict.fromkeys(SideModel.__dataclass_fields__))
+    )
+    case = SimpleNamespace(stated=(), natural=(), fit=lambda at, free, **_: again.extend(free) or fit)
+    SideFlight(case, fit, []).explained(SimpleNamespace(fit=fit, effect=None), 3)
+    assert [one.column for one in again] == [None]
+
+
+@pytest.mark.parametrize(("right", "wrong", "fitted"), [(5.0, 0.0, False), (0.0, 5.0, True)])
+def test_a_model_is_fitted_at_the_files_derivatives_only_where_others_are_likelier(right, wrong, fitted):
+    found = SimpleNamespace(point=None, free=())
+    one = SimpleNamespace(evidence=Evidence(right, wrong), fit=found, effect=None, starts=None)
+    again = []
+    case = SimpleNamespace(natural=(), fit=lambda *given: again.append(given))
+    assert SideFlight(case, None, []).at_the_files(one, None, 1.0) is None
+    assert bool(again) is fitted
+
+
+@pytest.mark.parametrize(
+    ("saved", "heat", "named"), [(1.0, 1.0, []), (9.0, 1.0, [("r", "p")]), (9.0, 5.0, [])]
+)
+def test_a_pair_counts_where_it_makes_up_for_the_second_effects_share_of_the_prior(saved, heat, named):
+    """One of four effects has a share of 1.4 nats, 2.8 of the cost; coloured residuals count less."""
+    p, r, *others = (SimpleNamespace(name=name, places=((name, "scale"),)) for name in "prab")
+    starts = SimpleNamespace(
+        of_each=[SimpleNamespace(name=one.name, price=100.0) for one in (p, r)],
+        together=lambda one, other: 100.0 - saved,
+    )
+    pairs = SideFlight(None, None, [p, r, *others]).pairs(
+        SimpleNamespace(plain=SimpleNamespace(starts=starts), heat=heat),
+        [SimpleNamespace(name="r", effect=r)],
+    )
+    assert [names for _, *names in pairs] == [list(pair) for pair in named]
+
+
+@pytest.mark.parametrize(("angle", "kind"), [(1e-4, "none"), (0.05, "air")])
+def test_gusts_far_above_the_natural_ones_are_the_answer_of_a_flight_with_nothing_else(angle, kind):
+    row = Row(NONE, SimpleNamespace(gusts=SimpleNamespace(angle=angle)), {})
+    assert diagnosis._named_air(row).alternative.kind == kind
+
+
+def test_a_second_cause_is_as_probable_as_both_together(monkeypatch):
+    stages = [SimpleNamespace(of=lambda _, p=p: p, by_alternative={}) for p in (0.9, 0.5)]
+    fit = SimpleNamespace(point=None, free=None)
+    model = SimpleNamespace(alternative="an effect", fit=fit, tolerance=0.03)
+    found = SimpleNamespace(posteriors=stages, chosen=(None, model, model), heat=1.0)
+    monkeypatch.setattr(diagnosis, "share_of", lambda _: 1.0)
+    monkeypatch.setattr(diagnosis, "_cause", lambda case, one, fit, tolerance, p, share, present: p)
+    case = SimpleNamespace(fit=lambda *_: None)
+    assert list(diagnosis._causes(case, found, None)) == [pytest.approx(0.9), pytest.approx(0.45)]
+
+
+def test_a_gap_that_no_other_manoeuvre_has_seen_is_stated_by_no_channel():
+    alone = replace(FOUND, diagnosis=replace(DIAGNOSIS, before={"p": 3.0}, after={}))
+    assert side_gap_document(alone)["gap"] == {"before": None, "by_channel": {}, "by_channel_after": {}}

@@ -1,0 +1,163 @@
+"""Side gusts and coloured instruments in residuals made by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.reference import SIDE_PARAMETERS
+from advisor.gap.axes.lateral.disturbance import courses_of
+from advisor.gap.axes.lateral.effects import side_effects
+from advisor.gap.axes.lateral.fit import fitted
+from advisor.gap.axes.lateral.gusts import coloured_likelihood, side_gusts
+from advisor.gap.axes.lateral.laws import side_laws
+from advisor.gap.axes.lateral.models import case_of
+from advisor.gap.axes.lateral.residual import residual_of
+from advisor.gap.axes.lateral.starts import Starts
+from tests.gap.axes.lateral.test_comparison import AIRCRAFT, maneuvers
+from tests.oem.axes.lateral.builders import JET
+
+ANGLE = 0.01
+NOISE = np.array([0.003, 0.001, 0.002, 0.03, 1.0])
+
+
+@pytest.fixture(scope="module")
+def case():
+    model = replace(AIRCRAFT, model=dict(JET))
+    return case_of(maneuvers(), model, np.array([JET[name] for name in SIDE_PARAMETERS]))
+
+
+@pytest.fixture(scope="module")
+def flight(case):
+    """Return a fit with the true derivatives, and what gusts change in its manoeuvres."""
+    fit = fitted(case.flown, case.begin, case.natural, case.prior_of(1e-6, case.natural), rounds=1)
+    return fit, courses_of(fit, case.flown), case.prior_of(0.3, fit.free)
+
+
+def with_residual(fit, residual):
+    white = NOISE[fit.assembly.channel] * np.random.default_rng(2).standard_normal(len(residual))
+    return replace(fit, fitted=fit.assembly.z - white - residual, noise=NOISE)
+
+
+def wandering(n, memory, rng):
+    x = np.zeros(n)
+    for i in range(1, n):
+        x[i] = memory * x[i - 1] + np.sqrt(1.0 - memory**2) * rng.standard_normal()
+    return x
+
+
+def test_a_gust_angle_enters_all_outputs_and_its_size_is_found(flight):
+    fit, courses, known = flight
+    rng = np.random.default_rng(3)
+    blown = [ANGLE * course.columns @ wandering(len(course.knots), 0.9, rng) for course in courses]
+    gusty = with_residual(fit, np.concatenate(blown))
+    found = side_gusts(gusty, courses, known)
+    assert found.angle == pytest.approx(ANGLE, rel=0.4)
+    assert abs(found.angle - ANGLE) < 4.0 * found.angle_std
+    assert found.likelihood > coloured_likelihood(gusty) + 20.0
+
+
+def test_a_coloured_instrument_is_no_gust(flight):
+    fit, courses, known = flight
+    rng = np.random.default_rng(4)
+    left = np.zeros(len(fit.fitted))
+    for named in fit.assembly.rows:
+        rows = named["r"]
+        left[rows] = 0.004 * wandering(rows.stop - rows.start, 0.95, rng)
+    coloured = with_residual(fit, left)
+    assert side_gusts(coloured, courses, known).likelihood < coloured_likelihood(coloured) - 20.0
+
+
+def test_still_air_has_no_gusts(flight):
+    fit, courses, known = flight
+    still = with_residual(fit, np.zeros(len(fit.fitted)))
+    found = side_gusts(still, courses, known)
+    assert found.angle < 0.1 * ANGLE
+    assert found.likelihood == pytest.approx(coloured_likelihood(still), abs=15.0)
+
+
+@pytest.mark.parametrize(
+    "block",
+    ["aileron", "rudder", "rolling_moment", "yawing_moment", "roll_rate_sensor", "yaw_rate_sensor", "air"],
+)
+def test_a_disturbance_is_found_in_its_block(case, flight, block):
+    fit, _, _ = flight
+    courses = courses_of(fit, case.flown, block)
+    rng = np.random.default_rng(5)
+    seen = np.concatenate([c.columns @ wandering(len(c.knots), 0.8, rng) for c in courses])
+    largest = np.max(np.abs(seen) / NOISE[fit.assembly.channel])
+    found = residual_of(with_residual(fit, 20.0 / largest * seen), case.flown, 1.0)
+    if block == "air":
+        assert found.beside_air < found.size
+    else:
+        assert max(found.blocks, key=lambda one: found.blocks[one]) == block
+
+
+def test_white_noise_leaves_no_residual(case, flight):
+    fit, _, _ = flight
+    still = with_residual(fit, np.zeros(len(fit.fitted)))
+    assert residual_of(still, case.flown, 1.0).size < 0.05
+
+
+def test_the_derivatives_are_estimated_anew_in_gusts(case, flight):
+    """A fit under white noise takes a part of the gusts for derivatives, which a scale then explains."""
+    fit, courses, known = flight
+    rng = np.random.default_rng(3)
+    blown = [ANGLE * course.columns @ wandering(len(course.knots), 0.9, rng) for course in courses]
+    gusty = with_residual(fit, np.concatenate(blown))
+    found = side_gusts(gusty, courses, known)
+    step = np.linalg.solve(found.matrix + np.diag(known.precision), found.gradient)
+    white = gusty.columns * gusty.weight[:, None]
+    by_white = np.linalg.solve(
+        white.T @ white + np.diag(known.precision), white.T @ (gusty.residual * gusty.weight)
+    )
+    told = np.flatnonzero(np.abs(by_white) > 0.0)
+    assert np.linalg.norm((step / np.abs(fit.values + 1e-9))[told]) < np.linalg.norm(
+        (by_white / np.abs(fit.values + 1e-9))[told]
+    )
+
+
+@pytest.mark.parametrize(
+    ("block", "of"),
+    [("rolling_moment", "p"), ("rolling_moment", "beta"), ("yawing_moment", "r"),
+     ("roll_rate_sensor", "roll_rate_sensor")],
+)  # fmt: skip
+def test_a_curve_is_found_in_its_block_with_what_bends_it(case, flight, block, of):
+    fit, _, _ = flight
+    laws = {law.name: law for law in side_laws(case, fit) if law.columns is not None}
+    bent = f"{block}_curve_of_{of}"
+    seen = laws[bent].columns @ laws[bent].std
+    largest = np.max(np.abs(seen) / NOISE[fit.assembly.channel])
+    left = with_residual(fit, 20.0 / largest * seen)
+    found = min(Starts(case, left, list(laws.values())).of_each, key=lambda start: start.price)
+    assert found.name == bent
+
+
+def test_a_bent_reading_is_the_square_and_the_cube_of_the_reading(case, flight):
+    fit, _, _ = flight
+    bent = "roll_rate_sensor_curve_of_roll_rate_sensor"
+    law = next(one for one in side_laws(case, fit) if one.name == bent)
+    rows = fit.assembly.rows[0]["p"]
+    p = fit.fitted[rows]
+    most = max(np.max(np.abs(fit.fitted[named["p"]])) for named in fit.assembly.rows)
+    share = p / most
+    assert law.columns[rows, 0] == pytest.approx(share * np.abs(share), abs=0.03)
+    assert law.columns[rows, 1] == pytest.approx(share**3, abs=0.03)
+
+
+def test_a_late_roll_rate_promises_as_much_as_an_early_yaw_rate_where_all_other_clocks_are_free(case):
+    """A plain fit puts the lateness of one rate onto all other clocks."""
+    late = [
+        replace(
+            record,
+            outputs={**record.outputs, "p": record.outputs["p"]._replace(t=record.outputs["p"].t + 0.045)},
+        )
+        for record in case.flown.problem.records
+    ]
+    flown = replace(case.flown, problem=replace(case.flown.problem, records=tuple(late)))
+    case = replace(case, flown=flown)
+    plain = case.fit(case.begin, case.natural)
+    table = [one for one in side_effects(flown) if one.name.startswith("late_")]
+    promised = {one.name: one.price + 2.0 * plain.likelihood for one in Starts(case, plain, table).of_each}
+    assert promised["late_roll_rate_stamps"] < -50.0
+    assert promised["late_roll_rate_stamps"] == pytest.approx(promised["late_yaw_rate_stamps"], rel=0.01)

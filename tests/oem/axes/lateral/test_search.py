@@ -1,0 +1,140 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
+from advisor.oem.axes.lateral.instruments import Nuisance
+from advisor.oem.axes.lateral.motion import LateralMotion
+from advisor.oem.axes.lateral.problem import LateralProblem, assemble_lateral
+from advisor.oem.axes.lateral.solution import solve_lateral
+from advisor.oem.axes.lateral.start import lateral_start
+from advisor.oem.descent import descended
+from advisor.oem.extra import Prior, moved_by
+from advisor.oem.gauss_newton import CONVERGED
+from advisor.oem.prior import Priors
+from advisor.oem.rows import Signal
+from advisor.oem.surface import Servo
+from tests.oem.axes.lateral.builders import JET, both_inputs, flown, vector
+
+T = np.arange(0.0, 8.0, 0.025)
+LAGS = {"aileron": Servo(0.08), "rudder": Servo(0.05)}
+KNOWN_NOTHING = Priors(np.zeros(15), np.full(15, np.inf))
+WIDE = Prior(0.0, 1.0)
+SPEED_M_S = 130.0
+CLOCKS = (
+    Nuisance("command", "", WIDE),
+    Nuisance("lag", "aileron", WIDE),
+    Nuisance("lag", "rudder", WIDE),
+    Nuisance("delay", "bank", WIDE),
+    Nuisance("delay", "beta", WIDE),
+    Nuisance("arm", "beta", WIDE, SPEED_M_S),
+    Nuisance("air", "", WIDE),
+)
+
+
+def still(problem, nuisances, local):
+    """Return the fit at the truth, before any step."""
+    return descended(LateralMotion(), problem, nuisances, KNOWN_NOTHING, (vector(JET), local), most=0)
+
+
+@pytest.fixture(scope="module")
+def waving():
+    """Return a problem with smooth inputs and lags, and its local parameters."""
+    waves = Signal(T, 0.05 * np.sin(2.0 * T)), Signal(T, 0.05 * np.sin(1.3 * T))
+    record = flown(JET, aileron=waves[0], rudder=waves[1], seconds=8.0)
+    problem = LateralProblem((record,), servos=LAGS, beta_arm_m=2.0)
+    return problem, lateral_start(problem)[1]
+
+
+@pytest.mark.parametrize("x", CLOCKS, ids=lambda x: x.name)
+def test_derivatives_by_servos_clocks_and_arms_are_those_of_differences(waving, x):
+    problem, local = waving
+    by_pass = still(problem, (x,), local).extra.columns[:, 0]
+    step = 5e-4 * x.per_second
+    ends = []
+    for sign in (-1.0, 1.0):
+        moved = x.write(problem, x.read(problem) + sign * step)
+        there = local.copy()
+        since = assemble_lateral(moved).begin - assemble_lateral(problem).begin
+        there[:, 3:7] += since[:, None] * still(problem, (), local).begun
+        ends.append(still(moved, (), there).optimum.fitted)
+    by_difference = (ends[1] - ends[0]) / (2.0 * step)
+    for rows in assemble_lateral(problem).rows[0].values():
+        scale = np.max(np.abs(by_difference)) + 1e-9
+        assert np.max(np.abs(by_pass[rows] - by_difference[rows])) < 0.01 * scale
+
+
+@pytest.fixture(scope="module")
+def doublets():
+    """Return an aileron doublet and a rudder doublet without a vane."""
+    return both_inputs(JET, np.random.default_rng(2), ("p", "r", "bank", "a_y"))
+
+
+def lagged(doublets, lag_s, late_s):
+    """Return two doublets whose aileron lags, and whose bank angle is late."""
+    flights = []
+    for record in doublets.records:
+        inputs = dict(record.inputs)
+        if "aileron" in inputs:
+            command = inputs["aileron"]
+            ahead = np.gradient(command.y, command.t)
+            inputs["aileron"] = Signal(command.t, command.y + lag_s * ahead)
+        bank = record.outputs["bank"]
+        outputs = {**record.outputs, "bank": Signal(bank.t + late_s, bank.y)}
+        flights.append(replace(record, inputs=inputs, outputs=outputs))
+    return LateralProblem(tuple(flights), servos={"aileron": Servo(0.01), "rudder": Servo()})
+
+
+def test_one_search_finds_derivatives_lag_and_delay_within_a_few_trials(doublets):
+    lag, late = Nuisance("lag", "aileron", WIDE), Nuisance("delay", "bank", WIDE)
+    problem = lagged(doublets, 0.06, 0.02)
+    fit = descended(LateralMotion(), problem, (lag, late), KNOWN_NOTHING, lateral_start(problem))
+    assert fit.optimum.status == CONVERGED
+    assert fit.optimum.iterations < 20
+    assert lag.read(fit.problem) == pytest.approx(0.06, abs=0.01)
+    assert late.read(fit.problem) == pytest.approx(0.02, abs=0.002)
+    assert fit.optimum.shared[LATERAL.names.reported.index("L_p")] == pytest.approx(JET["L_p"], rel=0.03)
+
+
+def test_without_noise_an_air_speed_that_reads_too_little_is_found_and_moves_no_derivative():
+    records = []
+    for record in both_inputs(JET, measured=("p", "r", "bank", "a_y")).records:
+        true = record.airspeed
+        records.append(replace(record, airspeed=Signal(true.t, true.y / 1.04)))
+    excess = Nuisance("air", "", WIDE)
+    problem = LateralProblem(tuple(records))
+    fit = descended(LateralMotion(), problem, (excess,), KNOWN_NOTHING, lateral_start(problem))
+    assert excess.read(fit.problem) == pytest.approx(0.04, abs=0.004)
+    assert fit.optimum.shared[LATERAL.names.reported.index("Y_beta")] == pytest.approx(-0.2, abs=0.002)
+
+
+def test_a_lag_stays_within_its_range_and_everything_else_follows(doublets):
+    lag = Nuisance("lag", "aileron", WIDE)
+    problem = lagged(doublets, -0.05, 0.0)
+    fit = descended(LateralMotion(), problem, (lag,), KNOWN_NOTHING, lateral_start(problem))
+    assert fit.optimum.status == CONVERGED
+    assert lag.read(fit.problem) == 0.0
+    farther = moved_by(np.array([9.0]), lag.write(problem, 0.4), (lag,))
+    assert lag.read(farther) == 0.4
+
+
+def test_a_prior_of_a_derivative_pulls_by_its_share(doublets):
+    k = LATERAL.names.reported.index("N_p")
+    known = Priors(np.zeros(15), np.where(np.arange(15) == k, 0.01, np.inf))
+    begin = lateral_start(doublets)
+    free, told, weighed = (
+        descended(LateralMotion(), doublets, (), prior, begin).optimum.shared[k]
+        for prior in (KNOWN_NOTHING, known, replace(known, share=0.1))
+    )
+    assert abs(weighed) < abs(told) < abs(free)
+
+
+def test_a_rudder_doublet_without_side_force_tells_the_dutch_roll(doublets):
+    rudder = doublets.records[1]
+    seen = {name: rudder.outputs[name] for name in ("p", "r", "bank")}
+    solution = solve_lateral(LateralProblem((replace(rudder, outputs=seen),)))
+    trim = Trim(SPEED_M_S, 0.07, 0.105)
+    found, known = (modes_of(state_matrix(theta, trim)).dutch_roll for theta in (solution.theta, vector(JET)))
+    assert abs(found) == pytest.approx(abs(known), rel=0.01)
+    assert -found.real == pytest.approx(-known.real, abs=0.01)
