@@ -142,6 +142,18 @@ def test_what_the_interval_holds_is_left_as_the_model_has_it(cessna):
     assert "Derivatives (SI): as they were" in made.text
 
 
+def test_a_derivative_that_is_not_told_from_zero_becomes_zero_and_is_said(cessna, tmp_path):
+    found = {p: Value(value, 1e-3 * abs(value) + 1e-6) for p, value in cessna.items()}
+    found["M_q"] = Value(0.1 * cessna["M_q"], 0.1 * abs(cessna["M_q"]))
+    improved = improvement(
+        model=found, prior=cessna, airspeed_m_s=53.0, air=air_at(1000.0), servo=ExportedServo()
+    )
+    made = aircraft_text(improved, model_of("c172p"))
+    assert made.left_out == ("M_q, which is not told from zero and is 0",)
+    again = flown(placed(made.text, tmp_path, "c172p"), 53.0)
+    assert again["M_q"] == pytest.approx(0.0, abs=0.02 * abs(cessna["M_q"]))
+
+
 def step_response(file: Path) -> tuple[np.ndarray, np.ndarray]:
     """Times, and the elevator's position over its whole change, after a step of the command in flight."""
     fdm = trimmed(file, 53.0)

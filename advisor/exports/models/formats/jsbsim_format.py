@@ -19,7 +19,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.exports.models.exported import Exported, effects_beside
 from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.formats import AxisAsked, ModelFormat
-from advisor.exports.models.improvement import SLOPES, ExportedServo, Improvement
+from advisor.exports.models.improvement import SLOPES, ExportedServo, Improvement, is_told, zero_said
 from advisor.exports.models.jsbsim.knobs import Knob, knob_for, missed, settled
 from advisor.exports.models.jsbsim.run import Model, measure, model_of
 from advisor.exports.models.jsbsim.side import side_text
@@ -79,7 +79,9 @@ def aircraft_text(improvement: Improvement, model: Model) -> Exported:
     servo = replace(improvement.servo, lag_s=max(improvement.servo.lag_s, 0.0))
     changes = [*(knob.change for knob in knobs), *added]
     text = corrected(content, name, changes, servo, _note(improvement, first, targets))
-    return Exported(text, (*_left_out(improvement, surface), *effects_beside(improvement, *carried)))
+    zeros = [zero_said(p) for p in targets if not is_told(improvement.model[p]) and targets[p] == 0.0]
+    left = (*_left_out(improvement, surface), *zeros, *effects_beside(improvement, *carried))
+    return Exported(text, left)
 
 
 def _left_out(improvement: Improvement, surface: str) -> list[str]:
@@ -107,11 +109,11 @@ def _targets(
         own = first.derivatives[parameter]
         unit = (per_rad or math.nan) if parameter.endswith("delta_e") else 1.0
         prior = improvement.prior.get(parameter, own * unit)
-        value = improvement.model[parameter].value
+        value = improvement.number(parameter)
         if improvement.differs(parameter, prior) and not math.isnan(prior):
             # A term is changed by the ratio, because the file's numbers may belong to another air density.
-            by_difference = own + (value - prior) / unit
-            found[parameter] = own * value / prior if prior and parameter in terms else by_difference
+            by_ratio = value == 0.0 or (prior and parameter in terms)
+            found[parameter] = value and own * value / prior if by_ratio else own + (value - prior) / unit
     moved = ["M" + parameter[1:] for parameter in found if parameter[0] == "Z"]
     return found | {parameter: first.derivatives[parameter] for parameter in moved if parameter not in found}
 

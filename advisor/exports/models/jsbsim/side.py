@@ -15,7 +15,7 @@ import numpy as np
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.exports.models.exported import Exported
 from advisor.exports.models.flown import SideModel
-from advisor.exports.models.improvement import ExportedServo
+from advisor.exports.models.improvement import ExportedServo, zero_said
 from advisor.exports.models.jsbsim.knobs import ROUNDS, WITHIN
 from advisor.exports.models.jsbsim.run import Model, measure_side
 from advisor.exports.models.jsbsim.side_slopes import VARIABLES, SideRequest, SideSlopes
@@ -61,6 +61,7 @@ def side_text(name: str, side: SideModel, model: Model, content: bytes) -> Expor
         f"Corrected by the inflight advisor for {name} at {speed:.4g} m/s: {', '.join(changed) or 'nothing'}."
     )
     left = [f"{p}: {reason}" for p, reason in side.untold.items()]
+    left += [zero_said(p) for p in side.zeros if p in changed]
     left += [f"the {n}'s servo ({', '.join(s.lines())})" for n, s in side.servos.items() if s.lines()]
     return Exported(corrected(content, model.file.name, changes, ExportedServo(), note), tuple(left))
 
@@ -77,9 +78,9 @@ def _targets(side: SideModel, own: SideSlopes) -> dict[str, float]:
     """Return each derivative as the aircraft must have it, per unit of its properties."""
     wanted = dict(own.derivatives)
     for name, value in side.values.items():
-        flown = own.signs.get(name[2:], 1.0) * value.value
-        if isfinite(side.half(name)) and abs(flown - wanted[name]) > side.half(name):
-            wanted[name] = flown
+        sign = own.signs.get(name[2:], 1.0)
+        if isfinite(side.half(name)) and abs(sign * value.value - wanted[name]) > side.half(name):
+            wanted[name] = sign * side.number(name)
     return wanted
 
 
