@@ -68,7 +68,7 @@ def write_improved(diagnosis: Diagnosis, aircraft: Aircraft, path: Path) -> Path
 def text_of(content: Mapping[str, Any]) -> str:
     """Return the text of an improved file."""
     text = yaml.safe_dump(plain(content), sort_keys=False, allow_unicode=True)
-    return "# Written by `advisor gap`: the simulator with the findings of the flight.\n" + text
+    return "# Written by the inflight advisor: the simulator with the findings of the flight.\n" + text
 
 
 def improved_name(diagnosis: Diagnosis, aircraft_file: str | None) -> str:

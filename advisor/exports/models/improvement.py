@@ -145,7 +145,7 @@ class Improvement:
         }
         for name, (parameter, factor) in scale.items():
             std = self.model[parameter].std
-            found[name] = Coefficient(factor * self.number(parameter), abs(factor) * std)
+            found[name] = Coefficient(factor * self.number(parameter) + 0.0, abs(factor) * std)
         return found
 
 

@@ -112,7 +112,7 @@ def test_the_document_lists_the_files_written_and_what_they_do_not_carry(tmp_pat
     result = gap(tmp_path, monkeypatch, "--json", *orders, answer=found())
     assert result.return_value == 0
     assert json.loads(result.stdout)["exports"] == [
-        {"format": "matlab", "file": "x.m", "left_out": []},
+        {"format": "matlab", "file": "x.m", "left_out": [NO_SIDE]},
         {"format": "sdf", "file": "x.sdf", "left_out": [NO_SIDE, "delay 0.03 s", "lag 0.08 s"]},
         {"format": "ardupilot", "file": "x.parm", "left_out": []},
     ]

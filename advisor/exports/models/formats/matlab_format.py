@@ -18,7 +18,7 @@ from advisor.exports.flights.findings import PARAMETER_UNITS
 from advisor.exports.models.exported import Exported, commented, effects_beside
 from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.formats import ModelFormat
-from advisor.exports.models.improvement import Improvement, air_note, zero_said
+from advisor.exports.models.improvement import Improvement, air_note
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Value
 from advisor.model.axes.lateral import state_matrix
@@ -41,11 +41,12 @@ FORMAT = MatlabFormat()
 
 def both_axes_text(model: FlownModel) -> Exported:
     """Return the script: the variables of the short period, then ``lateral`` as one structure."""
-    pitch = script_text(model.pitch) if model.pitch is not None else Exported("")
+    nothing = Exported("", ("pitch, of which nothing is known",))
+    pitch = script_text(model.pitch) if model.pitch is not None else nothing
     if model.side is None:
-        return pitch
+        return replace(pitch, left_out=(*pitch.left_out, "roll and yaw, of which nothing is known"))
     side = _side_text(model.name, model.side)
-    return Exported(pitch.text + side, (*pitch.left_out, *map(zero_said, model.side.zeros)))
+    return Exported(pitch.text + side, (*pitch.left_out, *model.side.left_out))
 
 
 def matrices(side: SideModel) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
