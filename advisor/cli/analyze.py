@@ -164,5 +164,5 @@ def print_untested(
             click.echo(drawn(test.next, _COLUMNS, large=True))
         click.echo()
     for name, log in zip(series.names, series.logs, strict=True):
-        click.echo(f"Without a test input, {printable(name)} tells:")
+        click.echo(f"Even so, {printable(name)} tells:")
         PlainConsole(soft_wrap=True).print(ExaminationText(examine_log(log, aircraft, target_system)))

@@ -25,6 +25,7 @@ def test_the_answer_is_the_next_input_drawn_and_what_the_telemetry_tells(advisor
     assert "pull     ┌" in told.stdout
     assert "next        aileron doublet" in told.stdout
     assert "m/s read in flight" in told.stdout
+    assert "Even so, " in told.stdout
     assert "CONTINUE" not in told.stdout
     assert "No test manoeuvre was found" in told.stderr
 
