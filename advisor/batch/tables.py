@@ -12,12 +12,9 @@ from advisor import __version__
 from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.trend import ChangeOverFlights, change_over_flights, lying_apart
-from advisor.exports.flights.findings import PARAMETER_UNITS
+from advisor.exports.flights.findings import PARAMETER_UNITS, SIDE_UNITS
 from advisor.exports.flights.table import Column, Dataset, FlightTable, counts, numbers, texts, truths
 from advisor.oem.estimate import Estimate
-from advisor.words.quantities import SIDE_PARAMETERS
-
-_SIDE_UNITS = {name: quantity.unit.replace("²", "^2") for name, quantity in SIDE_PARAMETERS.items()}
 
 
 def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
@@ -156,7 +153,7 @@ def _flights(flights: Sequence[Analyzed]) -> FlightTable:
             "lateral_accepted", counts([v.count("accepted") for v in lateral]), "1", "how many of them count"
         ),
         Column("lateral_decision", texts(list(map(decided, sides))), "", "complete or not complete"),
-        *_parameters([f.lateral.get("model") for f in flights], "of the joint estimate", _SIDE_UNITS),
+        *_parameters([f.lateral.get("model") for f in flights], "of the joint estimate", SIDE_UNITS),
     ]
     return FlightTable("flights", "A row is a flight: one log.", tuple(columns))
 
@@ -185,7 +182,7 @@ def _maneuvers(flights: Sequence[Analyzed]) -> FlightTable:
         Column("cost", numbers([m["cost"] for m in found]), "", "J of Eq. (7)"),
         Column("axis", texts(["lateral" if _is_lateral(m) else "pitch" for m in found]), "", "axis tested"),
         *_parameters(pitch, "of the manoeuvre"),
-        *_parameters(lateral, "of the manoeuvre", _SIDE_UNITS),
+        *_parameters(lateral, "of the manoeuvre", SIDE_UNITS),
     ]
     return FlightTable("maneuvers", "A row is a manoeuvre.", tuple(columns))
 

@@ -74,7 +74,7 @@ def command(
         tell("reading and judging", 0.0)
         flights = read_whole(
             asked.logs, aircraft, asked.target_system, asked.marks, no_marks=asked.no_marks,
-            axis="both" if models else "pitch",
+            axis="pitch" if cut is not None else "both",
         )  # fmt: skip
     for note in flights.notes:
         click.echo(printable(note), err=True)
@@ -95,10 +95,9 @@ def command(
             said += write_models(models, stage, flights.state, aircraft)
     for sentence in said:
         click.echo(sentence, err=True)
-    click.echo(
-        f"Wrote {printable(str(out))}; manoeuvres: {len(flights.state.maneuvers)}; "
-        f"formats: {', '.join(chosen)}."
-    )
+    side = flights.state.lateral
+    count = len(flights.state.maneuvers) + (len(side.maneuvers) if side is not None else 0)
+    click.echo(f"Wrote {printable(str(out))}; manoeuvres: {count}; formats: {', '.join(chosen)}.")
     return 0
 
 

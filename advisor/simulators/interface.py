@@ -158,7 +158,8 @@ _POSITIVE = {
 _LEAST = {"elevator": 0.1, "aileron": 0.6, "rudder": 0.1}
 """Least answer to a control in rad: change of α by the elevator, steady roll rate by the aileron (1/s),
 sideslip by the rudder. Aircraft on record have 0.3 to 3, 3 to 11 and 0.4 to 2; a control that is taken in
-degrees answers 57 times less."""
+degrees answers 57 times less. An aileron answers at most 57 times the least; α and β may do more, where an
+aircraft is hardly stable."""
 
 
 def control_fault(control: str, turns: float, answer: float) -> InterfaceFault | None:
@@ -177,6 +178,11 @@ def control_fault(control: str, turns: float, answer: float) -> InterfaceFault |
         told = f"{_LEAST[control] / max(answer, 1e-6):.0f} times less effect than the weakest of an aircraft"
         mend = "It takes degrees: turn the deflection, sent in rad, into degrees."
         return InterfaceFault(f"the {control}", told, mend)
+    if control == "aileron" and answer > _LEAST[control] * _PER_RAD:
+        told = f"{answer / _LEAST[control]:.0f} times the effect of the weakest of an aircraft"
+        return InterfaceFault(
+            "the aileron", told, "It turns rad into degrees that nobody sent: take rad as it comes."
+        )
     if turns <= 0.0:
         return None
     wrong, convention = _POSITIVE[control]

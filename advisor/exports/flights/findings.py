@@ -1,6 +1,7 @@
 """Findings of the flights as tables: manoeuvres with verdicts, estimates, residuals."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,13 +11,17 @@ from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.exports.flights.table import Column, FlightTable, counts, numbers, texts, truths
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import UNITS
+from advisor.model.axes.lateral import LATERAL
 from advisor.model.response import OUTPUTS
 from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.words.quantities import SIDE_PARAMETERS
 
 PARAMETER_UNITS = dict(
     zip(PARAMETERS, ("rad/s", "1/s", "1", "1/s", "rad/s^2", "1/s^2", "1/s", "1/s^2"), strict=True)
 )
 """SI units of θ, Eqs. (1)-(3)."""
+SIDE_UNITS = {name: quantity.unit.replace("²", "^2") for name, quantity in SIDE_PARAMETERS.items()}
+"""SI units of the derivatives of roll and yaw."""
 JOINT = 0
 """Number of the joint estimate over the accepted manoeuvres."""
 _BY_ROW = "the column unit"
@@ -27,15 +32,39 @@ _MEASURES = {
 }
 
 
-def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> FlightTable:
-    """Return a table with a row for each manoeuvre: verdict, reasons and fit.
+class _Axis(NamedTuple):
+    """Findings of one axis."""
+
+    judged: Sequence[JudgedManeuver]
+    model: Estimate | None
+    units: Mapping[str, str]
+    """Parameter to its SI unit."""
+    outputs: Sequence[str]
+    prefix: str = ""
+    """Beginning of the names of the axis's tables."""
+
+
+def findings(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> Iterator[FlightTable]:
+    """Yield the tables of pitch, and those of roll and yaw where a manoeuvre of them was flown.
 
     Parameters
     ----------
     record_of
         (Flight, power-on), each counted from 0, to the number of the record.
     """
-    judged = state.maneuvers
+    axes = [_Axis(state.maneuvers, state.model, PARAMETER_UNITS, OUTPUTS)]
+    side = state.lateral
+    if side is not None and side.maneuvers:
+        axes.append(_Axis(side.maneuvers, side.model, SIDE_UNITS, LATERAL.outputs, "lateral_"))
+    for axis in axes:
+        yield _maneuvers(axis, record_of)
+        yield _estimates(axis)
+        yield from _residuals(axis, record_of)
+
+
+def _maneuvers(axis: _Axis, record_of: Mapping[tuple[int, int], int]) -> FlightTable:
+    """Return a table with a row for each manoeuvre: verdict, reasons and fit."""
+    judged = axis.judged
     spans = [one.maneuver.span for one in judged]
     verdicts = [one.verdict for one in judged]
     columns = [
@@ -46,7 +75,7 @@ def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) ->
         Column(
             "record_from_boot_s", numbers([s.record_from_s for s in spans]), "s", "first stamp of the fit"
         ),
-        Column("start_boot_s", numbers([s.start_s for s in spans]), "s", "onset of the first elevator step"),
+        Column("start_boot_s", numbers([s.start_s for s in spans]), "s", "onset of the first step"),
         Column("last_step_boot_s", numbers([s.last_step_s for s in spans]), "s", "onset of the last step"),
         Column("end_boot_s", numbers([s.end_s for s in spans]), "s", "end of the free response"),
         Column("input", texts([s.kind for s in spans]), "", "kind of input"),
@@ -73,34 +102,34 @@ def maneuvers(state: CampaignState, record_of: Mapping[tuple[int, int], int]) ->
             "cost", numbers([e.cost if (e := _estimate(m)) else None for m in judged]), "", "J of Eq. (7)"
         ),
     ]
-    for output in OUTPUTS:
+    for output in axis.outputs:
         fits = [e.fits[0].get(output) if (e := _estimate(m)) else None for m in judged]
         columns += _measures(output, fits) if any(fits) else []
-    return FlightTable("maneuvers", "A row is a manoeuvre.", tuple(columns))
+    return FlightTable(f"{axis.prefix}maneuvers", "A row is a manoeuvre.", tuple(columns))
 
 
-def estimates(state: CampaignState) -> FlightTable:
+def _estimates(axis: _Axis) -> FlightTable:
     """Return a table with a row for each parameter of each estimate, and its row of the covariance."""
-    found = [(one.maneuver.number, e) for one in state.maneuvers if (e := _estimate(one))]
-    if state.model is not None:
-        found.append((JOINT, state.model))
+    found = [(one.maneuver.number, e) for one in axis.judged if (e := _estimate(one))]
+    if axis.model is not None:
+        found.append((JOINT, axis.model))
     rows = [
         (number, e, name)
         for number, e in found
-        for name in (*PARAMETERS, *(one.name for one in e.instruments))
+        for name in (*axis.units, *(one.name for one in e.instruments))
     ]
 
     def told(values: str, *of: int) -> NDArray[np.float64]:
         """Return an attribute of the estimates by row, shape (n,); NaN for an unidentifiable parameter."""
         return numbers([_told(e, name, values, of) for _, e, name in rows])
 
-    units = texts([PARAMETER_UNITS.get(name, _unit_of(name)) for _, _, name in rows])
+    units = texts([axis.units.get(name, _unit_of(name)) for _, _, name in rows])
     reasons = texts([e.not_identifiable.get(name, "") for _, e, name in rows])
     speeds = numbers([e.airspeed_m_s for _, e, _ in rows])
     which = f"number; {JOINT} is the joint estimate over the accepted manoeuvres"
     columns = [
         Column("maneuver", counts([number for number, _, _ in rows]), "", which),
-        Column("parameter", texts([name for _, _, name in rows]), "", "name in Eqs. (1)-(3)"),
+        Column("parameter", texts([name for _, _, name in rows]), "", "name of the parameter"),
         Column("unit", units, "", "SI unit of the value"),
         Column("value", told("theta"), _BY_ROW, "estimate"),
         Column("std", told("std"), _BY_ROW, "standard deviation, coloured residuals allowed for"),
@@ -108,11 +137,11 @@ def estimates(state: CampaignState) -> FlightTable:
         Column("reason", reasons, "", "why there is no value"),
         Column("airspeed_m_s", speeds, "m/s", "air speed at which the derivatives are given"),
     ]
-    for k, name in enumerate(PARAMETERS):
-        unit = f"{_BY_ROW} times {PARAMETER_UNITS[name]}"
+    for k, (name, its) in enumerate(axis.units.items()):
+        unit = f"{_BY_ROW} times {its}"
         columns.append(Column(f"covariance_{name}", told("covariance", k), unit, f"covariance with {name}"))
     about = "A row is one parameter of one estimate: the derivatives, then the instruments."
-    return FlightTable("estimates", about, tuple(columns))
+    return FlightTable(f"{axis.prefix}estimates", about, tuple(columns))
 
 
 def _told(e: Estimate, name: str, values: str, of: tuple[int, ...]) -> float | None:
@@ -120,8 +149,8 @@ def _told(e: Estimate, name: str, values: str, of: tuple[int, ...]) -> float | N
 
     An instrument has a value and a standard deviation only.
     """
-    if name in PARAMETERS:
-        return None if name in e.not_identifiable else getattr(e, values)[(PARAMETERS.index(name), *of)]
+    if name in e.names:
+        return None if name in e.not_identifiable else getattr(e, values)[(e.names.index(name), *of)]
     instrument = e.instrument(name)
     told = {"theta": "value", "std": "std"}.get(values)
     return None if instrument is None or told is None else getattr(instrument, told)
@@ -132,13 +161,10 @@ def _unit_of(name: str) -> str:
     return name.rpartition("_")[2]
 
 
-def residuals(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> tuple[FlightTable, ...]:
-    """Return a table for each output: measured, fitted and residual of accepted manoeuvres, at own stamps."""
-    accepted = [
-        (one.maneuver, e) for one in state.maneuvers if one.verdict.accepted and (e := _estimate(one))
-    ]
-    tables = []
-    for output in OUTPUTS:
+def _residuals(axis: _Axis, record_of: Mapping[tuple[int, int], int]) -> Iterator[FlightTable]:
+    """Yield a table for each output: measured, fitted and residual of accepted manoeuvres, at own stamps."""
+    accepted = [(one.maneuver, e) for one in axis.judged if one.verdict.accepted and (e := _estimate(one))]
+    for output in axis.outputs:
         fits = [(maneuver, e.fits[0][output]) for maneuver, e in accepted if output in e.fits[0]]
         if not fits:
             continue
@@ -160,8 +186,7 @@ def residuals(state: CampaignState, record_of: Mapping[tuple[int, int], int]) ->
             Column("fitted", joined("fitted"), unit, f"{output} of the fit of lowest cost"),
             Column("residual", joined("residual"), unit, "measured minus fitted"),
         )
-        tables.append(FlightTable(f"residuals_{output}", f"A row is a sample of {output}.", columns))
-    return tuple(tables)
+        yield FlightTable(f"{axis.prefix}residuals_{output}", f"A row is a sample of {output}.", columns)
 
 
 def _estimate(judged: JudgedManeuver) -> Estimate | None:

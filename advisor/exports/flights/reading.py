@@ -8,7 +8,7 @@ import numpy as np
 
 from advisor import __version__
 from advisor.analysis.whole_flights import WholeFlights
-from advisor.exports.flights.findings import estimates, maneuvers, residuals
+from advisor.exports.flights.findings import findings
 from advisor.exports.flights.table import Column, Dataset, FlightTable, Recording, counts, numbers, texts
 from advisor.flight.maneuvers.segmentation import GAP_S, MANY_INTERVALS
 from advisor.flight.signals.messages import FloatArray
@@ -22,17 +22,14 @@ def dataset(flights: WholeFlights) -> Dataset:
         (flight, one.boot): number for number, (flight, one) in enumerate(flights.power_ons, start=1)
     }
     state = flights.state
-    tables = (
-        _channels(flights),
-        maneuvers(state, record_of),
-        estimates(state),
-        *residuals(state, record_of),
-    )
+    sideways = state.lateral is not None and state.lateral.maneuvers and not state.maneuvers
+    judged = state.lateral if sideways and state.lateral is not None else state
+    tables = (_channels(flights), *findings(state, record_of))
     about = {
         "advisor": __version__,
         "logs": [{"file": str(log), "sha256": sha256(log)} for log in flights.logs],
         "grid": GRID,
-        "decision": state.flight_test.sentence,
+        "decision": judged.flight_test.sentence,
         "notes": flights.notes,
     }
     recordings = tuple(_recording(k, one) for k, (_, one) in enumerate(flights.power_ons, start=1))

@@ -34,7 +34,7 @@ def exported(tmp_path_factory: pytest.TempPathFactory) -> Exported:
     log, folder = recorded("uav", 1.0, maneuvers=FOUR), tmp_path_factory.mktemp("export")
     with pytest.MonkeyPatch.context() as patch:
         use_recorded(patch)
-        flights = whole_flights.read_whole([log], Aircraft())
+        flights = whole_flights.read_whole([log], Aircraft(), axis="both")
     data = dataset(flights)
     with staged(folder) as stage:
         write_formats(data, stage, tuple(WRITERS))
