@@ -2,6 +2,7 @@
 
 import struct
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +14,9 @@ from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
+from tests.mavlink.ardupilot.test_autopilot_logs import FIRST_STEP_S, dataflash_flight
 from tests.mavlink.dataflash_writer import records_of
-from tests.test_damaged_logs import sound
+from tests.test_damaged_logs import sound as sound_case
 
 Stamps = NDArray[np.uint64]
 SECOND_US = np.uint64(1_000_000)
@@ -49,6 +51,12 @@ def any_number(t: Stamps) -> Stamps:
 
 
 CHANGES = [in_pairs, one_for_all, whole_seconds, once_back, some_back, backwards, any_number]
+
+
+@cache
+def sound(kind: str) -> bytes:
+    """A log of this kind; of a DataFlash log every record's form is known to the tests."""
+    return dataflash_flight(FIRST_STEP_S + 6.0) if kind == "bin" else sound_case(kind)
 
 
 def pieces(kind: str) -> tuple[list[bytes], int, str]:

@@ -215,7 +215,7 @@ def test_the_pitch_command_stands_for_the_elevator_where_no_output_is_as_fast(tm
     stream, _, said = flown(path)
     assert first == pytest.approx(-STEP_RAD, rel=1e-3)
     assert stream.channels["elevator"].rate_hz == pytest.approx(50.0, rel=0.01)
-    assert any("the pitch command, which stands for it" in text for text in said)
+    assert any("the pitch command, which stands for the elevator" in text for text in said)
 
 
 def test_an_instance_in_which_nothing_moves_is_not_counted(tmp_path: Path) -> None:
