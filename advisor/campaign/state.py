@@ -167,6 +167,14 @@ class CampaignState:
         return crew_plan(self.flight_test, side.flight_test)
 
     @property
+    def lateral_alone(self) -> LateralState | None:
+        """The lateral half, where it alone has accepted manoeuvres; else None."""
+        side = self.lateral
+        if side is None or any(one.verdict.accepted for one in self.maneuvers):
+            return None
+        return side if any(one.verdict.accepted for one in side.maneuvers) else None
+
+    @property
     def progress(self) -> str:
         """How long the manoeuvre being flown lasts so far, and how long its forerunners lasted; empty between
         manoeuvres."""

@@ -22,7 +22,7 @@ from advisor.gap.inference.engine import Progress
 from advisor.report.document import analysis_document
 from advisor.report.gap_document import gap_document
 from advisor.report.page.content import Content, Document, Origin
-from advisor.report.side_gap import side_gap_document
+from advisor.report.side_gap import whole_document
 from advisor.session.diagnosis import diagnosed
 from advisor.words.printable import printable
 from advisor.words.problems import UnusableInputError
@@ -92,14 +92,12 @@ def _examined(log: Path, aircraft: Aircraft, target_system: int | None) -> Docum
 
 def _gap(flights: WholeFlights, aircraft: Aircraft, asked: LogsAsked, tell: Progress) -> Document:
     """Return the diagnosis of pitch; of roll and yaw where they alone have accepted manoeuvres."""
-    state = flights.state
-    sides = state.lateral.maneuvers if state.lateral is not None else ()
-    if any(one.verdict.accepted for one in sides) and not any(m.verdict.accepted for m in state.maneuvers):
+    if flights.state.lateral_alone is not None:
         try:
-            compared = compare_side_flown(state, aircraft, progress=tell)
+            compared = compare_side_flown(flights.state, aircraft, progress=tell)
         except UnusableInputError as error:
             return gap_document(None, error.problems)
-        return {**gap_document(None), "lateral": side_gap_document(compared.gap)}
+        return whole_document(compared.gap)
     usable = [flight for flight in range(len(flights.logs)) if flight not in flights.left_out]
     logs = [flights.logs[flight] for flight in usable]
     decided = [flights.by_hand.on_flight(flight) for flight in usable]

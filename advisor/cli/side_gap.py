@@ -25,8 +25,7 @@ from advisor.gap.inference.prior import FIELD, FieldPrior, field_prior
 from advisor.gap.result import IMPROVING
 from advisor.report.console import PlainConsole
 from advisor.report.gap_causes import why_of
-from advisor.report.gap_document import gap_document
-from advisor.report.side_gap import side_gap_document, side_gap_lines
+from advisor.report.side_gap import side_gap_lines, whole_document
 from advisor.words.printable import printable
 
 
@@ -66,9 +65,8 @@ def compare_lateral(
     written = write_improved(out, improves, lambda: replace(improved_side(compared), pitch=None))
     outcomes = write_exports(orders, partial(improved_side, compared))
     if as_json:
-        lateral = side_gap_document(found) | {"improved_model": str(out) if written else None}
-        lateral |= proof_document(proof)
-        document = gap_document(None) | {"usable": True, "lateral": lateral, "exports": listed(outcomes)}
+        document = whole_document(found) | {"exports": listed(outcomes)}
+        document["lateral"] |= {"improved_model": str(out) if written else None} | proof_document(proof)
         click.echo(json.dumps(document, allow_nan=False, indent=1))
     else:
         click.echo("\n".join(side_gap_lines(found)))

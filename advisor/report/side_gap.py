@@ -13,7 +13,7 @@ from advisor.gap.verdict.text import title_of_verdict
 from advisor.report.facts.gap import changes, counted
 from advisor.report.facts.reasons import how_sure, in_percent
 from advisor.report.facts.sizes import named, sizes_of, with_error
-from advisor.report.gap_document import changed_document, weighed_document
+from advisor.report.gap_document import changed_document, gap_document, weighed_document
 from advisor.report.gap_steps import GapStep, to_decide
 from advisor.words.certainty import is_decided
 from advisor.words.plain import picked, plain
@@ -71,6 +71,11 @@ def _diagnosis_lines(found: SideDiagnosis) -> Iterator[str]:
         yield f"  cannot be seen: {what}, for {why}"
     if step := _to_decide(found):
         yield step.text
+
+
+def whole_document(found: SideGap) -> dict[str, Any]:
+    """Return ``advisor.gap/1`` of roll and yaw alone; its other blocks are empty."""
+    return gap_document(None) | {"usable": True, "lateral": side_gap_document(found)}
 
 
 def side_gap_document(found: SideGap) -> dict[str, Any]:

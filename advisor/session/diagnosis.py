@@ -35,11 +35,15 @@ class GapTask:
     aircraft: Aircraft
     aircraft_file: Path | None = None
     """File of the aircraft, for the commands of the next steps; None without one."""
+    sideways: bool = False
+    """Whether the diagnosis is of roll and yaw, and not of pitch."""
 
     def done(self) -> Document:
         """Diagnose here, and return ``advisor.gap/1`` with the next steps."""
         from advisor.analysis.marks_file import read_by_hand
 
+        if self.sideways:
+            return _diagnosed_sideways(self.logs, self.aircraft)
         by_hand = [read_by_hand(log) for log in self.logs]
         return diagnosed(self.logs, self.aircraft, by_hand, self.aircraft_file)
 
@@ -86,6 +90,21 @@ def diagnosed(
     file = str(aircraft_file) if aircraft_file else None
     steps = next_steps(compared.diagnosis, list(map(str, logs)), file, aircraft.simulator, reading)
     return {**gap_document(compared.diagnosis), "next": plain(steps)}
+
+
+def _diagnosed_sideways(logs: Sequence[Path], aircraft: Aircraft) -> Document:
+    """Diagnose roll and yaw of logs."""
+    from advisor.analysis.side_gap import compare_side_logs
+    from advisor.process.parts import FailedPart, attempt
+    from advisor.report.gap_document import gap_document
+    from advisor.report.side_gap import whole_document
+    from advisor.words.problems import UnusableInputError
+
+    try:
+        found = attempt("lateral, diagnosis", lambda: compare_side_logs(logs, aircraft))
+    except UnusableInputError as error:
+        return gap_document(None, error.problems)
+    return gap_document(None, failed=(found,)) if isinstance(found, FailedPart) else whole_document(found.gap)
 
 
 def diagnose_elsewhere(task: GapTask) -> Document:

@@ -16,6 +16,7 @@ from advisor.report.table import Table
 from tests.campaign.side_builders import AIRCRAFT, estimate, judged, state
 from tests.oem.axes.lateral.builders import JET
 from tests.schemas import breaches
+from tests.tui import flights as flights_of_pitch
 
 UNTOLD = {"Y_p": "the record does not depend on it; fly a rudder doublet"}
 FLOWN = state(
@@ -135,10 +136,11 @@ def test_the_gap_of_a_page_is_of_roll_and_yaw_where_they_alone_are_accepted(monk
     def one(accepted):
         return SimpleNamespace(verdict=SimpleNamespace(accepted=accepted))
 
-    flown = SimpleNamespace(maneuvers=[one(pitch)], lateral=SimpleNamespace(maneuvers=[one(side)]))
+    sides = replace(state(), maneuvers=(one(side),))
+    flown = replace(flights_of_pitch.state(), maneuvers=(one(pitch),), lateral=sides)
     flights = SimpleNamespace(state=flown, logs=[], left_out={})
     asked = SimpleNamespace(aircraft_file=None, reading=[], target_system=None)
     monkeypatch.setattr(page_content, "compare_side_flown", lambda *_, **__: SimpleNamespace(gap=None))
-    monkeypatch.setattr(page_content, "side_gap_document", lambda _: {"of": "lateral"})
+    monkeypatch.setattr(page_content, "whole_document", lambda _: {"lateral": {"of": "lateral"}})
     monkeypatch.setattr(page_content, "diagnosed", lambda *_: {"lateral": {"of": "pitch"}})
     assert page_content._gap(flights, Aircraft(), asked, print)["lateral"]["of"] == axis

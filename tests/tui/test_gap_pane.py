@@ -9,10 +9,14 @@ import pytest
 
 from advisor.gap.alternative import Contribution
 from advisor.report.gap_document import gap_document
-from advisor.session.diagnosis import GapTask, diagnose_elsewhere
+from advisor.report.side_gap import whole_document
+from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
 from advisor.tui.panes import gap as pane
 from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
+from tests.campaign.side_builders import judged as side_judged
+from tests.campaign.side_builders import state as side_state
+from tests.gap.axes.lateral.test_diagnosis import FOUND
 from tests.gap.test_report_answer import DERIVATIVES
 from tests.gap.test_report_screen import EVIDENCE, diagnosis
 from tests.tui import flights
@@ -70,6 +74,28 @@ async def test_choosing_the_pane_diagnoses_the_flight_and_shows_the_worst_manoeu
         assert [series.name for series in chart.series] == ["measured", "before", "after"]
         await here.press("4", "d")
         assert len(asked) == 1
+
+
+def test_the_pane_says_the_answer_of_roll_and_yaw_where_they_alone_were_flown() -> None:
+    rows = [said for _, said in pane.answer_rows(whole_document(FOUND))]
+    assert rows[0].startswith("Roll and yaw. LIKELY CAUSE: ")
+    assert "The real aileron has play of 0.57 deg" in rows[0]
+    assert any("70 %" in said for said in rows[1:])
+
+
+async def test_the_axis_that_is_shown_is_diagnosed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    asked: list[GapTask] = []
+
+    def answer(task: GapTask) -> Document:
+        asked.append(task)
+        return whole_document(FOUND)
+
+    monkeypatch.setattr(pane, "diagnose_elsewhere", answer)
+    alone = replace(flights.state(), maneuvers=(), lateral=side_state(side_judged(1, "aileron")))
+    async with stage(alone, settings=ENGINEER, size=(140, 45), logs=[tmp_path / "a.tlog"]) as here:
+        await here.press("d")
+        await here.until(lambda: "Roll and yaw." in here.words("#gap-text"))
+    assert [task.sideways for task in asked] == [True]
 
 
 async def test_without_a_log_the_pane_says_what_to_run_afterwards() -> None:

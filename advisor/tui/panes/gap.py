@@ -56,7 +56,7 @@ findings.
             yield Plot(empty, id=f"gap-{name}")
 
     _asked: tuple[int, ...] | None = None
-    """Manoeuvres of the newest diagnosis that was asked for."""
+    """Axis and manoeuvres of the newest diagnosis that was asked for."""
     _since_s: float | None = None
     """Time at which the running diagnosis was started; None while none runs."""
     _view: View | None = None
@@ -72,12 +72,14 @@ findings.
     def ask(self, view: View) -> None:
         """Start the diagnosis, unless there is one of all manoeuvres so far."""
         numbers = tuple(judged.maneuver.number for judged in view.state.maneuvers)
+        sideways = view.elevator is not None
+        asked = (sideways, *numbers)
         if not numbers or not view.logs:
             self._say([("", _NO_LOG if numbers else _TOO_EARLY)])
-        elif numbers != self._asked:
-            self._asked, self._since_s = numbers, monotonic()
+        elif asked != self._asked:
+            self._asked, self._since_s = asked, monotonic()
             self._tick()
-            task = GapTask(tuple(view.logs), view.aircraft, view.aircraft_file)
+            task = GapTask(tuple(view.logs), view.aircraft, view.aircraft_file, sideways)
             self.run_worker(partial(self._work, task), thread=True, exclusive=True, exit_on_error=False)
 
     def _work(self, task: GapTask) -> None:
@@ -88,7 +90,7 @@ findings.
         """Say how long the diagnosis has been running."""
         if self._since_s is not None and self._asked is not None:
             seconds = monotonic() - self._since_s
-            self._say([("", _ASKING.format(count=len(self._asked), seconds=seconds))])
+            self._say([("", _ASKING.format(count=len(self._asked) - 1, seconds=seconds))])
 
     def _told(self, document: Document) -> None:
         """Show a diagnosis."""
@@ -116,6 +118,12 @@ findings.
 
 def answer_rows(document: Document) -> Iterator[Labelled]:
     """Yield the answer, how sure it is, its limits, what differs, the shrink, the steps, the reasons."""
+    if (side := document.get("lateral")) is not None:
+        yield "", f"Roll and yaw. {side['title']}: {side['sentence']}"
+        yield "", side["how_sure"]
+        yield from (("  ", one["text"]) for one in side["parameters_changed"])
+        yield from ((f"{number}. ", step["text"]) for number, step in enumerate(side["next"], start=1))
+        return
     if document["gap"] is None:
         yield from (("✗ ", f"{problem['text']} {problem['fix']}") for problem in document["problems"])
         return
