@@ -72,6 +72,8 @@ def test_small_angles_in_degrees_are_told_by_the_motion_alone():
         ("aileron", -300.0, 35.0, "times the effect"),
         ("rudder", 4.0, 0.6, "it yaws to the other side"),
         ("rudder", -4.0, 0.6, None),
+        ("elevator", -31.0, 35.0, None),
+        ("rudder", -4.0, 35.0, None),
     ],
 )
 def test_a_control_of_another_sense_or_in_degrees_is_told_without_a_flight(control, turns, answer, words):
