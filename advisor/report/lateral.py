@@ -11,7 +11,7 @@ from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
 from advisor.oem.estimate import Estimate
 from advisor.report.axis_document import concluded, fitted, flown, with_intervals
-from advisor.report.facts.estimates import estimated_parameter, untold
+from advisor.report.facts.estimates import joint_source, of_all, untold
 from advisor.report.qualities import levels_document, levels_of, mode_facts, tests_document, tests_of
 from advisor.report.result_rows import maneuver_line
 from advisor.words.plain import picked, plain
@@ -89,16 +89,17 @@ def lateral_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
 def lateral_results(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
     """Yield derivatives, modes, levels and tests of the joint estimate; nothing without one."""
     if state.model is not None:
-        yield from _model_lines(state.model)
+        yield from _model_lines(state, state.model)
         yield from _quality_lines(state, aircraft)
 
 
-def _model_lines(model: LateralEstimate) -> Iterator[str]:
-    for row in (estimated_parameter(name, model, {}) for name in model.names):
+def _model_lines(state: LateralState, model: LateralEstimate) -> Iterator[str]:
+    yield f"{joint_source(state)} at {model.airspeed_m_s:.1f} m/s; ± is half the 95 % interval."
+    for row in (of_all(name, state, {}) for name in model.names):
         if not row.reason:
             yield f"  {row.name:<6} {row.cell:>20} {row.unit}"
     yield from (f"  {line}" for line in untold(model))
-    yield from (f"  {one.name:<18} {one.sentence}" for one in mode_facts(model.modes))
+    yield from (f"  {one.name:<18} {one.sentence}" for one in mode_facts(state))
 
 
 def _quality_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:

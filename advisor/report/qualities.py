@@ -16,9 +16,9 @@ from advisor.flight.instruments.atmosphere import AirData, air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import Trim
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED, SOURCE, LevelFound
-from advisor.oem.axes.lateral.estimate import LateralModes
 from advisor.oem.coefficients import CONVENTION, Coefficient, coefficients
 from advisor.oem.flying_qualities import UNITS, FlyingQualities, flying_qualities
+from advisor.report.facts.estimates import joint_source
 from advisor.report.facts.fact import Fact, fact_of
 from advisor.words.plain import picked
 
@@ -98,9 +98,10 @@ def level_document(found: LevelFound) -> dict[str, Any]:
 
 def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient]) -> Iterator[str]:
     """Yield flying qualities and coefficients, one on each line, with half the 95 % interval."""
-    yield f"Flying qualities at {_speeds(found)}:"
+    source = f"Flying qualities at {_speeds(found)}"
+    yield f"{source}:"
     for name, one in found.qualities.items():
-        fact = fact_of(NAMES[name], one.value, one.std, UNITS[name])
+        fact = fact_of(NAMES[name], source, one.value, one.std, UNITS[name])
         yield f"  {fact.name:<17} {fact.sentence}"
     for name, why in found.left_out.items():
         yield f"  {NAMES[name]:<17} not given: {why}"
@@ -109,8 +110,9 @@ def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient
         yield from (f"    {one.sentence} ({CATEGORIES[one.category]})" for one in found.levels)
         yield f"  {MANNED}"
     if coefficients:
-        yield f"Coefficients {CONVENTION}:"
-        each = (fact_of(name, one.value, one.std) for name, one in coefficients.items())
+        source = f"Coefficients {CONVENTION}"
+        yield f"{source}:"
+        each = (fact_of(name, source, one.value, one.std) for name, one in coefficients.items())
         yield f"  {'  '.join(f'{fact.name} {fact.cell}' for fact in each)}"
     yield f"note: {found.air.sentence[0].upper()}{found.air.sentence[1:]}."
 
@@ -135,10 +137,11 @@ OPTIONAL = frozenset({"Y_p", "Y_r", "Y_delta_a"})
 """Derivatives that count as zero where the aircraft file states the others: a few per cent everywhere."""
 
 
-def mode_facts(modes: LateralModes) -> list[Fact]:
-    """Return frequency, damping, time constant and pole of the modes that the estimate tells."""
-    told = ((one, named) for name, named in MODES.items() if (one := getattr(modes, name)) is not None)
-    return [fact_of(name, one.value, one.std, unit) for one, (name, unit) in told]
+def mode_facts(state: LateralState) -> list[Fact]:
+    """Return frequency, damping, time constant and pole of the modes that the joint estimate tells."""
+    modes, source = state.model.modes if state.model else None, joint_source(state)
+    told = ((one, named) for name, named in MODES.items() if (one := getattr(modes, name, None)) is not None)
+    return [fact_of(name, source, one.value, one.std, unit) for one, (name, unit) in told]
 
 
 def levels_of(state: LateralState) -> tuple[LateralLevels, ...]:

@@ -1,12 +1,12 @@
 """Rows of results, one model for terminal, page and panes: manoeuvres, channels and messages."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.signals.track import ChannelStatus
-from advisor.report.facts.estimates import EstimatedParameter, estimated_parameter, joint_source
+from advisor.report.facts.estimates import EstimatedParameter, of_all
 from advisor.report.qualities import reference_speed
 from advisor.report.table import Table, digits
 from advisor.words.vehicle_time import clock
@@ -23,14 +23,16 @@ def joint_table(state: CampaignState, prior: Mapping[str, float]) -> Table | Non
     """Return the joint estimate of pitch against the simulator's model; None where nothing is accepted."""
     if state.model is None:
         return None
-    rows = [estimated_parameter(name, state.model, prior) for name in PARAMETERS]
-    return joint_of("joint", joint_source(state.estimate_from, reference_speed(state)), rows)
+    return joint_of("joint", reference_speed(state), [of_all(name, state, prior) for name in PARAMETERS])
 
 
-def joint_of(name: str, source: str, rows: Iterable[EstimatedParameter], more: str = "") -> Table:
-    """Return the table ``name`` of a joint estimate; ``more`` follows the sentence above the table."""
+def joint_of(name: str, at: str, rows: Sequence[EstimatedParameter], more: str = "") -> Table:
+    """Return the table ``name`` of a joint estimate, at an air speed in words.
+
+    ``more`` follows the sentence above the table.
+    """
     return Table(
-        name, f"{source}; ± is half the 95 % interval.{more}",
+        name, f"{rows[0].source}{at}; ± is half the 95 % interval.{more}",
         ("parameter", "estimate ± 95 %", "± 95 % if white", "simulator", "unit"),
         tuple(
             (

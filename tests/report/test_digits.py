@@ -16,5 +16,7 @@ from advisor.report.result_rows import joint_of
 def test_a_value_has_the_decimals_of_its_interval(
     value: float, half: float, prior: float | None, cells: tuple[str, ...]
 ) -> None:
-    row = EstimatedParameter(name="M_α", unit="1/s²", value=value, half=half, half_if_white=1.8, prior=prior)
+    row = EstimatedParameter(
+        name="M_α", source="", unit="1/s²", value=value, half=half, half_if_white=1.8, prior=prior
+    )
     assert joint_of("joint", "", [row]).rows == (cells,)

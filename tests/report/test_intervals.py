@@ -29,7 +29,7 @@ def test_flying_qualities_and_coefficients_are_shown_with_half_their_interval() 
 
 
 def test_a_trim_is_shown_in_degrees_with_half_its_interval() -> None:
-    value, half = (float(part) for part in estimated_parameter("M_0", estimate(), {}).cell.split(" ± "))
+    value, half = (float(part) for part in estimated_parameter("M_0", "", estimate(), {}).cell.split(" ± "))
     assert value == pytest.approx(degrees(0.475), abs=0.05)
     assert half == pytest.approx(HALF * degrees(0.00475), abs=0.005)
 

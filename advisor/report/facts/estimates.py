@@ -1,10 +1,10 @@
 """Parameters and instruments of an estimate as facts, in the unit for people."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import nan
 
-from advisor.flight.signals.track import ChannelStatus
+from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
 from advisor.report.facts.fact import Fact, fact_of
@@ -39,11 +39,13 @@ class EstimatedParameter(Fact):
         return abs(self.value - self.prior) / self.half * NORMAL_95
 
 
-def estimated_parameter(name: str, estimate: object, prior: Mapping[str, float]) -> EstimatedParameter:
+def estimated_parameter(
+    name: str, source: str, estimate: object, prior: Mapping[str, float]
+) -> EstimatedParameter:
     """Return one parameter of an estimate against the aircraft file's model, which may lack it."""
     quantity, stated = _QUANTITIES[name], prior.get(name)
     known = None if stated is None else stated * quantity.factor
-    named = EstimatedParameter(name=quantity.symbol, unit=quantity.unit, prior=known)
+    named = EstimatedParameter(name=quantity.symbol, source=source, unit=quantity.unit, prior=known)
     if not isinstance(estimate, Estimate):
         return named
     if name in estimate.not_identifiable:
@@ -57,9 +59,23 @@ def estimated_parameter(name: str, estimate: object, prior: Mapping[str, float])
     )
 
 
-def joint_source(numbers: Iterable[int], at: str) -> str:
-    """Return the heading of a joint estimate from manoeuvres, at an air speed in words."""
-    return f"Joint estimate from manoeuvres {', '.join(map(str, numbers))}{at}"
+def joint_source(state: CampaignState | LateralState) -> str:
+    """Return the source of the joint estimate of an axis, for the head of a table."""
+    return f"Joint estimate from manoeuvres {', '.join(map(str, state.estimate_from))}"
+
+
+def of_all(name: str, state: CampaignState | LateralState, prior: Mapping[str, float]) -> EstimatedParameter:
+    """Return one parameter of the joint estimate of an axis."""
+    return estimated_parameter(name, joint_source(state), state.model, prior)
+
+
+def of_one(name: str, judged: JudgedManeuver | None, prior: Mapping[str, float]) -> EstimatedParameter:
+    """Return one parameter of a manoeuvre alone; without numbers where there is no manoeuvre."""
+    if judged is None:
+        return estimated_parameter(name, "no manoeuvre", None, prior)
+    return estimated_parameter(
+        name, f"Estimate from manoeuvre {judged.maneuver.number} alone", judged.estimate, prior
+    )
 
 
 def untold(estimate: Estimate) -> list[str]:
@@ -72,20 +88,20 @@ def untold(estimate: Estimate) -> list[str]:
     return told + [f"No {mode.replace('_', ' ')} mode: {why}." for mode, why in left_out.items()]
 
 
-def instrument_facts(estimate: object, channels: Mapping[str, ChannelStatus]) -> list[tuple[Fact, str]]:
-    """Return the nuisance parameters of the instruments, each with the aircraft file's value or a dash.
+def instrument_facts(state: CampaignState) -> list[tuple[Fact, str]]:
+    """Return the nuisance parameters of the joint estimate, each with the aircraft file's value or a dash.
 
     Without a vane the place is that of a vane which would read like the angle of attack.
     """
-    if not isinstance(estimate, Estimate):
+    if state.model is None:
         return []
-    alpha = channels.get("alpha")
+    alpha, source = state.channels.get("alpha"), joint_source(state)
     with_vane = alpha is not None and alpha.provenance in ("vane", "simulated")
     found = []
-    for one in estimate.instruments:
+    for one in state.model.instruments:
         key = one.name if with_vane or one.name != "vane_arm_m" else "no_vane_arm_m"
         name, unit, factor = _INSTRUMENTS.get(key, (one.name.replace("_", " "), "SI", 1.0))
-        fact = fact_of(name, one.value, one.std, unit, factor)
+        fact = fact_of(name, source, one.value, one.std, unit, factor)
         stated = "–" if one.stated is None else signed(factor * one.stated, decimals_for(fact.half))
         found.append((fact, stated))
     return found

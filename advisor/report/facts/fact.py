@@ -1,4 +1,4 @@
-"""A number of a flight as every face states it: name, value, 95 % interval, unit, sentence."""
+"""A number of a flight as every face states it: name, source, value, 95 % interval, unit, sentence."""
 
 from dataclasses import dataclass
 from math import isfinite, nan
@@ -13,6 +13,9 @@ class Fact:
 
     name: str
     """Symbol or name for people: ``M_α``, ``Dutch roll ζ``."""
+    source: str
+    """What the number is estimated from, as a heading: ``Joint estimate from manoeuvres 1, 2``. Two facts of
+    one name and one source are one number."""
     value: float = nan
     """NaN where the flight does not tell the number."""
     half: float = nan
@@ -42,6 +45,6 @@ class Fact:
         return f"{self.cell} {self.unit.removesuffix('1')}".rstrip()
 
 
-def fact_of(name: str, value: float, std: float, unit: str = "", factor: float = 1.0) -> Fact:
+def fact_of(name: str, source: str, value: float, std: float, unit: str = "", factor: float = 1.0) -> Fact:
     """Return a number with its interval from value and standard deviation in SI; ``factor`` leaves SI."""
-    return Fact(name=name, value=factor * value, half=NORMAL_95 * factor * std, unit=unit)
+    return Fact(name=name, source=source, value=factor * value, half=NORMAL_95 * factor * std, unit=unit)

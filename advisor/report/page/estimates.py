@@ -6,7 +6,7 @@ from matplotlib.figure import Figure as Drawing
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.oem.estimate import Estimate
-from advisor.report.facts.estimates import EstimatedParameter, estimated_parameter, instrument_facts
+from advisor.report.facts.estimates import EstimatedParameter, instrument_facts, of_all, of_one
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, ORANGE, picture
@@ -31,18 +31,16 @@ def _blocks(content: Content) -> Iterator[Block]:
     if model is None:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")
         return
-    joint = {name: estimated_parameter(name, model, prior) for name in PARAMETERS}
-    if found := instrument_facts(model, content.state.channels):
+    joint = {name: of_all(name, content.state, prior) for name in PARAMETERS}
+    if found := instrument_facts(content.state):
         yield Table(
             "instruments",
-            "Nuisance parameters, estimated with the derivatives; ± is half the 95 % interval.",
+            f"{found[0][0].source}: nuisance parameters; ± is half the 95 % interval.",
             ("nuisance parameter", "estimate ± 95 %", "aircraft file", "unit"),
             tuple((one.name, one.cell, stated, one.unit) for one, stated in found), frozenset({1, 2}),
         )  # fmt: skip
     alone = {
-        str(one.maneuver.number): {
-            name: estimated_parameter(name, one.estimate, prior) for name in PARAMETERS
-        }
+        str(one.maneuver.number): {name: of_one(name, one, prior) for name in PARAMETERS}
         for one in content.state.maneuvers
         if one.verdict.accepted and isinstance(one.estimate, Estimate)
     }

@@ -35,7 +35,7 @@ def _blocks(content: Content) -> Iterator[Block]:
     yield Table(
         "qualities", "Flying qualities of the joint estimate, ± half the 95 % interval (delta method).",
         ("quantity", "value ± 95 %", "unit"),
-        tuple((NAMES[name], _with_interval(q), q["unit"]) for name, q in present.items()),
+        tuple((NAMES[name], _cell(NAMES[name], q), q["unit"]) for name, q in present.items()),
         frozenset({1}),
     )  # fmt: skip
     yield from listing([f"{NAMES[name]} is not given: {why}." for name, why in found["left_out"].items()])
@@ -52,7 +52,7 @@ def _blocks(content: Content) -> Iterator[Block]:
         yield Table(
             "coefficients", f"Coefficients {found['convention']}. Drag's part in the lift is neglected.",
             ("coefficient", "value ± 95 %"),
-            tuple((name, _with_interval(one)) for name, one in coefficients.items()), frozenset({1}),
+            tuple((name, _cell(name, one)) for name, one in coefficients.items()), frozenset({1}),
         )  # fmt: skip
     air = found["air"]
     logged, true = air["airspeed_m_s"], air["true_airspeed_m_s"]
@@ -64,8 +64,8 @@ def _blocks(content: Content) -> Iterator[Block]:
     )
 
 
-def _with_interval(one: Document) -> str:
-    return fact_of("", one["value"], one["std"]).cell
+def _cell(name: str, one: Document) -> str:
+    return fact_of(name, "Joint estimate", one["value"], one["std"]).cell
 
 
 _FILLS = ("#c6dbef", "#e1ecf7", "#f3f7fb")

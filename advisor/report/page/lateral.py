@@ -11,7 +11,7 @@ from advisor.model.mil_f_8785c import MANNED
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
 from advisor.report.facts.decision import INDENT, decisions
-from advisor.report.facts.estimates import estimated_parameter, joint_source, untold
+from advisor.report.facts.estimates import of_all, untold
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import picture
@@ -59,16 +59,14 @@ def derivatives(state: LateralState, model: LateralEstimate, prior: Mapping[str,
     """Return the table of the joint estimate under this name, which is unique on a page."""
     return joint_of(
         name,
-        joint_source(state.estimate_from, f" at {model.airspeed_m_s:.1f} m/s"),
-        [estimated_parameter(one, model, prior) for one in SIDE_PARAMETERS],
+        f" at {model.airspeed_m_s:.1f} m/s",
+        [of_all(one, state, prior) for one in SIDE_PARAMETERS],
         " L and N hold the products of inertia.",
     )
 
 
 def _modes(content: Content, state: LateralState) -> Iterator[Block]:
-    model = state.model
-    modes = mode_facts(model.modes) if model is not None else []
-    if modes:
+    if modes := mode_facts(state):
         yield Table(
             "lateral-modes", "Modes of the joint estimate, ± half the 95 % interval (delta method).",
             ("mode", "value ± 95 %", "unit"),

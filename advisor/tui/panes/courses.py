@@ -8,7 +8,7 @@ from textual.events import Resize
 
 from advisor.aircraft.reference import PARAMETERS as NAMES
 from advisor.flight.signals.messages import FloatArray
-from advisor.report.facts.estimates import estimated_parameter
+from advisor.report.facts.estimates import of_all, of_one
 from advisor.session.view import View
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Level, Series
@@ -118,11 +118,11 @@ def course(view: View | None, name: str) -> ParameterCourse:
     """Collect one parameter's estimates, manoeuvre by manoeuvre."""
     known = view.aircraft.model if view else {}
     rows = [
-        (judged.maneuver.number, estimated_parameter(name, judged.estimate, known))
+        (judged.maneuver.number, of_one(name, judged, known))
         for judged in (view.state.maneuvers if view else ())
     ]
     points = [(number, row) for number, row in rows if row.is_known]
-    joint = estimated_parameter(name, view.state.model if view else None, known)
+    joint = of_all(name, view.state, known) if view else of_one(name, None, known)
     return ParameterCourse(
         name,
         np.array([number for number, _ in points], dtype=np.float64),

@@ -77,5 +77,6 @@ def _settling_in_words(state: CampaignState) -> str:
     settling = state.settling
     if settling is None or not state.readable:
         return f"{state.progress}; numbers come when the input is over and they agree with the tests before."
-    rows = [estimated_parameter(name, settling, {}) for name in ("M_alpha", "M_q", "M_delta_e", "Z_alpha")]
+    names = ("M_alpha", "M_q", "M_delta_e", "Z_alpha")
+    rows = [estimated_parameter(name, "Manoeuvre in the air", settling, {}) for name in names]
     return "   ".join(f"{row.name} {row.cell}" for row in rows)

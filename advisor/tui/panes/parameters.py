@@ -1,6 +1,5 @@
 """The eight parameters with their intervals, against the simulator's model and manoeuvre by manoeuvre."""
 
-from collections.abc import Mapping
 from itertools import accumulate
 
 from rich.text import Text
@@ -9,7 +8,7 @@ from textual.events import Resize
 from textual.widgets import DataTable
 
 from advisor.aircraft.reference import PARAMETERS as NAMES
-from advisor.report.facts.estimates import estimated_parameter
+from advisor.report.facts.estimates import EstimatedParameter, of_all, of_one
 from advisor.session.view import View
 from advisor.tui.panes.courses import history_chart
 from advisor.tui.panes.pane import Pane
@@ -79,12 +78,12 @@ others; the verdict pane says why.
             return
         table = self.query_one(DataTable)
         row = self._row
-        selected = view.judged.estimate if view.judged else None
         with self.prevent(DataTable.RowHighlighted):
             table.clear()
             for name in NAMES:
-                cells = _cells(name, view.state.model, selected, view.aircraft.model)
-                table.add_row(*(Text(cell) for cell in cells[: self._columns]), key=name)
+                joint = of_all(name, view.state, view.aircraft.model)
+                alone = of_one(name, view.judged, view.aircraft.model)
+                table.add_row(*(Text(cell) for cell in _cells(joint, alone)[: self._columns]), key=name)
             table.move_cursor(row=row)
         self._draw_history(NAMES[row])
 
@@ -99,8 +98,7 @@ others; the verdict pane says why.
         self.query_one(Plot).chart = history_chart(self._view, name)
 
 
-def _cells(name: str, model: object, selected: object, known: Mapping[str, float]) -> tuple[str, ...]:
-    joint, alone = (estimated_parameter(name, estimate, known) for estimate in (model, selected))
+def _cells(joint: EstimatedParameter, alone: EstimatedParameter) -> tuple[str, ...]:
     return (
         f"{joint.name} {joint.unit}".removesuffix(" 1"),
         *("not identifiable" if row.reason else row.cell for row in (joint, alone)),
