@@ -90,7 +90,7 @@ class Backlog:
 
     def hear_link(self, link: LinkStatistics) -> None:
         """Take the health of the link, told by its process."""
-        if sentence := self._teller.hear(backlog_s(link.newest_s, self.read_to_s)):
+        if sentence := self._teller.hear(backlog_s(link, self.read_to_s)):
             self._warn(f"{sentence}: the newest line above is that old" if "behind" in sentence else sentence)
             if self.observer is not None:
                 self.observer.announce(sentence)

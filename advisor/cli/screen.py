@@ -98,11 +98,13 @@ def advise(
     from advisor.campaign.hand_decisions import NOTHING
     from advisor.cli.narrator import narrate, narrate_here
     from advisor.session.remote import ConductorTask
+    from advisor.session.view import report_before_first
 
     before = by_hand or NOTHING
     make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks), tuple(names))
     if show is not None or not headless():
-        task = ConductorTask(open_source, partial(make_campaign, True), before, kept, door)
+        first = report_before_first(aircraft, title)
+        task = ConductorTask(open_source, partial(make_campaign, True), before, kept, door, first)
         (show or partial(_show, tuple(logs), aircraft_file))(task, aircraft, title, tempo)
     elif kept is not None:
         task = ConductorTask(open_source, partial(make_campaign, False), before, kept, door)

@@ -1,15 +1,20 @@
 """Backlog of the advisor itself: the time between the newest record heard and the newest one judged."""
 
-from math import inf, isfinite
+from math import inf, isfinite, isnan
+
+from advisor.mavlink.link.health import LinkStatistics
 
 BEHIND_S = 2.0
 """Backlog, s, above which the crew reads that this computer is behind. A joint estimate of seven manoeuvres
 delays the next record by up to 2 s on a laptop. A manoeuvre takes 10 s."""
 
 
-def backlog_s(newest_s: float, read_to_s: float) -> float:
-    """Return the backlog, s; 0 while either time is unknown."""
-    backlog = newest_s - read_to_s
+def backlog_s(link: LinkStatistics, read_to_s: float) -> float:
+    """Return the time between the newest record read and the newest record of the link, s.
+
+    Before any record is read, the time counts from the link's first record. Before that record it is 0.
+    """
+    backlog = link.newest_s - (link.first_s if isnan(read_to_s) else read_to_s)
     return max(0.0, backlog) if isfinite(backlog) else 0.0
 
 

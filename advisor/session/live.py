@@ -3,7 +3,6 @@
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
-from math import isnan
 from shutil import disk_usage
 from typing import Protocol
 
@@ -143,10 +142,7 @@ def renewed(health: LinkHealth, link: LinkStatistics) -> LinkHealth:
         repeated_after_s=decoded.repeated_after_s,
         late=decoded.late,
     )
-    newer = _health(link, health.read_to_s)
-    if health.condition == "waiting" and isnan(health.read_to_s):
-        return replace(newer, condition=health.condition, sentence=health.sentence)
-    return newer
+    return _health(link, health.read_to_s)
 
 
 def _health(link: LinkStatistics, read_to_s: float) -> LinkHealth:
@@ -180,7 +176,7 @@ def _figures(link: LinkStatistics, read_to_s: float) -> tuple[tuple[str, str], .
         ("bad checksum", f"{link.bad_crc}"),
         ("silent for", f"{link.silent_s:.1f} s"),
         ("reconnects", f"{link.reconnects}"),
-        ("this computer behind by", f"{backlog_s(link.newest_s, read_to_s):.1f} s"),
+        ("this computer behind by", f"{backlog_s(link, read_to_s):.1f} s"),
     ]
     figures += [(f"refused, {why}", f"{count}") for why, count in link.refused.items()]
     if link.recording is not None:

@@ -42,6 +42,8 @@ class ConductorTask:
     door: Door | None = None
     """Address of the link's process, which tells the link's health without delay. None: no process keeps a
     link."""
+    first: SessionReport | None = None
+    """Report that stands until the other process sends one. None: nothing is told before."""
 
 
 class RemoteConductor(AskedElsewhere):
@@ -61,7 +63,7 @@ class RemoteConductor(AskedElsewhere):
     def __init__(self, task: ConductorTask) -> None:
         self._task = task
         self._requests: SimpleQueue[Request] = SimpleQueue()
-        self._last: SessionReport | None = None
+        self._last = task.first
         self._deaths: list[str] = []
         self._hangs = 0
         self._watch: Watch | None = None
@@ -185,15 +187,15 @@ class RemoteConductor(AskedElsewhere):
     def _hear_link(self, tell: Tell, link: LinkStatistics) -> None:
         """Pass on the last report with the health of the link at this moment."""
         self._link = link
-        if self._last is not None:
-            self._tell_last(tell)
+        self._tell_last(tell)
 
     def _tell_last(self, tell: Tell) -> None:
         """Pass on the last report with the newest health of the link, its backlog or its age."""
         with self._lock:
             report = self._last
-            assert report is not None
-            if self._link is not None and report.health.link is not None:
+            if report is None:
+                return
+            if self._link is not None:
                 report = replace(report, health=renewed(report.health, self._link))
             sentence = self._behind.hear(report.health.behind_s)
             if sentence and self._observer is not None:
@@ -204,11 +206,11 @@ class RemoteConductor(AskedElsewhere):
 
     def _tell_of_age(self, tell: Tell, age_s: float) -> None:
         self._age_s = age_s
-        if self._last is not None:
-            self._tell_last(tell)
+        self._tell_last(tell)
 
     def _tell_of_death(self, tell: Tell) -> None:
         if self._last is not None:
             health = LinkHealth("waiting", f"{self._deaths[-1].capitalize()}.", self._last.health.figures)
             self._last = replace(self._last, health=health, log=(*self._last.log, self._deaths[-1]))
-            tell(self._last)
+            self._age_s = 0.0
+            self._tell_last(tell)

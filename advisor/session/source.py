@@ -35,7 +35,7 @@ class LinkHealth:
     @property
     def behind_s(self) -> float:
         """Time by which everything that is judged is older than the newest record of the link, s."""
-        return backlog_s(self.link.newest_s, self.read_to_s) if self.link is not None else 0.0
+        return backlog_s(self.link, self.read_to_s) if self.link is not None else 0.0
 
     @property
     def behind(self) -> str:

@@ -9,6 +9,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.state import OF_ELEVATOR, CampaignState, JudgedManeuver, LateralState
 from advisor.decision.crew_plan import CrewPlan
 from advisor.decision.verdict import FlightTestVerdict, limit_percent
+from advisor.session.conducting import SessionReport
 from advisor.session.source import LinkHealth, Playback, Tempo
 from advisor.words.problems import Problem
 
@@ -72,7 +73,15 @@ def view_before_first(
     logs: tuple[Path, ...] = (),
     aircraft_file: Path | None = None,
 ) -> View:
-    """Return the view before the first report: nothing flown, nothing heard."""
+    """Return the view before the first report."""
+    first = report_before_first(aircraft, title)
+    return View(
+        first.state, first.health, None, aircraft, title, tempo, logs=logs, aircraft_file=aircraft_file
+    )
+
+
+def report_before_first(aircraft: Aircraft, title: str) -> SessionReport:
+    """Return the report that stands before the first one: nothing flown, nothing heard."""
     plan = aircraft.campaign
     limit = limit_percent(plan.rule, plan)
     verdict = FlightTestVerdict(plan.rule, "continue", "No manoeuvre has been flown yet.", None, limit, None)
@@ -86,8 +95,7 @@ def view_before_first(
         flight_test=verdict,
         model=None,
     )
-    waiting = LinkHealth("waiting", f"Opening {title}.")
-    return View(state, waiting, None, aircraft, title, tempo, logs=logs, aircraft_file=aircraft_file)
+    return SessionReport(state, LinkHealth("waiting", f"Opening {title}."), None, ())
 
 
 class SideView:

@@ -3,8 +3,8 @@
 import re
 import time
 from collections.abc import Iterator
-from contextlib import suppress
-from dataclasses import replace
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from threading import Thread
@@ -12,6 +12,7 @@ from threading import Thread
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.hand_decisions import ByHand
 from advisor.cli import narrator
 from advisor.mavlink.link.health import LinkStatistics
@@ -25,85 +26,132 @@ from advisor.session.conducting import SessionReport
 from advisor.session.live import LinkSource, recording_line, renewed
 from advisor.session.remote import ConductorTask, RemoteConductor
 from advisor.session.source import LinkHealth
+from advisor.session.view import report_before_first
 from advisor.tui.advice import advise
 from advisor.tui.panes.crew_notes import flying_in_words
 from advisor.tui.panes.limits_now import limits_now
-from tests.mavlink.link.builders import Sender, UdpVehicle, attitude, free_port, heartbeat
+from tests.mavlink.link.builders import Sender, UdpVehicle, free_port, heartbeat
 from tests.tui import elsewhere, flights
 from tests.tui.stage import stage
 from tests.tui.stand_ins import HandFedSource
 from tests.tui.test_pilot_screen import view
 
 SAID = re.compile(r"this computer is \d+ s behind")
+FAST = dialect.MAVLink_vfr_hud_message(22.0, 0.0, 0, 0, 0.0, 0.0)
 HEARD = LinkStatistics(connected=True, vehicle=(1, 1), messages_per_s=400.0, newest_s=1000.0)
 
 
-@pytest.fixture
-def process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[LinkProcess]:
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+@contextmanager
+def flown(folder: Path) -> Iterator[tuple[LinkProcess, UdpVehicle]]:
+    """The process of a link, and a vehicle that sends ten times a second until the context ends."""
     keeping = Keeping(
-        f"udpin:127.0.0.1:{free_port()}", new_door(), 254, record_to=tmp_path / "a.tlog", announce=True
+        f"udpin:127.0.0.1:{free_port()}", new_door(), 254, record_to=folder / "a.tlog", announce=True
     )
-    with LinkProcess(keeping) as process:
-        yield process
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_DATA_HOME", str(folder / "data"))
+        with LinkProcess(keeping) as process:
+            vehicle = UdpVehicle(int(process.master.rpartition(":")[2]))
+            flying = [True]
+
+            def fly() -> None:
+                while flying:
+                    now_ms = int(1000.0 * time.monotonic()) % 2**31
+                    banked = dialect.MAVLink_attitude_message(now_ms, 0.6, 0.1, 0.0, 0.0, 0.0, 0.0)
+                    vehicle.send(heartbeat(), banked, FAST)
+                    time.sleep(0.1)
+
+            thread = Thread(target=fly)
+            thread.start()
+            yield process, vehicle
+            flying.clear()
+            thread.join()
+            vehicle.close()
 
 
-@pytest.fixture
-def vehicle(process: LinkProcess) -> Iterator[UdpVehicle]:
-    """A vehicle that sends its attitude ten times a second until the test is over."""
-    vehicle = UdpVehicle(int(process.master.rpartition(":")[2]))
-    flying = [True]
+@dataclass(frozen=True)
+class Halted:
+    """What the screens were told while an estimator halted twice. Times are host times, s."""
 
-    def fly() -> None:
-        while flying:
-            vehicle.send(heartbeat(), attitude(int(1000.0 * time.monotonic()) % 2**31))
-            time.sleep(0.1)
+    told: tuple[tuple[float, SessionReport], ...]
+    linked_s: float
+    judged_s: float
+    halted_s: float
 
-    thread = Thread(target=fly)
-    thread.start()
-    yield vehicle
-    flying.clear()
-    thread.join()
-    vehicle.close()
+    def between(self, begin_s: float, end_s: float) -> list[LinkHealth]:
+        return [report.health for at_s, report in self.told if begin_s < at_s < end_s]
 
 
-def task(process: LinkProcess) -> ConductorTask:
-    return ConductorTask(partial(LinkSource, process.link()), elsewhere.slow, kept=ByHand, door=process.door)
-
-
-def test_the_screens_are_told_of_a_slow_estimator_while_the_link_stays_new(
-    process: LinkProcess, vehicle: UdpVehicle
-) -> None:
-    conductor = RemoteConductor(task(process))
-    reports: list[SessionReport] = []
+@pytest.fixture(scope="module")
+def halted(tmp_path_factory: pytest.TempPathFactory) -> Halted:
+    """A link whose estimator takes 3 s before its first batch, and stands still for 4 s after 2 s."""
+    folder = tmp_path_factory.mktemp("halted")
+    note = folder / "halted"
+    told: list[tuple[float, SessionReport]] = []
 
     def tell(report: SessionReport) -> None:
-        reports.append(report)
-        if report.health.behind_s > 4.0:
+        told.append((time.time(), report))
+        if note.exists() and time.time() > float(note.read_text().split()[1]) + 6.5:
             conductor.stop()
 
-    conductor.run(tell)
-    behind = [report.health for report in reports if report.health.behind]
-    assert SAID.fullmatch(behind[0].behind)
-    within_one_estimate = {health.behind_s for health in behind if health.read_to_s == behind[0].read_to_s}
-    assert len(within_one_estimate) > 2
+    with flown(folder) as (process, _):
+        linked_s = time.time()
+        source, campaign = partial(LinkSource, process.link()), partial(elsewhere.halting, note)
+        first = report_before_first(Aircraft(), "a link")
+        task = ConductorTask(source, campaign, kept=ByHand, door=process.door, first=first)
+        conductor = RemoteConductor(task)
+        conductor.run(tell)
+    return Halted(tuple(told), linked_s, *map(float, note.read_text().split()))
+
+
+def test_before_its_estimator_has_begun_a_link_shows_counts_recording_bank_and_speed(halted: Halted) -> None:
+    opening = halted.between(halted.linked_s + 1.0, halted.linked_s + 1.8)[-1]
+    assert (opening.condition, opening.behind) == ("good", "")
+    assert opening.recording.startswith("REC ")
+    assert dict(opening.figures)["messages"].endswith("/s)")
+    shown = limits_now(replace(view(flights.state(0), opening), state=halted.told[0][1].state))
+    assert "✗ bank 34 deg" in shown
+    assert "V 22 m/s" in shown
+
+
+def test_an_estimator_that_has_not_begun_is_behind_by_the_age_of_the_link(halted: Halted) -> None:
+    opening = halted.between(halted.linked_s, halted.linked_s + 3.0)
+    assert SAID.fullmatch(opening[-1].behind)
+    assert opening[-1].behind_s == pytest.approx(3.0, abs=0.8)
+
+
+def test_a_word_comes_once_the_estimator_is_more_than_two_seconds_behind(halted: Halted) -> None:
+    said_s = [at_s - halted.halted_s for at_s, report in halted.told if report.health.behind]
+    assert 1.5 < min(after_s for after_s in said_s if after_s > 0.0) < 3.5
+
+
+def test_no_word_comes_while_the_estimator_is_not_behind(halted: Halted) -> None:
+    before = halted.between(halted.judged_s + 1.0, halted.halted_s + 1.5)
+    after = halted.between(halted.halted_s + 5.5, halted.halted_s + 6.5)
+    assert len(before) > 5
+    assert len(after) > 2
+    assert {health.behind for health in (*before, *after)} == {""}
+
+
+def test_the_link_stays_new_while_its_estimator_stands_still(halted: Halted) -> None:
+    behind = halted.between(halted.halted_s + 2.3, halted.halted_s + 3.8)
     assert {health.condition for health in behind} == {"good"}
     assert all(health.alarm == health.behind for health in behind)
     links = [health.link for health in behind]
     assert all(link is not None for link in links)
-    assert links[-1].messages > links[0].messages  # type: ignore[union-attr]
+    assert links[-1].messages > links[0].messages + 15  # type: ignore[union-attr]
     assert behind[-1].recording == recording_line(links[-1])  # type: ignore[arg-type]
 
 
-def test_text_and_ground_station_are_told_of_a_slow_estimator(
-    process: LinkProcess, vehicle: UdpVehicle
-) -> None:
+def test_text_and_ground_station_are_told_of_a_slow_estimator(tmp_path: Path) -> None:
     warned: list[str] = []
     backlog = narrator.Backlog(warned.append)
     backlog.read_to_s = time.time() - 10.0
     announced = ""
     give_up_s = time.monotonic() + 60.0
-    with LinkObserver(process.door, backlog.hear_link) as backlog.observer:
+    with (
+        flown(tmp_path) as (process, vehicle),
+        LinkObserver(process.door, backlog.hear_link) as backlog.observer,
+    ):
         while "behind" not in announced and time.monotonic() < give_up_s:
             with suppress(TimeoutError):
                 message = vehicle.hear()
@@ -153,10 +201,11 @@ async def test_both_screens_say_it() -> None:
             assert "✗ this computer is 130 s behind" in page
 
 
-def test_a_link_whose_recording_is_still_read_is_not_called_behind() -> None:
-    reading = LinkHealth("waiting", "The recording so far is being read.", link=HEARD)
-    assert not behind(reading).behind
-    assert behind(reading).sentence == reading.sentence
+def test_a_link_from_which_nothing_was_read_is_new_and_its_backlog_is_as_old_as_the_link() -> None:
+    opening = LinkHealth("waiting", "Opening the connection.")
+    assert renewed(opening, HEARD).behind == ""
+    late = renewed(opening, replace(HEARD, first_s=990.0))
+    assert (late.condition, late.behind) == ("good", "this computer is 10 s behind")
 
 
 def test_the_counts_of_the_decoder_outlast_newer_counts_of_the_link() -> None:

@@ -85,16 +85,24 @@ def _estimate() -> None:
         sum(k * k for k in range(1000))
 
 
-def slow(by_hand: ByHand) -> "Campaign":
-    """A real one on a computer that is too slow: it takes 6 s for each batch."""
+def halting(note: Path, by_hand: ByHand) -> "Campaign":
+    """A real one on a computer that halts: for 3 s before the first batch, and for 4 s after 2 s of batches.
+
+    The note holds the times, s, at which the first batch was judged and the second halt began.
+    """
+    time.sleep(3.0)
     real = campaign(by_hand)
-    feed = real.feed
+    feed, judged_s = real.feed, []
 
-    def feed_slowly(columns: Sequence[Columns]) -> "list[CampaignEvent]":
-        time.sleep(6.0)
-        return feed(columns)
+    def feed_or_halt(columns: Sequence[Columns]) -> "list[CampaignEvent]":
+        if judged_s and time.time() > judged_s[0] + 2.0 and not note.exists():
+            note.write_text(f"{judged_s[0]} {time.time()}")
+            time.sleep(4.0)
+        events = feed(columns)
+        judged_s.append(time.time())
+        return events
 
-    real.feed = feed_slowly  # type: ignore[method-assign]
+    real.feed = feed_or_halt  # type: ignore[method-assign]
     return real
 
 

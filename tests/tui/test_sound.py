@@ -1,10 +1,10 @@
 """A bell and a voice that tell a verdict to a pilot who does not look."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import pytest
 
+from advisor.mavlink.link.health import LinkStatistics
 from advisor.session.source import LinkHealth, Tempo
 from advisor.session.view import View
 from advisor.tui.sound import Sound
@@ -43,7 +43,8 @@ def test_a_rejected_manoeuvre_is_called_so_before_the_word_repeat():
 
 
 def test_seconds_are_spoken_as_a_word():
-    late = LinkHealth("good", "412 messages/s.", read_to_s=8.0, link=SimpleNamespace(newest_s=20.0))
+    link = LinkStatistics(newest_s=20.0)
+    late = LinkHealth("good", "412 messages/s.", read_to_s=8.0, link=link)
     assert heard(moment(5), replace(moment(5), health=late)) == ["*", "This computer is 12 seconds behind."]
 
 

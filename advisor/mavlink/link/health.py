@@ -50,6 +50,8 @@ class LinkStatistics:
     silent_s: float = 0.0
     """Time since the vehicle was last heard."""
     reconnects: int = 0
+    first_s: float = math.nan
+    """Host time of the first record that the link's process heard, seconds since 1970."""
     newest_s: float = math.nan
     """Host time of the newest record, seconds since 1970. NaN before the first record arrives."""
     bank_rad: float = math.nan

@@ -113,7 +113,7 @@ class Link:
         self._motion = MotionNow()
         self._queue: Queue[tuple[float, bytes]] = Queue(QUEUE_LENGTH)
         """Batches of records, each with the host time of its handing over, s."""
-        self.newest_s = self.read_to_s = math.nan
+        self.first_s = self.newest_s = self.read_to_s = math.nan
         """Host times of the newest batch and of the newest batch that was read, seconds since 1970."""
         self._recorder: Recorder | None = None
         self._failure: BaseException | None = None
@@ -244,6 +244,7 @@ class Link:
             refused=dict(counters.refused),
             silent_s=self._watch.silent_s(now_s),
             reconnects=self._watch.reconnects,
+            first_s=self.first_s,
             newest_s=self.newest_s,
             bank_rad=self._motion.bank_rad,
             airspeed_m_s=self._motion.airspeed_m_s,
@@ -348,6 +349,8 @@ class Link:
         if self._recorder is not None:
             self._recorder.write(records)
         self.newest_s = time.monotonic() + self._unix_offset_s
+        if math.isnan(self.first_s):
+            self.first_s = self.newest_s
         while not self._stop.is_set():
             with contextlib.suppress(Full):  # the reader is a minute behind; the socket's buffer waits
                 self._queue.put((self.newest_s, records), timeout=0.2)

@@ -39,11 +39,12 @@ def _bank_rad(view: View) -> float | None:
 def _airspeed_m_s(view: View) -> float | None:
     """Return the air speed, m/s; None: not received.
 
-    The campaign's air speed is the true one where that is known. While the campaign is behind, the air speed
-    of the link itself stands in its place.
+    The campaign's air speed is the true one where that is known. Before the campaign has one, and while the
+    campaign is behind, the air speed of the link itself stands in its place.
     """
     link = view.health.link
-    if view.health.behind and link is not None and isfinite(link.airspeed_m_s):
+    late = view.health.behind or "airspeed" not in view.state.channels
+    if late and link is not None and isfinite(link.airspeed_m_s):
         return link.airspeed_m_s
     return _newest(view, "airspeed")
 
