@@ -9,6 +9,7 @@ from advisor.flight.instruments.kinematics import check_alpha, combine
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.alpha_offset import least_offset_rad
 from advisor.gap.candidates.known import AIR, left_aside
+from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.diagnose import infer
 from advisor.gap.inference.engine import Progress
 from advisor.gap.inference.findings import Circumstances, Findings
@@ -41,6 +42,9 @@ class Examined:
     fewer: "Callable[[int], Examined] | None" = None
     """Function that returns the diagnosis with the first effects of its answer, so many; None where the
     answer names none."""
+    seen_in: "Callable[[EffectProblem], Examined] | None" = None
+    """Function that returns the diagnosis with its numbers fitted to other outputs of the flight; None for a
+    single manoeuvre."""
 
     def with_most(self, effects: int) -> "Examined":
         """Return the diagnosis with the first effects of its answer alone, at most so many."""
@@ -153,7 +157,8 @@ def _explained(
     aside = left_aside(given, aircraft.effects, () if found.sought_air.found is None else AIR)
     circumstances = Circumstances(shear, weight, given, aside)
     answer = partial(answer_of, found, aircraft, kinematics, holdout, circumstances)
-    return replace(noted(*answer()), fewer=lambda most: noted(*answer(most)))
+    whole = noted(*answer())
+    return replace(whole, fewer=lambda most: noted(*answer(most)), seen_in=lambda x: noted(*answer(seen=x)))
 
 
 def _refuse(flights: PreparedManeuvers, maneuvers: Sequence[Maneuver]) -> None:

@@ -38,7 +38,7 @@ from advisor.simulators.flying import (
     refuse_wrong_elevator,
     without_difference,
 )
-from advisor.simulators.improved import EQUATIONS, Flown, in_simulator
+from advisor.simulators.improved import EQUATIONS, Flown, in_simulator, where_it_acts
 from advisor.simulators.inputs import other_controls
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.mirror import mirrored
@@ -136,6 +136,8 @@ def compare(
         reference = examined.findings.problem.flights.reference_m_s
         surrogate = replace(surrogate, reference_m_s=reference)
         again = replace(again, simulator=replace(simulator, reference_m_s=reference))
+    else:
+        examined = where_it_acts(examined, again, surrogate, as_flown)
     unseen = unseen_of(examined, holdout) if changes_something(examined.diagnosis) else None
     fly = partial(in_simulator, examined, flying=again, surrogate=surrogate, as_flown=as_flown)
     stays, flown = (examined, fly(None)) if unseen is None else without_worse(examined, unseen, fly)

@@ -128,6 +128,26 @@ def in_simulator(
     return Flown(found, before, after, here)
 
 
+def where_it_acts(
+    whole: Examined, flying: Flying, surrogate: Surrogate, as_flown: Mapping[int, AsGiven]
+) -> Examined:
+    """Return the diagnosis with its numbers fitted where simulator and surrogate both have the effects.
+
+    The difference between the two depends on the motion. The motion with a servo's lag is another one than
+    that of the simulator as given. The likelier numbers stay. Arguments are those of ``in_simulator``.
+    """
+    if whole.seen_in is None or not changes_something(whole.diagnosis):
+        return whole
+    problem = whole.findings.problem
+    part = _carried(as_changed(UnseenManeuvers((), whole), whole), problem, surrogate, flying)
+    every = range(len(problem.flights))
+    try:
+        return whole.seen_in(_flown_with(part, problem, every, flying, as_flown, surrogate))
+    except UnusableInputError:
+        # The simulator does not fly with the effects, which ``in_simulator`` says.
+        return whole
+
+
 def _flown_with(
     part: CarriedPart,
     problem: EffectProblem,

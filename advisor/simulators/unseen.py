@@ -80,10 +80,10 @@ def sized_without(found: Examined, apart: Collection[int]) -> Examined:
     """
     problem, diagnosis = found.findings.problem, found.diagnosis
     out = [i for i, flight in enumerate(problem.flights.flights) if flight.number in apart]
-    models = tuple(
-        replace(one, fitted=fit(problem, one.fitted.point, one.fitted.noise, aside=out))
-        for one in found.findings.models
-    )
+    models = []
+    for one in found.findings.models:
+        seen = replace(problem, flights=one.flights or problem.flights)
+        models.append(replace(one, fitted=fit(seen, one.fitted.point, one.fitted.noise, aside=out)))
     point = models[-1].fitted.point
     slopes = zip(DERIVATIVES, point.derivatives.tolist(), strict=True)
     effects = {effect: dict(sizes) for effect, sizes in diagnosis.effects.items()}
@@ -94,7 +94,7 @@ def sized_without(found: Examined, apart: Collection[int]) -> Examined:
             effects[effect] |= {name: size.value for name, size in sizes.items()}
     model = {name: replace(diagnosis.model[name], value=value) for name, value in slopes}
     sized = replace(diagnosis, model={**diagnosis.model, **model}, effects=effects)
-    return replace(found, diagnosis=sized, findings=replace(found.findings, models=models))
+    return replace(found, diagnosis=sized, findings=replace(found.findings, models=tuple(models)))
 
 
 def as_changed(unseen: UnseenManeuvers, whole: Examined) -> SearchPoint:

@@ -183,16 +183,8 @@ def _settled(
     residuals = tuple(block.residual - block.own @ own for block, own in zip(linear, step.free, strict=True))
     cost = cost_of(problem, point, residuals, step.free, linear)
     there = replace(point, edges=problem.with_own(point, step.free).edges)
-    return _Place(
-        there,
-        not _edges_differ(point, there),
-        linear,
-        weights,
-        step,
-        residuals,
-        residual_noise(problem, residuals),
-        cost,
-    )
+    noise, near = residual_noise(problem, residuals), not _edges_differ(point, there)
+    return _Place(there, near, linear, weights, step, residuals, noise, cost)
 
 
 def evidence_of(problem: EffectProblem, fitted: EffectFit) -> float:

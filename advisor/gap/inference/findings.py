@@ -7,6 +7,7 @@ from advisor.gap.candidates.known import Effects
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.search.air import MovingAir
 from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
 from advisor.gap.uncatalogued.weight_check import WeightReading
@@ -30,6 +31,8 @@ class Model:
     held_out: HeldOut
     added: Added | None = None
     """Effect of the next model; None at the last one."""
+    flights: PreparedManeuvers | None = None
+    """Flight to which the model is fitted; None: that of the findings."""
 
 
 @dataclass(frozen=True)

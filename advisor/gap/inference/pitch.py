@@ -39,6 +39,14 @@ class PitchModel(Explanation):
         """Numbers of the added effect, shape (numbers,); empty for derivatives alone."""
         return np.zeros(0) if self.variant is None else np.asarray(self.fitted.point.values[-1])
 
+    def seen_in(self, flight: EffectProblem) -> "PitchModel":
+        """Return the model fitted to other outputs of its flight, or the model itself if that is likelier."""
+        problem = replace(self.problem, flights=flight.flights)
+        made = fit(problem, self.fitted.point, self.fitted.noise)
+        if made.cost >= self.fitted.cost:
+            return self
+        return replace(self, problem=problem, fitted=made, held_out=hold_out(problem, made))
+
 
 @dataclass(frozen=True)
 class PitchFlight:

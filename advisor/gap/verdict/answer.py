@@ -63,10 +63,16 @@ def answer_of(
     holdout: int | None,
     circumstances: Circumstances,
     most: int | None = None,
+    seen: EffectProblem | None = None,
 ) -> tuple[Diagnosis, Findings]:
     """Return the diagnosis that follows from the posterior, and the findings that it is made from.
 
-    The improved simulator gets the first ``most`` effects of the answer; None: all of them.
+    Parameters
+    ----------
+    most
+        Number of effects of the answer that the improved simulator gets, the first ones; None: all of them.
+    seen
+        Flight to which the answer's own model is fitted anew, where that is likelier; None: no other flight.
     """
     problem, floor = found.problem, found.floor
     plain = found.chosen[0]
@@ -74,6 +80,10 @@ def answer_of(
     posterior = none_means_no_gap(found.posteriors[0], file_model, floor, plain.held_out)
     answer = posterior.answer
     named = _named(found, answer)[:most]
+    if seen is not None:
+        *before, own = found.chosen[: len(named) + 1]
+        found = replace(found, chosen=(*before, own.seen_in(seen)))
+        named = found.chosen[1:]
     law = posterior.explanation_of(answer) if answer.kind == "unknown" else None
     last = named[-1].fitted if named else plain.fitted
     e = Findings(
@@ -96,7 +106,7 @@ def _models(found: Inference, named: Sequence[PitchModel]) -> tuple[Model, ...]:
     """Return the plain model and the model of each named effect, each with the effect that comes next."""
     explanations = [found.chosen[0], *named]
     models = [
-        Model(one.fitted, one.held_out, None if following is None else _added(following))
+        Model(one.fitted, one.held_out, None if following is None else _added(following), one.problem.flights)
         for one, following in zip(explanations, [*explanations[1:], None], strict=True)
     ]
     return as_measured(found.problem, models)

@@ -208,16 +208,8 @@ def traces_of(problem: EffectProblem, before: HeldOut, last: HeldOut) -> tuple[T
     for i, flight in enumerate(problem.flights.flights):
         for name, rows in zip(problem.channels, problem.rows(flight), strict=True):
             out = flight.outputs[name]
-            traces.append(
-                Trace(
-                    flight.number,
-                    name,
-                    out.t,
-                    out.y,
-                    out.y - before.residuals[i][rows],
-                    out.y - last.residuals[i][rows],
-                )
-            )
+            simulated = (out.y - held.residuals[i][rows] for held in (before, last))
+            traces.append(Trace(flight.number, name, out.t, out.y, *simulated))
     return tuple(traces)
 
 

@@ -188,3 +188,21 @@ def test_sizes_are_those_of_a_fit_that_has_not_seen_the_manoeuvres_kept_apart(ke
     _, alone = fitted(others)
     told = sized.model["M_delta_e"].value
     assert (told == pytest.approx(alone.point.derivatives[5], rel=0.1)) == bool(kept)
+
+
+def test_sizes_are_fitted_to_the_flight_of_their_model():
+    """The elevator of one flight moved half as far as logged in the other, and so answers twice as much."""
+    logged = flown(maneuvers=2)
+    half = [
+        replace(m, channels={**m.channels, "elevator": replace(e, y=0.5 * e.y)})
+        for m in logged
+        if (e := m.channels["elevator"])
+    ]
+    flights, others = (prepare(maneuvers, FILE) for maneuvers in (logged, half))
+    start = SearchPoint(np.array([-2.7, 0.0, -0.15, -23.0, -3.4, -29.0]), np.zeros((2, len(NUISANCES))))
+    problem = EffectProblem(flights, np.zeros(len(ENTRIES)))
+    whole = fit(problem, start)
+    own = Findings(problem, (Model(whole, None, None, others),), None, None, np.ones(1), None, None, None)
+    model = dict.fromkeys(DERIVATIVES, Value(0.0, 0.1))
+    sized = sized_without(Examined(found(model=model, effects={}), own), ()).diagnosis
+    assert sized.model["M_delta_e"].value == pytest.approx(2.0 * whole.point.derivatives[5], rel=0.1)
