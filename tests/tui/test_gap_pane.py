@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from advisor.gap.alternative import Contribution
+from advisor.process.parts import FailedPart
 from advisor.report.gap_document import gap_document
 from advisor.report.side_gap import whole_document
 from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
@@ -74,6 +75,34 @@ async def test_choosing_the_pane_diagnoses_the_flight_and_shows_the_worst_manoeu
         assert [series.name for series in chart.series] == ["measured", "before", "after"]
         await here.press("4", "d")
         assert len(asked) == 1
+
+
+FAILED = FailedPart("pitch, diagnosis", "LinAlgError: Singular matrix")
+
+
+@pytest.mark.parametrize(
+    ("document", "part"),
+    [(gap_document(None, failed=(FAILED,)), "pitch, diagnosis"), (DOCUMENT, "picture of the gap")],
+    ids=["diagnosis", "pane"],
+)
+async def test_a_numerical_fault_is_said_on_the_pane_and_the_screens_go_on(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, document: Document, part: str
+) -> None:
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("float division by zero")
+
+    monkeypatch.setattr(pane, "diagnose_elsewhere", lambda _: document)
+    if document is DOCUMENT:
+        monkeypatch.setattr(pane, "_chart", broken)
+    async with stage(flights.state(4), settings=ENGINEER, size=(140, 45), logs=[tmp_path / "a.tlog"]) as here:
+        await here.press("d")
+        await here.until(lambda: "ended this part" in here.words("#gap-text"))
+        assert f"A fault of the advisor, not yours, ended this part: {part} (" in " ".join(
+            here.words("#gap-text").split()
+        )
+        await here.press("1", "d")
+        assert here.app.failure is None
+        assert ("answers 30 ms too early" in here.words("#gap-text")) == (document is DOCUMENT)
 
 
 def test_the_pane_says_the_answer_of_roll_and_yaw_where_they_alone_were_flown() -> None:

@@ -10,6 +10,7 @@ from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 from textual.events import Resize
 
+from advisor.process.parts import Parts
 from advisor.report.facts.reasons import weighed
 from advisor.report.facts.sizes import WORSE
 from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
@@ -93,9 +94,15 @@ findings.
             self._say([("", _ASKING.format(count=len(self._asked) - 1, seconds=seconds))])
 
     def _told(self, document: Document) -> None:
-        """Show a diagnosis."""
+        """Show a diagnosis. A part of the pane that fails leaves the other."""
         self._since_s = None
-        self._say(list(answer_rows(document)))
+        rows: list[Labelled] = []
+        parts = Parts(lambda failed: rows.append(("✗ ", str(failed.problem))))
+        parts.make("text of the gap", lambda: rows.extend(answer_rows(document)), lambda failed: None)
+        parts.make("picture of the gap", partial(self._draw, document), lambda failed: None)
+        self._say(rows)
+
+    def _draw(self, document: Document) -> None:
         if document["gap"] is None:
             return
         worst = max(document["gap"]["by_maneuver"], key=lambda one: one["before"])["number"]
