@@ -20,6 +20,8 @@ from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
 from advisor.gap.without_simulator import without_simulator
 from advisor.mavlink.logs.whole import read_whole_log
+from advisor.oem.estimator import estimate_jointly
+from advisor.simulators.agreed import agreeing
 from advisor.simulators.by_log import IdentifiedSimulator
 from advisor.simulators.compare import Compared, compare
 from advisor.simulators.linear import LinearSimulator
@@ -201,6 +203,9 @@ def compare_flown(
     if simulator is not None:
         as_true = _simulator_at_true_speed(simulator, air.true_over_read)
         compared = compare(chosen.maneuvers, as_true, at_true_speed, holdout, progress, prior)
+        if not isinstance(simulator, LinearSimulator):
+            logged = estimate_jointly(chosen.maneuvers, aircraft)
+            compared = replace(compared, diagnosis=agreeing(compared.diagnosis, logged))
     else:
         whole = stays = examine(chosen.maneuvers, at_true_speed, holdout, progress, prior)
         told = whole.diagnosis

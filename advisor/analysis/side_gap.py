@@ -66,7 +66,9 @@ def compare_side_flown(
     accepted = accepted_of(state)
     compared, against = beside_simulator(accepted, aircraft, progress)
     progress("comparing", 1.0)
-    return SideCompared(answered(compare_side(compared, against, prior)), state, aircraft, accepted)
+    assert state.lateral is not None
+    found = answered(compare_side(compared, against, prior, state.lateral.model))
+    return SideCompared(found, state, aircraft, accepted)
 
 
 def axis_flown(

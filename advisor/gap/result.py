@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import hypot
 from typing import Literal
 
 from advisor.flight.instruments.atmosphere import AirData
@@ -24,6 +25,12 @@ class Value:
 
     value: float
     std: float
+
+    def agreeing(self, other: "Value") -> "Value":
+        """Return the number; its interval contains that of another reading of the log from which it
+        differs."""
+        apart = abs(self.value - other.value) / NORMAL_95
+        return self if apart <= hypot(self.std, other.std) else Value(self.value, apart + other.std)
 
 
 @dataclass(frozen=True, slots=True)

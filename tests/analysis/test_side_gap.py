@@ -23,11 +23,15 @@ def compared(monkeypatch):
         seen.specification = specification
         return SimpleNamespace(close=close)
 
-    def compare(maneuvers, aircraft, prior):
-        seen.maneuvers, seen.aircraft = maneuvers, aircraft
+    def compare(maneuvers, aircraft, prior, logged):
+        seen.maneuvers, seen.aircraft, seen.logged = maneuvers, aircraft, logged
         return seen
 
-    monkeypatch.setattr(side_gap, "read_whole", lambda *_, **__: SimpleNamespace(state=None))
+    monkeypatch.setattr(
+        side_gap,
+        "read_whole",
+        lambda *_, **__: SimpleNamespace(state=SimpleNamespace(lateral=SimpleNamespace(model="as logged"))),
+    )
     monkeypatch.setattr(side_gap, "accepted_of", lambda _: ["as flown"])
     monkeypatch.setattr(side_gap, "compare_side", compare)
     monkeypatch.setattr(side_gap, "simulator_of", named)
@@ -47,7 +51,7 @@ def test_the_aircraft_files_own_numbers_are_compared_without_a_replay(compared, 
 def test_a_simulator_flies_the_manoeuvres_and_is_closed(compared):
     side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator="jsbsim:c172p"))
     assert compared.specification == "jsbsim:c172p"
-    assert compared.maneuvers == ["beside"]
+    assert (compared.maneuvers, compared.logged) == (["beside"], "as logged")
     assert compared.aircraft.model == {"L_p": -1.0}
     assert compared.closed == 1
 

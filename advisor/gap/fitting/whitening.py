@@ -57,10 +57,7 @@ class Filters:
 
 
 def filters_for(
-    flights: PreparedManeuvers,
-    p: FloatArray,
-    airs: Sequence[AirModel],
-    extra: Sequence[FloatArray],
+    flights: PreparedManeuvers, p: FloatArray, airs: Sequence[AirModel], extra: Sequence[FloatArray]
 ) -> Filters:
     """Return one Kalman filter for each manoeuvre.
 

@@ -35,10 +35,7 @@ def first_stage(flight: Flight[E]) -> Stage[E]:
 
 
 def decided(
-    flight: Flight[E],
-    stage: Stage[E],
-    prior: FieldPrior,
-    beyond: Callable[[list[Row[E]]], list[Row[E]]],
+    flight: Flight[E], stage: Stage[E], prior: FieldPrior, beyond: Callable[[list[Row[E]]], list[Row[E]]]
 ) -> Decided[E]:
     """Return the posterior after the first stage, and the second cause where the answer is an effect.
 

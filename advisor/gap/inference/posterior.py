@@ -126,12 +126,7 @@ def _ways(flight: Flight[E], stage: Stage[E], prior: FieldPrior) -> Iterator[Row
 
 
 def _pairs(
-    ways: Sequence[Row[E]],
-    plain: E,
-    lead: E,
-    second: Stage[E],
-    tried: tuple[int, int],
-    prior: FieldPrior,
+    ways: Sequence[Row[E]], plain: E, lead: E, second: Stage[E], tried: tuple[int, int], prior: FieldPrior
 ) -> Iterator[Row[E]]:
     """Yield the ways in which an effect is true together with a second one.
 

@@ -108,10 +108,7 @@ def _removed_beyond_air(models: Sequence[Model]) -> float | None:
 
 
 def waterfall_of(
-    models: Sequence[Model],
-    floor: FloatArray,
-    extra: Sequence[Cause],
-    start: float,
+    models: Sequence[Model], floor: FloatArray, extra: Sequence[Cause], start: float
 ) -> tuple[tuple[str, float], ...]:
     """Return the effects with the gap after their addition, in order.
 

@@ -16,7 +16,7 @@ from advisor.gap.axes.lateral.models import case_of
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import ComparedDerivative, Value
 from advisor.oem.axes.lateral.estimator import estimate_lateral
-from advisor.oem.estimate import NoEstimate
+from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.words.certainty import as_sure
 
 
@@ -37,19 +37,25 @@ class SideGap:
 
 
 def compare_side(
-    maneuvers: Sequence[Maneuver], aircraft: Aircraft, prior: FieldPrior = FIELD
+    maneuvers: Sequence[Maneuver],
+    aircraft: Aircraft,
+    prior: FieldPrior = FIELD,
+    logged: Estimate | None = None,
 ) -> SideGap | NoEstimate:
     """Compare roll and yaw of the aircraft file with accepted manoeuvres.
 
     A derivative that the file does not state counts as that of the flight. ``prior`` holds the shares of the
-    answers before the flight.
+    answers before the flight. ``logged`` is the estimate of the manoeuvres as logged, with which the
+    derivatives agree within their intervals.
     """
     model = estimate_lateral(maneuvers, aircraft)
     if isinstance(model, NoEstimate):
         return model
+    seen = model if logged is None else logged
+    told = (map(Value, one.theta.tolist(), one.std.tolist()) for one in (model, seen))
     stated = tuple(
-        ComparedDerivative(name, aircraft.model[name], Value(float(value), float(std)))
-        for name, value, std in zip(SIDE_PARAMETERS, model.theta, model.std, strict=True)
+        ComparedDerivative(name, aircraft.model[name], own.agreeing(other))
+        for name, own, other in zip(SIDE_PARAMETERS, *told, strict=True)
         if name in aircraft.model and name not in model.not_identifiable
     )
     case = case_of(maneuvers, aircraft, model.theta)

@@ -71,3 +71,15 @@ def test_a_file_without_lateral_numbers_has_no_verdict(flight, monkeypatch):
     assert found.verdict is None
     assert "give model.L_p" in found.sentence
     assert side_gap_document(found)["shrink"] is None
+
+
+def test_a_derivative_that_the_log_contradicts_is_not_stated_as_changed(flight, monkeypatch):
+    """The log's own estimate has the aileron of the simulator, 20 % weaker than that of the flight."""
+    monkeypatch.setattr(comparison, "diagnose_side", lambda case, prior: None)
+    weak = replace(AIRCRAFT, model={"L_delta_a": 0.8 * JET["L_delta_a"]})
+    logged = comparison.estimate_lateral(flight, AIRCRAFT)
+    other = replace(logged, theta=0.8 * logged.theta)
+    assert [compare_side(flight, weak, logged=one).derivatives[0].differs for one in (None, other)] == [
+        True,
+        False,
+    ]

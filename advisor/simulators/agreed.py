@@ -1,0 +1,31 @@
+"""Derivatives found next to a user's simulator, which agree with the estimate of the same log."""
+
+from dataclasses import replace
+
+from advisor.gap.result import Diagnosis, Value
+from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.words.quantities import PARAMETERS
+
+
+def agreeing(found: Diagnosis, logged: Estimate | NoEstimate) -> Diagnosis:
+    """Return a diagnosis whose derivatives agree with an estimate within their 95 % intervals.
+
+    The estimate knows no simulator. Two readings of one log that differ by more than chance bound the error
+    of both. A derivative whose wider interval contains the simulator's value is not stated as changed.
+
+    Parameters
+    ----------
+    logged
+        Estimate of all manoeuvres together, as logged.
+    """
+    if isinstance(logged, NoEstimate):
+        return found
+    told = zip(logged.names, logged.theta.tolist(), logged.std.tolist(), strict=True)
+    others = {name: Value(x, std) for name, x, std in told if name not in logged.not_identifiable}
+    shared = [one.name for one in found.derivatives if one.name in others]
+    model = {**found.model, **{name: found.model[name].agreeing(others[name]) for name in shared}}
+    wider = [PARAMETERS[name].symbol for name in shared if model[name] != found.model[name]]
+    derivatives = tuple(replace(one, found=model[one.name]) for one in found.derivatives)
+    said = f"The intervals of {', '.join(wider)} contain those of advisor analyze, which lie elsewhere."
+    notes = (*found.notes, *([said] if wider else []))
+    return replace(found, model=model, derivatives=derivatives, notes=notes)
