@@ -9,6 +9,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.analysis.gap import GapFlights, maneuvers_of
 from advisor.analysis.refused import without_refused
+from advisor.analysis.side_traces import side_traces
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.state import CampaignState
@@ -68,6 +69,7 @@ def compare_side_flown(
     progress("comparing", 1.0)
     assert state.lateral is not None
     found = answered(compare_side(compared, against, prior, state.lateral.model))
+    found = replace(found, traces=side_traces(found, accepted, compared))
     return SideCompared(found, state, aircraft, accepted)
 
 

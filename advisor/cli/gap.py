@@ -41,7 +41,7 @@ _OF_A_FLIGHT = {
     "exports": "--export", "proving": "--prove", "specification": "--simulator", "figure": "--figure",
     "axis": "--axis",
 }  # fmt: skip
-_OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "everything", "figure")}
+_OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "everything")}
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
 }  # fmt: skip
@@ -169,13 +169,13 @@ def command(
     decided = [decided_on(log, asked.no_marks) for log in asked.logs]
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     flown = None
-    if axis is None and not (holdout or everything or figure):
+    if axis is None and not (holdout or everything):
         axis, flown = _axis_flown(asked, aircraft, by_hand)
     if axis == "lateral":
         orders = orders_of(exports, aircraft, [*asked.inputs, out], axis)
         from advisor.cli.side_gap import compare_lateral
 
-        return compare_lateral(asked, aircraft, as_json, prior, out, orders, proving, why)
+        return compare_lateral(asked, aircraft, as_json, prior, out, orders, proving, why, figure)
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.exports.models.flown import FlownModel
     from advisor.gap.inference.prior import FIELD, field_prior
@@ -217,7 +217,7 @@ def command(
     # The simulator's own servo is no part of the improvement.
     as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
     outcomes = write_exports(orders, partial(_improved, found, as_given, side))
-    write_figure(figure, found)
+    write_figure(figure, lambda: gap_document(found))
     steps = next_steps(
         found, list(map(str, asked.logs)), asked.aircraft_text, aircraft.simulator, asked.reading,
         _flown_next(aircraft.simulator, out if improved else None, outcomes),

@@ -1,15 +1,12 @@
 """``advisor gap --figure``: the picture of a diagnosis as a file."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 from advisor.cli.options import refuse_unwritable, writing
 from advisor.words.problems import ConfigurationError
-
-if TYPE_CHECKING:
-    from advisor.gap.result import Diagnosis
 
 _FORMATS = (".svg", ".png")
 
@@ -41,8 +38,8 @@ def refuse_figure(figure: Path | None, others: Sequence[Path | None]) -> None:
         raise ConfigurationError(f"--figure: {figure} is another file of this command; name a new one.")
 
 
-def write_figure(figure: Path | None, found: "Diagnosis") -> None:
-    """Write the picture, if one is wanted.
+def write_figure(figure: Path | None, document: Callable[[], Mapping[str, Any]]) -> None:
+    """Write the picture of an axis's document, if one is wanted.
 
     Raises
     ------
@@ -51,8 +48,7 @@ def write_figure(figure: Path | None, found: "Diagnosis") -> None:
     """
     if figure is None:
         return
-    from advisor.report.gap_document import gap_document
     from advisor.report.page.gap_picture import write_gap_picture
 
     with writing("--figure", figure):
-        write_gap_picture(gap_document(found), figure)
+        write_gap_picture(document(), figure)

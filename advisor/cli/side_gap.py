@@ -12,6 +12,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.side_gap import SideCompared, accepted_of, compare_side_logs
 from advisor.analysis.whole_flights import read_whole
 from advisor.cli.gap import compared_or_code, write_improved
+from advisor.cli.gap_figure import write_figure
 from advisor.cli.improvement_export import listed, write_exports
 from advisor.cli.log_options import LogsAsked
 from advisor.cli.options import USAGE
@@ -25,7 +26,7 @@ from advisor.gap.inference.prior import FIELD, FieldPrior, field_prior
 from advisor.gap.result import IMPROVING
 from advisor.report.console import PlainConsole
 from advisor.report.gap_causes import why_of
-from advisor.report.side_gap import side_gap_lines, whole_document
+from advisor.report.side_gap import side_gap_document, side_gap_lines, whole_document
 from advisor.words.printable import printable
 
 
@@ -38,6 +39,7 @@ def compare_lateral(
     orders: list[ExportOrder],
     proving: Sequence[str] = (),
     why: bool = False,
+    figure: Path | None = None,
 ) -> int:
     """Compare roll and yaw of the aircraft file with the flight, print the result and write the files."""
     shares = FIELD if prior is None else field_prior(prior)
@@ -64,6 +66,8 @@ def compare_lateral(
     improves = found.verdict in IMPROVING
     written = write_improved(out, improves, lambda: replace(improved_side(compared), pitch=None))
     outcomes = write_exports(orders, partial(improved_side, compared))
+    if found.traces:
+        write_figure(figure, lambda: side_gap_document(found))
     if as_json:
         document = whole_document(found) | {"exports": listed(outcomes)}
         document["lateral"] |= {"improved_model": str(out) if written else None} | proof_document(proof)

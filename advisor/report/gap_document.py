@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import AlternativeEvidence, Weighed
-from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification
+from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification, Trace
 from advisor.gap.verdict.text import answers_of, in_words, limits_of, title_of
 from advisor.process.parts import FailedPart
 from advisor.report.facts.gap import changed, grown_said, heading, shrink_said, size_of_gap, where_said
@@ -78,13 +78,7 @@ def gap_document(
             "text": d.kinematics.sentence, "bias_rad": d.kinematics.offset.rad,
         },
         "parameters_changed": [changed_document(one) for one in d.derivatives if one.differs],
-        "traces": [
-            {
-                **picked(trace, "number channel t"),
-                **{name: _as_logged(getattr(trace, name)) for name in ("measured", "before", "after")},
-            }
-            for trace in d.traces
-        ],
+        "traces": traces_document(d.traces),
         "yardsticks": {c: {"before": a, "after": b} for c, (a, b) in d.yardsticks.items()},
         "improved_model": improved_model,
         **weighed_document(d),
@@ -131,6 +125,17 @@ def changed_document(one: ComparedDerivative) -> dict[str, Any]:
         "ci95": [one.found.value - one.half, one.found.value + one.half],
         "percent": one.percent,
     }
+
+
+def traces_document(traces: Sequence[Trace]) -> list[dict[str, Any]]:
+    """Return the part ``traces``: the curves of every output and manoeuvre, SI."""
+    return [
+        {
+            **picked(trace, "number channel t"),
+            **{name: _as_logged(getattr(trace, name)) for name in ("measured", "before", "after")},
+        }
+        for trace in traces
+    ]
 
 
 def _as_logged(samples: FloatArray) -> list[float]:

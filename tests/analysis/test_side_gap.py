@@ -8,6 +8,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import side_gap
+from advisor.gap.axes.lateral.comparison import SideGap
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 
@@ -25,7 +26,7 @@ def compared(monkeypatch):
 
     def compare(maneuvers, aircraft, prior, logged):
         seen.maneuvers, seen.aircraft, seen.logged = maneuvers, aircraft, logged
-        return seen
+        return SideGap(None, "", (), {}, {}, (), None)
 
     monkeypatch.setattr(
         side_gap,

@@ -104,9 +104,12 @@ def test_a_file_without_a_derivative_is_not_compared(missing):
 
 
 def test_the_first_page_of_a_lateral_flight_has_the_lateral_verdict_and_table_and_no_order_for_the_elevator():
-    pitch = {"sentence": "No test input of the elevator has been flown.", "decision": "continue"}
+    pitch = {
+        "sentence": "No test input of the elevator has been flown.", "decision": "continue", "warnings": []
+    }  # fmt: skip
     content = SimpleNamespace(
-        state=SimpleNamespace(lateral=FLOWN, maneuvers=(), flights=()), aircraft=AIRCRAFT, begun=(),
+        state=replace(flights_of_pitch.state(0), lateral=FLOWN, flights=(), model=None),
+        aircraft=AIRCRAFT, begun=(),
         names=("flight.tlog",), analysis={"flight_test": pitch, "maneuvers": []}, gap=None,
     )  # fmt: skip
     blocks = headline(content).blocks
@@ -117,14 +120,34 @@ def test_the_first_page_of_a_lateral_flight_has_the_lateral_verdict_and_table_an
     assert not any("3-2-1-1" in one for one in said)
 
 
-def test_the_gap_of_a_lateral_flight_stands_with_its_changes_and_shown_causes():
-    side = {
-        "title": "LIKELY", "sentence": "The aileron is weak.",
-        "parameters_changed": [{"text": "L_p: more"}],
-        "causes": [{"sentence": "a", "probability": 0.9}, {"sentence": "b", "probability": 0.001}],
+SIDE = {
+    "title": "LIKELY", "sentence": "The aileron is weak.", "how_sure": "Weak 90 %.", "traces": [],
+    "parameters_changed": [{"text": "L_p: more"}],
+    "causes": [{"sentence": "a", "probability": 0.9}, {"sentence": "b", "probability": 0.001}],
+}  # fmt: skip
+GAP = {"usable": True, "title": None, "sentence": None, "limits": [], "lateral": SIDE}
+
+
+def test_beside_refused_tests_of_the_elevator_the_first_page_has_roll_and_yaw_and_their_gap():
+    pitch = {
+        "sentence": "No input can be used.", "decision": "continue", "rule": "information", "warnings": [],
+        "criterion_percent": None, "limit_percent": 100.0,
     }  # fmt: skip
-    first, changed, causes = gap(SimpleNamespace(gap={"lateral": side})).blocks
-    assert first.text == "Roll and yaw. LIKELY: The aileron is weak."
+    refused = SimpleNamespace(verdict=SimpleNamespace(accepted=False))
+    content = SimpleNamespace(
+        state=replace(flights_of_pitch.state(1), maneuvers=(refused,), lateral=FLOWN, model=None),
+        aircraft=AIRCRAFT, begun=(), names=("flight.tlog",), gap=GAP,
+        analysis={"flight_test": pitch, "maneuvers": [{"number": 1, "verdict": "rejected"}]},
+    )  # fmt: skip
+    blocks = headline(content).blocks
+    assert "lateral-glance" in [b.name for b in blocks if isinstance(b, Table)]
+    said = [b.text for b in blocks if isinstance(b, Paragraph)]
+    assert said[-2:] == ["Roll and yaw. LIKELY: The aileron is weak.", "Weak 90 %."]
+    assert not any("None" in one for one in said)
+
+
+def test_the_gap_of_a_lateral_flight_stands_with_its_changes_and_shown_causes():
+    changed, causes = gap(SimpleNamespace(gap=GAP)).blocks
     assert (changed.items, causes.items) == (("L_p: more",), ("a (90 %).",))
 
 

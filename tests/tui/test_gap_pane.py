@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from advisor.analysis.side_traces import side_traces
 from advisor.gap.alternative import Contribution
 from advisor.process.parts import FailedPart
 from advisor.report.gap_document import gap_document
@@ -15,6 +16,7 @@ from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
 from advisor.tui.panes import gap as pane
 from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
+from tests.analysis.test_side_traces import ANSWERED, flown
 from tests.campaign.side_builders import judged as side_judged
 from tests.campaign.side_builders import state as side_state
 from tests.gap.axes.lateral.test_diagnosis import FOUND
@@ -117,14 +119,18 @@ async def test_the_axis_that_is_shown_is_diagnosed(monkeypatch: pytest.MonkeyPat
 
     def answer(task: GapTask) -> Document:
         asked.append(task)
-        return whole_document(FOUND)
+        flights = [flown(3), flown(5)]
+        return whole_document(replace(ANSWERED, traces=side_traces(ANSWERED, flights, flights)))
 
     monkeypatch.setattr(pane, "diagnose_elsewhere", answer)
     alone = replace(flights.state(), maneuvers=(), lateral=side_state(side_judged(1, "aileron")))
     async with stage(alone, settings=ENGINEER, size=(140, 45), logs=[tmp_path / "a.tlog"]) as here:
         await here.press("d")
         await here.until(lambda: "Roll and yaw." in here.words("#gap-text"))
+        rate = here.app.screen.query_one("#gap-alpha", Plot).chart
     assert [task.sideways for task in asked] == [True]
+    assert rate.y_label == "p [deg/s]"
+    assert [series.name for series in rate.series] == ["measured", "before", "after"]
 
 
 async def test_without_a_log_the_pane_says_what_to_run_afterwards() -> None:

@@ -13,10 +13,13 @@ from advisor.report.gap_causes import by_reason
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Verbatim, listing
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
+from advisor.report.page.gap_picture import caption, gap_picture
 from advisor.report.table import Table
 from advisor.words.quantities import CHANNELS
 
 _DEFINED = "The gap is the mean square of the simulator's error over that of the noise floor, minus 1: "
+_GLANCE = 4
+"""Channels side by side, so that the picture has room on the first page of A4."""
 _LINEAR = 10.0
 """Largest gap on a linear axis."""
 
@@ -30,7 +33,6 @@ def gap(content: Content) -> Section | None:
 
 def _blocks(found: Document) -> Iterator[Block]:
     if (side := found.get("lateral")) is not None:
-        yield Paragraph(f"Roll and yaw. {side['title']}: {side['sentence']}", "verdict")
         yield from listing([one["text"] for one in side["parameters_changed"]])
         likely = [(one["sentence"], one["probability"]) for one in side["causes"]]
         yield from listing([f"{said} ({in_percent(p)})." for said, p in likely if is_shown(p)])
@@ -90,11 +92,22 @@ def _blocks(found: Document) -> Iterator[Block]:
             yield Verbatim(step["command"])
 
 
+def glance(document: Document) -> Iterator[Block]:
+    """Yield the answer, and the picture of the manoeuvre with the largest gap where there are curves."""
+    yield from answer(document)
+    found = document.get("lateral") or document
+    if found["traces"]:
+        wide, narrow = gap_picture("gap-glance", found, _GLANCE), gap_picture("gap-narrow", found, 1)
+        yield Gallery((Figure(wide, caption(found), narrow=narrow),))
+
+
 def answer(found: Document) -> Iterator[Block]:
     """Yield the sentence, how sure it is, and what limits it."""
-    yield Paragraph(f"{found['title']}: {found['sentence']}", "verdict")
-    if found["how_sure"]:
-        yield Paragraph(found["how_sure"])
+    side = found.get("lateral")
+    told, axis = (found, "") if side is None else (side, "Roll and yaw. ")
+    yield Paragraph(f"{axis}{told['title']}: {told['sentence']}", "verdict")
+    if told["how_sure"]:
+        yield Paragraph(told["how_sure"])
     yield from listing(list(found["limits"]))
 
 

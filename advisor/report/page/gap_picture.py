@@ -26,8 +26,8 @@ _LEFT_IN, _LABEL_IN, _RIGHT_IN = 0.62, 0.42, 0.06
 """Room left of axes, distance of the label within, and room at the right edge, inches."""
 _LEGEND_IN, _TITLE_IN = 0.35, 0.25
 """Room for the legend, and for the numbers over the small pictures, inches."""
-_SHOWN_SMALL = "q"
-"""Channel of the small pictures: the pitch rate moves in every manoeuvre."""
+_SHOWN_SMALL = ("q", "p")
+"""Channel of the small pictures, the first that is there: one that moves in every manoeuvre."""
 
 Trace = Mapping[str, Any]
 
@@ -37,7 +37,7 @@ def caption(found: Document) -> str:
     return (
         f"Manoeuvre {worst(found)}, the one with the largest gap. Grey: measured. Orange dots: the simulator "
         "as given. Dark dashes: with the findings. Below each: measured minus simulated; the band holds 95 % "
-        "of the noise. Last: the pitch rate of every manoeuvre."
+        f"of the noise. Last: {CHANNELS[_small(found)].symbol} of every manoeuvre."
     )
 
 
@@ -59,6 +59,12 @@ def _size_in(found: Document, across: int) -> tuple[float, float]:
 def _small_across(across: int) -> int:
     """Return how many small pictures stand side by side; a phone has one channel across."""
     return _SMALL_ACROSS if across > 1 else _SMALL_ON_A_PHONE
+
+
+def _small(found: Document) -> str:
+    """Return the channel of the small pictures."""
+    there = {trace["channel"] for trace in found["traces"]}
+    return next(name for name in _SHOWN_SMALL if name in there)
 
 
 def worst(found: Document) -> int:
@@ -85,7 +91,7 @@ def _paint(drawing: Drawing, found: Document, across: int) -> None:
     drawing.set_layout_engine("none")
     number, traces = worst(found), found["traces"]
     large = [trace for trace in traces if trace["number"] == number]
-    small = [trace for trace in traces if trace["channel"] == _SHOWN_SMALL]
+    small = [trace for trace in traces if trace["channel"] == _small(found)]
     width = (float(drawing.get_figwidth()) - _RIGHT_IN) / across
     for k, trace in enumerate(large):
         row, column = divmod(k, across)
@@ -148,15 +154,16 @@ def _paint_small(
     *,
     worst: bool,
 ) -> Axes:
-    """Draw the pitch rate of one manoeuvre; return the axes whose scale all small pictures share."""
+    """Draw a rate of one manoeuvre; return the axes whose scale all small pictures share."""
     axes = _axes(drawing, place, shared)
-    t, measured, before, after = _arrays(trace, CHANNELS[_SHOWN_SMALL].factor)
+    quantity = CHANNELS[trace["channel"]]
+    t, measured, before, after = _arrays(trace, quantity.factor)
     axes.plot(t, measured, color=GREY, linewidth=1.2)
     axes.plot(t, before, color=ORANGE, linestyle=":", linewidth=0.9)
     axes.plot(t, after, color=BLUE, linestyle=(0, (4, 1.5)), linewidth=0.7)
     _bare(axes, f"{trace['number']}{' (above)' if worst else ''}")
     if shared is None:
-        axes.set_ylabel(CHANNELS[_SHOWN_SMALL].label)
+        axes.set_ylabel(quantity.label)
         axes.yaxis.set_label_coords(-_LABEL_IN / place[2], 0.5)
     return shared or axes
 

@@ -3,16 +3,12 @@
 from collections.abc import Iterator
 
 from advisor.report.facts.estimates import untold
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
+from advisor.report.page.blocks import Block, Paragraph, Section, listing
 from advisor.report.page.content import Content
-from advisor.report.page.gap import answer
-from advisor.report.page.gap_picture import caption, gap_picture
+from advisor.report.page.gap import glance
 from advisor.report.page.lateral import decided, derivatives
 from advisor.report.result_rows import joint_table
 from advisor.report.table import Table
-
-_GLANCE = 4
-"""Channels side by side, so that the picture has room on the first page of A4."""
 
 
 def headline(content: Content) -> Section:
@@ -24,29 +20,26 @@ def _blocks(content: Content) -> Iterator[Block]:
     verdict, maneuvers = content.analysis["flight_test"], content.analysis["maneuvers"]
     accepted = [m["number"] for m in maneuvers if m["verdict"] == "accepted"]
     yield _flown(content)
-    side = content.state.lateral
-    if side is not None and side.maneuvers and not maneuvers:
-        yield from decided(content.state, pitch=False)
-        if side.model is not None:
-            yield derivatives(side, side.model, content.aircraft.model, "lateral-glance")
+    state = content.state
+    sideways = not maneuvers and state.lateral is not None and bool(state.lateral.maneuvers)
+    yield from decided(state, pitch=not sideways)
+    if (side := state.lateral_alone) is not None and side.model is not None:
+        yield derivatives(side, side.model, content.aircraft.model, "lateral-glance")
+    if sideways:
         yield Paragraph(verdict["sentence"])
-        return
-    yield from decided(content.state)
     if maneuvers:
         yield Paragraph(
             f"{len(accepted)} of {len(maneuvers)} manoeuvres are accepted. The rule {verdict['rule']} "
             f"decides: {_criterion(verdict['criterion_percent'], verdict['limit_percent'])}."
         )
     yield from listing([f"Warning: {warning}" for warning in verdict["warnings"]])
-    joint = joint_table(content.state, content.aircraft.model)
-    if joint is not None and content.state.model is not None:
+    joint = joint_table(state, content.aircraft.model)
+    if joint is not None and state.model is not None:
         yield joint
-        yield from listing(untold(content.state.model))
+        yield from listing(untold(state.model))
     found = content.gap
     if found is not None and found["usable"]:
-        yield from answer(found)
-        glance = gap_picture("gap-glance", found, across=_GLANCE)
-        yield Gallery((Figure(glance, caption(found), narrow=gap_picture("gap-narrow", found, across=1)),))
+        yield from glance(found)
 
 
 def _flown(content: Content) -> Table:

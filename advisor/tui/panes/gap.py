@@ -22,6 +22,7 @@ from advisor.tui.plot.widget import Plot
 from advisor.words.quantities import channel
 
 _SHOWN = ("alpha", "q", "a_z", "theta")
+"""Channels of pitch, one a plot. Roll and yaw have as many plots, of their own channels."""
 _ROWS_FOR_ONE = 6
 _TEXT_SHARE = 0.45
 """Share of the pane's height that the text takes at most."""
@@ -103,14 +104,17 @@ findings.
         self._say(rows)
 
     def _draw(self, document: Document) -> None:
-        if document["gap"] is None:
+        """Draw the manoeuvre with the largest gap, where there are curves."""
+        found = document.get("lateral") or document
+        if found["gap"] is None or not found["traces"]:
             return
-        worst = max(document["gap"]["by_maneuver"], key=lambda one: one["before"])["number"]
+        worst = max(found["gap"]["by_maneuver"], key=lambda one: one["before"])["number"]
         self.subtitle(f"manoeuvre {worst}, the largest gap")
-        for name in _SHOWN:
-            mine = [t for t in document["traces"] if t["number"] == worst and t["channel"] == name]
-            if mine:
-                self.query_one(f"#gap-{name}", Plot).chart = _chart(name, mine[0])
+        of_pitch = found is document
+        mine = {t["channel"]: t for t in found["traces"] if t["number"] == worst}
+        shown = [name for name in _SHOWN if name in mine] if of_pitch else list(mine)
+        for place, name in zip(_SHOWN, shown, strict=False):
+            self.query_one(f"#gap-{place}", Plot).chart = _chart(name, mine[name])
 
     def _say(self, rows: Sequence[Labelled]) -> None:
         self.query_one("#gap-text", HangingLines).write_rows(rows)

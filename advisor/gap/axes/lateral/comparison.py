@@ -14,7 +14,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.axes.lateral.diagnosis import Kind, SideDiagnosis, diagnose_side
 from advisor.gap.axes.lateral.models import case_of
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.result import ComparedDerivative, Value
+from advisor.gap.result import ComparedDerivative, Trace, Value
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.words.certainty import as_sure
@@ -34,6 +34,8 @@ class SideGap:
     maneuvers: tuple[int, ...]
     diagnosis: SideDiagnosis | None
     """Probabilities of all explanations; None where no model fits."""
+    traces: tuple[Trace, ...] = ()
+    """Measured and simulated outputs, where they were asked for."""
 
 
 def compare_side(
@@ -83,9 +85,7 @@ def sentence_of_side(verdict: str | None, derivatives: Sequence[ComparedDerivati
             "and the like."
         )
     if verdict == "none":
-        return (
-            "The simulator's derivatives of roll and yaw are those of the flight, and no effect is missing."
-        )
+        return "The simulator's derivatives of roll and yaw are those of the flight; no effect is missing."
     wrong = [one.name for one in derivatives if one.differs]
     listed = f": {', '.join(wrong)}" if wrong else " together, though none alone"
     return f"The simulator's derivatives of roll and yaw are not those of the flight{listed}."

@@ -83,6 +83,8 @@ class SideDiagnosis(Weighed):
     waterfall: tuple[tuple[str, float], ...] = ()
     """Name of each effect of the model, and the gap that remains with it: the mean square over that of the
     whole model, minus 1."""
+    fits: tuple[Fit, ...] = ()
+    """Fit with the simulator's derivatives, then that of the chosen model."""
 
     @property
     def mean_gap(self) -> tuple[float, float] | None:
@@ -152,10 +154,10 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
     return SideDiagnosis(
         evidence=told.evidence, why=told.why, answer=told.answer, rival=told.rival, decisions=told.decisions,
         causes=tuple(_causes(case, found, as_given))[:MOST_CAUSES],
-        peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain),
+        peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain), cannot_see=unseen(case.flown),
         before=_gap(plain, np.asarray(np.bincount(plain.assembly.channel, as_given.residual**2), float)),
         after=_gap(plain, np.sum(unseen_by.held_out, axis=0)) if len(case.flown) > 1 else {},
-        cannot_see=unseen(case.flown), waterfall=_waterfall(found.chosen[1:]),
+        waterfall=_waterfall(found.chosen[1:]), fits=(as_given, found.chosen[-1].fit),
     )  # fmt: skip
 
 

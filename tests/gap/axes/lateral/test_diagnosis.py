@@ -237,4 +237,5 @@ def test_a_second_cause_is_as_probable_as_both_together(monkeypatch):
 
 def test_a_gap_that_no_other_manoeuvre_has_seen_is_stated_by_no_channel():
     alone = replace(FOUND, diagnosis=replace(DIAGNOSIS, before={"p": 3.0}, after={}))
-    assert side_gap_document(alone)["gap"] == {"before": None, "by_channel": {}, "by_channel_after": {}}
+    found = side_gap_document(alone)["gap"]
+    assert (found["before"], found["by_channel"], found["by_channel_after"]) == (None, {}, {})
