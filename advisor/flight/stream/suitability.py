@@ -131,10 +131,11 @@ def _missing(
     seen: Collection[str],
 ) -> list[Problem]:
     mends = vehicle.mends
-    found = [elevator] if isinstance(elevator, Problem) else []
-    idle = isinstance(elevator, Surface) and _is_without_pulse(elevator, channels, seen)
-    if isinstance(elevator, Surface) and idle:
-        found.append(_without_pulse(elevator, vehicle))
+    if isinstance(elevator, Problem):
+        found, idle = [elevator], False
+    else:
+        idle = _is_without_pulse(elevator, channels, seen)
+        found = [_without_pulse(elevator, vehicle)] if idle else []
     if vehicle.carrier != "telemetry":
         return [*found, *_not_logged(elevator, channels, vehicle, idle)]
     if "q" not in channels:
