@@ -139,6 +139,18 @@ class ReplayActions(_Actions):
         if playback is not None:
             self.seek(playback.position_s + seconds)
 
+    def go_to(self, at_s: float) -> None:
+        """Go to the begin of the manoeuvre of either axis at a time of this power-on, s; else to the time."""
+        state, playback = self.view.state, self.view.playback
+        if playback is None:
+            return
+        side = state.lateral.maneuvers if state.lateral is not None else ()
+        flown = [j.maneuver for j in (*state.maneuvers, *side)]
+        spans = [one.span for one in flown if one.power_on == (state.flight, state.boot)]
+        to_s = next((span.start_s for span in spans if span.start_s <= at_s <= span.end_s), at_s)
+        self.seek(playback.position_s + to_s - state.now_s)
+        self.say(f"going to {clock(to_s)}")
+
     def seek(self, position_s: float) -> None:
         """Go to a position of the replay, s. A position beyond an end is that end."""
         duration_s = self.view.playback.duration_s if self.view.playback is not None else 0.0

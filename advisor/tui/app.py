@@ -207,12 +207,8 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
         self.seek(event.position_s)
 
     def on_whole_flight_pane_sought(self, event: WholeFlightPane.Sought) -> None:
-        """Jump to the manoeuvre that is pointed at; on a link select it only."""
-        judged = next(
-            (j for j in self.view.state.maneuvers if event.at_s <= j.maneuver.span.end_s), self.view.last
-        )
-        if judged is not None and self.view.tempo is not None:
-            self._jump(judged.maneuver.number)
+        """Go to what is pointed at."""
+        self.go_to(event.at_s)
 
     def on_face_decided(self, event: Face.Decided) -> None:
         """Pass a decision to the campaign."""

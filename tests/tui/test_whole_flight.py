@@ -5,8 +5,11 @@ from dataclasses import replace
 import pytest
 
 from advisor.session.replay import LogPlayer
+from advisor.session.source import Playback
 from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
+from tests.campaign.side_builders import judged as side_judged
+from tests.campaign.side_builders import state as side_state
 from tests.tui import flights
 from tests.tui.stage import stage
 from tests.tui.stand_ins import columns
@@ -37,16 +40,31 @@ async def test_a_rejected_manoeuvre_and_a_power_on_before_are_told_apart() -> No
         assert here.words("#whole-maneuvers") == ""
 
 
-async def test_a_click_jumps_to_the_manoeuvre_there(monkeypatch: pytest.MonkeyPatch) -> None:
-    player = LogPlayer("a.tlog", lambda: [columns(range(5000), [k / 50.0 for k in range(5000)])])
-    async with stage(flights.state(4), settings=ENGINEER, size=(140, 45), source=player) as here:
+async def test_a_click_goes_to_the_manoeuvre_there_of_either_axis_or_else_to_the_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    player = LogPlayer("a.tlog", lambda: [columns(range(20000), [k / 50.0 for k in range(20000)])])
+    state = flights.state(4)
+    second = state.maneuvers[1].maneuver.span
+    turn = side_judged(1, "aileron")
+    span = replace(turn.maneuver.span, start_s=second.end_s + 2.0, end_s=second.end_s + 5.0)
+    side = side_state(replace(turn, maneuver=replace(turn.maneuver, span=span)))
+    state = replace(state, lateral=side)
+    async with stage(state, settings=ENGINEER, size=(140, 45), source=player) as here:
         await here.press("i")
-        await here.until(lambda: "modes" in here.words("#whole-modes"))
-        asked: list[int] = []
-        monkeypatch.setattr(here.app.conductor, "jump", asked.append)
-        plot = here.app.screen.query_one("#whole-q", Plot)
-        plot.post_message(Plot.Pointed(132.0))
-        await here.until(lambda: asked == [2])
+        await here.until(lambda: "2✗" in here.words("#whole-maneuvers"))
+        app = here.app
+        await here.until(lambda: app.view.playback is not None and app.view.playback.duration_s > 0)
+        asked: list[float] = []
+        monkeypatch.setattr(app, "seek", asked.append)
+        playback = Playback(300.0, 400.0)
+        app.view = replace(app.view, playback=playback)
+        plot = app.screen.query_one("#whole-q", Plot)
+        for at_s in (second.start_s + 1.0, span.start_s + 1.0, span.end_s + 1.0):
+            plot.post_message(Plot.Pointed(at_s))
+        await here.until(lambda: len(asked) == 3)
+    times = [second.start_s, span.start_s, span.end_s + 1.0]
+    assert asked == pytest.approx([300.0 + t - state.now_s for t in times])
 
 
 async def test_the_key_l_lays_one_channel_after_another_over_every_plot_and_then_none() -> None:

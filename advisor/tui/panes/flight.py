@@ -31,7 +31,7 @@ _LEAST_S = 10.0
 
 
 class WholeFlightPane(Pane):
-    """Every channel over the present power-on; a click jumps to the manoeuvre there."""
+    """Every channel over the present power-on; a click goes to the manoeuvre there."""
 
     TITLE = "i Flight"
     SHORT = "iFlt"
@@ -46,7 +46,8 @@ stretch, so that no step is lost.
 **l** lays the next channel over every plot, and after the last channel none. The lower edge names the
 channel, with the values at the foot and at the top of each plot.
 
-In a replay, a click jumps to the manoeuvre there. The upright line is the present moment.
+In a replay, a click goes to the manoeuvre there, of either axis, or to the time where there is none. The
+upright line is the present moment.
 """
 
     class Sought(Message):
