@@ -127,7 +127,8 @@ class Jsbsim:
         """Do nothing: JSBSim lives in this process."""
 
     def _trimmed(self, condition: Condition) -> SteadyState:
-        state = trim(self._flight, condition, self._trims.get(condition))
+        near = next(reversed(self._trims.values()), None)
+        state = trim(self._flight, condition, self._trims.get(condition), near)
         self._trims[condition] = state
         return state
 

@@ -25,6 +25,8 @@ _NEWTON_STEPS = 40
 _STEADY = 1e-6
 """Acceleration below which flight is steady, m/s² and rad/s²."""
 _THROTTLES = 12
+_NEARBY = 0.05
+"""Numerical: first change of the throttle, 0 to 1. The trim of a neighbouring condition lies within."""
 _BALANCED_M_S2 = 1e-3
 """Axial acceleration, m/s², that the throttle need not remove: the force along the path balances it."""
 _ENGINE_SECONDS = 30
@@ -40,13 +42,20 @@ class _Tried:
     excess: float
 
 
-def trim(flight: JsbsimFlight, condition: Condition, known: SteadyState | None = None) -> SteadyState:
+def trim(
+    flight: JsbsimFlight,
+    condition: Condition,
+    known: SteadyState | None = None,
+    near: SteadyState | None = None,
+) -> SteadyState:
     """Put the aircraft into steady flight, held still, and return its state.
 
     Parameters
     ----------
-    known : State
+    known
         Earlier trim of the condition, whose throttle is kept while the engines settle anew.
+    near
+        Trim of another condition, from which the search starts.
 
     Raises
     ------
@@ -54,7 +63,7 @@ def trim(flight: JsbsimFlight, condition: Condition, known: SteadyState | None =
         No angle of attack and no elevator carry the aircraft at the condition.
     """
     flight.begin(condition)
-    tried = [_steady(flight, condition, known or SteadyState())]
+    tried = [_steady(flight, condition, known or near or SteadyState())]
     while known is None and flight.engines and (setting := _next_throttle(tried)) is not None:
         tried.append(_steady(flight, condition, tried[-1].state._replace(throttle=setting)))
     best = tried[-1]
@@ -74,8 +83,11 @@ def _next_throttle(tried: list[_Tried]) -> float | None:
     slow = [(one.state.throttle, one.excess) for one in tried if one.excess < 0.0]
     fast = [(one.state.throttle, one.excess) for one in tried if one.excess >= 0.0]
     if not slow or not fast:
-        end = 1.0 if slow else 0.0
-        return None if last.state.throttle == end else end
+        end, now = 1.0 if slow else 0.0, last.state.throttle
+        if now == end:
+            return None
+        beside = now + _NEARBY if slow else now - _NEARBY
+        return min(max(beside, 0.0), 1.0) if len(tried) == 1 else end
     (low, lacking), (high, exceeding) = max(slow), min(fast)
     # Bisection helps a secant that creeps along one side.
     share = lacking / (lacking - exceeding) if len(tried) % 3 else 0.5

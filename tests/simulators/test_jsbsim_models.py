@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.simulators import jsbsim_trim
 from advisor.simulators.jsbsim import Jsbsim, make_jsbsim
 from advisor.simulators.jsbsim_model import find_model
 from advisor.simulators.protocol import Condition, Inputs
@@ -200,3 +201,25 @@ def test_a_replay_that_diverges_is_one_sentence_and_the_next_flies() -> None:
         c172p.replay(LEVEL, step(0.01), Damping(1e6))
     assert caught.value.problem.code == "simulator_diverges"
     assert c172p.replay(LEVEL, step(0.01)).q == pytest.approx(before.q, abs=1e-4)
+
+
+def test_a_trim_begins_at_that_of_the_condition_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An engine takes seconds of frozen flight at each throttle that is tried."""
+    throttles: list[float] = []
+    steady = jsbsim_trim._steady
+
+    def counted(flight, condition, guess):
+        throttles.append(guess.throttle)
+        return steady(flight, condition, guess)
+
+    monkeypatch.setattr(jsbsim_trim, "_steady", counted)
+    one, fresh = Jsbsim(find_model("c172p")), Jsbsim(find_model("c172p"))
+    first, second = Condition(53.0, 1800.0), Condition(53.2, 1801.0)
+    one._trimmed(first)
+    begun = len(throttles)
+    after = one._trimmed(second)
+    nearby, throttles[:] = throttles[begun:], []
+    alone = fresh._trimmed(second)
+    assert len(nearby) <= 4 < len(throttles)
+    assert (after.alpha, after.elevator) == pytest.approx((alone.alpha, alone.elevator), abs=1e-5)
+    assert abs(after.axial) < 1e-3 * one._flight.mass_slug / 0.3048  # of the force in lb
