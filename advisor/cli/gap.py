@@ -211,7 +211,9 @@ def command(
     found = compared.diagnosis
     proof = proof_of(proving, partial(_prove, asked, by_hand, aircraft, shares, compared))
     if proof is not None:
-        found = proof.stays_of(found, compared.aircraft.model)
+        from advisor.exports.models.pitch_proof import stays_of
+
+        found = stays_of(proof, found, compared.aircraft.model)
     side = cache(partial(_side_of, asked, aircraft))
     improved = write_improved(out, found.improves, lambda: FlownModel(compared.aircraft, None, side(), found))
     # The simulator's own servo is no part of the improvement.
@@ -295,7 +297,7 @@ def _prove(
 ) -> "Proof":
     """Fly the improved simulator on the manoeuvres of logs; without any, on the last third."""
     from advisor.analysis.gap import maneuvers_of
-    from advisor.exports.models.proof import prove
+    from advisor.exports.models.pitch_proof import prove
 
     tell("reading for the proof", 0.0)
     flown = maneuvers_of(asked.logs, aircraft, asked.target_system, by_hand)

@@ -38,7 +38,7 @@ from advisor.simulators.flying import (
     refuse_wrong_elevator,
     without_difference,
 )
-from advisor.simulators.improved import EQUATIONS, Flown, in_simulator, where_it_acts
+from advisor.simulators.improved import EQUATIONS, in_simulator, where_it_acts
 from advisor.simulators.inputs import other_controls
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.mirror import mirrored
@@ -48,6 +48,7 @@ from advisor.simulators.surrogate import Surrogate, surrogate_of
 from advisor.simulators.taken_back import with_unseen_shrink, without_worse
 from advisor.simulators.trims import trim_differences
 from advisor.simulators.unseen import (
+    Flown,
     UnseenManeuvers,
     changes_something,
     resaid,
@@ -164,7 +165,8 @@ def _measured(
     as_flown: Mapping[int, AsGiven],
 ) -> Diagnosis:
     """Return the diagnosis with the gap of the simulator itself, before and after the findings."""
-    diagnosis, gap = examined.diagnosis, flown.gap
+    diagnosis, gap = examined.diagnosis, flown.told
+    assert gap is not None
     if unseen is not None and flown.after is not None and not gap.on_paper:
         diagnosis = resaid(diagnosis, shrink_on(examined, unseen, flown.before, flown.after), as_file)
     elif unseen is not None:

@@ -7,7 +7,6 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.diagnose import Examined
-from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.result import InSimulator
@@ -18,6 +17,7 @@ from advisor.simulators.inputs import at_reference
 from advisor.simulators.qualification import qualified
 from advisor.simulators.surrogate import Surrogate
 from advisor.simulators.unseen import (
+    Flown,
     UnseenManeuvers,
     as_changed,
     changes_something,
@@ -40,28 +40,6 @@ class CarriedPart:
 
     point: SearchPoint
     on_paper: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Flown:
-    """The gap in the simulator, and the residuals behind it."""
-
-    gap: InSimulator
-    before: HeldOut
-    after: HeldOut | None
-    """Residuals with the effects in the simulator; None where nothing was added, or where it did not fly."""
-    gap_after: float
-    """Gap with the part of the correction that the simulator takes."""
-
-    @property
-    def gap_before(self) -> float:
-        """Gap of the simulator as given."""
-        return self.gap.before
-
-    @property
-    def on_paper(self) -> tuple[str, ...]:
-        """Corrections that the simulator cannot take."""
-        return self.gap.on_paper
 
 
 def in_simulator(
@@ -98,12 +76,12 @@ def in_simulator(
         flying.simulator.description, tuple(flights[i].number for i in kept), was, was, 0.0, (),
         qualified(original, before, None, kept),
     )  # fmt: skip
-    as_it_was = Flown(unchanged, before, None, was)
+    as_it_was = Flown(before, None, was, was, told=unchanged)
     if unseen is None or not changes_something(unseen.found.diagnosis):
         return as_it_was
     part = _carried(as_changed(unseen, whole), problem, surrogate, flying)
     unchanged = replace(unchanged, on_paper=part.on_paper)
-    as_it_was = replace(as_it_was, gap=unchanged)
+    as_it_was = replace(as_it_was, on_paper=part.on_paper, told=unchanged)
     if not part.point.effects and np.array_equal(part.point.derivatives, derivatives):
         return as_it_was
     try:
@@ -111,7 +89,7 @@ def in_simulator(
     except UnusableInputError as error:
         # The diagnosis stands, even if the simulator does not fly with the effects.
         refused = replace(unchanged, after=None, percent=None, refused=str(error.problem))
-        return replace(as_it_was, gap=refused)
+        return replace(as_it_was, told=refused)
     offset = unknown_offset(whole.diagnosis, unseen.found.diagnosis)
     after = predicted(now, part.point, floor, kept, offset)
     here = whole_gap(after.mean_square, floor)
@@ -125,7 +103,7 @@ def in_simulator(
         after_air_and_instruments=_without_air(whole, now, with_nuisances(part.point, unseen), kept, offset),
         qualification=qualified(original, before, after, kept),
     )
-    return Flown(found, before, after, here)
+    return Flown(before, after, was, here, part.on_paper, found)
 
 
 def where_it_acts(

@@ -3,38 +3,26 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Protocol, TypeVar
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.result import VISIBLE, spelled
 from advisor.simulators.contradicted import contradicted
-from advisor.simulators.unseen import UnseenManeuvers, by_the_file, floor_of, percent_of, resaid, shrink_on
-
-
-class _Gap(Protocol):
-    """The gap of the manoeuvres kept apart."""
-
-    @property
-    def gap_before(self) -> float:
-        """Gap of the simulator as given."""
-
-    @property
-    def gap_after(self) -> float:
-        """Gap with the corrections."""
-
-    @property
-    def on_paper(self) -> tuple[str, ...]:
-        """Corrections that the simulator cannot take, so that no flight of it contradicts them."""
-
-
-Measured = TypeVar("Measured", bound=_Gap)
+from advisor.simulators.unseen import (
+    Flown,
+    UnseenManeuvers,
+    by_the_file,
+    floor_of,
+    percent_of,
+    resaid,
+    shrink_on,
+)
 
 
 def without_worse(
-    whole: Examined, unseen: UnseenManeuvers, measure: Callable[[UnseenManeuvers], Measured]
-) -> tuple[Examined, Measured]:
+    whole: Examined, unseen: UnseenManeuvers, measure: Callable[[UnseenManeuvers], Flown]
+) -> tuple[Examined, Flown]:
     """Return the diagnosis without effects that raise the gap visibly, and the measurement without them.
 
     The sets are those of the search: its numbers, then one effect more at a time. First the set with the

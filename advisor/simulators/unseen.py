@@ -18,7 +18,7 @@ from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import shrink_interval, whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.refit import own_refitted
-from advisor.gap.result import Diagnosis, Shrink
+from advisor.gap.result import Diagnosis, InSimulator, Shrink
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.verdict.causes import parameters_of
 from advisor.gap.verdict.holdout_numbers import over_maneuvers, with_offset
@@ -161,19 +161,22 @@ def unknown_offset(whole: Diagnosis, model: Diagnosis | None) -> float:
 
 
 @dataclass(frozen=True)
-class ByTheFile:
-    """Residuals of an aircraft file's model in the manoeuvres kept apart."""
+class Flown:
+    """Residuals of a simulator in the manoeuvres kept apart, before and after corrections."""
 
     before: HeldOut
-    after: HeldOut
-    """Residuals with the corrections of the other manoeuvres."""
+    after: HeldOut | None
+    """None where nothing was corrected, or where the simulator did not fly."""
     gap_before: float
     gap_after: float
+    """Gap with the part of the correction that the simulator takes."""
     on_paper: tuple[str, ...] = ()
-    """Corrections that the file cannot take: none."""
+    """Corrections that the simulator cannot take, so that no flight of it contradicts them."""
+    told: InSimulator | None = None
+    """The gap for people; None for the model of an aircraft file."""
 
 
-def by_the_file(whole: Examined, unseen: UnseenManeuvers) -> ByTheFile:
+def by_the_file(whole: Examined, unseen: UnseenManeuvers) -> Flown:
     """Return the residuals of the aircraft file's model before and after what the other manoeuvres found."""
     diagnosis, problem, floor = whole.diagnosis, whole.findings.problem, floor_of(whole)
     assert problem.prior_derivatives is not None
@@ -183,13 +186,15 @@ def by_the_file(whole: Examined, unseen: UnseenManeuvers) -> ByTheFile:
         offset = unknown_offset(diagnosis, unseen.found.diagnosis)
         after = predicted(problem, as_changed(unseen, whole), floor, unseen.kept, offset)
     was, now = (whole_gap(held.mean_square, floor) for held in (before, after))
-    return ByTheFile(before, after, was, now)
+    return Flown(before, after, was, now)
 
 
-def shrink_on(whole: Examined, unseen: UnseenManeuvers, before: HeldOut, after: HeldOut) -> Shrink | None:
+def shrink_on(
+    whole: Examined, unseen: UnseenManeuvers, before: HeldOut, after: HeldOut | None
+) -> Shrink | None:
     """Return the shrink from ``before`` to ``after`` on the manoeuvres kept apart."""
     shrink = whole.diagnosis.shrink
-    if shrink is None:
+    if shrink is None or after is None:
         return None
     floor, kept = floor_of(whole), list(unseen.kept)
     was, now = (whole_gap(held.mean_square, floor) for held in (before, after))

@@ -116,9 +116,9 @@ class PitchFlight:
         yield from ((quick.cost, lead.name, quick.name) for lead in leads for quick in self._looks(lead))
 
     def _looks(self, lead: PitchModel) -> list[Screened]:
-        """Return a quick look at each effect next to that of a model, which is taken once."""
+        """Return a look at each effect next to that of a model, one linear step far, which is taken once."""
         if id(lead.fitted) not in self.looked:
-            screen = Screen(lead.problem, lead.fitted)
+            screen = Screen(lead.problem, lead.fitted, steps=1)
             self.looked[id(lead.fitted)] = screen.quick_fits(self._beside(lead))
         return self.looked[id(lead.fitted)]
 

@@ -8,8 +8,9 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import GapFlights
-from advisor.exports.models import proof
-from advisor.exports.models.proved_finding import as_it_ended
+from advisor.exports.models import pitch_proof as proof
+from advisor.exports.models.pitch_proof import as_it_ended, stays_of
+from advisor.exports.models.proof import lines_of
 from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
@@ -83,7 +84,7 @@ def test_without_an_improvement_there_is_nothing_to_fly(monkeypatch):
 
 
 def test_people_read_the_gap_before_and_after_and_the_second_answer(asked):
-    lines = list(proof.lines_of(proof.prove(flights(1, 2, 3, 4, 5, 6), None, FILE)))
+    lines = list(lines_of(proof.prove(flights(1, 2, 3, 4, 5, 6), None, FILE)))
     assert lines[0] == "Proof on manoeuvres 5, 6, which no fit has used: gap 6.00 → 0.10"
     assert lines[-1] == "  asked again, the improved simulator lacks: nothing above the noise"
 
@@ -122,7 +123,7 @@ def test_a_part_with_which_the_gap_grows_is_taken_back_and_named(worse):
     made = proof.prove(flights(1, 2, 3, 4, 5, 6), None, FILE)
     assert (made.before, made.after, made.gap_with_them) == (2.0, 0.5, 2.6)
     assert made.taken_back == ("the fitted numbers",)
-    stays = made.stays_of(answer(2.0, "effect", (1, 2)), FILE.model)
+    stays = stays_of(made, answer(2.0, "effect", (1, 2)), FILE.model)
     assert stays.model["M_alpha"].value == FILE.model["M_alpha"]
     assert stays.effects
     assert stays.sentence.endswith(
@@ -139,7 +140,7 @@ def test_nothing_stays_where_each_part_makes_the_gap_worse(monkeypatch):
     monkeypatch.setattr(proof, "compare_flown", compared)
     made = proof.prove(flights(1, 2, 3, 4, 5, 6), None, FILE)
     assert (made.before, made.after, made.gap_with_them) == (2.0, 2.0, 3.0)
-    assert not made.stays_of(answer(2.0, "effect", (1, 2)), FILE.model).improves
+    assert not stays_of(made, answer(2.0, "effect", (1, 2)), FILE.model).improves
 
 
 def test_few_manoeuvres_without_an_answer_fly_the_answer_of_all_with_their_own_sizes(monkeypatch):
@@ -162,7 +163,7 @@ def test_few_manoeuvres_without_an_answer_fly_the_answer_of_all_with_their_own_s
     assert sized == [("findings of all", [5, 6])]
     assert (made.before, made.after) == (6.0, 0.1)
     assert "  The correction is that of all manoeuvres; its sizes are fitted without those of the proof." in (
-        proof.lines_of(made)
+        lines_of(made)
     )
 
 

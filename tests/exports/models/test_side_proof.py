@@ -9,10 +9,9 @@ import pytest
 from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.analysis.side_gap import SideCompared
-from advisor.exports.models import roll_and_yaw
-from advisor.exports.models.proof import Proof
-from advisor.exports.models.proved_finding import NUMBERS
-from advisor.exports.models.roll_and_yaw import _ahead, prove_side, stays_of_side
+from advisor.exports.models import side_proof
+from advisor.exports.models.proof import NUMBERS, Proof
+from advisor.exports.models.side_proof import _ahead, prove_side, stays_of_side
 from advisor.gap.axes.lateral.comparison import SideGap
 from tests.gap.axes.lateral.test_comparison import AIRCRAFT, TRUE, maneuvers
 from tests.gap.axes.lateral.test_diagnosis import FOUND
@@ -57,13 +56,11 @@ def test_numbers_with_which_the_gap_grows_on_the_proof_are_taken_back(monkeypatc
     model = SimpleNamespace(theta=np.ones(15), fits=({},), airspeed_m_s=None)
     plain = SideGap("parameters", "", (), {}, {}, (1, 2), None)
     asked = []
-    monkeypatch.setattr(roll_and_yaw, "estimate_lateral", lambda *_: model)
-    monkeypatch.setattr(roll_and_yaw, "compare_side", lambda _, one, __: asked.append(one) or plain)
+    monkeypatch.setattr(side_proof, "estimate_lateral", lambda *_: model)
+    monkeypatch.setattr(side_proof, "compare_side", lambda _, one, __: asked.append(one) or plain)
     improved = replace(AIRCRAFT, model=dict.fromkeys(SIDE_PARAMETERS, 1.0), simulator="linear")
-    monkeypatch.setattr(roll_and_yaw, "with_derivatives", lambda *_: improved)
-    monkeypatch.setattr(
-        roll_and_yaw, "_gap", lambda _, __, ___, theta: after if np.all(theta == 1.0) else 2.0
-    )
+    monkeypatch.setattr(side_proof, "with_derivatives", lambda *_: improved)
+    monkeypatch.setattr(side_proof, "_gap", lambda _, __, ___, theta: after if np.all(theta == 1.0) else 2.0)
     flown = [SimpleNamespace(number=n) for n in range(1, 7)]
     aircraft = replace(AIRCRAFT, model=dict.fromkeys(SIDE_PARAMETERS, 7.0))
     made = prove_side(SideCompared(None, None, aircraft, flown))  # type: ignore[arg-type]

@@ -1,0 +1,181 @@
+"""``advisor gap --prove`` in pitch: the improved simulator on manoeuvres that no fit has used."""
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft_file.read import parse_aircraft
+from advisor.analysis.gap import GapFlights, compare_flown, named_simulator
+from advisor.exports.models.flown import FlownModel, file_of, improved_model
+from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
+from advisor.exports.models.proof import NUMBERS, ImprovedAxis, Kept, Proof, parted, proved, refuse_unimproved
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import changes_in, lasting, less_of_the_servo, together
+from advisor.gap.diagnose import Examined
+from advisor.gap.inference.prior import FIELD, FieldPrior
+from advisor.gap.records.as_stamped import as_stamped
+from advisor.gap.records.prepare import prepare
+from advisor.gap.result import Diagnosis, spelled
+from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
+from advisor.simulators.compare import Compared
+from advisor.simulators.contradicted import contradicted
+from advisor.simulators.flying import Progress
+from advisor.simulators.unseen import percent_of, sized_without
+
+
+def prove(
+    flown: GapFlights,
+    fresh: GapFlights | None,
+    aircraft: Aircraft,
+    target_system: int | None = None,
+    progress: Progress = lambda *_: None,
+    prior: FieldPrior = FIELD,
+    whole: Compared | None = None,
+) -> Proof:
+    """Improve the simulator by some manoeuvres, and fly others.
+
+    Where these manoeuvres alone name no correction, that of the whole flight is flown, with sizes fitted to
+    these manoeuvres alone.
+
+    Parameters
+    ----------
+    flown
+        Manoeuvres of the diagnosis.
+    fresh
+        Manoeuvres of other logs; None keeps the last third of ``flown`` apart.
+    whole
+        Comparison of ``flown``.
+
+    Raises
+    ------
+    UnusableInputError
+        There are too few manoeuvres, nothing was improved, or the simulator does not fly.
+    """
+    fitted, kept = flown, fresh
+    if kept is None:
+        some, last = parted(flown.maneuvers)
+        fitted, kept = replace(flown, maneuvers=list(some)), replace(flown, maneuvers=list(last))
+
+    def compared(some: GapFlights, simulator: Aircraft, k: int) -> Compared:
+        """Return one of the three comparisons."""
+        opened = named_simulator(simulator, target_system)
+        try:
+            return compare_flown(
+                some, simulator, opened, None, lambda what, x: progress(what, (k + x) / 3.0), prior
+            )
+        finally:
+            if opened is not None:
+                opened.close()
+
+    first = compared(fitted, aircraft, 0)
+    found, alone = first.diagnosis, ""
+    if fresh is None and not found.improves and whole is not None and whole.findings is not None:
+        alone = found.sentence
+        examined = Examined(whole.diagnosis, whole.findings)
+        found = sized_without(examined, [m.number for m in kept.maneuvers]).diagnosis
+    refuse_unimproved(found.improves, alone or found.sentence, len(fitted.maneuvers))
+    if fresh is None:
+        found = as_it_ended(found, fitted.maneuvers, first.aircraft)
+    parts = (*found.effects, NUMBERS)
+
+    def flown_without(gone: tuple[str, ...]) -> Kept:
+        stays = found
+        left: tuple[str, ...] = ()
+        for part in gone:
+            stays = without(stays, part, first.aircraft.model)
+        with tempfile.TemporaryDirectory() as folder:
+            better = aircraft
+            if gone != parts:
+                better, left = _improved(stays, first.aircraft, aircraft, Path(folder))
+            told = compared(kept, better, 1 if better is aircraft else 2).diagnosis
+        gaps = {number: gap for number, gap, _ in told.gap.by_maneuver}
+        return Kept(told.gap.before, gaps, told.gap.floor, lambda: (told.verdict, told.sentence), left)
+
+    fewer = [(part,) for part in parts if len(parts) > 1]
+    return proved(
+        ImprovedAxis(" + ".join(named(found)) or str(found.verdict), parts, fewer, flown_without, alone)
+    )
+
+
+def stays_of(proof: Proof, found: Diagnosis, given: Mapping[str, float]) -> Diagnosis:
+    """Return a diagnosis without the parts that were taken back, which its sentence names.
+
+    Parameters
+    ----------
+    given
+        Derivatives of the simulator as given.
+    """
+    said = proof.taken_back_said
+    if not said:
+        return found
+    lead = next(iter(named(found)), NUMBERS)
+    for part in proof.taken_back:
+        found = without(found, part, given)
+    if lead in proof.taken_back:
+        found = contradicted(found, 0.01 * percent_of(proof.before, proof.after))
+        found = replace(found, sentence=" ".join([*found.static, found.sentence, *found.taken_back]))
+    return replace(found, taken_back=(*found.taken_back, said), sentence=f"{found.sentence} {said}")
+
+
+def as_it_ended(found: Diagnosis, maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Diagnosis:
+    """Return a finding with its changes in flight as other numbers: those of the last manoeuvre of its fit.
+
+    Later manoeuvres of the flight begin with the changed aircraft.
+    """
+    if lasting(found.effects) == found.effects:
+        return found
+    flights = prepare([as_stamped(m) for m in maneuvers if m.number in found.maneuvers], aircraft)
+    p = np.zeros((len(flights), len(ENTRIES)))
+    p[:, : len(DERIVATIVES)] = [found.model[name].value for name in DERIVATIVES]
+    effects = dict(found.effects)
+    for change, values in changes_in(effects, variants_for(flights)):
+        change.apply(p, values, flights)
+        del effects[change.effect]
+    ended = {name: replace(found.model[name], value=float(p[-1, INDEX[name]])) for name in DERIVATIVES}
+    return replace(found, model={**found.model, **ended}, effects=effects)
+
+
+def without(found: Diagnosis, part: str, given: Mapping[str, float]) -> Diagnosis:
+    """Return a finding without one of its effects, or with the numbers of the simulator as given."""
+    if part == NUMBERS:
+        own = {name: replace(one, value=given.get(name, one.value)) for name, one in found.model.items()}
+        return replace(found, model=own, derivatives=())
+    return replace(
+        found,
+        effects={effect: sizes for effect, sizes in found.effects.items() if effect != part},
+        causes=tuple(replace(c, present=c.present and c.effect != part) for c in found.causes),
+    )
+
+
+def named(found: Diagnosis) -> list[str]:
+    """Return the names of the effects of an answer."""
+    return [cause.effect for cause in found.causes if cause.present]
+
+
+def _improved(
+    found: Diagnosis, against: Aircraft, aircraft: Aircraft, folder: Path
+) -> tuple[Aircraft, tuple[str, ...]]:
+    """Return the aircraft file with the improved simulator, and the parts that the simulator cannot take."""
+    kind, _, _ = (aircraft.simulator or "linear").partition(":")
+    if kind == "linear":
+        better = parse_aircraft(file_of(FlownModel(against, None, None, found)))
+        return replace(better, simulator=aircraft.simulator), ()
+    flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, found.effects))
+    if kind != "jsbsim":
+        numbers = [one.name for one in found.derivatives if one.differs]
+        return replace(flown, effects=effects), tuple(numbers)
+    given = replace(against, simulator=aircraft.simulator, elevator=aircraft.elevator)
+    name = Path(str(aircraft.simulator).partition(":")[2]).stem
+    file = folder / name / f"{name}.xml"
+    file.parent.mkdir()
+    made = JSBSIM.made(improved_model(found, given, None), file)
+    file.write_text(made.text, encoding="utf-8")
+    around = {effect: sizes for effect, sizes in effects.items() if spelled(effect) in made.left_out}
+    own = replace(aircraft.elevator, lag_s=0.0, delay_s=0.0)
+    better = replace(aircraft, simulator=f"jsbsim:{file}", effects=around, elevator=own)
+    return better, tuple(x for x in made.left_out if x not in map(spelled, around))
