@@ -174,7 +174,7 @@ class Examiner:
         """Return the aircraft and its noise: from the file's model, else from the flown manoeuvres, else
         typical ones."""
         flown = estimate_jointly(self._maneuvers, self._aircraft) if self._maneuvers else None
-        if not isinstance(flown, Estimate) or not _believable(flown):
+        if not isinstance(flown, Estimate) or not is_believable(flown):
             flown = None
         noise, colour = dict(NOISE), np.ones(len(PARAMETERS))
         if flown is not None:
@@ -273,7 +273,7 @@ class Examiner:
         return []
 
 
-def _believable(flown: Estimate) -> bool:
+def is_believable(flown: Estimate) -> bool:
     """Return whether an estimate may represent the aircraft: it explains the motion, and its pace and
     effectiveness are significant."""
     low, high = _PLAUSIBLE_RAD_S

@@ -169,8 +169,7 @@ def _has_known_direction(n: int, wiring: Wiring) -> bool:
 
 def _formed(parts: Sequence[Part], why: str, kinds: Sequence[str]) -> str:
     """Return a sentence on the outputs that make the elevator."""
-    shares = [part.share for part in parts]
-    if max(shares) - min(shares) < 1e-9:
+    if len({part.share for part in parts}) == 1:
         made = f"the mean of outputs {joined_numbers(_numbers(parts))}"
     else:
         made = listed([f"{100.0 * part.share:.0f} % of output {part.output}" for part in parts])

@@ -45,14 +45,13 @@ def decided(
         Function that returns the rows of the first stage with what the axis knows beyond the models.
     """
     lead = _lead(flight, stage)
-    second = None if lead is None else stage_of(flight, lead, _SECOND)
-    posteriors = [posterior_of(beyond(rows_of(flight, stage, prior, lead, second)))]
+    pair = None if lead is None else (lead, stage_of(flight, lead, _SECOND))
+    posteriors = [posterior_of(beyond(rows_of(flight, stage, prior, pair)))]
     answer, chosen = posteriors[0].answer, [stage.plain]
     if any(one.alternative == answer for one in stage.effects):
         first = posteriors[0].explanation_of(answer)
         chosen.append(first)
-        if second is None or first is not lead:
-            second = stage_of(flight, first, _SECOND)
+        second = pair[1] if pair is not None and first is lead else stage_of(flight, first, _SECOND)
         posteriors.append(posterior_of(rows_of(flight, second, prior)))
         also = posteriors[-1].answer
         if any(one.alternative == also for one in second.effects):

@@ -67,8 +67,7 @@ def rows_of(
     flight: Flight[E],
     stage: Stage[E],
     prior: FieldPrior,
-    lead: E | None = None,
-    second: Stage[E] | None = None,
+    second: tuple[E, Stage[E]] | None = None,
 ) -> list[Row[E]]:
     """Return the rows of one stage.
 
@@ -76,12 +75,12 @@ def rows_of(
     ----------
     prior
         How often each kind of answer is right before a flight is looked at.
-    lead, second
+    second
         An effect and the stage after it: with a second cause, the first one leaves another residual.
     """
     ways = [*_ways(flight, stage, prior)]
-    if lead is not None and second is not None:
-        ways += _pairs(ways, stage.plain, lead, second, flight.tried, prior)
+    if second is not None:
+        ways += _pairs(ways, stage.plain, *second, flight.tried, prior)
     moving = flight.in_moving_air(stage)
     if moving is not None:
         # Moving air is as likely before the flight as any one effect.
