@@ -52,10 +52,7 @@ class GapFlights:
 
 
 def maneuvers_of(
-    logs: Sequence[Path],
-    aircraft: Aircraft,
-    target_system: int | None = None,
-    by_hand: Sequence[ByHand] = (),
+    logs: Sequence[Path], aircraft: Aircraft, target_system: int | None = None, by_hand: Sequence[ByHand] = ()
 ) -> GapFlights:
     """Read the manoeuvres of all logs, with the decisions by hand on each log.
 
@@ -142,10 +139,7 @@ def _on_one_clock(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
 
 
 def diagnose_logs(
-    logs: Sequence[Path],
-    aircraft: Aircraft,
-    holdout: int | None = None,
-    by_hand: Sequence[ByHand] = (),
+    logs: Sequence[Path], aircraft: Aircraft, holdout: int | None = None, by_hand: Sequence[ByHand] = ()
 ) -> Diagnosis:
     """Read logs and diagnose their gap to the aircraft file's model."""
     return compare_logs(logs, aircraft, None, holdout, by_hand=by_hand).diagnosis

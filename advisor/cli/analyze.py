@@ -42,11 +42,7 @@ if TYPE_CHECKING:
 )
 @json_option
 def command(
-    asked: LogsAsked,
-    every_movement: bool,
-    axis: "Axis",
-    exports: tuple[str, ...],
-    as_json: bool,
+    asked: LogsAsked, every_movement: bool, axis: "Axis", exports: tuple[str, ...], as_json: bool
 ) -> int:
     """Print every manoeuvre's verdict, the estimates, and stop or continue.
 
@@ -145,11 +141,7 @@ _COLUMNS = 80
 
 
 def print_untested(
-    state: "CampaignState",
-    series: "LogSeries",
-    aircraft: "Aircraft",
-    target_system: int | None,
-    axis: "Axis",
+    state: "CampaignState", series: "LogSeries", aircraft: "Aircraft", target_system: int | None, axis: "Axis"
 ) -> None:
     """Print the next input of each axis with its drawing, then the examination of each log."""
     from advisor.doctor.text import ExaminationText

@@ -47,12 +47,7 @@ MEANING = {
     help="Rule that decides; the others are shown. continuous and separate are the paper's.",
 )
 def command(
-    flown: str,
-    speed: float | None,
-    seed: int,
-    record_to: Path | None,
-    aircraft_file: Path | None,
-    rule: Rule,
+    flown: str, speed: float | None, seed: int, record_to: Path | None, aircraft_file: Path | None, rule: Rule
 ) -> None:
     """Fly the bundled aircraft through the paper's seven manoeuvres, over a real MAVLink link on loopback.
 

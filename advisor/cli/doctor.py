@@ -34,13 +34,7 @@ if TYPE_CHECKING:
 )
 @log_options(logs=False)
 @json_option
-def command(
-    asked: LogsAsked,
-    target: str,
-    seconds: float,
-    request_rates: bool,
-    as_json: bool,
-) -> int:
+def command(asked: LogsAsked, target: str, seconds: float, request_rates: bool, as_json: bool) -> int:
     """Check whether the telemetry is good enough to identify the aircraft, and say what to change.
 
     The command reads a log, or listens to a live link. Nothing is sent to the vehicle without

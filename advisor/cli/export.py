@@ -34,17 +34,9 @@ from advisor.words.problems import ConfigurationError
     "Default: csv.",
 )
 @click.option(
-    "--cut",
-    type=click.IntRange(1),
-    metavar="N",
-    help="Write only the packets of manoeuvre N, as a tlog.",
+    "--cut", type=click.IntRange(1), metavar="N", help="Write only the packets of manoeuvre N, as a tlog."
 )
-def command(
-    asked: LogsAsked,
-    out: Path,
-    formats: str | None,
-    cut: int | None,
-) -> int:
+def command(asked: LogsAsked, out: Path, formats: str | None, cut: int | None) -> int:
     """Write channels, manoeuvres, estimates and residuals for other tools, with names and units.
 
     The numbers are those of `advisor analyze`. The page of exports lists files, units and grid.

@@ -28,12 +28,7 @@ if TYPE_CHECKING:
     metavar="CONN",
     help="Connection, as in pymavlink: udpin:0.0.0.0:14550, tcp:host:port, /dev/ttyUSB0,57600.",
 )
-@click.option(
-    "--record",
-    "record_to",
-    metavar="FILE|DIR",
-    help="File or folder for the recording.",
-)
+@click.option("--record", "record_to", metavar="FILE|DIR", help="File or folder for the recording.")
 @click.option("--no-record", is_flag=True, help="Keep no recording of the link.")
 @click.option(
     "--resume",

@@ -27,11 +27,7 @@ def _speed(ctx: click.Context, parameter: click.Parameter, text: str) -> float:
 @click.option(
     "--speed", default="1", show_default=True, callback=_speed, metavar="N|max", help="Multiple of real time."
 )
-def command(
-    asked: LogsAsked,
-    speed: float,
-    show: Show | None = None,
-) -> None:
+def command(asked: LogsAsked, speed: float, show: Show | None = None) -> None:
     """Play logs on the screens of a live flight: pause, step, speed, jump to a manoeuvre.
 
     Several logs are one campaign of several flights, played one after the other. Without a terminal, or with

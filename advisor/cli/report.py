@@ -25,12 +25,7 @@ _NEEDED = ("jinja2", "matplotlib")
     help="Format of the page. Default: md where the file ends in .md, else html.",
 )
 @click.option("--gap", "with_gap", is_flag=True, help="Diagnose the sim-to-real gap as well.")
-def command(
-    asked: LogsAsked,
-    out: Path,
-    form: str | None,
-    with_gap: bool,
-) -> int:
+def command(asked: LogsAsked, out: Path, form: str | None, with_gap: bool) -> int:
     """Write one self-contained page about a flight: verdicts, fits, estimates, flying qualities, telemetry.
 
     The page needs no network and no script, and prints on A4. Several logs are one campaign.

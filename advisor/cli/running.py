@@ -24,9 +24,7 @@ _TELL_EVERY_S = 10.0
 def running_options(command: F) -> F:
     """Add the options ``--workers N`` and ``--scheduler ADDRESS``, which the command receives by name."""
     workers = click.option(
-        "--workers",
-        type=click.IntRange(1),
-        help="Number of processes. Default: one for each core.",
+        "--workers", type=click.IntRange(1), help="Number of processes. Default: one for each core."
     )
     scheduler = click.option(
         "--scheduler", metavar="ADDRESS", help="Work on the Dask cluster at tcp://host:8786."

@@ -47,14 +47,7 @@ from advisor.simulators.static_errors import with_static_errors
 from advisor.simulators.surrogate import Surrogate, surrogate_of
 from advisor.simulators.taken_back import with_unseen_shrink, without_worse
 from advisor.simulators.trims import trim_differences
-from advisor.simulators.unseen import (
-    Flown,
-    UnseenManeuvers,
-    changes_something,
-    resaid,
-    shrink_on,
-    unseen_of,
-)
+from advisor.simulators.unseen import Flown, UnseenManeuvers, changes_something, resaid, shrink_on, unseen_of
 
 _FLIES, _DIAGNOSED, _FOUND = 0.2, 0.9, 0.95
 """Shares of the work that are done after the first replays, after the diagnosis, and after the replays with
@@ -150,10 +143,7 @@ def compare(
         mirror = mirrored(examined, maneuvers, flying, replays, aircraft, as_flown)
         found = found if mirror is None else mirror.said(found)
     found = with_static_errors(found, examined, trims)
-    notes = (
-        *getattr(simulator, "notes", ()),
-        *still_air_said(simulator, blown),
-    )
+    notes = (*getattr(simulator, "notes", ()), *still_air_said(simulator, blown))
     return Compared(replace(found, notes=(*notes, *found.notes)), as_file, stays.findings)
 
 

@@ -185,11 +185,7 @@ def with_series(problem: EffectProblem, grids: Sequence[FloatArray], sign: float
 
 
 def _without_air(
-    whole: Examined,
-    problem: EffectProblem,
-    point: SearchPoint,
-    kept: Sequence[int],
-    offset_rad: float,
+    whole: Examined, problem: EffectProblem, point: SearchPoint, kept: Sequence[int], offset_rad: float
 ) -> float:
     """Return the gap without what the air and the instruments' natural errors explain in the same samples."""
     floor = floor_of(whole)

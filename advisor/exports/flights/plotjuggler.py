@@ -6,14 +6,7 @@ from xml.etree import ElementTree as Xml
 from advisor.exports.flights.table import Dataset, Recording
 
 LAYOUT = "plotjuggler.xml"
-_PLOTS = (
-    ("elevator",),
-    ("alpha", "theta"),
-    ("q",),
-    ("a_z",),
-    ("airspeed",),
-    ("height",),
-)
+_PLOTS = (("elevator",), ("alpha", "theta"), ("q",), ("a_z",), ("airspeed",), ("height",))
 _COMMA = {"time_axis": "t_boot_s", "delimiter": "0"}
 _LOADERS = {
     "csv": ("DataLoad CSV", {"default": _COMMA, "parameters": _COMMA}),
