@@ -141,8 +141,5 @@ def _staircase(message: str, vehicle: Vehicle) -> str:
 
 
 def _ratio(now: ExpectedErrors, mended: ExpectedErrors) -> dict[str, float]:
-    return {
-        name: float(std / mended.std[name])
-        for name, std in now.std.items()
-        if np.isfinite(std) and mended.std[name] > 0.0
-    }
+    ratios = {name: std / mended.std[name] for name, std in now.std.items()}
+    return {name: ratio for name, ratio in ratios.items() if np.isfinite(ratio)}

@@ -17,15 +17,16 @@ MODEL = ShortPeriod.from_mapping(
 """ω_n² = Z_α·M_q - M_α = (4π)², so that the natural period is 0.5 s."""
 
 
+ASSUMED = Assumed(MODEL, NOISE, "a made-up aircraft")
+
+
 def limits(**hz: float) -> list[tuple[str, bool]]:
     """Return text and weight of each defect at these rates, 50 Hz elsewhere."""
     paced = {
         name: Paced(name, "ATTITUDE", hz.get(name, 50.0), hz.get(name, 50.0))
         for name in ("elevator", "q", "alpha")
     }
-    found = rate_limits(
-        paced, Assumed(MODEL, NOISE, "a made-up aircraft"), Vehicle(1, 1, "ardupilot", 1), 25.0
-    )
+    found = rate_limits(paced, ASSUMED, Vehicle(1, 1, "ardupilot", 1), 25.0)
     return [(limit.text, limit.stops) for limit in found]
 
 
