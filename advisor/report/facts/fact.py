@@ -14,7 +14,7 @@ class Fact:
     name: str
     """Symbol or name for people: ``M_α``, ``Dutch roll ζ``."""
     source: str
-    """What the number is estimated from, as a heading: ``Joint estimate from manoeuvres 1, 2``. Two facts of
+    """Origin of the number, as a heading: ``Joint estimate from manoeuvres 1, 2``. Two facts of
     one name and one source are one number."""
     value: float = nan
     """NaN where the flight does not tell the number."""
