@@ -103,6 +103,8 @@ def side_gap_document(found: SideGap) -> dict[str, Any]:
         "shrink": mean and {"holdout": list(found.maneuvers), **size, "percent": gap and gap.shrink_percent},
         **_diagnosis_document(found.diagnosis),
     })  # fmt: skip
+    if found.verdict is None:  # nothing was weighed against a simulator
+        document["how_sure"] = ""
     return document | {"traces": traces_document(found.traces)}
 
 

@@ -59,6 +59,26 @@ async def test_the_fit_has_the_control_that_moved_and_the_outputs_of_the_axis():
         assert "δr [deg]" in here.page()
 
 
+async def test_the_parameters_are_those_of_the_axis_and_a_pane_of_the_elevator_alone_says_so():
+    async with stage(
+        both_axes(judged(1, "aileron"), judged(2, "rudder")),
+        size=(180, 80),
+        settings=Settings(screen="engineer"),
+    ) as here:
+        table = here.app.screen.query_one("ParametersPane DataTable")
+        await here.until(lambda: table.row_count == 8)
+        await here.press("r", "h")
+        await here.until(lambda: table.row_count == 15)
+        rows = {str(table.get_row_at(k)[0]): str(table.get_row_at(k)[1]).strip() for k in range(15)}
+        assert rows["L_p 1/s"] == "−2.100 ± 0.082"
+        assert here.app.screen.query_one("ParametersPane Plot").chart.y_label == "L_p [1/s]"
+        titles = [str(here.app.screen.query_one(name).border_title) for name in ("Courses", "ParametersPane")]
+        assert titles == ["h History (elevator)", "3 Parameters"]
+        await here.press("r")
+        await here.until(lambda: table.row_count == 8)
+        assert here.app.screen.query_one("Courses").border_title == "h History"
+
+
 async def test_an_exclusion_by_hand_concerns_the_axis_that_is_shown(monkeypatch):
     async with stage(
         both_axes(judged(1, "aileron")), size=(120, 40), settings=Settings(screen="engineer")

@@ -80,3 +80,21 @@ async def test_the_key_l_lays_one_channel_after_another_over_every_plot_and_then
     assert all(layer is not None for _, layer in said[:4])
     assert said[4] == ("l: lay a channel over", None)
     assert plot.chart.series[0].y.max() == pytest.approx(5.7296, abs=1e-3)
+
+
+async def test_roll_and_yaw_have_their_own_channels_in_the_same_places() -> None:
+    state = flights.state(4)
+    whole = state.whole_flight
+    courses = {**whole.courses, "aileron": whole.courses["elevator"], "p": whole.courses["q"]}
+    state = replace(
+        state, whole_flight=replace(whole, courses=courses), lateral=side_state(side_judged(1, "aileron"))
+    )
+    async with stage(state, settings=ENGINEER, size=(140, 45)) as here:
+        await here.press("i", "r")
+        first = here.app.screen.query_one("#whole-elevator", Plot)
+        await here.until(lambda: first.chart.y_label == "δa [deg]")
+        assert first.chart.series[0].y.max() == pytest.approx(5.7296, abs=1e-3)
+        assert here.app.screen.query_one("#whole-q", Plot).chart.y_label == "p [deg/s]"
+        assert here.words("#whole-maneuvers").split() == ["1✓", "2✗", "3✓", "4✓"]
+        await here.press("r")
+        await here.until(lambda: first.chart.y_label == "δe [deg]")

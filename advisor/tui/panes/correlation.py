@@ -27,6 +27,7 @@ _STRONG = Style(reverse=True)
 class Correlation(Pane):
     """One matrix: the joint estimate above the diagonal, the selected manoeuvre below."""
 
+    OF_ELEVATOR = True
     TITLE = "0 Correlation"
     SHORT = "0Cor"
     OF_SELECTED = True

@@ -14,7 +14,7 @@ from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Level, Series
 from advisor.tui.plot.widget import Plot
 from advisor.tui.table_rows import TableRows
-from advisor.words.quantities import PARAMETERS
+from advisor.words.quantities import PARAMETERS, SIDE_PARAMETERS
 
 _MANY = 4
 """Plots that stand side by side without room for the name of their x axis."""
@@ -23,6 +23,7 @@ _MANY = 4
 class Courses(Pane):
     """Eight small plots: each manoeuvre's estimate with its interval against the manoeuvre's number."""
 
+    OF_ELEVATOR = True
     TITLE = "h History"
     SHORT = "hHis"
     HELP = """\
@@ -135,7 +136,7 @@ def course(view: View | None, name: str) -> ParameterCourse:
 
 def history_chart(view: View | None, name: str) -> Chart:
     """Draw each manoeuvre's value with its 95 % interval, and the joint estimate and the prior as levels."""
-    quantity, of = PARAMETERS[name], course(view, name)
+    quantity, of = {**PARAMETERS, **SIDE_PARAMETERS}[name], course(view, name)
     if len(of.numbers) == 0:
         return Chart(quantity.label, "manoeuvre", why_empty="no manoeuvre has given an estimate of it yet.")
     levels = []

@@ -21,7 +21,11 @@ from advisor.words.quantities import CHANNELS, channel
 
 SHOWN_WHOLE = ("elevator", "alpha", "q", "airspeed", "height")
 """Channels with a plot of their own, from above."""
-_INKS: dict[str, Ink] = {"elevator": "input", "height": "prior", "airspeed": "residual"}
+_SIDEWAYS = ("aileron", "rudder", "p", "r", "airspeed")
+"""Channels of roll and yaw, in the places of those of pitch."""
+_INKS: dict[str, Ink] = {
+    **dict.fromkeys(("elevator", "aileron", "rudder"), "input"), "height": "prior", "airspeed": "residual"
+}  # fmt: skip
 _ROWS_FOR_ONE = 4
 _GUTTER = 7
 """Columns left of the plots, for the labels of their axes."""
@@ -33,12 +37,13 @@ _LEAST_S = 10.0
 class WholeFlightPane(Pane):
     """Every channel over the present power-on; a click goes to the manoeuvre there."""
 
+    EITHER_AXIS = True
     TITLE = "i Flight"
     SHORT = "iFlt"
     HELP = """\
 # Flight
 
-The whole power-on: elevator, angle of attack, pitch rate, air speed and height over the vehicle's time. The
+The whole power-on over the vehicle's time: control, rates and air speed of the axis that is shown. The
 line above the plots has the number of each manoeuvre with ✓, ✗ or ∅ at its time (R: roll and yaw). The
 line below has the flight modes at their times. A bar stands from the lowest to the highest value of each
 stretch, so that no step is lost.
@@ -82,7 +87,9 @@ upright line is the present moment.
             return
         low = min(first for first, _ in ends)
         high = max(low + _LEAST_S, *(last for _, last in ends))
-        plots = {name: self.query_one(f"#whole-{name}", Plot) for name in SHOWN_WHOLE}
+        names = SHOWN_WHOLE if view.elevator is None else _SIDEWAYS
+        places = zip(names, SHOWN_WHOLE, strict=True)
+        plots = {name: self.query_one(f"#whole-{place}", Plot) for name, place in places}
         shown = [name for name in plots if plots[name].display and len(self._course(view, name).t)]
         layer = self._layer(view)
         for name in shown:
@@ -153,7 +160,7 @@ def _maneuvers(view: View, low: float, high: float, width: int) -> str:
     line = [" "] * width
     here = (view.state.flight, view.state.boot)
     side = view.state.lateral
-    flown = [("", j) for j in view.state.maneuvers]
+    flown = [("", j) for j in (view.elevator or view).state.maneuvers]
     flown += [("R", j) for j in (side.maneuvers if side is not None else ())]
     for axis, judged in sorted(flown, key=lambda one: one[1].maneuver.span.start_s):
         if judged.maneuver.power_on != here:

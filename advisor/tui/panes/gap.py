@@ -22,7 +22,8 @@ from advisor.tui.plot.widget import Plot
 from advisor.words.quantities import channel
 
 _SHOWN = ("alpha", "q", "a_z", "theta")
-"""Channels of pitch, one a plot. Roll and yaw have as many plots, of their own channels."""
+_SHOWN_SIDEWAYS = ("p", "r", "bank", "a_y")
+"""Channels of roll and yaw, in the places of those of pitch."""
 _ROWS_FOR_ONE = 6
 _TEXT_SHARE = 0.45
 """Share of the pane's height that the text takes at most."""
@@ -54,8 +55,7 @@ findings.
         with VerticalScroll():
             yield HangingLines(_TOO_EARLY, id="gap-text")
         for name in _SHOWN:
-            empty = Chart(channel(name).label, "t [s]", why_empty="no diagnosis yet.")
-            yield Plot(empty, id=f"gap-{name}")
+            yield Plot(_empty(name), id=f"gap-{name}")
 
     _asked: tuple[int, ...] | None = None
     """Axis and manoeuvres of the newest diagnosis that was asked for."""
@@ -80,6 +80,8 @@ findings.
             self._say([("", _NO_LOG if numbers else _TOO_EARLY)])
         elif asked != self._asked:
             self._asked, self._since_s = asked, monotonic()
+            for name, plot in self._plots(sideways=sideways):
+                plot.chart = _empty(name)
             self._tick()
             task = GapTask(tuple(view.logs), view.aircraft, view.aircraft_file, sideways)
             self.run_worker(partial(self._work, task), thread=True, exclusive=True, exit_on_error=False)
@@ -110,11 +112,14 @@ findings.
             return
         worst = max(found["gap"]["by_maneuver"], key=lambda one: one["before"])["number"]
         self.subtitle(f"manoeuvre {worst}, the largest gap")
-        of_pitch = found is document
         mine = {t["channel"]: t for t in found["traces"] if t["number"] == worst}
-        shown = [name for name in _SHOWN if name in mine] if of_pitch else list(mine)
-        for place, name in zip(_SHOWN, shown, strict=False):
-            self.query_one(f"#gap-{place}", Plot).chart = _chart(name, mine[name])
+        for name, plot in self._plots(sideways=found is not document):
+            plot.chart = _chart(name, mine[name]) if name in mine else _empty(name)
+
+    def _plots(self, *, sideways: bool) -> Iterator[tuple[str, Plot]]:
+        """Yield each channel of an axis with its plot."""
+        for place, name in zip(_SHOWN, _SHOWN_SIDEWAYS if sideways else _SHOWN, strict=True):
+            yield name, self.query_one(f"#gap-{place}", Plot)
 
     def _say(self, rows: Sequence[Labelled]) -> None:
         self.query_one("#gap-text", HangingLines).write_rows(rows)
@@ -131,7 +136,8 @@ def answer_rows(document: Document) -> Iterator[Labelled]:
     """Yield the answer, how sure it is, its limits, what differs, the shrink, the steps, the reasons."""
     if (side := document.get("lateral")) is not None:
         yield "", f"Roll and yaw. {side['title']}: {side['sentence']}"
-        yield "", side["how_sure"]
+        if side["how_sure"]:
+            yield "", side["how_sure"]
         yield from (("  ", one["text"]) for one in side["parameters_changed"])
         yield from ((f"{number}. ", step["text"]) for number, step in enumerate(side["next"], start=1))
         return
@@ -152,6 +158,10 @@ def answer_rows(document: Document) -> Iterator[Labelled]:
         yield "", document["why_heading"]
         reasons = weighed((one["nats"], one["text"]) for one in document["why"])
         yield from ((f"{nats:>6}  ", said) for nats, said in reasons)
+
+
+def _empty(name: str) -> Chart:
+    return Chart(channel(name).label, "t [s]", why_empty="no diagnosis yet.")
 
 
 def _chart(name: str, trace: Mapping[str, Any]) -> Chart:

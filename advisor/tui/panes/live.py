@@ -21,6 +21,7 @@ _ROWS_FOR_ONE = 5
 class Live(Pane):
     """Angle of attack, pitch rate and elevator of the manoeuvre in the air."""
 
+    OF_ELEVATOR = True
     TITLE = "5 Live"
     SHORT = "5Liv"
     HELP = """\
@@ -46,6 +47,8 @@ so: recover. Between manoeuvres nothing moves here; the last trace stays.
         """Draw the manoeuvre in the air. Between manoeuvres the last trace stays."""
         flying, settling = view.state.flying, view.state.settling
         if flying is None or view.health.condition == "ended":
+            if self.border_subtitle:
+                self.query_one("#settling", Lines).write("Nothing is in the air; the last trace stays.")
             self.subtitle("")
             return
         self.subtitle(f"in the air: manoeuvre {flying.number}")

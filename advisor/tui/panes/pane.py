@@ -18,6 +18,8 @@ class Pane(Part, Vertical):
     TITLE: ClassVar[str] = ""
     SHORT: ClassVar[str] = ""
     """The title where all titles have to share 80 columns."""
+    OF_ELEVATOR: ClassVar[bool] = False
+    """Whether the pane shows the elevator's axis alone, whichever axis the others show."""
     OF_SELECTED: ClassVar[bool] = False
     """Whether the pane shows the selected manoeuvre."""
     HELP = ""

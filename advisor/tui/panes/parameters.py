@@ -1,4 +1,4 @@
-"""The eight parameters with their intervals, against the simulator's model and manoeuvre by manoeuvre."""
+"""The parameters with their intervals, against the simulator's model and manoeuvre by manoeuvre."""
 
 from itertools import accumulate
 
@@ -7,7 +7,7 @@ from textual.app import ComposeResult
 from textual.events import Resize
 from textual.widgets import DataTable
 
-from advisor.aircraft.reference import PARAMETERS as NAMES
+from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
 from advisor.report.facts.estimates import EstimatedParameter, of_all, of_one
 from advisor.session.view import View
 from advisor.tui.panes.courses import history_chart
@@ -24,13 +24,14 @@ _COLUMNS = (
 """Name and width, with a space at the end: what grows must not push the others about. The last ones are left
 away where they have no room: half a number would be another number."""
 _SCROLL_BAR = 1
-_FIRST_SHOWN = "M_alpha"
-"""Parameter that is chosen at first: the stability, which a crew asks for before all others."""
+_FIRST_SHOWN = ("M_alpha", "L_p")
+"""Parameter of each axis that is chosen at first: what a crew asks for before all others."""
 
 
 class ParametersPane(Pane):
     """Table of the joint estimate, and the history of the parameter under the cursor."""
 
+    EITHER_AXIS = True
     TITLE = "3 Parameters"
     SHORT = "3Par"
     can_focus = False
@@ -49,14 +50,14 @@ others; the verdict pane says why.
     def compose(self) -> ComposeResult:
         """Lay out the table over the history."""
         yield DataTable[Text](cursor_type="row", cell_padding=0)
-        yield Plot(history_chart(None, NAMES[0]))
+        yield Plot(history_chart(None, _FIRST_SHOWN[0]))
 
     def on_mount(self) -> None:
         """Begin without an estimate."""
         super().on_mount()
         self._view: View | None = None
         self._columns = 0
-        self._row = NAMES.index(_FIRST_SHOWN)
+        self._shown = _FIRST_SHOWN[0]
 
     def on_resize(self, event: Resize) -> None:
         """Show as many columns as have room."""
@@ -77,22 +78,24 @@ others; the verdict pane says why.
         if not self._columns or not self.changed(view.state.maneuvers, view.state.model, view.judged):
             return
         table = self.query_one(DataTable)
-        row = self._row
+        names = PARAMETERS if view.elevator is None else SIDE_PARAMETERS
+        if self._shown not in names:
+            self._shown = next(name for name in _FIRST_SHOWN if name in names)
         with self.prevent(DataTable.RowHighlighted):
             table.clear()
-            for name in NAMES:
+            for name in names:
                 joint = of_all(name, view.state, view.aircraft.model)
                 alone = of_one(name, view.judged, view.aircraft.model)
                 table.add_row(*(Text(cell) for cell in _cells(joint, alone)[: self._columns]), key=name)
-            table.move_cursor(row=row)
-        self._draw_history(NAMES[row])
+            table.move_cursor(row=names.index(self._shown))
+        self._draw_history(self._shown)
 
     def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
         """Draw the history of the parameter under the cursor."""
         event.stop()
         if event.row_key.value is not None:
-            self._row = NAMES.index(event.row_key.value)
-            self._draw_history(event.row_key.value)
+            self._shown = event.row_key.value
+            self._draw_history(self._shown)
 
     def _draw_history(self, name: str) -> None:
         self.query_one(Plot).chart = history_chart(self._view, name)

@@ -23,6 +23,7 @@ class _Joint(TextPane):
 class Qualities(_Joint):
     """Natural frequency, damping, n/α, CAP, T_θ2 and level, each with its 95 % interval."""
 
+    OF_ELEVATOR = True
     TITLE = "u Flying qualities"
     SHORT = "uFQ"
     EMPTY = "No manoeuvre is accepted yet; flying qualities come from the joint estimate."

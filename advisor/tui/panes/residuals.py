@@ -48,6 +48,7 @@ class Whiteness:
 class Residuals(Pane):
     """Autocorrelation of each output's residual with the 95 % bounds of white noise."""
 
+    OF_ELEVATOR = True
     TITLE = "9 Residuals"
     SHORT = "9Res"
     OF_SELECTED = True

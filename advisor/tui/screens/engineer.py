@@ -68,7 +68,8 @@ residuals, correlation and history share one place.
 saves them into a file next to the log or the recording, and its plots as a picture (SVG). A browser
 is offered the files instead.
 
-**r** shows roll and yaw in the panes of manoeuvres, verdict, fit and criterion, and the elevator again.
+**r** shows roll and yaw in the panes of manoeuvres, verdict, parameters, fit and criterion, and the
+elevator again. A pane with *(elevator)* in its title stays.
 The pane **y** has the derivatives and modes of roll and yaw. **x** and **n** work on the manoeuvres that
 are shown.
 """
@@ -113,6 +114,10 @@ are shown.
         """Update what is visible."""
         same_axis = self._view is not None and (self._view.elevator is None) == (view.elevator is None)
         selected = self._view.selected if self._view is not None and same_axis else None
+        if not same_axis:
+            for pane in self.query("Pane"):
+                stays = view.elevator is not None and getattr(pane, "OF_ELEVATOR", False)
+                pane.border_title = f"{getattr(pane, 'TITLE', '')}{' (elevator)' if stays else ''}"
         self._view = replace(view, selected=selected)
         self._refresh_panes()
 

@@ -93,6 +93,8 @@ def test_without_a_simulator_the_text_has_neither_its_probabilities_nor_a_table_
         instruments={"rudder_lag_s": Value(0.06, 0.003), "airspeed_excess": Value(0.03, 0.01)},
     )
     text = "\n".join(side_gap_lines(alone))
+    assert side_gap_document(alone)["how_sure"] == ""
+    assert side_gap_document(FOUND)["how_sure"]
     assert text.startswith("NO SIMULATOR GIVEN: ")
     assert "wrong numbers" not in text
     assert "before" not in text
