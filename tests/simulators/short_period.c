@@ -2,10 +2,12 @@
 
    alpha' = q + g/V - L V (alpha + c delta) + force
    q'     = V^2 (m0 + ma alpha + md delta) + mq V q + moment
+   Roll and yaw are linear in beta, p, r, aileron and rudder (ROLL, YAW), with gravity.
    With LAG defined the surface follows the command with that time constant in s.
    With RELAY defined a moment of -RELAY acts where theta exceeds 0.29, and a moment of 0.5 after 1.2 s.
    As model exchange it hands out its states and rates, and decides on the relay at events alone.
    With FAULT defined a step crashes (1), hangs (2) or is refused (3) after 0.05 s. */
+#include <math.h>
 #include <stdlib.h>
 #ifdef FMI3
 #include "fmi3Functions.h"
@@ -25,8 +27,11 @@ typedef fmi2ValueReference Reference;
 #define REFUSED fmi2Error
 #endif
 
-enum { DELTA, FORCE, MOMENT, V, HEIGHT, ALPHA_START, THETA_START, ALPHA, Q, THETA, LOAD_FACTOR, COUNT };
+enum { DELTA, FORCE, MOMENT, V, HEIGHT, ALPHA_START, THETA_START, ALPHA, Q, THETA, LOAD_FACTOR,
+    AILERON, RUDDER, P, R, BANK, BETA, A_Y, COUNT };
 static const double G = 9.80665, L = 0.04, C = 0.1, M0 = 0.0004, MA = -0.01, MD = -0.02, MQ = -0.08;
+static const double SIDE[5] = {-0.4, 0.0, 0.0, 0.0, 0.1}, ROLL[5] = {-10.0, -5.0, 1.0, -20.0, 1.0};
+static const double YAW[5] = {6.0, -0.2, -1.0, 0.5, -5.0};
 
 typedef struct {
     double value[COUNT];
@@ -77,6 +82,18 @@ static void start(Model *m) {
     outputs(m);
 }
 
+static void roll_and_yaw(double *v, double dt) {
+    double x[5] = {v[BETA], v[P], v[R], v[AILERON], v[RUDDER]}, side = 0.0, roll = 0.0, yaw = 0.0;
+    int k;
+    for (k = 0; k < 5; k++) side += SIDE[k] * x[k], roll += ROLL[k] * x[k], yaw += YAW[k] * x[k];
+    v[BETA] += dt * (side + sin(v[ALPHA]) * v[P] - cos(v[ALPHA]) * v[R]
+        + G / v[V] * cos(v[THETA]) * sin(v[BANK]));
+    v[BANK] += dt * (v[P] + tan(v[THETA]) * cos(v[BANK]) * v[R]);
+    v[P] += dt * roll;
+    v[R] += dt * yaw;
+    v[A_Y] = v[V] * side;
+}
+
 static STATUS fly(Model *m, double t, double width) {
     double *v = m->value;
     int n = (int)(width / 1e-4 + 0.5), i;
@@ -96,6 +113,7 @@ static STATUS fly(Model *m, double t, double width) {
         v[Q] += dt * rate[1];
         v[THETA] += dt * rate[2];
         m->surface += dt * rate[3];
+        roll_and_yaw(v, dt);
     }
     outputs(m);
     return OK;

@@ -12,8 +12,9 @@ from fmpy.fmi3 import FMU3Model, FMU3Slave
 
 HERE = Path(__file__).parent
 HEADERS = Path(fmpy.__file__).parent / "c-code"
-NAMES = ("delta_e", "force", "moment", "V", "h", "alpha_0", "theta_0", "alpha", "q", "theta", "n_z")
-INPUTS, PARAMETERS = NAMES[:3], NAMES[3:7]
+SIDE = ("aileron", "rudder", "p", "r", "bank", "beta", "a_y")
+NAMES = ("delta_e", "force", "moment", "V", "h", "alpha_0", "theta_0", "alpha", "q", "theta", "n_z", *SIDE)
+INPUTS, PARAMETERS = (*NAMES[:3], "aileron", "rudder"), NAMES[3:7]
 STARTS = {"V": 30.0, "h": 500.0, "delta_e": -0.11}
 
 
@@ -50,7 +51,7 @@ def _library(fmi: int, *flags: str) -> bytes:
         library = Path(folder) / "library"
         source, rest = HERE / "short_period.c", Path(folder) / "rest.c"
         rest.write_text(_rest(fmi, source.read_text()))
-        made = ["cc", "-shared", "-fPIC", "-O1", *flags, f"-I{HEADERS}", source, rest, "-o", library]
+        made = ["cc", "-shared", "-fPIC", "-O1", *flags, f"-I{HEADERS}", source, rest, "-o", library, "-lm"]
         subprocess.run(made, check=True)
         return library.read_bytes()
 

@@ -11,12 +11,15 @@ from advisor.aircraft.sensors import Beta
 from advisor.flight.signals.record import Channel
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
+from advisor.simulators.fmu import FmuSimulator
 from advisor.simulators.protocol import Replay
 from advisor.simulators.side import side_without_difference
 from advisor.words.problems import UnusableInputError
 from tests.gap.axes.lateral import test_comparison as flights
 from tests.oem.axes.lateral import builders
 from tests.oem.axes.lateral.builders import JET
+from tests.simulators.small_fmu import SIDE, build
+from tests.simulators.test_fmu import NAMES
 
 KNOWN = SideControl(lag_s=0.0, delay_s=0.0)
 AIRCRAFT = Aircraft(aileron=KNOWN, rudder=KNOWN, beta=Beta("none"))
@@ -64,6 +67,19 @@ def test_the_simulators_own_derivatives_become_the_model_of_the_comparison(fligh
     assert aircraft.aileron.lag_s == 0.0
     for before, after in zip(flight, beside, strict=True):
         assert np.ptp(before.channels["p"].y - after.channels["p"].y) < 1e-3
+
+
+def test_an_fmu_flies_aileron_and_rudder(flight, tmp_path):
+    """Derivatives of ROLL and YAW in ``short_period.c``."""
+    names = replace(NAMES, **{name: name for name in SIDE})
+    simulator = FmuSimulator(build(tmp_path, 2), names, 15.0)
+    try:
+        _, aircraft = side_without_difference(flight, simulator, AIRCRAFT)
+    finally:
+        simulator.close()
+    due = {"L_beta": -10.0, "L_p": -5.0, "L_delta_a": -20.0, "N_beta": 6.0, "N_r": -1.0, "N_delta_r": -5.0}
+    for name, value in due.items():
+        assert aircraft.model[name] == pytest.approx(value, rel=0.02), name
 
 
 def test_what_the_simulator_does_beyond_a_linear_model_is_taken_off_the_record(flight):
