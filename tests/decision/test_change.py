@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan
+from advisor.aircraft.reference import PARAMETERS
 from advisor.bundled.study.flying import Scene, fly_named, respond
 from advisor.decision.axes.lateral_stop import lateral_flight_test
 from advisor.decision.change import find_change
@@ -187,3 +188,41 @@ def test_a_change_ends_the_stop_of_roll_and_yaw_and_is_said(rng: np.random.Gener
     assert verdict.sentence.startswith("CONTINUE: Something changed after manoeuvre 4: L_δa")
     assert verdict.warnings == (change.sentence,)
     assert lateral_flight_test(estimates, poor, Aircraft(), (), heard).decision == "stop"
+
+
+def exactly(std_percent: float, *changes: dict[str, float]) -> list[CandidateManeuver]:
+    """Three manoeuvres of the reference aircraft, then one for each of these shares of its derivatives."""
+    found = [THETA] * 3
+    for shares in changes:
+        theta = THETA.copy()
+        for name, share in shares.items():
+            theta[PARAMETERS.index(name)] *= share
+        found.append(theta)
+    return [CandidateManeuver(estimate(theta, std_percent=std_percent)) for theta in found]
+
+
+SIGMA_PERCENT = 2.0 * np.sqrt(1 / 3 + 1 / 2)
+"""Standard deviation of the difference between the means of three and of two manoeuvres of 2 %, per cent."""
+
+
+@pytest.mark.parametrize(("sigmas", "found"), [(5.0, False), (7.0, True)])
+def test_five_standard_deviations_of_one_derivative_are_noise_and_seven_are_not(
+    sigmas: float, found: bool
+) -> None:
+    moved = {"M_q": 1.0 + 0.01 * sigmas * SIGMA_PERCENT}
+    assert (find_change(exactly(2.0, moved, moved)) is not None) is found
+
+
+@pytest.mark.parametrize(("sigmas", "named"), [(2.5, False), (3.5, True)])
+def test_a_derivative_is_named_from_three_standard_deviations_on(sigmas: float, named: bool) -> None:
+    sigma_percent = 2.0 * SIGMA_PERCENT
+    moved = {"M_q": 1.0 + 0.01 * sigmas * sigma_percent, "M_delta_e": 0.5}
+    found = find_change(exactly(4.0, moved, moved))
+    assert found is not None
+    assert ("M_q" in [one.parameter for one in found.moved]) is named
+
+
+def test_manoeuvres_that_scatter_more_than_they_state_hide_a_change() -> None:
+    moved = 1.0 + 0.01 * 7.0 * SIGMA_PERCENT
+    scattered = exactly(2.0, *({"M_q": moved, "M_alpha": share} for share in (1.08, 0.92)))
+    assert find_change(scattered) is None

@@ -63,3 +63,10 @@ def test_a_forecast_that_jumps_by_more_than_its_band_is_not_spoken(now, spoken):
     before = [heard(False), heard(False), heard(False, remaining=Remaining(4, 6))]
     said = concluded(criterion(False, remaining=Remaining(now, 9)), before).next.remaining
     assert (said is not None) == spoken
+
+
+def test_a_change_is_said_only_where_it_ends_a_stop():
+    never = concluded(criterion(False), [heard(False)] * 3, CHANGED)
+    ended = concluded(criterion(False, stopped_at=2), [heard(False), heard(True), heard(True)], CHANGED)
+    assert never.sentence == "stop is False"
+    assert ended.sentence == "CONTINUE: M_alpha has changed."

@@ -99,7 +99,7 @@ def judge_lateral(
 
 def _period_s(estimate: LateralEstimate | NoEstimate) -> float:
     omega = estimate.modes.dutch_roll_omega if isinstance(estimate, LateralEstimate) else None
-    return 2.0 * math.pi / omega.value if omega is not None and omega.value > 0.0 else _USUAL_PERIOD_S
+    return _USUAL_PERIOD_S if omega is None else 2.0 * math.pi / omega.value
 
 
 def _unsteady_alpha(maneuver: Maneuver) -> list[Reason]:
