@@ -53,15 +53,25 @@ def written(document: Any, path: str = "", without: Sequence[str] = ()) -> str:
     Parameters
     ----------
     without
-        Keys of the document that only a request by path answers.
+        Keys of the document and of its blocks that only a request by path answers.
     """
     whole = _rounded(part_of(document, path))
-    if not path and isinstance(whole, dict):
-        whole = {k: _left_out(v, k) if k in without and v else v for k, v in whole.items()}
+    if not path:
+        whole = _on_request(whole, without)
     budget = MOST_BYTES
     while not fits(told := _json(_shortened(whole, budget, path))):
         budget = budget * 9 // 10
     return told
+
+
+def _on_request(value: Any, without: Sequence[str], within: str = "") -> Any:
+    """Return a document without the keys that only a request answers; ``within`` is the path to it."""
+    if not isinstance(value, dict):
+        return value
+    return {
+        k: _left_out(v, f"{within}{k}") if k in without and v else _on_request(v, without, f"{within}{k}.")
+        for k, v in value.items()
+    }
 
 
 def fits(text: str) -> bool:

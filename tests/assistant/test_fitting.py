@@ -41,6 +41,15 @@ def test_a_part_that_is_too_long_is_shortened_as_well() -> None:
     assert len(json.dumps(written(LARGE, "maneuvers"), ensure_ascii=False).encode()) <= 19_800
 
 
+def test_the_evidence_of_either_axis_is_answered_on_request_alone() -> None:
+    document = {"evidence": [], "lateral": {"verdict": "none", "evidence": [1, 2, 3]}}
+    assert json.loads(written(document, without=("evidence",))) == {
+        "evidence": [],
+        "lateral": {"verdict": "none", "evidence": "left out, 0.0 kB; ask for part lateral.evidence"},
+    }
+    assert json.loads(written(document, "lateral.evidence", ("evidence",))) == [1, 2, 3]
+
+
 @pytest.mark.parametrize("path", ["nothing", "maneuvers.40", "verdict.x"])
 def test_a_part_that_is_not_there_is_refused_by_its_name(path: str) -> None:
     with pytest.raises(RefusedError, match=f"There is no part {path}: "):
