@@ -27,9 +27,8 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
     """Yield the sentence, the causes, each stated derivative with that of the flight, instruments, and the
     gap."""
     yield f"{_title(found)}: {found.sentence}"
-    if found.diagnosis is not None:
-        if found.verdict is not None:
-            yield f"  {how_sure(found.diagnosis.answers)}"
+    if found.diagnosis is not None and found.verdict is not None:
+        yield f"  {how_sure(found.diagnosis.answers)}"
         yield from _diagnosis_lines(found.diagnosis)
     yield from (f"  {line}" for line in changes(found.derivatives))
     if found.instruments:

@@ -97,6 +97,7 @@ def test_without_a_simulator_the_text_has_neither_its_probabilities_nor_a_table_
     assert side_gap_document(FOUND)["how_sure"]
     assert text.startswith("NO SIMULATOR GIVEN: ")
     assert "wrong numbers" not in text
+    assert "aileron actuator backlash" not in text
     assert "before" not in text
     assert "Nuisance parameters of the fit, no part of the answer:" in text
     assert "rudder lag 60.0 ± 5.9 ms" in text
