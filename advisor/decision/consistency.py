@@ -72,7 +72,7 @@ def beyond_in_alpha(posteriors: Sequence[Posterior]) -> dict[int, Outlier]:
             lowest = min(posterior.alpha_rad[0] for posterior in rest)
             highest = max(posterior.alpha_rad[1] for posterior in rest)
             nearest = _middle(posteriors[order[-k]])
-            if len(rest) < 2 or lowest <= nearest <= highest:
+            if lowest <= nearest <= highest:
                 continue
             factor = excess(rest)
             others = widened(pool(rest), factor).shared

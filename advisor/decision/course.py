@@ -44,7 +44,7 @@ class CriterionCourse:
     def standing(self, usable: Sequence[CandidateManeuver]) -> Standing:
         """Return the rule's result after at least one usable manoeuvre, in the order flown."""
         n = len(usable)
-        if n > len(self._standings) or not same(self._flown[:n], usable):
+        if not same(self._flown[:n], usable):
             self._follow(usable)
         return self._standings[n - 1]
 

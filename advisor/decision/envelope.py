@@ -180,10 +180,10 @@ def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
     """Return a reason where the air speed left its value before the first step. Often another reason causes
     the change."""
     limit = aircraft.limits.airspeed_change_percent
-    channel, speed = maneuver.channels.get("airspeed"), flown(maneuver, "airspeed")
-    if channel is None or len(speed) < 2 or not np.median(channel.y) > 0.0:
+    speed = flown(maneuver, "airspeed")
+    if len(speed) < 2 or not np.median(maneuver.channels["airspeed"].y) > 0.0:
         return []
-    trim = speed_before(channel, maneuver.span)
+    trim = speed_before(maneuver.channels["airspeed"], maneuver.span)
     # The second largest deviation: one wild reading of the air speed is no change of speed.
     change = 100.0 * float(np.sort(np.abs(speed / trim - 1.0))[-2:][0])
     text = "air speed changed by {} % (limit {}); smaller steps, from steady speed"
@@ -200,8 +200,8 @@ def steep(maneuver: Maneuver, limit: float | None) -> list[Reason]:
 def saturated(maneuver: Maneuver, control: str, ends_deg: tuple[float, float] | None) -> list[Reason]:
     """Return a reason where a control stays at an end of its travel, deg; None: 25 deg either way."""
     ends = ends_deg or (-_ASSUMED_STROKE_DEG, _ASSUMED_STROKE_DEG)
-    deflection = np.degrees(flown(maneuver, control))
-    stuck = (deflection <= min(ends) + 1e-6) | (deflection >= max(ends) - 1e-6)
+    deflection = np.round(np.degrees(flown(maneuver, control)), 6)
+    stuck = (deflection <= min(ends)) | (deflection >= max(ends))
     share = 100.0 * float(np.mean(stuck)) if len(stuck) else 0.0
     if np.count_nonzero(stuck) < 2:
         return []

@@ -33,7 +33,7 @@ def judge_campaign(
     accepted = [result.accepted for result in by_rule[plan.rule]]
     verdicts = []
     for i, flown in enumerate(history):
-        costly = flown.usable is not None and plan.rule != "information" and not accepted[i]
+        costly = plan.rule != "information" and not accepted[i]
         larger = larger_and_agreeing(history[: i + 1], accepted, course) if costly else None
         rules = {name: results[i] for name, results in by_rule.items()}
         verdicts.append(_verdict(flown, plan.rule, rules, contradicted.get(i), larger))

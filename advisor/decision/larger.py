@@ -48,7 +48,7 @@ def larger_and_agreeing(
     setters = [i for i, flown in enumerate(before) if flown.usable]
     if course.plan.rule == "continuous":
         setters = [i for i in setters if accepted[i]][-1:]
-    if not setters or not newest.usable:
+    if not newest.usable:
         return None
     reference = median(_range(history[i]) for i in setters)
     ratio = _range(newest) / reference if reference > 0.0 else 1.0

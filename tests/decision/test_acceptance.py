@@ -98,3 +98,8 @@ def test_only_ratios_of_costs_matter(costs: list[float | None], factor: float) -
     scaled = [None if c is None else 2.0 ** round(math.log2(factor)) * c for c in costs]
     for rule in (continuous_improvement, separate_computation):
         assert accepted(rule(costs)) == accepted(rule(scaled))
+
+
+def test_costs_below_those_of_a_microradian_count_as_one_cost() -> None:
+    assert [one.accepted for one in continuous_improvement([1e-26, 1.9e-24])] == [True, True]
+    assert [one.accepted for one in continuous_improvement([1e-26, 2.1e-24])] == [True, False]

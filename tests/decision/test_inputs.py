@@ -37,3 +37,27 @@ def test_units_to_try_can_be_counted_by_hand_and_span_the_short_period(frequency
     assert units[0] >= 0.2  # a pilot's hand is no faster
     np.testing.assert_allclose(units, np.round(units, 1))
     assert units[-1] > 2.5 / frequency
+
+
+def test_the_shortest_unit_is_a_fifth_of_a_second() -> None:
+    assert units_to_try(2.0)[0] == 0.2
+    assert units_to_try(12.0)[0] == 0.2
+
+
+def test_the_first_step_is_nose_up_unless_the_input_is_reversed() -> None:
+    assert StepInput("2-1-1", 0.5, 0.1, True).steps == ((True, 1.0), (False, 0.5), (True, 0.5))
+    assert StepInput("doublet", 0.5, 0.1, False).steps == ((False, 0.5), (True, 0.5))
+
+
+def test_the_elevator_takes_a_fiftieth_of_a_second_from_step_to_step() -> None:
+    moved = StepInput("doublet", 0.5, 0.1, False).elevator(0.0, 1.0, 5.0)
+    np.testing.assert_allclose(
+        moved.at(np.array([1.0, 1.01, 1.02, 1.5, 1.51, 1.52])), [0.0, 0.05, 0.1, 0.1, 0.0, -0.1]
+    )
+
+
+@pytest.mark.parametrize(
+    ("percent", "said"), [(0.4, 1), (19.6, 19), (20.0, 20), (24.0, 20), (26.0, 25), (39.0, 35)]
+)
+def test_stick_is_said_in_steps_of_five_above_twenty_per_cent(percent: float, said: int) -> None:
+    assert StepInput("doublet", 0.5, 0.01 * percent, True).stick_percent(1.0) == said
