@@ -25,6 +25,11 @@ _DROPPED = (
     "the autopilot could not write all records: log fewer or use a faster card; a manoeuvre with such a "
     "gap is flown again"
 )
+_FELL = (
+    "keep other ground stations from setting stream rates (MAVProxy --streamrate=-1; -1 in Mission Planner's "
+    "telemetry rates) and check the radio link"
+)
+_LOST = "check the radio link and its antennas; a manoeuvre with such a gap is flown again"
 _PLAIN = {"elevator": "elevator command", "q": "pitch rate", "alpha": "angle of attack"}
 
 
@@ -100,27 +105,15 @@ def steadiness_limits(
     for name in sorted(needed & arrivals.keys()):
         arrival = arrivals[name]
         if arrival.lowest_hz < FALLEN * arrival.rate_hz:
-            limits.append(
-                Limit(
-                    "rate_fell",
-                    f"{name} came at {arrival.rate_hz:.1f} Hz, but at {arrival.lowest_hz:.1f} Hz over its "
-                    "worst five seconds",
-                    _DROPPED
-                    if carrier != "telemetry"
-                    else "keep other ground stations from setting stream rates (MAVProxy --streamrate=-1; "
-                    "-1 in Mission Planner's telemetry rates) and check the radio link",
-                )
-            )
+            code, mend = "rate_fell", _FELL
+            at_worst = f"at {arrival.lowest_hz:.1f} Hz over its worst five seconds"
+            text = f"{name} came at {arrival.rate_hz:.1f} Hz, but {at_worst}"
         elif arrival.largest_gap_s > max(0.5 * period_s, GAP_INTERVALS / arrival.rate_hz):
-            limits.append(
-                Limit(
-                    "gap",
-                    f"{name} was missing for {arrival.largest_gap_s:.2f} s at its worst",
-                    _DROPPED
-                    if carrier != "telemetry"
-                    else "check the radio link and its antennas; a manoeuvre with such a gap is flown again",
-                )
-            )
+            code, mend = "gap", _LOST
+            text = f"{name} was missing for {arrival.largest_gap_s:.2f} s at its worst"
+        else:
+            continue
+        limits.append(Limit(code, text, mend if carrier == "telemetry" else _DROPPED))
     return limits
 
 

@@ -17,6 +17,8 @@ from advisor.session.source import Condition, LinkHealth, LinkRequest
 
 SILENT_S = 2.0
 LOSS_PERCENT = 5.0
+_DECODED = ("vehicle_messages", "lost", "repeated", "repeated_after_s", "late")
+"""Counts that only the reader of the records knows."""
 
 
 class LinkLike(Protocol):
@@ -134,14 +136,7 @@ def renewed(health: LinkHealth, link: LinkStatistics) -> LinkHealth:
         Counts that the process of the link has told since.
     """
     decoded = health.link or LinkStatistics()
-    link = replace(
-        link,
-        vehicle_messages=decoded.vehicle_messages,
-        lost=decoded.lost,
-        repeated=decoded.repeated,
-        repeated_after_s=decoded.repeated_after_s,
-        late=decoded.late,
-    )
+    link = replace(link, **{name: getattr(decoded, name) for name in _DECODED})
     return _health(link, health.read_to_s)
 
 
