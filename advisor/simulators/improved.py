@@ -112,12 +112,20 @@ def where_it_acts(
     """Return the diagnosis with its numbers fitted where simulator and surrogate both have the effects.
 
     The difference between the two depends on the motion. The motion with a servo's lag is another one than
-    that of the simulator as given. The likelier numbers stay. Arguments are those of ``in_simulator``.
+    that of the simulator as given. Other numbers alone change the difference in second order. The likelier
+    numbers stay. Arguments are those of ``in_simulator``.
     """
     if whole.seen_in is None or not changes_something(whole.diagnosis):
         return whole
-    problem = whole.findings.problem
-    part = _carried(as_changed(UnseenManeuvers((), whole), whole), problem, surrogate, flying)
+    problem, point = whole.findings.problem, as_changed(UnseenManeuvers((), whole), whole)
+    # The simulator has a propeller of its own.
+    point = point.keeping([k for k, effect in enumerate(point.effects) if not effect.is_nuisance])
+    blocks = {effect.block for effect in point.effects}
+    if blocks.isdisjoint(("input", *EQUATIONS)):
+        return whole
+    if blocks.isdisjoint(EQUATIONS):
+        point = replace(point, derivatives=np.array([surrogate.derivatives[name] for name in DERIVATIVES]))
+    part = _carried(point, problem, surrogate, flying)
     every = range(len(problem.flights))
     try:
         return whole.seen_in(_flown_with(part, problem, every, flying, as_flown, surrogate))
@@ -141,7 +149,10 @@ def _flown_with(
     found = problem.driving(still)[list(kept)]
     began = [at_reference(given[i].flight, problem.flights.reference_m_s) for i in kept]
     as_it_is = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
-    increments = added(began, found, as_it_is) if flying.simulator.takes_increments else None
+    changes = any(v.block in EQUATIONS for v in part.point.effects) or np.any(
+        part.point.derivatives != as_it_is
+    )
+    increments = added(began, found, as_it_is) if changes and flying.simulator.takes_increments else None
     measured = replace(flying, flights=replace(problem.flights, flights=tuple(flights[i] for i in kept)))
     replays = measured.replays(without_servo(found, surrogate), problem.held, increments)
     grids = dict(zip(kept, beyond(measured, replays, found, problem.held), strict=True))

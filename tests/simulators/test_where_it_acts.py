@@ -73,6 +73,29 @@ def test_the_numbers_are_fitted_next_to_the_simulator_with_its_effects():
         assert np.max(np.abs(moved - (due - was))) < 0.1 * np.max(np.abs(due - was))
 
 
+@pytest.mark.parametrize(("effects", "flies"), [({}, 0), ({"actuator_lag": {"lag_s": LAG_S}}, 2)])
+def test_a_simulator_flies_again_where_its_motion_changes_and_without_increments(effects, flies):
+    increments = []
+
+    class Watched(Nonlinear):
+        def replay(self, condition, inputs, added=None):
+            increments.append(added)
+            return super().replay(condition, inputs, added)
+
+    here, as_given = replace(flying(), simulator=Watched()), differences(0.0, 0.0)
+    flown_once = here.as_flown(here.replays(np.zeros((2, len(ENTRIES))), False))
+    increments.clear()
+    stiffer = SearchPoint(1.1 * np.array(list(MODEL.values())), np.zeros((2, len(NUISANCES))))
+    last = SimpleNamespace(fitted=SimpleNamespace(point=stiffer.with_effect(LAG, (LAG_S,))))
+    findings = SimpleNamespace(problem=EffectProblem(here.flights, np.zeros(len(ENTRIES))), last=last)
+    diagnosis = SimpleNamespace(**{**vars(FOUND), "effects": effects})
+    whole = Examined(diagnosis, findings, seen_in=lambda seen: "fitted again")
+    as_flown = {there.number: AsGiven(there, grid) for there, grid in zip(flown_once, as_given, strict=True)}
+    told = where_it_acts(whole, here, Surrogate(MODEL, here.flights.reference_m_s), as_flown)
+    assert increments == [None] * flies
+    assert (told == "fitted again") == bool(flies)
+
+
 def noisier(flights, by: float):
     """Return manoeuvres with more noise in the pitch rate."""
     rng = np.random.default_rng(7)
