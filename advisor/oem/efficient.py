@@ -65,10 +65,7 @@ def efficient(solution: Solution) -> Solution:
     if step is None or step.gain < GAIN or np.min(step.chances) < CHANCE / len(step.chances):
         return solution
     return replace(
-        solution,
-        theta=solution.theta + step.change,
-        covariance=step.covariance,
-        systematic=step.systematic,
+        solution, theta=solution.theta + step.change, covariance=step.covariance, systematic=step.systematic
     )
 
 

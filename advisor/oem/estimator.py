@@ -86,12 +86,7 @@ class Fit:
         if filtered is not None:
             identified = refreshed(identified, filtered)
         return report(
-            solution,
-            self.prepared,
-            self.aircraft,
-            identified=identified,
-            air=air,
-            filtered=filtered,
+            solution, self.prepared, self.aircraft, identified=identified, air=air, filtered=filtered
         )
 
 

@@ -21,11 +21,7 @@ from advisor.oem.known_instruments import InstrumentName
 from advisor.oem.problem import Assembly, OutputErrorProblem, Record, steady_share
 from advisor.oem.rows import padded
 
-READING = {
-    "vane_arm_m": BY_VANE,
-    "accelerometer_arm_m": BY_ACCELEROMETER,
-    "alpha_delay_s": BY_ALPHA_DELAY,
-}
+READING = {"vane_arm_m": BY_VANE, "accelerometer_arm_m": BY_ACCELEROMETER, "alpha_delay_s": BY_ALPHA_DELAY}
 """Column of each instrument of an output."""
 OF_COMMAND = ("command_delay_s", "servo_lag_s", "steady_moment_rad")
 """Instruments that change the motion of the surface, or act as if they did."""

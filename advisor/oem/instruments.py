@@ -134,11 +134,7 @@ VANE_ARM = Instrument("vane_arm_m", 1e-3, -100.0, 100.0, _place("vane_arm_m"))
 ALPHA_DELAY = Instrument("alpha_delay_s", 1e-4, -0.3, 0.5, _alpha)
 ACCELEROMETER_ARM = Instrument("accelerometer_arm_m", 1e-3, -100.0, 100.0, _place("accelerometer_arm_m"))
 STEADY_MOMENT = Instrument(
-    "steady_moment_rad",
-    1e-4,
-    -0.5,
-    0.5,
-    lambda problem: Prior(problem.steady_moment_rad, STEADY_MOMENT_RAD),
+    "steady_moment_rad", 1e-4, -0.5, 0.5, lambda problem: Prior(problem.steady_moment_rad, STEADY_MOMENT_RAD)
 )
 OF_ALPHA = ("vane_arm_m", "alpha_delay_s")
 """Instruments of the angle of attack. Instruments of α change Z_α, Z_q and Z_δe."""

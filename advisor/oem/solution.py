@@ -84,10 +84,7 @@ def refused(optimum: Optimum, nothing_to_tell: str) -> NoEstimate | None:
 
 
 def search(
-    problem: OutputErrorProblem,
-    *,
-    begin: tuple[FloatArray, FloatArray] | None = None,
-    flat: float = FLAT,
+    problem: OutputErrorProblem, *, begin: tuple[FloatArray, FloatArray] | None = None, flat: float = FLAT
 ) -> tuple[Assembly, Optimum]:
     """Return the optimum of a problem, whatever its status; the arguments are those of ``solve``."""
     assembly = assemble(problem)
