@@ -7,18 +7,19 @@ from typing import Literal
 from advisor.gap.decision import Decision
 
 Kind = Literal["none", "parameters", "effect", "air", "unknown"]
-"""Kind of an alternative. ``air`` is an effect of the air, ``effect`` one of aircraft or telemetry."""
+"""Kind of an alternative. ``air`` is an effect of the moving air; ``effect`` is an effect of the aircraft or
+of the telemetry."""
 
 
 @dataclass(frozen=True, slots=True)
 class Alternative:
-    """One answer that a diagnosis may give."""
+    """One possible explanation of the flight, as the answer of a diagnosis."""
 
     kind: Kind
     name: str
     """``none``, ``parameters``, ``unknown``, or the name of an effect."""
     block: str = ""
-    """Block of the simulator; empty for ``none`` and ``parameters``."""
+    """Block of the simulator in which the effect acts; empty for ``none`` and ``parameters``."""
 
     @property
     def is_effect(self) -> bool:
@@ -27,12 +28,13 @@ class Alternative:
 
     @property
     def label(self) -> str:
-        """The name, with the block where the name alone does not say it: ``unknown@input``."""
+        """Name of the alternative, with its block for an effect without a name: ``unknown@input``."""
         return f"{self.name}@{self.block}" if self.kind == "unknown" else self.name
 
 
 def together(shares: Iterable[tuple[Alternative, float]]) -> list[tuple[Alternative, float]]:
-    """Return alternatives with their probabilities, the likeliest first. Blocks of the unknown are one."""
+    """Return alternatives with their probabilities, the likeliest first. Alternatives without a name are
+    joined into one, whatever their block."""
     added: dict[str, tuple[Alternative, float]] = {}
     for alternative, share in shares:
         first, p = added.get(alternative.name, (alternative, 0.0))
@@ -52,7 +54,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class AlternativeEvidence:
-    """The evidence on one alternative: the parts of its likeliest model."""
+    """Evidence on one alternative: the parts of the log weight of its likeliest model."""
 
     alternative: Alternative
     columns: tuple[Column, ...]
@@ -61,10 +63,10 @@ class AlternativeEvidence:
 
 @dataclass(frozen=True, slots=True)
 class Contribution:
-    """One part of the log odds of the answer against its strongest rival."""
+    """One part of the log odds between the answer of a diagnosis and its strongest rival."""
 
     name: str
-    """Part of the log weight, or ``rest``."""
+    """Name of the part of the log weight, or ``rest``."""
     nats: float
     sentence: str
 
@@ -76,7 +78,7 @@ class Probabilities:
     none: float = 0.0
     parameters: float = 0.0
     unknown: Mapping[str, float] = field(default_factory=dict)
-    """Probability of an effect without a name, by block."""
+    """Probability of an effect without a name, by the block's name."""
     effects: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -87,11 +89,11 @@ class Weighed:
     evidence: tuple[AlternativeEvidence, ...] = ()
     """The evidence on every alternative, likeliest first; empty for one manoeuvre, which proves no cause."""
     why: tuple[Contribution, ...] = ()
-    """The answer against its strongest rival, in nats that add up to the log odds."""
+    """Parts of the log odds between the answer and its strongest rival, nats."""
     answer: Alternative | None = None
     """The likeliest alternative; None for a single manoeuvre."""
     rival: str = ""
-    """Label of that rival; empty without ``why``."""
+    """Label of the answer's strongest rival; empty without ``why``."""
     decisions: tuple[Decision, ...] = ()
     """Every statistic that was compared with a limit, in the order of the comparisons."""
 

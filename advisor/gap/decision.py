@@ -1,10 +1,11 @@
-"""One decision of the diagnosis: a statistic compared with its limit. Several modules share the limits."""
+"""One decision of the diagnosis: the comparison of a statistic with its limit. Several modules share the
+limits of this module."""
 
 from dataclasses import dataclass
 
 LEAST_GAIN = 6.0
-"""Least gain in log likelihood, nats, for one explanation over another: 400 to 1. Two explanations that
-differ by less are alike."""
+"""Least gain in log likelihood, nats, by which one explanation is preferred: odds of 400 to 1. Two
+explanations that differ by less than this gain are equivalent."""
 CERTAIN = 30.0
 """Gain in log likelihood, nats, above which something like an effect, or moving air, is certainly
 present. On 40 flights of two generators no gain of moving air lies between 21 and 64."""
@@ -20,10 +21,10 @@ CHANCE = 1e-3
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """One question, answered yes where the statistic is at least the limit."""
+    """One yes-or-no question, answered yes if a statistic is at least its limit."""
 
     about: str
-    """Effect, block or verdict of the question."""
+    """Effect, block or verdict that the question is about."""
     name: str
     """The question in one or two words."""
     statistic: float
@@ -33,7 +34,7 @@ class Decision:
 
     @property
     def margin(self) -> float:
-        """Statistic minus limit: positive where the limit is exceeded."""
+        """Statistic minus limit, positive where the limit is exceeded."""
         return self.statistic - self.limit
 
     @property

@@ -35,19 +35,19 @@ from advisor.words.problems import UnusableInputError
 
 @dataclass(frozen=True)
 class Examined:
-    """A diagnosis, together with the findings that the diagnosis is made from."""
+    """A diagnosis together with the findings that support it."""
 
     diagnosis: Diagnosis
     findings: Findings
     fewer: "Callable[[int], Examined] | None" = None
-    """Function that returns the diagnosis with the first effects of its answer, so many; None where the
-    answer names none."""
+    """Function that returns the diagnosis with only the first n effects; None for an answer without an
+    effect."""
     seen_in: "Callable[[EffectProblem], Examined] | None" = None
-    """Function that returns the diagnosis with its numbers fitted to other outputs of the flight; None for a
-    single manoeuvre."""
+    """Function that returns the diagnosis refitted to other outputs of the flight; None for a single
+    manoeuvre."""
 
     def with_most(self, effects: int) -> "Examined":
-        """Return the diagnosis with the first effects of its answer alone, at most so many."""
+        """Return the diagnosis with at most ``effects`` effects, in the order of the answer."""
         return self if self.fewer is None else self.fewer(effects)
 
     @property
@@ -71,14 +71,15 @@ def diagnose(
         Manoeuvres of the segmenter, with elevator, α and pitch rate. A single manoeuvre shows where the gap
         lies. One manoeuvre shows no cause, because no manoeuvre remains for the hold-out.
     aircraft
-        The aircraft file: the simulator's model of today.
+        Aircraft file that describes the simulator under diagnosis.
     holdout
-        Number of manoeuvres, the last ones, on which the shrink is measured. Parameters are fitted without
-        them; which effects are present is judged on all. None: every manoeuvre is held out in turn.
+        Number of the last manoeuvres that are held out to measure the shrink of the gap. The parameters are
+        fitted without the held-out manoeuvres; the effects are selected on all manoeuvres. None: every
+        manoeuvre is held out in turn.
     progress
         Function that receives a sentence and the share of the work that is done, 0 to 1.
     prior
-        How often each kind of answer is right before a flight is looked at.
+        Prior probability of each kind of answer.
 
     Raises
     ------
@@ -95,7 +96,7 @@ def examine(
     progress: Progress = lambda *_: None,
     prior: FieldPrior = FIELD,
 ) -> Examined:
-    """Diagnose like ``diagnose``, and return the findings too, so that a user's simulator can fly the result.
+    """Return the diagnosis of ``diagnose`` together with its findings, for flights in a user's simulator.
 
     Raises
     ------
@@ -185,7 +186,7 @@ def _without_dead_pitot(maneuver: Maneuver) -> Maneuver:
 
 
 def _with_speed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Aircraft:
-    """Return the aircraft with the air speed that the motion implies, if file and log leave it open."""
+    """Return the aircraft with the air speed that the motion implies, if file and log state none."""
     if aircraft.stated_airspeed_m_s or all(measures_speed(m) for m in maneuvers):
         return aircraft
     return replace(aircraft, airspeed_m_s=speed_of_the_motion(maneuvers))

@@ -1,7 +1,7 @@
-"""Effects that the simulator under diagnosis has already, as its aircraft file states.
+"""Effects that the aircraft file already states for the simulator under diagnosis.
 
-Known effects are part of every model. A file that ``advisor gap`` improved is therefore judged as it flies,
-and a diagnosis finds the rest of the gap.
+The effects of the aircraft file are part of every model. A diagnosis with an improved aircraft file therefore
+finds the rest of the gap.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -21,7 +21,7 @@ from advisor.gap.records.flights import PreparedManeuvers
 _IN_FILE = 1e-5
 """Relative precision of a number in the improved file, which has six digits."""
 Effects = Mapping[str, Mapping[str, float]]
-"""Effect name to its parameters, in the units of the aircraft file."""
+"""Parameters of each effect, by the effect's name, in the units of the aircraft file."""
 AIR = frozenset(name for name, effect in EFFECTS.items() if effect.block == "air")
 """Effects of moving air, which no fit can carry from one flight to another."""
 
@@ -29,7 +29,8 @@ AIR = frozenset(name for name, effect in EFFECTS.items() if effect.block == "air
 def with_known(
     base: FloatArray, effects: Effects, flights: PreparedManeuvers, variants: Sequence[Variant]
 ) -> FloatArray:
-    """Return the driving numbers, shape (manoeuvres, entries): ``base``, (entries,), with file effects."""
+    """Return the simulator's inputs of each manoeuvre, shape (manoeuvres, entries), with the file's effects
+    added."""
     numbers = np.tile(base, (len(flights), 1))
     for variant, values in _as_stated(lasting(effects), variants):
         variant.apply(numbers, values, flights)
@@ -37,12 +38,12 @@ def with_known(
 
 
 def changes_in(effects: Effects, variants: Sequence[Variant]) -> tuple[tuple[Variant, Values], ...]:
-    """Return the file's changes in flight, of mass, balance or ice, with their sizes."""
+    """Return the aircraft file's changes in flight, of mass, balance or ice, with their sizes."""
     return tuple(_as_stated({e: effects[e] for e in effects if EFFECTS[e].of_one_flight}, variants))
 
 
 def _as_stated(effects: Effects, variants: Sequence[Variant]) -> Iterator[tuple[Variant, Values]]:
-    """Yield the description of each effect that says most of what the file states, and its values."""
+    """Yield the variant of each effect that describes most of the file's entry, and its values."""
     for effect, parameters in effects.items():
         described = [w for v in variants if v.effect == effect for w in (v, *v.likewise)]
         meant = [w for w in described if _says(w, parameters)]
@@ -51,7 +52,8 @@ def _as_stated(effects: Effects, variants: Sequence[Variant]) -> Iterator[tuple[
 
 
 def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]:
-    """Return the remaining candidates. A single parameter may differ from the file's; a shape is kept."""
+    """Return the candidates for effects beyond those that the aircraft file states. An effect with one
+    parameter may differ from the file's value; the shape of any other effect is fixed."""
     left = []
     for variant in variants:
         known = {} if EFFECTS[variant.effect].of_one_flight else effects.get(variant.effect, {})
@@ -77,8 +79,8 @@ def beyond_servo(aircraft: Aircraft, variants: Sequence[Variant]) -> list[Varian
 def less_of_the_servo(
     aircraft: Aircraft, effects: Effects
 ) -> tuple[Aircraft, dict[str, Mapping[str, float]]]:
-    """Return the aircraft with a quicker servo than its file states, and the effects that then have positive
-    sizes.
+    """Return the aircraft with negative servo effects subtracted from its lag or delay, and the other
+    effects.
 
     No simulator flies a negative lag or delay, so such a value is subtracted from the file's.
     """
@@ -94,7 +96,7 @@ def less_of_the_servo(
 
 
 def stated_in(aircraft: Aircraft, effect: str) -> float | None:
-    """Return the number that the aircraft file states of an effect; None where it states nothing."""
+    """Return the value that the aircraft file states for an effect; None where it states nothing."""
     where = EFFECTS[effect].stated
     stated: float | None = None if where is None else getattr(getattr(aircraft, where[0]), where[1])
     return stated
@@ -106,15 +108,15 @@ def lasting(effects: Effects) -> Effects:
 
 
 def left_aside(effects: Effects, *shown: Collection[str]) -> tuple[str, ...]:
-    """Return the file's effects that a flight does not show."""
+    """Return the names of the file's effects that a flight does not show."""
     return tuple(effect for effect in effects if not any(effect in some for some in shown))
 
 
 def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
-    """Return the file's effects combined with those that were found beyond them.
+    """Return the aircraft file's effects combined with the newly found effects.
 
-    The first parameter of a known effect adds to the file's. Other parameters, such as the damping of a
-    servo, replace the file's, as does the propeller's share, which counts from zero.
+    The first parameter of a found effect adds to the file's value. Other parameters, such as the damping of a
+    servo, replace the file's value.
     """
     both = {effect: dict(values) for effect, values in known.items()}
     for effect, values in found.items():
@@ -152,13 +154,14 @@ def _says(variant: Variant, parameters: Mapping[str, float]) -> bool:
 
 
 def _is_meant(variant: Variant, parameters: Mapping[str, float], variants: Sequence[Variant]) -> bool:
-    """Return whether the variant describes what the file states, and no other of it describes more."""
+    """Return whether the variant describes the file's entry best among all variants."""
     same = [v for v in variants if v.effect == variant.effect and _says(v, parameters)]
     return _says(variant, parameters) and all(len(v.fixed) <= len(variant.fixed) for v in same)
 
 
 def _values(variant: Variant, parameters: Mapping[str, float]) -> list[float]:
-    """Return the variant's parameters from the file's: the inverse of ``causes.parameters_of``."""
+    """Return the variant's parameter values from the aircraft file's entry: the inverse of
+    ``causes.parameters_of``."""
     spelled = {name: (key, factor) for key, (name, factor) in variant.in_file.items()}
     if spelled:
         keys = [spelled[name] for name in variant.names]

@@ -20,18 +20,18 @@ LOOP = Variant(
     "latency", "input", ("latency_s",), ((0.001,),), (5e-4,), ((-0.004, 0.005),), 0.0,
     entries=("latency_s",), is_nuisance=True,
 )  # fmt: skip
-"""Nuisance parameter until the motion of the command between its stamps is known. Stamps have a resolution,
-and a command takes effect within a loop of the autopilot."""
+"""Delay of the command between its stamps: a nuisance parameter until the command's motion is known. Stamps
+have a resolution, and a command takes effect within a loop of the autopilot."""
 
 PROPELLER = Variant(
     "propeller", "moment_equation", ("M_thrust", "washed_share", "blown_share"), ((0.0, 0.0, 0.0),),
     (0.05, 0.05, 0.05), ((-100.0, 100.0), (-1.0, 2.0), (-10.0, 10.0)), 0.0,
     entries=("M_thrust", "washed_share", "blown_share"), prior_std=(5.0, 0.5, 3.0), is_nuisance=True,
 )  # fmt: skip
-"""Nuisance parameters of every model with a measured air speed. The thrust's share of the trim does not grow
-with V². An elevator in the propeller's wake meets more than the dynamic pressure of the stream, by thrust
-over disk area (Glauert's momentum theory). Thrust is drag, which grows with V², plus the acceleration along
-the path. In a light single the wake adds about a fifth of the elevator's power."""
+"""Nuisance parameters of every model with a measured air speed. The thrust's part of the trim does not grow
+with V². An elevator in the propeller's wake meets a higher dynamic pressure, by thrust over disk area
+(Glauert). Thrust is drag, which grows with V², plus the acceleration along the path. In a light single-engine
+aircraft the wake adds about a fifth of the elevator's power."""
 
 TRUE_AIR_SPEED = Variant(
     "true_air_speed", "accelerometer", ("scale",), ((0.0,),), (0.002,), ((-0.7, 3.0),), 0.0,
@@ -50,7 +50,7 @@ scale."""
 
 
 def _late_imu(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
-    """Make pitch rate and acceleration late by one time."""
+    """Delay pitch rate and acceleration by one common time."""
     p[:, [INDEX[SKEWS[OUTPUTS.index(channel)]] for channel in ("q", "a_z")]] += values[0]
 
 
@@ -65,11 +65,11 @@ parameter, and in 3 with it."""
 
 
 def latency(flights: PreparedManeuvers) -> Variant:
-    """Return the delay of the command behind its stamps, a nuisance parameter of every model.
+    """Return the nuisance parameter for the command's delay behind its stamps.
 
     An autopilot renews the command at one rate and a stream samples it at another, with a phase that differs
-    from flight to flight. The prior is that of the estimate (``lateness``). Its standard deviation is also
-    the largest such delay, because the 28 flights behind it stay within.
+    from flight to flight. The prior is that of the estimate (``lateness``). The prior's standard deviation is
+    also the largest delay, because all 28 flights stay within it.
     """
     std = lateness_std([flight.t_u for flight in flights.flights])
     return Variant(

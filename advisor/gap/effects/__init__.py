@@ -1,6 +1,6 @@
-"""The effects that a diagnosis can name: one module for each, which makes its ``EFFECT``.
+"""Effects that a diagnosis can name, with one module for each effect.
 
-A new module is found by itself.
+A new module in this folder is added to the catalogue automatically.
 """
 
 from collections.abc import Iterator

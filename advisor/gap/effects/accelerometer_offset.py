@@ -9,7 +9,7 @@ from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 
 _CHORDS = 1.0
-"""Standard deviation of an accelerometer's arm over the chord: an IMU lies within the wing's chord."""
+"""Prior standard deviation of an accelerometer's arm over the chord: an IMU lies within the wing's chord."""
 
 ARM = Variant(
     "accelerometer_offset", "accelerometer", ("arm_m",), ((0.0,),), (0.01,), ((-10.0, 10.0),), ARM_M,

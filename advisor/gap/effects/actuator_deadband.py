@@ -13,16 +13,16 @@ from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
 _TRIMS_DIFFER_RAD = 0.005
-"""Least range of the trims in rad that distinguishes a dead band moving with the trim from a fixed one."""
+"""Least range of the trims, rad, at which a dead band about the trim differs from a fixed one."""
 
 
 def _trims(flights: PreparedManeuvers) -> FloatArray:
-    """Return the deflection before each manoeuvre, rad, shape (manoeuvres,)."""
+    """Return the trim deflection before each manoeuvre, rad, shape (manoeuvres,)."""
     return np.array([flight.u_trim for flight in flights.flights])
 
 
 def _about_neutral(p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:
-    """Set a dead band about one deflection of the aircraft, whatever the trim of each manoeuvre.
+    """Set a dead band about one fixed deflection, whatever the trim of each manoeuvre.
 
     The band need not lie about the trim, because pilots and autopilots trim to one edge of the band.
     """

@@ -13,7 +13,7 @@ _TWO_POWERS = 0.1
 
 
 def _powers(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
-    """Set the powers of the air speed of the moments and of the lift; moments include the lift's."""
+    """Set the powers of the air speed for the moments and for the lift."""
     of_moments, of_lift = values
     p[:, INDEX["speed_power"]] += of_lift
     p[:, INDEX["moment_power"]] += of_moments - of_lift

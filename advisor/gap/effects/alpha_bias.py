@@ -1,4 +1,4 @@
-"""The angle of attack has a constant offset, which the climb rate shows and no fit tells from the trim."""
+"""The angle of attack has a constant offset, which the climb rate shows."""
 
 from advisor.gap.kit.effect import ANY, Effect, Need, not_fitted
 from advisor.gap.records.flights import PreparedManeuvers

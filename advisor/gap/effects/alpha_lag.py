@@ -1,4 +1,4 @@
-"""The angle of attack passes a lag."""
+"""The angle of attack passes a first-order lag."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""The angle of attack reads too much or too little."""
+"""The angle of attack has a scale error."""
 
 from advisor.gap.kit.effect import ANY, Effect, Need, always
 from advisor.gap.kit.variant import Variant

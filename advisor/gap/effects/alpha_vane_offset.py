@@ -8,7 +8,7 @@ from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 
 _CHORDS = 4.0
-"""Standard deviation of a vane's arm over the chord: a vane on a nose boom is four chords ahead."""
+"""Prior standard deviation of a vane's arm over the chord: a vane on a nose boom is four chords ahead."""
 
 
 def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:

@@ -1,4 +1,4 @@
-"""The centre of gravity moves between manoeuvres, which changes all moments or the stability alone."""
+"""The centre of gravity moves between manoeuvres, so that all moments or the stability alone change."""
 
 from collections.abc import Sequence
 from dataclasses import replace

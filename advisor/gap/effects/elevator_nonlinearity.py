@@ -1,4 +1,4 @@
-"""The elevator's moment bends with its deflection."""
+"""The elevator's moment is nonlinear in its deflection."""
 
 from advisor.gap.kit.curve import Curve, bending
 from advisor.gap.kit.effect import ANY, Effect

@@ -1,4 +1,4 @@
-"""Near the ground all lift grows by a share, or the trim alone changes."""
+"""Near the ground the lift grows by a constant share, or the trim alone changes."""
 
 from collections.abc import Sequence
 

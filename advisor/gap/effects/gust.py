@@ -1,4 +1,4 @@
-"""The air moves once, or a few times."""
+"""A gust disturbs the flight once or a few times."""
 
 from advisor.gap.kit.effect import ANY, Effect, Need, not_fitted
 

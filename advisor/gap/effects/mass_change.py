@@ -1,4 +1,4 @@
-"""The mass changes between manoeuvres, with an equal or its own change of inertia."""
+"""The mass changes between manoeuvres, with an equal or an independent change of inertia."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -18,7 +18,7 @@ _MASS_AND_INERTIA = Variant(
 
 
 def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
-    """Return a change of mass with equal change of inertia; a step also has its own inertia as alternative.
+    """Return changes of mass with equal change of inertia; a step may also change the inertia independently.
 
     Mass far from the centre of gravity adds more inertia than mass near it.
     """
@@ -34,8 +34,7 @@ def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
 
 
 def _divided_separately(p: FloatArray, values: Values, share: FloatArray) -> None:
-    """Divide forces by the growth of mass and moments by the growth of inertia, in manoeuvres that have the
-    change."""
+    """Divide forces by the growth of mass, and moments by the growth of inertia, after the change."""
     for change, growth in zip((divide(*_FORCES), divide(*_MOMENTS)), values, strict=True):
         change(p, growth * share)
 

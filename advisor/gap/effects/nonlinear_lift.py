@@ -1,4 +1,4 @@
-"""The lift bends with the angle of attack, or the flow separates."""
+"""The lift is nonlinear in the angle of attack, or the flow separates."""
 
 from collections.abc import Sequence
 

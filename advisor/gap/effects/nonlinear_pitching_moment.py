@@ -1,4 +1,4 @@
-"""The pitching moment bends with the angle of attack."""
+"""The pitching moment is nonlinear in the angle of attack."""
 
 from advisor.gap.kit.curve import Curve, bending
 from advisor.gap.kit.effect import ANY, Effect

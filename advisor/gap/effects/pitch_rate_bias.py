@@ -4,7 +4,8 @@ from advisor.gap.kit.effect import ANY, Effect, always
 from advisor.gap.kit.variant import Variant
 
 _LEAST_RAD_S = 0.00175
-"""Least bias that is named, rad/s (0.1 deg/s): the rest after a gyro was set to zero on the ground."""
+"""Least bias of the pitch rate that is named, rad/s (0.1 deg/s): the residual after calibration on the
+ground."""
 _BIAS = Variant(
     "pitch_rate_bias", "pitch_rate_sensor", ("bias_rad_s",), ((0.0,),), (5e-4,), ((-0.5, 0.5),),
     _LEAST_RAD_S, entries=("q_bias",),

@@ -1,4 +1,4 @@
-"""The pitch rate reads too much or too little."""
+"""The pitch rate has a scale error."""
 
 from advisor.gap.kit.effect import ANY, Effect, always
 from advisor.gap.kit.variant import Variant

@@ -1,4 +1,4 @@
-"""The structure bends and swings, and the gyro turns with it."""
+"""A structural mode oscillates and turns the gyro with the structure."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
 _MODES_HZ = (2.5, 4.0, 6.0, 8.5)
-"""Frequencies in Hz at which the search starts."""
+"""Frequencies of the structural mode, Hz, at which the search starts."""
 _MODE = Variant(
     "structural_mode", "pitch_rate_sensor", ("gain", "rate_gain", "omega_rad_s", "damping"),
     tuple((0.0, 0.0, 2.0 * np.pi * hz, 0.05) for hz in _MODES_HZ), (0.02, 0.02, 0.1, 0.005),

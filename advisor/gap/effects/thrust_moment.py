@@ -1,4 +1,4 @@
-"""Thrust makes a pitching moment, at once or behind the throttle."""
+"""Thrust makes a pitching moment, with or without a lag behind the throttle."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""The surface answers its command after a delay."""
+"""The surface moves a constant time after its command."""
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.effect import Effect, always
@@ -9,7 +9,7 @@ from advisor.gap.simulator.layout import INDEX
 
 
 def _delay(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
-    """Set the whole delay: where the delay is free, it includes that between command and telemetry."""
+    """Set the total delay of the command, which includes the delay of telemetry."""
     p[:, INDEX["delay_s"]] += values[0]
     p[:, INDEX["latency_s"]] = 0.0
 
@@ -18,8 +18,8 @@ DELAY = Variant(
     "transport_delay", "input", ("delay_s",), ((0.005,), (0.03,), (0.1,)), (1e-3,), ((0.0, 0.5),), LEAST_S,
     apply_with=_delay,
 )  # fmt: skip
-"""The whole delay of the command. The model without it has the delay of telemetry (``latency``), so that only
-a longer one changes anything."""
+"""Total delay between command and surface. A model without the effect has the delay of telemetry
+(``latency``), so only a longer delay changes the outputs."""
 
 EFFECT = Effect(
     name="transport_delay",

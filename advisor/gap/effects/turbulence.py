@@ -1,4 +1,4 @@
-"""The air moves throughout the flight."""
+"""Turbulence disturbs the whole flight."""
 
 from advisor.gap.kit.effect import Effect, Need, not_fitted
 

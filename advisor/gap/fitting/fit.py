@@ -17,16 +17,16 @@ from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts, row_
 from advisor.gap.fitting.step import SearchStep, solve_blocks
 
 _SETTLED = 0.02
-"""Numerical: relative change of the weights below which weights and nuisance parameters have converged at one
-linearisation."""
+"""Numerical: relative change of the weights at which the iteration of weights and nuisance parameters
+ends."""
 _SHORTER = 0.3
 """Numerical: factor by which a step that raises the cost is shortened."""
 _SHORTEST = 0.05
-"""Numerical: least length of a step, relative to the full step. Below this length the roughness of the cost,
-which comes from the simulation's grid, decides."""
+"""Numerical: least length of a shortened step, relative to the full step. Below this length the simulation's
+grid makes the cost rough."""
 _FURTHER = 5.0
-"""Numerical: further decrease of the cost that a search can bring at most, in multiples of the decrease
-promised by the next step."""
+"""Numerical: upper bound of a search's further decrease of the cost, over the decrease that the next step
+promises."""
 _EDGES_DIFFER = 0.05
 """Numerical: root mean square shift of the command's edges, in intervals between stamps, above which the
 model is linearised again before a search ends."""
@@ -34,7 +34,7 @@ model is linearised again before a search ends."""
 
 @dataclass(frozen=True)
 class EffectFit:
-    """The result of a search."""
+    """Result of a search for the least cost."""
 
     point: SearchPoint
     noise: FloatArray
@@ -100,9 +100,9 @@ def fit(
     Parameters
     ----------
     beaten_by
-        Cost of a rival: the search is given up as soon as that cost is out of reach.
+        Cost of a rival fit: the search ends as soon as it cannot fall below that cost.
     aside
-        Manoeuvres that are left out of the cost.
+        Indices of manoeuvres that are left out of the cost.
     """
     linear = _without(linearise(problem, start), aside)
     weights = 1.0 / (residual_noise(problem, [b.residual for b in linear]) if noise is None else noise)
@@ -134,7 +134,7 @@ def fit(
 
 
 def _edges_differ(one: SearchPoint, other: SearchPoint) -> bool:
-    """Return whether the edges of two points differ. Unknown edges lie at their stamps."""
+    """Return whether the command's edges of two points differ. Unknown edges are placed at their stamps."""
     assert other.edges is not None
     there = np.concatenate(other.edges)
     shift = there if one.edges is None else there - np.concatenate(one.edges)
@@ -142,8 +142,7 @@ def _edges_differ(one: SearchPoint, other: SearchPoint) -> bool:
 
 
 def _without(linear: tuple[Linear, ...], aside: Collection[int]) -> tuple[Linear, ...]:
-    """Return the linear model with zero residual and zero sensitivities to shared parameters in some
-    manoeuvres."""
+    """Return the linear model with zero residual and zero shared sensitivities in some manoeuvres."""
     return tuple(
         replace(block, columns=block.columns * (np.arange(block.columns.shape[1]) < block.m))
         if i in aside
@@ -154,12 +153,12 @@ def _without(linear: tuple[Linear, ...], aside: Collection[int]) -> tuple[Linear
 
 @dataclass(frozen=True)
 class _Place:
-    """A point that was simulated, with the step from there."""
+    """A simulated point, with the Gauss-Newton step from there."""
 
     point: SearchPoint
-    """Point with its edges at their estimates."""
+    """Point with the command's edges at their estimates."""
     has_its_edges: bool
-    """Whether the estimated edges are near those of the linearisation."""
+    """Whether the estimated edges of the command are near those of the linearisation."""
     linear: tuple[Linear, ...]
     weights: FloatArray
     """Shape (channels,): weights of the model after the step."""
@@ -190,8 +189,8 @@ def _settled(
 def evidence_of(problem: EffectProblem, fitted: EffectFit) -> float:
     """Return -2 log marginal likelihood, up to a constant common to both readings of the command.
 
-    The cost is increased by the freedom that edges and air speeds have within their priors, log det(I + Λ
-    A_eᵀ W A_e). Parameters with a flat prior are eliminated.
+    The cost is increased by log det(I + Λ A_eᵀ W A_e), for the prior freedom of edges and air speeds.
+    Parameters with a flat prior are eliminated.
     """
     total = fitted.cost
     for i, block in enumerate(fitted.linear):

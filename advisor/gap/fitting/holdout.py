@@ -1,8 +1,8 @@
-"""Hold-out: how a model predicts manoeuvres that were left out of its fit.
+"""Hold-out: prediction error of a model on manoeuvres that were left out of its fit.
 
-The fit is linear about the optimum. Leaving out a fold moves the shared parameters by (H − H_f)⁻¹ g_f,
-without a simulation. Only the nuisance parameters of a held-out manoeuvre are refitted. Folds are
-interleaved and rotated, because a gust or a change may fall into any fold.
+The fit is linear about the optimum. The omission of a fold moves the shared parameters by (H − H_f)⁻¹ g_f,
+without a simulation. Only the nuisance parameters of a held-out manoeuvre are refitted. Folds are interleaved
+and rotated, because a gust or a change may fall into any fold.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -19,15 +19,15 @@ from advisor.gap.simulator.layout import DERIVATIVES, HEIGHT, SPEED, THROTTLE
 from advisor.oem.arrow import solved_within
 
 _INDIFFERENT = 3e-4
-"""Numerical: relative information below which a direction of the shared parameters is not moved. Such a
+"""Numerical: relative information below which a direction of the shared parameters is kept fixed. Such a
 direction changes no prediction, but a long step leaves the range in which the model is linear."""
 _ANCHOR = 1e-3
-"""Prior: weight of the prior "no effect" relative to the information of all manoeuvres on a parameter. The
-prior is no stronger than a guess with the parameter's own size as standard deviation."""
+"""Prior: weight of the prior "no effect", over the information of all manoeuvres on a parameter. The prior's
+standard deviation is at least the parameter's own size."""
 _SOLE_SHARE = 0.9
 """Share of the information on a parameter above which a single manoeuvre counts as its only source."""
 _NEEDED = (SPEED, THROTTLE, HEIGHT)
-"""Rows of the slow inputs that some effects need."""
+"""Rows of the slow inputs (air speed, throttle, height) that some effects need."""
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,9 @@ class HeldOut:
 
 
 def folds_of(n: int, shifted: bool = False) -> list[list[int]]:
-    """Return three interleaved folds, or one per manoeuvre where there are fewer than three.
+    """Return three interleaved folds of manoeuvres; fewer than three manoeuvres give one fold each.
 
-    ``shifted`` distributes manoeuvres that lie three apart over different folds.
+    ``shifted`` puts manoeuvres that lie three apart into different folds.
     """
     k = min(3, n)
     fold = [(i + shifted * (i // k)) % k for i in range(n)]
@@ -57,10 +57,11 @@ def folds_of(n: int, shifted: bool = False) -> list[list[int]]:
 
 
 def folds_for(flights: PreparedManeuvers) -> list[list[int]]:
-    """Return folds that keep rare sources of information apart, so that each can be confirmed.
+    """Return folds in which manoeuvres with rare information are separated, so that each can confirm the
+    other.
 
-    Where throttle, height or air speed varies in two manoeuvres only, each fold must hold one of the two. If
-    one fold held both, the others would know nothing.
+    If throttle, height or air speed varies in two manoeuvres only, each of two folds holds one of them. A
+    fold with both manoeuvres would leave no information in the other folds.
     """
     power = np.array([np.var(f.slow[list(_NEEDED)], axis=1) for f in flights.flights])
     shares = power / np.maximum(np.sum(power, axis=0), 1e-300)
@@ -77,7 +78,8 @@ def folds_for(flights: PreparedManeuvers) -> list[list[int]]:
 def hold_out(
     problem: EffectProblem, fitted: EffectFit, folds: Sequence[Sequence[int]] | None = None
 ) -> HeldOut:
-    """Predict every fold from a fit of the others. A single manoeuvre keeps the residuals of its own fit."""
+    """Predict every fold of manoeuvres from a fit of the other folds. A single manoeuvre has the residuals of
+    its own fit."""
     n = len(problem.flights)
     residuals: list[FloatArray] = [np.empty(0)] * n
     innovations: list[FloatArray] = [np.empty(0)] * n
@@ -92,8 +94,8 @@ def hold_out(
 def _without_each(
     problem: EffectProblem, fitted: EffectFit, folds: Sequence[Sequence[int]] | None
 ) -> Iterator[tuple[Sequence[int], FloatArray, Sequence[FloatArray]]]:
-    """Yield each fold, the step of the shared parameters without it, and the response of the nuisance
-    parameters."""
+    """Yield each fold, the shared parameters' step without that fold, and the nuisance parameters'
+    response."""
     n = len(problem.flights)
     chosen = folds_for(problem.flights) if folds is None else folds
     weights = 1.0 / fitted.noise
@@ -133,10 +135,9 @@ def _without_effect(point: SearchPoint) -> FloatArray:
 def measured_in(
     problem: EffectProblem, held: HeldOut, fitted: EffectFit, sole_maneuvers: Collection[int]
 ) -> HeldOut:
-    """Return the hold-out with the residuals of the fit in some manoeuvres.
+    """Return the hold-out with the fit's residuals in some manoeuvres.
 
-    The manoeuvres in ``sole_maneuvers`` alone determine some parameter, so that no other manoeuvre predicts
-    them.
+    Each manoeuvre in ``sole_maneuvers`` alone determines some parameter, so no other manoeuvre predicts it.
     """
 
     def chosen(inside: Sequence[FloatArray], kept_out: Sequence[FloatArray]) -> list[FloatArray]:
@@ -148,7 +149,8 @@ def measured_in(
 
 
 def sole_informative_maneuver(fitted: EffectFit, index: int) -> int | None:
-    """Return the one manoeuvre that determines a shared parameter; None where another could confirm it."""
+    """Return the only manoeuvre that determines a shared parameter; None where another manoeuvre could
+    confirm it."""
     weights = 1.0 / fitted.noise
     information = [own_eliminated(block, weights)[0][index, index] for block in fitted.linear]
     return int(np.argmax(information)) if max(information) > _SOLE_SHARE * sum(information) else None
@@ -157,7 +159,8 @@ def sole_informative_maneuver(fitted: EffectFit, index: int) -> int | None:
 def held_out(
     problem: EffectProblem, residuals: Sequence[FloatArray], innovations: Sequence[FloatArray] | None = None
 ) -> HeldOut:
-    """Return residuals with their mean squares. Without ``innovations`` the residuals take their place."""
+    """Return residuals with their mean squares. Without ``innovations`` the residuals serve as
+    innovations."""
     whitened = tuple(residuals if innovations is None else innovations)
     return HeldOut(
         tuple(residuals), whitened,

@@ -20,13 +20,13 @@ _LEAST_SCALE = np.array([0.5, 0.05, 0.1, 1.0, 0.5, 1.0])
 """Numerical: least size of each derivative for its finite-difference step, in the units of
 ``DERIVATIVES``."""
 _NEAR, _STEPS = 0.02, 2.0
-"""Numerical: largest change within which sensitivities to nuisance parameters are reused. Derivatives count
-relative to their size, parameters of effects in finite-difference steps."""
+"""Numerical: largest change of parameters within which sensitivities to nuisance parameters are reused. The
+change of a derivative is relative to its size; that of an effect's parameter is in steps."""
 _OWN_STEPS = np.array([1e-4, 1e-4, 1e-3, 1e-3])
 """Numerical: finite-difference steps of initial states (rad, rad/s) and trim terms (1/s, 1/s²)."""
 _OFFSETS = {"a_z": 0.5, "theta": 0.035}
-"""Prior: prior standard deviation of an instrument's offset in a manoeuvre, by channel, SI. An accelerometer
-that is not calibrated is off by 0.05 g, and an attitude by 2 deg."""
+"""Prior: standard deviation of an instrument's offset in a manoeuvre, by channel, SI. An uncalibrated
+accelerometer is off by 0.05 g, and an attitude by 2 deg."""
 _SPEEDS = ("speed_level_m_s", "speed_slope_m_s", "speed_bow_m_s")
 _SPEED_STEP = 1e-3
 """Numerical: finite-difference step of the air speed, relative."""
@@ -35,11 +35,10 @@ _TIMES = frozenset({"latency_s", "delay_s", "skew_s"})
 _PULSE = 1e-4
 """Numerical: area of the disturbance that measures a pulse response: small enough for a linear response."""
 _EDGE_VARIANCE = 1.0 / 12.0
-"""Prior: variance of the place of an edge between two stamps, in squared intervals: uniform over the
+"""Prior: variance of an edge's position between two stamps, in squared intervals: uniform over the
 interval."""
 _SHARES = (1.0 / 6.0, 0.5, 5.0 / 6.0)
-"""Numerical: places of three pulses that replace one pulse while a servo runs at its limit: the middles of
-thirds of that time."""
+"""Numerical: positions of three pulses, as shares of the time in which a servo runs at its limit."""
 _HELD_JITTER_S = 0.0015
 """Prior: standard deviation in s of the time at which a held command changes, relative to its stamp: the
 stamp's resolution."""
@@ -47,7 +46,7 @@ stamp's resolution."""
 
 @dataclass(frozen=True)
 class SensitivityColumns:
-    """Residual and sensitivities of one manoeuvre as columns of one array, for operations on all."""
+    """Residual and sensitivities of one manoeuvre, as the columns of one array."""
 
     columns: FloatArray
     """Shape (rows, m + k + 1): sensitivities to m nuisance and k shared parameters, and the residual."""
@@ -55,7 +54,7 @@ class SensitivityColumns:
 
     @property
     def own(self) -> FloatArray:
-        """Shape (rows, m): sensitivities to initial states, trim, offsets, speed errors and edges."""
+        """Shape (rows, m): sensitivities to initial states, trim, offsets, air speed errors and edges."""
         return self.columns[:, : self.m]
 
     @property
@@ -65,7 +64,7 @@ class SensitivityColumns:
 
     @property
     def residual(self) -> FloatArray:
-        """Shape (rows,): measured minus simulated."""
+        """Shape (rows,): measured minus simulated outputs."""
         return self.columns[:, -1]
 
     def after(self, step: FloatArray, own: FloatArray) -> FloatArray:
@@ -75,7 +74,7 @@ class SensitivityColumns:
 
 @dataclass(frozen=True)
 class Linear(SensitivityColumns):
-    """The linear model of one manoeuvre about a point, as innovations without weights."""
+    """Linear model of one manoeuvre about a point, whose rows are unweighted innovations."""
 
     prior: FloatArray
     """Shape (m,): inverse prior variances of the nuisance parameters, 0 for flat priors."""
@@ -84,14 +83,13 @@ class Linear(SensitivityColumns):
     measured: SensitivityColumns
     """Residual and sensitivities in the units of the channels, before the filter."""
     channels: tuple[slice, ...]
-    """Rows of each channel."""
+    """Rows of each channel in the stacked vector."""
 
     @cached_property
     def products(self) -> FloatArray:
         """Shape (channels, m + k + 1, m + k + 1): inner products of all columns, by channel.
 
-        Every normal equation is a weighted sum of the products of rows, so new weights need no pass over the
-        rows.
+        Every normal equation is a weighted sum of these products, so new weights need no pass over the rows.
         """
         return np.stack([self.columns[rows].T @ self.columns[rows] for rows in self.channels])
 
@@ -103,7 +101,7 @@ class Linear(SensitivityColumns):
 
 
 def _stepped(step: FloatArray, own: FloatArray) -> FloatArray:
-    """Return the weights with which the columns sum to the residual after a step."""
+    """Return the column weights whose sum is the residual after a step."""
     return np.concatenate([-own, -step, [1.0]])
 
 
@@ -119,7 +117,7 @@ def shared_steps(point: SearchPoint) -> FloatArray:
 
 
 def _scale(point: SearchPoint) -> FloatArray:
-    """Return the size of each derivative for its finite-difference step, shape (6,)."""
+    """Return the size of each derivative that scales its finite-difference step, shape (6,)."""
     return np.asarray(np.maximum(np.abs(point.derivatives), _LEAST_SCALE))
 
 
@@ -148,14 +146,14 @@ def measured_columns(
     """Return residual and sensitivities of manoeuvre ``i`` in its channels' units, by one-sided differences.
 
     Sensitivities to edges are shifted responses to an impulse at the start, because the model is nearly
-    linear and nearly time-invariant over a manoeuvre. All others are simulated.
+    linear and nearly time-invariant over a manoeuvre. All other sensitivities are simulated.
 
     Parameters
     ----------
     p
-        Shape (entries,): driving numbers of the point.
+        Shape (entries,): simulator inputs of the point.
     shifted
-        Shape (k, entries): driving numbers with each of the shared parameters moved by its step.
+        Shape (k, entries): simulator inputs with each shared parameter moved by its step.
     steps
         Shape (k,): steps of the shared parameters.
     edges
@@ -195,7 +193,7 @@ def measured_columns(
 def _answers_to_edges(
     problem: EffectProblem, flight: PreparedManeuver, pulse: FloatArray, p: FloatArray
 ) -> FloatArray:
-    """Return the change of the outputs by a shift of each edge by its interval, shape (rows, edges)."""
+    """Return the change of the outputs when each edge moves by its interval, shape (rows, edges)."""
     delays, areas = _pulses(problem, flight, p)
     parts = [problem.read_delayed(flight, pulse, begin, p) * areas for begin in delays]
     return np.asarray(sum(parts))
@@ -204,10 +202,10 @@ def _answers_to_edges(
 def _pulses(
     problem: EffectProblem, flight: PreparedManeuver, p: FloatArray
 ) -> tuple[list[FloatArray], FloatArray]:
-    """Return the delays and the areas of the pulses that equal a shift of each edge by its interval.
+    """Return the delays and areas of pulses that equal a move of each edge by its interval.
 
-    The answer to a shifted edge is in general one pulse at the edge. A servo at its limit runs on after the
-    edge, and is late all that time.
+    A moved edge usually equals one pulse at the edge. A servo at its limit moves on after the edge, and the
+    move delays all that motion.
     """
     begin = flight.edges[:, 0] + p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
     if problem.held:
@@ -230,8 +228,8 @@ def _offsets(problem: EffectProblem, flight: PreparedManeuver) -> FloatArray:
 def _own_prior(problem: EffectProblem, flight: PreparedManeuver, own: int) -> FloatArray:
     """Return the inverse prior variances of a manoeuvre's nuisance parameters, 0 if flat, shape (own,).
 
-    Edges come last. Errors of the air speed come before the edges, in units of their own standard deviation.
-    Initial states and trim come first, then offsets.
+    Edges of the command come last. Errors of the air speed come before the edges, in units of their own
+    standard deviation. Initial states and trim come first, then offsets of instruments.
     """
     prior = np.zeros(own)
     prior[: len(NUISANCES)] = own_precision(flight)
@@ -277,9 +275,9 @@ def linearise(
     ``near`` is a linear model about a nearby point, whose sensitivities to nuisance parameters other than
     edges are reused. ``shared`` is False where no sensitivities to shared parameters are needed.
 
-    Edges may lie far from their stamps, as in a command logged 25 times per second. A search that kept their
-    sensitivities while a delay changes would go astray. The search would end where its own gradient vanishes
-    and the gradient of the cost does not.
+    Edges of the command may lie far from their stamps, as in a command logged 25 times per second. A search
+    with constant sensitivities to edges would diverge while a delay changes. Such a search would end at a
+    false optimum, where the gradient of the cost does not vanish.
     """
     p, steps = problem.driving(point), shared_steps(point) if shared else np.empty(0)
     there = shifted_points(point, range(len(steps)))

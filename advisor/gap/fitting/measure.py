@@ -16,13 +16,12 @@ _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
 """Words: limits of the frequency bands in Hz. The short period lies in the middle bands, drift of the trim
 below, structure and noise above."""
 _EDGE_S = 0.2
-"""Words: time in s after a step that counts as the step's edge, where faults between command and surface
-show."""
+"""Words: time in s after a step of the command that belongs to the step's edge."""
 PHASES = ("step edge", "plateau", "free response")
 
 
 def gap_of(mean_square: FloatArray, floor: FloatArray) -> FloatArray:
-    """Return the mean square over the floor's square, minus 1, but never less than 0."""
+    """Return the gap of each channel: mean square error over the squared noise floor, minus 1, at least 0."""
     return np.maximum(mean_square / floor**2 - 1.0, 0.0)
 
 
@@ -34,7 +33,7 @@ def whole_gap(mean_square: FloatArray, floor: FloatArray) -> float:
 def by_phase(
     problem: EffectProblem, residuals: Sequence[FloatArray], floor: FloatArray
 ) -> Mapping[str, float]:
-    """Return the gap just after the steps, between them, and after the last one."""
+    """Return the gap just after the command's steps, between the steps, and after the last step."""
     sums = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
     counts = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
     for flight, residual in zip(problem.flights.flights, residuals, strict=True):
@@ -66,7 +65,7 @@ def _phases(flight: PreparedManeuver, t: FloatArray) -> Mapping[str, FloatArray]
 def by_band(
     problem: EffectProblem, residuals: Sequence[FloatArray]
 ) -> tuple[tuple[float, float, float], ...]:
-    """Return for each band its limits in Hz and its share of the power of the pitch-rate error."""
+    """Return the limits of each frequency band in Hz, and its share of the pitch-rate error's power."""
     if "q" not in problem.channels:
         return ()
     power = np.zeros(len(_BANDS_HZ))
@@ -106,7 +105,8 @@ def shrink_interval(before: FloatArray, after: FloatArray, floor: FloatArray) ->
 
 
 def file_model_of(problem: EffectProblem, fitted: EffectFit) -> HeldOut | None:
-    """Return the residuals of the aircraft file's derivatives, initial states, trim and offsets refitted."""
+    """Return the hold-out of the aircraft file's derivatives, with initial states, trim and offsets
+    refitted."""
     if problem.prior_derivatives is None:
         return None
     return own_refitted(problem, replace(fitted.point, derivatives=problem.prior_derivatives), fitted.noise)

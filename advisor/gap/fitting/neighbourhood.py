@@ -1,8 +1,8 @@
-"""Fast evaluation of many points around a fitted model, with the sensitivities of the fit.
+"""Fast evaluation of many parameter points around a fitted model, from the sensitivities of the fit.
 
 Only the sensitivities to the effect added last are computed anew. Many points are simulated together, so that
-their simulations share packs (``advisor.gap.simulator.simulate``) and their columns share the filter. Only
-differences to the fitted model matter, so a coarser grid suffices.
+they share SIMD packs (``advisor.gap.simulator.simulate``). Only differences to the fitted model matter, so a
+coarser time grid suffices.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ fit."""
 
 @dataclass(frozen=True)
 class SimulatedPoint:
-    """A point that was simulated."""
+    """A simulated point near the fitted model."""
 
     point: SearchPoint
     """Point with the nuisance parameters refitted."""
@@ -39,7 +39,8 @@ class SimulatedPoint:
     """Shape (k,): half the decrease of the cost per unit of each shared parameter."""
 
     def step(self) -> tuple[FloatArray, float]:
-        """Return the step of all shared parameters within their bounds, and its promised decrease of cost."""
+        """Return the step of all shared parameters within their bounds, and the promised decrease of the
+        cost."""
         lower, upper = bounds_of(self.point)
         shared, H, g = self.point.shared, self.information, self.gradient
         step = solved_within(H, g, lower - shared, upper - shared, _INDIFFERENT)
@@ -48,14 +49,14 @@ class SimulatedPoint:
 
 @dataclass(frozen=True)
 class _Kept:
-    """Weighted quantities of one manoeuvre that are equal at all points."""
+    """Weighted quantities of one manoeuvre that are equal at all parameter points."""
 
     flight: PreparedManeuver
-    """The manoeuvre on the coarser grid."""
+    """The prepared manoeuvre, sampled on a coarser time grid."""
     measured: FloatArray
-    """Simulated outputs of the fitted model on the coarser grid, plus the residuals of the fit."""
+    """Shape (rows,): outputs of the fitted model on the coarser grid, plus the residuals of the fit."""
     weights: FloatArray
-    """Shape (rows,): weights of the rows."""
+    """Shape (rows,): weight of each row."""
     columns: FloatArray
     """Shape (rows, m + k + 1): sensitivities to nuisance and shared parameters, and the fit's residual."""
     products: FloatArray
@@ -72,42 +73,43 @@ class _Kept:
 
     @property
     def still(self) -> list[int]:
-        """Columns that need no simulation, by index: sensitivities to the derivatives, and the residual."""
+        """Indices of the columns that need no simulation: sensitivities to the derivatives, and the
+        residual."""
         return [*range(self.m, self.m + len(DERIVATIVES)), self.columns.shape[1] - 1]
 
 
 @dataclass(frozen=True)
 class _Flown:
-    """Columns of one manoeuvre that had to be simulated, for many points."""
+    """Simulated columns of one manoeuvre for many parameter points."""
 
     columns: FloatArray
     """Shape (rows, columns): weighted innovations and their sensitivities."""
     at: list[int]
     """Index of each column among the columns of all points."""
     points: list[tuple[int, slice]]
-    """Index of each point, and its columns: the innovation first, then sensitivities."""
+    """Index of each point with its columns: first the innovation, then the sensitivities."""
 
 
 @dataclass(frozen=True)
 class _Asked:
-    """A point to be simulated, and the place of its columns among those of all points."""
+    """A parameter point to be simulated, and its columns among those of all points."""
 
     point: SearchPoint
     p: FloatArray
-    """Shape (manoeuvres, entries): driving numbers."""
+    """Shape (manoeuvres, entries): simulator inputs of the point."""
     shifted: FloatArray
-    """Shape (parameters, manoeuvres, entries): driving numbers with each parameter of the last effect moved
+    """Shape (parameters, manoeuvres, entries): simulator inputs with each parameter of the last effect moved
     by its step."""
     steps: FloatArray
-    """Shape (parameters,): finite-difference steps."""
+    """Shape (parameters,): finite-difference steps of the last effect's parameters."""
     changes: FloatArray
     """Shape (parameters, manoeuvres, 6): change of the derivatives per unit of each parameter."""
     flown: np.ndarray
     """Shape (parameters, manoeuvres), bool: whether the parameter changes more than derivatives."""
     moved: np.ndarray
-    """Shape (manoeuvres,), bool: whether the manoeuvre needs any simulation."""
+    """Shape (manoeuvres,), bool: whether the manoeuvre needs a simulation."""
     first: int
-    """Index of the innovation's column; those of the parameters follow."""
+    """Index of the innovation's column, before the columns of the parameters."""
 
     @property
     def columns(self) -> slice:
@@ -138,7 +140,8 @@ class Neighbourhood:
             self.kept.append(_Kept(coarser, measured, by_row, columns, products, inner, m, chol))
 
     def at_all(self, points: Sequence[SearchPoint]) -> list[SimulatedPoint | None]:
-        """Evaluate every point with refitted nuisance parameters; None where a simulation fails."""
+        """Evaluate every point with refitted nuisance parameters; the entry is None where the simulation
+        fails."""
         problem = self.problem
         asked: list[_Asked] = []
         for point in points:
@@ -228,10 +231,10 @@ class Neighbourhood:
         return SimulatedPoint(there, float(cost + precision @ departure**2), noise, H, g)
 
     def _flown(self, i: int, asked: Sequence[_Asked], failed: np.ndarray) -> _Flown:
-        """Simulate manoeuvre ``i`` at those points where that is needed.
+        """Simulate manoeuvre ``i`` at those points that need a simulation.
 
-        A change of derivatives between manoeuvres is a sum of known sensitivities, and zero in manoeuvres
-        without the change, so it needs no simulation.
+        A change of derivatives between manoeuvres needs no simulation, because known sensitivities sum to its
+        response.
         """
         problem, kept = self.problem, self.kept[i]
         rows: list[FloatArray] = []
@@ -256,7 +259,7 @@ class Neighbourhood:
         return _Flown(problem.innovations(i, raw) * kept.weights[:, None], at, points)
 
     def choose_sides(self, point: SearchPoint, entries: Sequence[float]) -> SearchPoint:
-        """Return the point with the side of least residual in every manoeuvre, with nuisances refitted."""
+        """Return the point with the sign of the effect that leaves the least residual in each manoeuvre."""
         problem = self.problem
         p = [problem.driving(replace(point, sides=np.full(len(self.kept), side))) for side in entries]
         best = []

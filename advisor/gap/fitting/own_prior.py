@@ -1,7 +1,7 @@
 """Prior of a manoeuvre's initial state and trim: near steady flight, so that no fit runs away.
 
-A record begins before the first step, in nearly steady flight. Without an angle of attack nothing else tells
-its initial value, and a wrong model would move the value to any angle.
+A record begins before the first step, in nearly steady flight. Without an angle of attack no other
+measurement determines its initial value.
 """
 
 import numpy as np
@@ -12,8 +12,8 @@ from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import NUISANCES, REFERENCE
 
 _START_RAD = 0.035
-"""Prior: standard deviation of the angle of attack at the start of a record about its mean before the first
-step, rad. Motion that still dies down, or a gust, makes 2 deg."""
+"""Prior: standard deviation of a record's initial angle of attack about the mean before the first step, rad.
+Decaying motion or a gust changes the angle of attack by 2 deg."""
 _LOAD_FACTOR = 0.3
 """Prior: standard deviation of the load factor in trim about that of level flight: a turn of 30 deg has
 0.15."""

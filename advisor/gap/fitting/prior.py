@@ -1,8 +1,8 @@
 """The aircraft file as prior of the derivatives.
 
-Either the simulator's derivatives are right and an effect is missing, or they are off by tens of per cent.
-Right and wrong derivatives have equal prior probability. Where the data leave a choice, such as a dead band
-or less elevator power, the explanation that keeps the file's derivatives is likelier.
+Either the simulator's derivatives are right and an effect is missing, or the derivatives are off by tens of
+per cent. Right and wrong derivatives have equal prior probability. If the data leave a choice, the
+explanation that keeps the file's derivatives is likelier.
 """
 
 import numpy as np
@@ -23,8 +23,7 @@ zero."""
 
 
 def derivative_scale(prior: FloatArray) -> FloatArray:
-    """Return the size of each derivative, shape (6,): 1 for Z_q, and a share of the large derivatives for
-    small ones."""
+    """Return the size of each derivative, shape (6,), that its relative error refers to."""
     z_alpha, _, z_delta, m_alpha, m_q, m_delta = np.abs(prior)
     z_alpha = max(z_alpha, _LEAST)
     return np.array(

@@ -26,29 +26,30 @@ _FLOWN_ENTRIES = np.array([i for i, name in enumerate(ENTRIES) if name not in (*
 
 @dataclass(frozen=True)
 class SearchPoint:
-    """A point of the search: all parameters that drive the simulation."""
+    """One point of the search: all parameters of the simulation."""
 
     derivatives: FloatArray
-    """Shape (6,): the derivatives of Eqs. (1)-(2)."""
+    """Shape (6,): derivatives of Eqs. (1)-(2)."""
     own: FloatArray
-    """Shape (manoeuvres, 4): initial states and trim terms."""
+    """Shape (manoeuvres, 4): initial states and trim terms of each manoeuvre."""
     effects: tuple[Variant, ...] = ()
     values: tuple[FloatArray, ...] = ()
-    """Parameters of each effect."""
+    """Parameters of each effect, in the order of ``effects``."""
     sides: FloatArray | None = None
-    """Shape (manoeuvres,): the chosen side in each manoeuvre, for an effect that has sides."""
+    """Shape (manoeuvres,): chosen sign of the effect in each manoeuvre, for an effect whose sign may
+    differ."""
     edges: tuple[FloatArray, ...] | None = None
     """Per manoeuvre, shape (edges,): shift of each edge of the command from its stamps, in intervals. The
-    outputs are linear in these shifts, so they are not simulated; delays and skews move that response."""
+    outputs are linear in the edges' shifts, so the shifts are not simulated."""
 
     @property
     def shared(self) -> FloatArray:
-        """All shared parameters as one vector: derivatives, then parameters of effects."""
+        """All shared parameters as one vector: derivatives, then parameters of the effects."""
         return np.concatenate([self.derivatives, *self.values])
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the shared parameters, in their order."""
+        """Names of the derivatives, then of the effects' parameters, in the order of ``shared``."""
         return (*DERIVATIVES, *(name for effect in self.effects for name in effect.names))
 
     def moved(self, shared: FloatArray, own: FloatArray) -> "SearchPoint":
@@ -96,9 +97,9 @@ class EffectProblem:
 
     flights: PreparedManeuvers
     base: FloatArray
-    """Driving numbers from the aircraft file, shape (entries,), or (manoeuvres, entries) if they differ."""
+    """Simulator inputs from the aircraft file, shape (entries,), or (manoeuvres, entries) if they differ."""
     held: bool = False
-    """Whether the command is held between its stamps; if not, it moves linearly."""
+    """Whether the command is held between its stamps; otherwise it moves linearly."""
     instruments: FloatArray | None = None
     """Shape (channels,): noise of the instruments alone, without moving air."""
     smallest_noise: FloatArray | None = None
@@ -106,11 +107,11 @@ class EffectProblem:
     prior_derivatives: FloatArray | None = None
     """Shape (6,): derivatives of the aircraft file; None where the file lacks one."""
     jitter_s: float = 0.0
-    """Standard deviation of all stamps, including the command's, s."""
+    """Standard deviation of the time error of all stamps, s."""
     whitening: Whitening | None = None
     """Filter of moving air and coloured instruments; None where the residual is white."""
     changes: tuple[tuple[Variant, Values], ...] = ()
-    """Changes in flight from the aircraft file, with their sizes: they scale derivatives."""
+    """Changes in flight from the aircraft file, with their sizes, which scale derivatives."""
 
     @property
     def knows_the_noise(self) -> bool:
@@ -119,7 +120,7 @@ class EffectProblem:
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Outputs that are compared."""
+        """Names of the outputs that the fit compares with the measurement."""
         return self.flights.channels
 
     def with_own(self, point: SearchPoint, owns: Sequence[FloatArray]) -> SearchPoint:
@@ -135,9 +136,9 @@ class EffectProblem:
     def prior_of(self, point: SearchPoint) -> tuple[FloatArray, FloatArray]:
         """Return inverse prior variances of the shared parameters, and the prior mean minus them, (k,).
 
-        The prior mean is the file's for derivatives and zero for nuisance parameters. The prior is weak and
-        decides only what the data leave open. Without a measured angle of attack Z_q and Z_δe also have the
-        prior of the estimate, about zero.
+        The prior mean of a derivative is the file's value; that of a nuisance parameter is zero. The prior is
+        weak and decides only where the data do not. Without a measured angle of attack Z_q and Z_δe also have
+        the prior of the estimate, about zero.
         """
         inverse, expected = [np.zeros(len(DERIVATIVES))], [point.derivatives]
         if self.prior_derivatives is not None:
@@ -181,7 +182,8 @@ class EffectProblem:
         """Return one manoeuvre simulated with every row of ``p``, shape (k, entries), in packs for
         ``read_all``.
 
-        The disturbance, shape (4, n), enters each simulation with its factor ``doses``, shape (k,).
+        The disturbance, shape (4, n), enters each simulation multiplied by its factor in ``doses``, shape
+        (k,).
         """
         stamps = flight.t_held if self.held else flight.t_u
         command = (flight.h, flight.n, stamps, flight.u, self.held, flight.u_trim)
@@ -194,14 +196,14 @@ class EffectProblem:
     ) -> FloatArray:
         """Return all channels at their own stamps, stacked, shape (rows, k), with the instruments in ``p``.
 
-        ``flown``, shape (k,), has the index of the simulation that each column reads; by default its own.
+        ``flown``, shape (k,), holds the index of the simulation for each column.
         """
         return self._read(flight, packs, np.arange(len(p)) if flown is None else flown, p)
 
     def fly_and_read(self, flight: PreparedManeuver, p: FloatArray) -> FloatArray:
         """Return one manoeuvre simulated and read with every row of ``p`` (k, entries), as shape (rows, k).
 
-        Rows that differ in stamps or filters of instruments alone share a simulation.
+        Rows that differ only in the instruments' stamps or filters share a simulation.
         """
         alike = [row.tobytes() for row in p[:, _FLOWN_ENTRIES]]
         places = {row: k for k, row in enumerate(dict.fromkeys(alike))}
@@ -217,17 +219,19 @@ class EffectProblem:
         return np.asarray(read_rows(packs, flight.h, flight.stamps, flight.output, flown, skews))
 
     def fly(self, flight: PreparedManeuver, p: FloatArray) -> FloatArray:
-        """Return the simulated outputs of one manoeuvre on the grid, shape (4, n + 1)."""
+        """Return the simulated outputs of one manoeuvre on the time grid, shape (4, n + 1)."""
         return lane(self.fly_all(flight, p[None]), 0)
 
     def read_grids(self, flight: PreparedManeuver, grids: Sequence[FloatArray], p: FloatArray) -> FloatArray:
-        """Return series on the grid, each of shape (4, n + 1), read at their stamps, shape (rows, k)."""
+        """Return series of outputs on the time grid, each of shape (4, n + 1), at the channels' stamps, shape
+        (rows, k)."""
         return self.read_all(flight, packed(grids), np.tile(p, (len(grids), 1)))
 
     def read_delayed(
         self, flight: PreparedManeuver, response: FloatArray, delays: FloatArray, p: FloatArray
     ) -> FloatArray:
-        """Return one series delayed by each of ``delays``, read at the channels' stamps, shape (rows, k)."""
+        """Return one series of outputs, delayed by each of ``delays``, at the channels' stamps, shape (rows,
+        k)."""
         if np.any(p[_FILTER_ENTRIES[:1]] > 0.0):
             # Nothing comes before the response.
             begun = packed([np.pad(response, ((0, 0), (1, 0)))])
@@ -237,7 +241,7 @@ class EffectProblem:
         return np.asarray(read_late(response, flight.h, flight.stamps, flight.output, skews, delays))
 
     def read(self, flight: PreparedManeuver, grid: FloatArray, p: FloatArray) -> FloatArray:
-        """Return one series on the grid, read at the channels' stamps, shape (rows,)."""
+        """Return one series of outputs on the time grid, read at the channels' stamps, shape (rows,)."""
         return self.read_grids(flight, [grid], p)[:, 0]
 
     def rows(self, flight: PreparedManeuver) -> list[slice]:
@@ -249,7 +253,7 @@ class EffectProblem:
         return out
 
     def measured(self, flight: PreparedManeuver) -> FloatArray:
-        """Return all measured channels of one manoeuvre, stacked."""
+        """Return all measured channels of one manoeuvre, stacked, shape (rows,)."""
         return np.concatenate([flight.outputs[c].y for c in self.channels])
 
     def innovations(self, i: int, columns: FloatArray) -> FloatArray:

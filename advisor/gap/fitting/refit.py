@@ -1,7 +1,7 @@
-"""A model with given shared parameters, with only each manoeuvre's nuisance parameters refitted.
+"""A model with given shared parameters, in which only the nuisance parameters of each manoeuvre are refitted.
 
-A model that does not fit is no reason for an initial state that no aircraft had. Each nuisance parameter
-keeps within the range of real flights and instruments.
+Even a model that fits badly gets initial states that an aircraft can have. Each nuisance parameter keeps
+within the range of real flights and instruments.
 """
 
 from dataclasses import dataclass, replace
@@ -18,19 +18,18 @@ from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES, SPEED
 from advisor.oem.arrow import solved_within
 
 _ROUNDS = 4
-"""Numerical: number of Gauss-Newton steps from each start. The outputs are nearly linear in the nuisance
-parameters."""
+"""Numerical: number of Gauss-Newton steps from each starting value. The outputs are nearly linear in the
+nuisance parameters."""
 _ALPHA_RAD, _Q_RAD_S = 0.1, 0.2
-"""Prior: largest departures of α (rad) and q (rad/s) from steady flight at the start of a record: 6 deg and
-11 deg/s. A test input begins from trim, and most responses to a whole input are no larger."""
+"""Prior: largest departure of α (rad) and q (rad/s) from steady flight at a record's start. A test input
+begins from trim, and most responses to a whole input are no larger than 6 deg and 11 deg/s."""
 _LOAD = 0.3
 """Prior: largest departure of the load factor from 1 at the start, as in a turn with 40 deg of bank."""
 _ELEVATOR_RAD = 0.1
-"""Prior: largest moment of trim, as the deflection that balances the moment, rad: a quarter of 25 deg of
-travel."""
+"""Prior: largest trim moment, as the deflection that balances it, rad: a quarter of 25 deg of travel."""
 _OFFSETS = {"a_z": 1.0, "theta": 0.05}
-"""Prior: largest offset of an accelerometer, a tenth of the weight in m/s², and of an attitude, 3 deg in rad.
-A calibrated and levelled autopilot reads better."""
+"""Prior: largest offset of an accelerometer, m/s² (a tenth of the weight), and of an attitude, rad (3 deg). A
+calibrated and levelled autopilot has smaller offsets."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +44,7 @@ class _Refitted:
 def own_refitted(problem: EffectProblem, point: SearchPoint, noise: FloatArray) -> HeldOut:
     """Return the residuals of a model with given shared parameters, with only nuisance parameters refitted.
 
-    The search starts at the point's nuisance parameters and at steady flight; the better result counts.
+    The search starts at the point's nuisance parameters and at steady flight, and keeps the better result.
     ``noise``, shape (channels,), weighs the channels.
     """
     flights = problem.flights.flights
@@ -72,15 +71,14 @@ def _refitted(
     ends: tuple[FloatArray, FloatArray],
     weights: FloatArray,
 ) -> tuple[_Refitted, FloatArray]:
-    """Return the residual at a manoeuvre's own initial state and trim, and the next step of the two, shape
-    (4,).
+    """Return the residual at a manoeuvre's initial state and trim, and their next step, shape (4,).
 
     Parameters
     ----------
     own
         Shape (4,): initial state and trim at which the manoeuvre was simulated.
     ends
-        Lower and upper ends of ``own``, each of shape (4,).
+        Lower and upper ends of the initial state and trim, each of shape (4,).
     weights
         Shape (channels,): inverse of the noise.
     """
@@ -103,7 +101,7 @@ def _refitted(
 
 
 def _steady(flight: PreparedManeuver) -> FloatArray:
-    """Return initial state and trim of steady flight, shape (4,)."""
+    """Return the initial state and the trim of steady flight, shape (4,)."""
     own = np.zeros(len(NUISANCES))
     own[NUISANCES.index("Z_trim")] = flight.level_lift
     return own

@@ -1,4 +1,5 @@
-"""First estimates of the derivatives by equation error: rates regressed on angle, pitch rate and command."""
+"""First estimates of the derivatives by equation error: regression of rates on angle, pitch rate and
+command."""
 
 from typing import NamedTuple
 
@@ -9,23 +10,22 @@ from advisor.flight.signals.motion import integrated
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 
 _STEP_S = 0.02
-"""Numerical: step of the regression's grid, s."""
+"""Numerical: step of the regression's time grid, s."""
 _SPAN = 10
-"""Numerical: number of steps over which the equations are integrated, so that no data need be
+"""Numerical: number of steps over which the equations are integrated, so that no measurement is
 differentiated."""
 _RIDGE = 1e-6
-"""Numerical: ridge of the regression, relative to the mean square of a regressor: bounds directions that a
-flight does not excite."""
+"""Numerical: ridge of the regression, relative to a regressor's mean square, for directions without
+excitation."""
 _SIMULTANEOUS = 0.01
-"""Numerical: product of the residual shares of both equations below which the channels are simultaneous, and
-no shift is tried."""
+"""Numerical: product of both equations' residual shares below which no shift of a channel is tried."""
 _BETTER = 0.5
-"""Numerical: residual share with one channel shifted, relative to that without, below which the shifted
-regression is a start too."""
+"""Numerical: ratio of residual shares with and without a shift, below which the shifted regression is a
+start."""
 
 
 class Late(NamedTuple):
-    """Delay of each channel in s."""
+    """Delay of each channel for the regression, s."""
 
     alpha_s: float = 0.0
     q_s: float = 0.0
@@ -45,9 +45,9 @@ _ONE_LATE = (
 def regressions(flights: PreparedManeuvers) -> list[FloatArray]:
     """Return starting values of the derivatives, each of shape (6,).
 
-    A channel that is late by a large part of a radian of the short period leads the regression astray, even
-    in sign. No search recovers from such a start. The regression with that channel shifted is then a start
-    too.
+    A channel with a delay near a radian of the short period spoils the regression, even in sign. No search
+    converges from a wrong sign of a derivative. The regression with the late channel shifted is then a second
+    start.
     """
     as_stamped, left_share = _regressed(flights, Late())
     if left_share < _SIMULTANEOUS:

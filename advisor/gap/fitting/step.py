@@ -1,6 +1,6 @@
-"""One Gauss-Newton step: nuisance parameters are eliminated, shared parameters stay within their bounds.
+"""One Gauss-Newton step: nuisance parameters are eliminated, and shared parameters stay within bounds.
 
-The inner products of the columns are known, so a step for other weights is cheap.
+The inner products of the columns are known, so a step with other weights is cheap.
 """
 
 from collections.abc import Sequence
@@ -16,11 +16,11 @@ from advisor.oem.arrow import factored, solved, solved_within
 
 _FASTEST_GROWTH = 5.0
 """Prior: largest growth rate of an unstable motion, 1/s: the amplitude doubles in 0.14 s, as on the most
-unstable aircraft with computer control. A fit with faster growth has lost the motion."""
+unstable aircraft with computer control. A fit with faster growth has diverged from the measured motion."""
 _GROWS = {"Z_alpha": _FASTEST_GROWTH, "M_q": _FASTEST_GROWTH, "M_alpha": _FASTEST_GROWTH**2}
-"""Prior: the largest derivatives with that growth rate."""
+"""Prior: largest value of each derivative at which the motion grows at ``_FASTEST_GROWTH``."""
 _MOST = np.array([_GROWS.get(name, np.inf) for name in DERIVATIVES])
-"""Shape (6,): largest derivatives with which the motion grows no faster, by any of them alone."""
+"""Shape (6,): largest value of each derivative that alone lets the motion grow at ``_FASTEST_GROWTH``."""
 
 
 def factor(A: FloatArray, prior: FloatArray) -> FloatArray:
@@ -37,30 +37,30 @@ def factor_of(normal: FloatArray, prior: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class SearchStep:
-    """A Gauss-Newton step from the point of linearisation."""
+    """A Gauss-Newton step from the point of the linearisation."""
 
     shared: FloatArray
     """Shape (k,): step of the shared parameters, within their bounds."""
     free: list[FloatArray]
-    """Per manoeuvre, shape (m,): solution of the nuisance parameters without a step of the shared ones."""
+    """Per manoeuvre, shape (m,): nuisance parameters without a step of the shared parameters."""
     follow: list[FloatArray]
-    """Per manoeuvre, shape (m, k): decrease of the nuisance parameters per unit of the shared ones."""
+    """Per manoeuvre, shape (m, k): decrease of the nuisance parameters per unit of each shared parameter."""
     information: FloatArray
     """Shape (k, k): information on the shared parameters."""
     gradient: FloatArray
     """Shape (k,): half the decrease of the cost per unit of each shared parameter."""
 
     def promised(self, shared: FloatArray) -> float:
-        """Return the decrease of the cost that the linear model promises for a shared step."""
+        """Return the decrease of the cost that the linear model predicts for a step of the shared
+        parameters."""
         return float(2.0 * self.gradient @ shared - shared @ self.information @ shared)
 
     def owns(self, shared: FloatArray) -> list[FloatArray]:
-        """Return per manoeuvre the solution of the nuisance parameters after a step of the shared ones."""
+        """Return the nuisance parameters of each manoeuvre after a step of the shared parameters."""
         return [free - follow @ shared for free, follow in zip(self.free, self.follow, strict=True)]
 
     def squares_ahead(self, linear: Sequence[Linear]) -> FloatArray:
-        """Return the sums of squares of the residuals that the linear model promises after the step, shape
-        (channels,)."""
+        """Return the predicted sums of squared residuals after the step, shape (channels,)."""
         owns = self.owns(self.shared)
         each = [b.squares_after(self.shared, own) for b, own in zip(linear, owns, strict=True)]
         return np.asarray(np.sum(each, axis=0))
@@ -103,7 +103,8 @@ def solve_blocks(
 
 
 def bounds_of(point: SearchPoint) -> tuple[FloatArray, FloatArray]:
-    """Return lower and upper bounds of the shared parameters, with derivatives of a flyable aircraft."""
+    """Return lower and upper bounds of the shared parameters, within the derivatives of a flyable
+    aircraft."""
     free = np.full(len(point.derivatives), np.inf)
     lower = np.concatenate([-free, *[np.array([b[0] for b in e.bounds]) for e in point.effects]])
     upper = np.concatenate([_MOST, *[np.array([b[1] for b in e.bounds]) for e in point.effects]])

@@ -1,4 +1,4 @@
-"""Uncertainty of the shared parameters of a fit, whose residuals are coloured."""
+"""Uncertainty of a fit's shared parameters under coloured residuals."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from advisor.oem.arrow import inverse_of
 
 
 def colour_of(problem: EffectProblem, fitted: EffectFit) -> float:
-    """Return the number of samples that count as one independent sample of the innovations, at least 1."""
+    """Return the number of innovation samples per independent sample, at least 1."""
     effective = sum(
         effective_sample_size(residual[rows])
         for flight, residual in zip(problem.flights.flights, fitted.innovations, strict=True)
@@ -20,12 +20,12 @@ def colour_of(problem: EffectProblem, fitted: EffectFit) -> float:
 
 
 def covariance_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> FloatArray:
-    """Return the posterior covariance of the shared parameters, shape (k, k); the prior is not widened.
+    """Return the posterior covariance of the shared parameters, shape (k, k).
 
     Parameters
     ----------
     heat
-        Nats of white noise that count as one.
+        Number of nats of white-noise likelihood that count as one nat.
     """
     precision, _ = problem.prior_of(fitted.point)
     information = (fitted.information - np.diag(precision)) / heat + np.diag(precision)

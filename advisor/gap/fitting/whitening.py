@@ -1,8 +1,8 @@
-"""Whitening: residuals and sensitivities pass through one filter of the flight's noise before any fit.
+"""Whitening: a filter of the flight's noise that residuals and sensitivities pass before any fit.
 
-Moving air and coloured instruments correlate neighbouring residuals, and least squares gives them too much
-weight. The Kalman filter of ``advisor.oem.innovations`` turns residuals and sensitivities into white
-innovations. Fit, screening, hold-out and errors are then ordinary least squares.
+Moving air and coloured instruments correlate successive residuals, so least squares overweights them. The
+Kalman filter of ``advisor.oem.innovations`` turns residuals and sensitivities into white innovations. After
+the filter, fit, screening and hold-out are ordinary least squares.
 """
 
 from collections.abc import Sequence
@@ -30,10 +30,10 @@ class Weighting:
     """White noise of different size in every sample: each row is weighted by the precision of its stamp."""
 
     weights: tuple[FloatArray, ...]
-    """Per manoeuvre, shape (rows,): 1 for a sample with the noise of its channel alone."""
+    """Per manoeuvre, shape (rows,): weight of each row, 1 for a sample with the channel's noise alone."""
 
     def innovations(self, i: int, columns: FloatArray) -> FloatArray:
-        """Return the columns with each row multiplied by its weight."""
+        """Return the columns of manoeuvre ``i`` with each row multiplied by its weight."""
         return columns * self.weights[i][:, None]
 
 
@@ -47,12 +47,13 @@ class Filters:
 
     @property
     def is_sound(self) -> bool:
-        """Whether all gains are finite. On a very unstable aircraft rounding errors outgrow all noise within
-        a manoeuvre."""
+        """Whether all Kalman gains are finite. On a very unstable aircraft rounding errors outgrow all noise
+        within a manoeuvre."""
         return all(np.all(np.isfinite(g.root)) and np.all(np.isfinite(g.gain)) for g in self.gains)
 
     def innovations(self, i: int, columns: FloatArray) -> FloatArray:
-        """Return the filtered columns, in units of each innovation's standard deviation."""
+        """Return the filtered columns of manoeuvre ``i``, in units of each innovation's standard
+        deviation."""
         return self.gains[i].innovations(columns, self.order[i])
 
 
@@ -87,7 +88,8 @@ def rows_in_time(
 ) -> tuple[FloatArray, np.ndarray, np.ndarray]:
     """Return times and channels (indices into ``OUTPUTS``) of one manoeuvre in order of time, and that order.
 
-    A vane with a delay in ``p``, shape (entries,), saw the air before its stamp, and is ordered accordingly.
+    A vane delayed in ``p``, shape (entries,), saw the air before its stamp, so its rows have that earlier
+    time.
     """
     flight = flights.flights[i]
     late_s = 0.0 if flights.alpha_is_derived else float(p[INDEX["alpha_skew_s"]] + p[INDEX["alpha_lag_s"]])

@@ -1,7 +1,6 @@
 """Effects that a plan can detect before it is flown, and effects that a flight could not have shown.
 
-An effect has its smallest detectable size where its signature (``signatures``) has the power that the
-diagnosis requires: enough likelihood, and enough change to matter.
+An effect is detectable if its signature has enough likelihood and enough change of the outputs.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,13 +23,13 @@ from advisor.gap.simulator.layout import INDEX
 from advisor.words.quantiles import NORMAL_95
 
 CONFUSED_AT = 0.95
-"""Cosine between two signatures above which one effect passes for the other."""
+"""Cosine between two signatures above which one effect is confused with the other."""
 _LISTED_AT = 0.8
 _MOST_CONFUSIONS = 3
-"""Words: cosine above which a similar effect is listed, and the most effects listed."""
+"""Words: least cosine of a listed similar effect, and the largest number of listed effects."""
 _GROWTH = 3.0
 _OF_PEAK = 0.003
-"""Least change of the outputs by an effect, as a share of each channel's peak."""
+"""Least change of the outputs by a detectable effect, as a share of each channel's peak."""
 _CLOSE = 0.02
 """Numerical: factor on a size without a signature, and relative difference of two sizes in a row at which the
 refinement ends."""
@@ -38,35 +37,36 @@ refinement ends."""
 
 @dataclass(frozen=True, slots=True)
 class Foreseen:
-    """Detectability of one effect by a plan."""
+    """Detectability of one effect in a planned flight."""
 
     effect: str
     parameter: str
     smallest: float
-    """Smallest detectable size, in the parameter's unit; infinite for an invisible effect."""
+    """Smallest detectable size of the effect, in the parameter's unit; infinite for an undetectable
+    effect."""
     confused_with: tuple[tuple[str, float], ...]
-    """Similar effects, each with the cosine between the signatures."""
+    """Effects with a similar signature, each with the cosine between the signatures."""
     add: str = ""
     """Channel or manoeuvre that would distinguish the effect, or make it visible."""
     is_limit: bool = False
-    """Whether the effect is a limit, which shows where it is smaller than the size."""
+    """Whether the effect is a limit, which is detectable if smaller than ``smallest``."""
     share: float | None = None
     """Smallest size of a nonlinear term as a share of the linear term, at the plan's amplitude."""
 
 
 @dataclass(frozen=True)
 class Signature:
-    """The signature of one effect at unit size."""
+    """Change of the outputs by one effect of unit size."""
 
     effect: str
     parameter: str
     vector: FloatArray
     least: float
-    """Least size for which the effect is named."""
+    """Least size at which the effect is named."""
     most: float = float("inf")
-    """Largest size for which the effect is sought."""
+    """Largest size of the effect that is sought."""
     numbers: int = 1
-    """Number of parameters, each at the price of ½ ln N."""
+    """Number of the effect's parameters, each at the price of ½ ln N."""
     inverted: bool = False
 
 
@@ -78,14 +78,14 @@ def foresee(
     others: Sequence[Signature] = (),
     rounds: int = 4,
 ) -> list[Foreseen]:
-    """Return the smallest detectable size and the similar effects of every effect, at the fitted model.
+    """Return the smallest detectable size of every effect, and the effects with similar signatures.
 
     Parameters
     ----------
     noise
-        Shape (channels,): noise of each channel; where a filter knows the noise, that of the filter is used.
+        Shape (channels,): noise of each channel, unless a filter knows the noise.
     others
-        Signatures of effects that are no variant of the model.
+        Signatures of effects that are no variants of the model.
     rounds
         Number of refinements of a size where the response is not proportional to it.
     """
@@ -136,7 +136,7 @@ def unseen_effects(
 
 
 def _one_each(variants: Sequence[Variant]) -> list[Variant]:
-    """Return one variant of each effect: the first, or the middle one of steps at several places."""
+    """Return one variant of each effect; among steps at several places, the middle one."""
     groups: dict[str, list[Variant]] = {}
     for v in variants:
         groups.setdefault(v.effect, []).append(v)

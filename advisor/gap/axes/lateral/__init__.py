@@ -1,1 +1,1 @@
-"""Roll and yaw as the engine asks for them: effects, fits, gusts and evidence."""
+"""Parts of the gap diagnosis for roll and yaw: effects, fits, gusts and evidence."""

@@ -1,7 +1,7 @@
-"""Change of the outputs by another setting, at the derivatives of a fit.
+"""Change of the outputs of a fit when parameters of servos or clocks change, at fixed derivatives.
 
-A surface that moves otherwise is a disturbance of its control, whose linear response is known. A late reading
-is the fitted output at another time.
+A surface with another servo is a disturbance of its control, whose linear response is known. A late reading
+is the fitted output at an earlier time.
 """
 
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from advisor.model.axes.lateral import LATERAL
 
 
 def changes_by(fit: Fit, flown: Flown, of: str, settings: Sequence[Setting]) -> FloatArray:
-    """Return the change (settings, N) of the outputs by other parts of a servo, or by late stamps."""
+    """Return the change (settings, N) of the outputs by other servo parameters or by late stamps."""
     if of in LATERAL.inputs:
         parts = [_by_surface(fit, flown, m, of, settings) for m in range(len(flown))]
         return np.vstack(parts).T
@@ -24,7 +24,7 @@ def changes_by(fit: Fit, flown: Flown, of: str, settings: Sequence[Setting]) -> 
 
 
 def _by_surface(fit: Fit, flown: Flown, m: int, control: str, settings: Sequence[Setting]) -> FloatArray:
-    """Return the change (n, settings) of the rows of a manoeuvre by other deflections of a control."""
+    """Return the change (n, settings) of one manoeuvre's outputs by other deflections of a control."""
     stamps = fit.assembly.t[fit.assembly.owner == m]
     t = np.arange(np.min(stamps), np.max(stamps) + STEP_S, STEP_S)
     moves = np.zeros((len(t), len(settings)))
@@ -37,7 +37,7 @@ def _by_surface(fit: Fit, flown: Flown, m: int, control: str, settings: Sequence
 
 
 def _read_later(fit: Fit, of: str, setting: Setting) -> FloatArray:
-    """Return the change (N,) of the outputs by late stamps of one."""
+    """Return the change (N,) of the outputs when one output is read late."""
     late, now = (numbers.get((of, "skew_s"), np.zeros(1))[0] for numbers in (setting, fit.point.setting))
     change = np.zeros(len(fit.fitted))
     for rows in (named[of] for named in fit.assembly.rows):

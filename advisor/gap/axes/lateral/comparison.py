@@ -1,8 +1,8 @@
 """The gap of the lateral axis: the simulator's derivatives and effects against those of the flight.
 
-Derivatives are compared with their intervals, servos and clocks as the estimate tells them. ``diagnosis``
-weighs right derivatives, wrong ones and effects. Each manoeuvre's gap is measured with the derivatives of
-all other manoeuvres.
+The derivatives are compared within their intervals. ``diagnosis`` gives probabilities of right derivatives,
+wrong derivatives and effects. The gap of each manoeuvre is measured with the derivatives that all other
+manoeuvres give.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,17 +25,17 @@ class SideGap:
     """Comparison of the aircraft file's lateral derivatives with the flight."""
 
     verdict: Kind | None
-    """None: no model fits, or the file states no derivative that the flight tells and no effect was found."""
+    """Kind of the likeliest explanation; None without a fit, or without stated derivatives and effects."""
     sentence: str
     derivatives: tuple[ComparedDerivative, ...]
     instruments: Mapping[str, Value]
-    """Lag or delay of servos and clocks, as the fit tells it."""
+    """Estimated lag or delay of each servo and clock."""
     not_identifiable: Mapping[str, str]
     maneuvers: tuple[int, ...]
     diagnosis: SideDiagnosis | None
     """Probabilities of all explanations; None where no model fits."""
     traces: tuple[Trace, ...] = ()
-    """Measured and simulated outputs, where they were asked for."""
+    """Measured and simulated outputs of the manoeuvres; empty unless requested."""
 
 
 def compare_side(
@@ -46,9 +46,8 @@ def compare_side(
 ) -> SideGap | NoEstimate:
     """Compare roll and yaw of the aircraft file with accepted manoeuvres.
 
-    A derivative that the file does not state counts as that of the flight. ``prior`` holds the shares of the
-    answers before the flight. ``logged`` is the estimate of the manoeuvres as logged, with which the
-    derivatives agree within their intervals.
+    A derivative that the file does not state is taken from the flight. ``prior`` holds the probability of
+    each kind of answer before the flight. ``logged`` is the estimate from the manoeuvres as logged.
     """
     model = estimate_lateral(maneuvers, aircraft)
     if isinstance(model, NoEstimate):
@@ -78,7 +77,7 @@ def compare_side(
 
 
 def sentence_of_side(verdict: str | None, derivatives: Sequence[ComparedDerivative]) -> str:
-    """Return the sentence of an answer without an effect."""
+    """Return the sentence of the report for an answer without an effect."""
     if verdict is None:
         return (
             "The aircraft file states no derivative of roll and yaw that the flight tells: give model.L_p "

@@ -1,4 +1,4 @@
-"""Explanations of a lateral flight: no gap, wrong numbers, side gusts, one effect, or two at once."""
+"""Explanations of a lateral flight: no gap, wrong derivatives, side gusts, one effect, or two effects."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -39,19 +39,19 @@ Kind = Literal["none", "parameters", "effect", "unknown"]
 
 @dataclass(frozen=True, slots=True)
 class SideCause:
-    """One effect as the explanation of the gap."""
+    """One effect that explains the gap in roll and yaw."""
 
     of: str
-    """Control or output; ``air`` for side gusts."""
+    """Control or output at which the effect acts; ``air`` for side gusts."""
     named: str
-    """Name of the effect as people write it."""
+    """Name of the effect as the report prints it."""
     cause: Cause
-    """Effect by its name of the pitch axis, with sizes and probability."""
+    """Effect under its name in the pitch axis, with sizes and probability."""
     sentence: str
     gain: Gain
     """Log likelihood gained on unseen manoeuvres over fitted derivatives alone, nats."""
     peaks: Mapping[str, float]
-    """Largest error of roll and yaw rate with the effect, rad/s."""
+    """Largest errors of roll rate and yaw rate with the effect in the simulator, rad/s."""
 
     @property
     def name(self) -> str:
@@ -66,34 +66,35 @@ class SideCause:
 
 @dataclass(frozen=True)
 class SideDiagnosis(Weighed):
-    """All explanations with their evidence, and the likeliest effects."""
+    """All explanations of a lateral flight with their evidence, and the likeliest effects."""
 
     causes: tuple[SideCause, ...]
     """Effects of the model in the order in which they were found, then alternatives, likeliest first."""
     peaks: Mapping[str, float]
-    """Largest error of roll and yaw rate with the simulator's derivatives, rad/s."""
+    """Largest errors of roll rate and yaw rate with the simulator's derivatives, rad/s."""
     peaks_by_numbers: Mapping[str, float]
-    """Largest error with the flight's derivatives and no effect, rad/s."""
+    """Largest errors of roll rate and yaw rate with the flight's derivatives and no effect, rad/s."""
     cannot_see: Mapping[str, str]
-    """Causes that these records cannot show, with the reason."""
+    """Reason why these records cannot show a cause, by the cause's name."""
     before: Mapping[str, float] = field(default_factory=dict)
-    """Output to the simulator's gap: the mean square of its error over that of the noise, minus 1."""
+    """Gap of the simulator in each output: mean square error over mean square noise, minus 1."""
     after: Mapping[str, float] = field(default_factory=dict)
-    """Output to the gap with the derivatives of the flight, each manoeuvre predicted from all others."""
+    """Gap with the flight's derivatives in each output; every manoeuvre is predicted from all others."""
     waterfall: tuple[tuple[str, float], ...] = ()
-    """Name of each effect of the model, and the gap that remains with it: the mean square over that of the
-    whole model, minus 1."""
+    """Remaining gap after each effect: the mean square error over that of the whole model, minus 1."""
     fits: tuple[Fit, ...] = ()
-    """Fit with the simulator's derivatives, then that of the chosen model."""
+    """Fit with the simulator's derivatives, then the fit of the chosen model."""
 
     @property
     def mean_gap(self) -> tuple[float, float] | None:
-        """Mean gap of the outputs, of the simulator and of the flight's derivatives; None without both."""
+        """Mean gap over the outputs, for the simulator and for the flight's derivatives; None without
+        both."""
         return (fmean(self.before.values()), fmean(self.after.values())) if self.after else None
 
     @property
     def shrink_percent(self) -> float | None:
-        """Share of the mean gap that the flight's derivatives remove, per cent; None without a gap."""
+        """Share of the simulator's mean gap that the flight's derivatives remove, per cent; None without a
+        gap."""
         gap = self.mean_gap
         return 100.0 * (1.0 - gap[1] / gap[0]) if gap and gap[0] > 0.0 else None
 
@@ -105,12 +106,12 @@ class SideDiagnosis(Weighed):
 
     @property
     def answers(self) -> Answers:
-        """Every answer in words with its probability, the likeliest first."""
+        """Every answer as a sentence with its probability, the likeliest first."""
         return answers_of(self.evidence)
 
     @property
     def where(self) -> Where | None:
-        """Block of the named effect, or else the likeliest one of a law without a name; None without both."""
+        """Block of the named effect or of the likeliest law without a name; None without both."""
         each = {a.block: one.probability for one in self.evidence if (a := one.alternative).kind == "unknown"}
         without = sum(each.values())
         shares = {block: p / without for block, p in each.items() if without > 0.0}
@@ -124,7 +125,7 @@ class SideDiagnosis(Weighed):
 
     @property
     def sentence(self) -> str:
-        """Statements about all effects of the model, or about the place of a law without a name."""
+        """Sentence about all effects of the model, or about the block of a law without a name."""
         if self.verdict == "unknown" and self.where is not None:
             return f"Something acts {place(self.where.block)} that no known effect explains."
         return ". ".join(one.sentence for one in self.causes if one.cause.present)
@@ -133,7 +134,7 @@ class SideDiagnosis(Weighed):
 def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None:
     """Return the probabilities of all explanations; None where no plain fit exists.
 
-    Where one effect is the likeliest explanation, a second one is sought in the model with the first.
+    If one effect is the likeliest explanation, a second effect is sought in addition to the first.
 
     Parameters
     ----------
@@ -162,7 +163,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
 
 
 def _gap(plain: Fit, squares: FloatArray) -> Mapping[str, float]:
-    """Return the gap of each output from sums of squares (outputs,)."""
+    """Return the gap of each output from the sums of squares of its error, shape (outputs,)."""
     counts = np.bincount(plain.assembly.channel)
     return {
         LATERAL.outputs[k]: max(0.0, float(squares[k] / counts[k] / plain.noise[k] ** 2) - 1.0)
@@ -171,14 +172,14 @@ def _gap(plain: Fit, squares: FloatArray) -> Mapping[str, float]:
 
 
 def _named_air(row: Row[SideModel]) -> Row[SideModel]:
-    """Return the row with side gusts as its answer, where they alone are beyond the natural ones."""
+    """Return the row with side gusts as its answer, if the gusts alone exceed natural side gusts."""
     gusts = row.explanation.gusts
     blown = row.alternative == NONE and gusts is not None and gusts.angle > NATURAL_GUST_ANGLE
     return relabelled(row, SIDE_GUSTS) if blown else row
 
 
 def _causes(case: Case, found: Decided[SideModel], as_given: Fit) -> Iterator[SideCause]:
-    """Yield the effects of the model, then the alternatives to the first of them."""
+    """Yield the effects of the model, then the alternatives to the first effect."""
     posterior, together = found.posteriors[0], 1.0
     added = found.chosen[1:]
     if added:
@@ -205,7 +206,7 @@ def _causes(case: Case, found: Decided[SideModel], as_given: Fit) -> Iterator[Si
 def _cause(
     case: Case, tried: SideModel, fit: Fit, tolerance: float, probability: float, share: float, present: bool
 ) -> SideCause:
-    """Return an effect with its sizes in a fit that has the effect."""
+    """Return an effect as a cause, with its sizes from a fit that includes the effect."""
     effect = tried.effect
     assert effect is not None
     mean, covariance = posterior_of(fit, information_of(fit, share), case.prior_of(tolerance, fit.free))
@@ -228,7 +229,7 @@ def _cause(
 
 
 def _air(case: Case, one: SideModel, probability: float, is_found: bool, as_given: Fit) -> SideCause:
-    """Return side gusts as a cause."""
+    """Return side gusts as a cause of the gap."""
     assert one.gusts is not None
     speed = float(np.mean([np.mean(record.airspeed.y) for record in case.flown.problem.records]))
     size = Value(one.gusts.angle * speed, one.gusts.angle_std * speed)
@@ -239,7 +240,7 @@ def _air(case: Case, one: SideModel, probability: float, is_found: bool, as_give
 
 
 def _waterfall(added: Sequence[SideModel]) -> tuple[tuple[str, float], ...]:
-    """Return the gap that remains with each effect of the model."""
+    """Return the gap that remains after the addition of each effect to the model."""
     if not added:
         return ()
     told = np.unique(added[-1].fit.assembly.channel)
@@ -248,7 +249,7 @@ def _waterfall(added: Sequence[SideModel]) -> tuple[tuple[str, float], ...]:
 
 
 def peaks_of(fit: Fit) -> Mapping[str, float]:
-    """Return the largest error of roll and yaw rate, rad/s."""
+    """Return the largest errors of roll rate and yaw rate in a fit, rad/s."""
     return {
         name: max(float(np.max(np.abs(fit.residual[rows[name]]))) for rows in fit.assembly.rows)
         for name in PEAKS

@@ -1,8 +1,8 @@
 """Response of all outputs of roll and yaw to a disturbance in one block of the simulator.
 
-A disturbance is added to a control's deflection, to one equation, to the air or to one sensor of the fitted
-model. A gust adds its angle to the sideslip that fin, wing and vane meet, so it enters side force, roll and
-yaw together. A disturbance is linear between knots.
+A disturbance is added to a control's deflection, to one equation, to the air or to one sensor. A gust adds
+its angle to the sideslip that fin, wing and vane meet, so it enters side force, roll and yaw together. A
+disturbance is linear between knots.
 """
 
 from collections.abc import Iterator, Mapping
@@ -19,7 +19,7 @@ from advisor.model.axes.lateral import LATERAL, Trim, state_matrix
 
 AIR = "air"
 EQUATIONS = {"side_force": "beta", "rolling_moment": "p", "yawing_moment": "r"}
-"""Block to the state in whose equation it stands."""
+"""State whose equation each block belongs to, by the block's name."""
 SENSORS = {
     "roll_rate_sensor": "p",
     "yaw_rate_sensor": "r",
@@ -27,24 +27,25 @@ SENSORS = {
     "accelerometer": "a_y",
     "sideslip_sensor": "beta",
 }
-"""Block to the output that it reads."""
+"""Output that each sensor block measures, by the block's name."""
 STEP_S = 0.02
-"""Step of the motion that a disturbance causes, s: a fifth of the distance of the knots."""
+"""Time step of the simulated response to a disturbance, s: a fifth of the distance of the knots."""
 _STATES = {name: k for k, name in enumerate(LATERAL.states)}
 _BETA, _P, _R, _BANK = range(len(LATERAL.states))
 
 
 class Course(NamedTuple):
-    """A disturbance in one manoeuvre."""
+    """Response of one manoeuvre to a disturbance."""
 
     knots: FloatArray
-    """(k,) times of its knots, s."""
+    """Shape (k,): times of the disturbance's knots, s."""
     columns: FloatArray
-    """(n, k) change of the manoeuvre's rows by 1 at each knot, free of what its own parameters absorb."""
+    """Shape (n, k): change of the outputs per unit disturbance at each knot, without what trims and initial
+    states absorb."""
 
 
 def blocks_of(fit: Fit, flown: Flown) -> Iterator[str]:
-    """Yield the blocks in which these records show a disturbance."""
+    """Yield the blocks whose disturbance these records can show."""
     yield from filter(flown.problem.flies, LATERAL.inputs)
     yield from EQUATIONS
     yield AIR
@@ -53,10 +54,9 @@ def blocks_of(fit: Fit, flown: Flown) -> Iterator[str]:
 
 
 def courses_of(fit: Fit, flown: Flown, block: str = AIR) -> tuple[Course, ...]:
-    """Return what a disturbance changes in every manoeuvre, by the derivatives of a fit.
+    """Return the response of every manoeuvre to a disturbance in a block, from the derivatives of a fit.
 
-    Its unit is rad at a control and in the air, 1/s or rad/s² in an equation, and that of its output at a
-    sensor.
+    The disturbance's unit is rad at a control and in the air, 1/s or rad/s² in an equation.
     """
     return tuple(_course(fit, flown, m, block) for m in range(len(flown)))
 
@@ -77,7 +77,8 @@ def _course(fit: Fit, flown: Flown, m: int, block: str) -> Course:
 
 
 def _later(two: FloatArray, knots: int) -> FloatArray:
-    """Return the changes (n, knots) by a disturbance at every knot, given those at the first two (n, 2)."""
+    """Return the responses (n, knots) to a disturbance at every knot, from those at the first two knots (n,
+    2)."""
     step = round(KNOTS_S / STEP_S)
     changes = np.zeros((len(two), knots))
     changes[:, 0] = two[:, 0]
@@ -88,13 +89,12 @@ def _later(two: FloatArray, knots: int) -> FloatArray:
 
 
 def answered(fit: Fit, flown: Flown, m: int, block: str, t: FloatArray, course: FloatArray) -> FloatArray:
-    """Return the change of a manoeuvre's rows by ``k`` disturbances in a block, whose values (n, k) belong
-    to the times ``t``."""
+    """Return the response (n, k) of one manoeuvre's outputs to ``k`` disturbances in a block."""
     return _read(fit, m, t, _outputs(fit.point.theta, flown, m, block, course))
 
 
 def _read(fit: Fit, m: int, t: FloatArray, seen: Mapping[str, FloatArray]) -> FloatArray:
-    """Return changes of outputs (n, k) by their names, of values at ``t``, as rows of a manoeuvre."""
+    """Return the changes (n, k) of outputs, known at the times ``t``, at the stamps of a manoeuvre."""
     parts = []
     for name, rows in fit.assembly.rows[m].items():
         change = seen.get(name, np.zeros((len(t), next(iter(seen.values())).shape[1])))
@@ -108,7 +108,7 @@ def _read(fit: Fit, m: int, t: FloatArray, seen: Mapping[str, FloatArray]) -> Fl
 def _outputs(
     theta: FloatArray, flown: Flown, m: int, block: str, course: FloatArray
 ) -> Mapping[str, FloatArray]:
-    """Return by output what disturbances (n, k), one value a step, change (n, k)."""
+    """Return the change (n, k) of each output by disturbances (n, k), by the output's name."""
     if block in SENSORS:
         return {SENSORS[block]: course}
     problem, record = flown.problem, flown.problem.records[m]
@@ -137,7 +137,7 @@ def _outputs(
 
 
 def _drives(block: str, theta: FloatArray, aerodynamic: FloatArray) -> FloatArray:
-    """Return how a disturbance of a block enters each state equation, shape (4,)."""
+    """Return the coefficient of a block's disturbance in each state equation, shape (4,)."""
     if block == AIR:
         return np.asarray(aerodynamic[:, _BETA])
     drives = np.zeros(len(LATERAL.states))
@@ -150,5 +150,5 @@ def _drives(block: str, theta: FloatArray, aerodynamic: FloatArray) -> FloatArra
 
 
 def _hats(t: FloatArray, knots: FloatArray) -> FloatArray:
-    """Return the share (n, k) of every knot at times ``t``, linear between knots."""
+    """Return the weight (n, k) of every knot at the times ``t``, for linear interpolation."""
     return np.maximum(0.0, 1.0 - np.abs(t[:, None] - knots) / KNOTS_S)

@@ -1,7 +1,7 @@
-"""Effects of roll and yaw, one row each: those of the pitch axis at aileron, rudder and lateral instruments.
+"""Effects of roll and yaw: the pitch axis' effects at aileron, rudder and lateral instruments.
 
 Names, blocks, bounds, starts, least sizes and sentences are those of ``gap.effects``. A row adds the control
-or output, the places that the parameters set, and the standard deviation of each before the flight.
+or output, and the prior standard deviation of each parameter.
 """
 
 from collections.abc import Iterator, Mapping
@@ -33,24 +33,24 @@ THROTTLE_MOVES = 0.02
 
 @dataclass(frozen=True, slots=True)
 class SideEffect:
-    """One row of the table: an effect at one control or output."""
+    """One effect of roll and yaw at one control or output."""
 
     of: str
-    """Control or output; ``throttle`` for the propeller."""
+    """Control or output at which the effect acts; ``throttle`` for the propeller."""
     variant: Variant
     places: tuple[Place, ...]
-    """Place of each parameter."""
+    """Entry of the simulator that each parameter of the effect sets."""
     std: tuple[float, ...]
-    """Standard deviation of each parameter about zero before the flight, over the aircraft with the effect.
-    Where the bounds exclude negative sizes, the prior is half of a Gaussian."""
+    """Prior standard deviation of each parameter about zero, over all aircraft that have the effect. Where
+    the bounds exclude negative sizes, the prior is half of a Gaussian."""
     words: Mapping[str, str] = field(default_factory=dict)
-    """Words of the pitch axis' sentence to those of this axis."""
+    """Word of this axis for each word in the pitch axis' sentence."""
     columns: FloatArray | None = field(default=None, compare=False)
     """(N, k) change of the outputs per unit of each parameter, where it is linear."""
 
     @property
     def named(self) -> str:
-        """Name of the effect as people write it: ``aileron actuator lag``, ``roll rate scale``."""
+        """Name of the effect in sentences: ``aileron actuator lag``, ``roll rate scale``."""
         spoken = spelled(self.variant.effect)
         for old, new in self.words.items():
             spoken = spoken.replace(old, new)
@@ -62,7 +62,7 @@ class SideEffect:
         return self.named.replace(" ", "_")
 
     def said(self, sentence: str) -> str:
-        """Return the pitch axis' sentence in the words of this axis; the control leads where none changes."""
+        """Return the pitch axis' sentence with the words of roll and yaw."""
         for old, new in self.words.items():
             if old in sentence:
                 return sentence.replace(old, new)
@@ -70,18 +70,17 @@ class SideEffect:
 
     @property
     def starts(self) -> tuple[tuple[float, ...], ...]:
-        """Sizes at which a search starts; none where the outputs are linear in the size."""
+        """Sizes at which a search starts; empty where the outputs are linear in the size."""
         return tuple(start for start in self.variant.starts if start[0])
 
     @property
     def sides(self) -> tuple[Place, tuple[float, ...]] | None:
-        """Place of the parameter whose value differs by manoeuvre, and the values to choose from; None
-        without such a parameter."""
+        """Parameter whose value differs by manoeuvre, with the values to choose from; None without one."""
         return None if self.variant.sides is None else ((self.of, self.variant.sides[0]), (-1.0, 0.0, 1.0))
 
 
 _BLOCKS = {**{output: block for block, output in SENSORS.items()}, "throttle": "rolling_moment"}
-"""Output, or the throttle, to its block; a control is a block itself."""
+"""Block of each output and of the throttle, by its name; a control is a block itself."""
 _SERVO = (
     (LAG, ("lag_s",), (0.05,)),
     (DELAY, ("delay_s",), (0.05,)),
@@ -89,8 +88,9 @@ _SERVO = (
     (BACKLASH, ("half_play_rad",), (0.01,)),
     (DEADBAND_ABOUT_TRIM, ("half_deadband_rad", "neutral_rad"), (0.01, 0.005)),
 )
-"""Effects of a servo, with entries and prior standard deviations. Servos of small aircraft lag by 50 ms. A
-slowness of 1.5 s/rad is a rate of 40 deg/s. Worn linkages have half a degree of play."""
+"""Effects of a servo, each with its entries in the simulator and their prior standard deviations. Servos of
+small aircraft lag by about 50 ms. A slowness of 1.5 s/rad is a rate of 40 deg/s. Worn linkages have half a
+degree of play."""
 _READINGS = {
     "p": ("roll rate", "pitch_rate_skew", "pitch_rate_sensor"),
     "r": ("yaw rate", "pitch_rate_skew", "pitch_rate_sensor"),
@@ -98,18 +98,18 @@ _READINGS = {
     "a_y": ("lateral acceleration", "accelerometer_skew", "accelerometer"),
     "beta": ("sideslip", "alpha_skew", "alpha_sensor"),
 }
-"""Output to its name, to its late stamps in pitch, and to the block of a scale there, if any."""
+"""Name of each output, its skew effect in pitch, and the block of its scale error, if any."""
 _SCALE_STD, _SKEW_STD_S, _ARM_STD_M = 0.1, 0.1, 0.3
-"""Prior standard deviations of a scale error, 1, of late stamps, s, and of an accelerometer's arm, m."""
+"""Prior standard deviations: scale error (1), skew of stamps (s), and arm of an accelerometer (m)."""
 
 
 def block_of(of: str) -> str:
-    """Return the block of a control, an output, the throttle or the air."""
+    """Return the block of a control, of an output, of the throttle or of the air."""
     return _BLOCKS.get(of, of)
 
 
 def side_effects(flown: Flown) -> Iterator[SideEffect]:
-    """Yield every effect that the records can show."""
+    """Yield every lateral effect that the records of a flight can show."""
     problem = flown.problem
     for of in filter(problem.flies, LATERAL.inputs):
         for variant, entries, std in _SERVO:
@@ -133,7 +133,7 @@ def side_effects(flown: Flown) -> Iterator[SideEffect]:
 
 
 def unseen(flown: Flown) -> Mapping[str, str]:
-    """Return what the records cannot show, with the reason."""
+    """Return the reason why the records cannot show an effect, by the effect's name."""
     problem = flown.problem
     found = {"a constant error of p, r, φ or a_y": "each manoeuvre has its own trim and biases"}
     for of in LATERAL.inputs:
@@ -149,7 +149,7 @@ def _throttle_moves(flown: Flown) -> bool:
 
 
 def _propeller() -> SideEffect:
-    """Return the roll due to the propeller, as the aileron that rolls as much at full throttle."""
+    """Return the propeller's rolling moment at full throttle as the equivalent aileron deflection."""
     torque = replace(
         ARM, effect="thrust_moment", block="moment_equation", names=("aileron_rad",), steps=(2e-4,)
     )

@@ -1,6 +1,6 @@
-"""Information of a fit in roll and yaw, and its gain on manoeuvres that it has not seen.
+"""Information of a lateral fit about its parameters, and its log likelihood gain on held-out manoeuvres.
 
-Residuals are coloured, so a nat of white noise counts as ``share``² nats.
+Residuals are coloured, so one nat of the white-noise likelihood counts as ``share``² nats.
 """
 
 from typing import NamedTuple, Self
@@ -15,17 +15,16 @@ from advisor.oem.scatter_between import widened_by_scatter
 
 
 class Information(NamedTuple):
-    """Information of each manoeuvre about derivatives and numbers."""
+    """Information of each manoeuvre about derivatives and effect parameters."""
 
     matrix: FloatArray
-    """(m, k, k)"""
+    """Shape (m, k, k): information matrix of each manoeuvre."""
     gradient: FloatArray
-    """(m, k) at the optimum."""
+    """Shape (m, k): gradient of each manoeuvre's log likelihood at the optimum."""
 
 
 def information_of(fit: Fit, share: float) -> Information:
-    """Return the information of each manoeuvre, with coloured residuals counted as ``share``² of white
-    ones."""
+    """Return the information of each manoeuvre; coloured residuals scale it by ``share``²."""
     weighed = share * fit.columns * fit.weight[:, None]
     left = share * fit.residual * fit.weight
     parts = [fit.assembly.owner == m for m in range(fit.assembly.maneuvers)]
@@ -36,8 +35,7 @@ def information_of(fit: Fit, share: float) -> Information:
 
 
 def share_of(fit: Fit) -> float:
-    """Return the error of the derivatives by white noise over their error by the residuals: coloured within a
-    manoeuvre, and scattered between manoeuvres."""
+    """Return the ratio of the derivatives' standard error under white noise to that from the residuals."""
     told = influence(fit.assembly, fit.sensitivities, fit.noise)
     if told is None:
         return 1.0
@@ -51,7 +49,7 @@ def share_of(fit: Fit) -> float:
 
 
 def posterior_of(fit: Fit, told: Information, known: Known) -> tuple[FloatArray, FloatArray]:
-    """Return mean (15 + k,) and covariance of derivatives and numbers under a prior."""
+    """Return the posterior mean (15 + k,) and covariance of derivatives and effect parameters."""
     posterior = np.sum(told.matrix, axis=0) + np.diag(known.precision)
     pull = np.sum(told.gradient, axis=0) - known.precision * (fit.values - known.mean)
     covariance = np.linalg.inv(posterior)
@@ -59,16 +57,17 @@ def posterior_of(fit: Fit, told: Information, known: Known) -> tuple[FloatArray,
 
 
 class Squares(NamedTuple):
-    """Sums of squares (m, outputs) that a model leaves under a prior."""
+    """Sums of squared residuals (m, outputs) of a model under a prior."""
 
     in_fit: FloatArray
     held_out: FloatArray
-    """Prediction of each manoeuvre from all other manoeuvres. Derivatives and numbers come from these and
-    from the prior. Trims, initial states and biases come from the manoeuvre itself."""
+    """Sums of squares of each manoeuvre's error when it is predicted from all others. Derivatives and effect
+    parameters come from all other manoeuvres and from the prior. Trims, initial states and biases come from
+    the predicted manoeuvre itself."""
 
 
 def squares_of(fit: Fit, told: Information, known: Known) -> Squares:
-    """Return the squares of a model in the fit, and on manoeuvres held out one by one."""
+    """Return the sums of squares of a model in the fit, and on manoeuvres held out one by one."""
     matrix, gradient = np.sum(told.matrix, axis=0), np.sum(told.gradient, axis=0)
     squares = np.zeros((2, fit.assembly.maneuvers, len(fit.noise)))
     for m, without in np.ndindex(fit.assembly.maneuvers, 2):
@@ -81,16 +80,15 @@ def squares_of(fit: Fit, told: Information, known: Known) -> Squares:
 
 
 class Gain(NamedTuple):
-    """Log likelihood that one model gains over another, nats."""
+    """Log likelihood that one model gains over another model, nats."""
 
     total: float
     std: float
-    """Standard error of the total, by the scatter of the manoeuvres."""
+    """Standard error of the total gain, from the scatter between manoeuvres, nats."""
 
     @classmethod
     def between(cls, before: FloatArray, after: FloatArray, counts: FloatArray, share: float) -> Self:
-        """Return the gain from the first to the second sum of squares, (m, outputs) each, of ``counts``
-        (outputs,) samples."""
+        """Return the gain of the second model from both models' sums of squares, (m, outputs) each."""
         told = counts > 0.0
         sums = before[:, told].sum(axis=0), after[:, told].sum(axis=0)
         total = 0.5 * share**2 * float(np.sum(counts[told] * np.log(sums[0] / sums[1])))

@@ -1,7 +1,7 @@
-"""Output error with derivatives, trims and the numbers of a setting, all free at once.
+"""Output-error fit of derivatives, trims and effect parameters together.
 
 The fit takes Gauss-Newton steps. Trims, initial states and biases are projected out of every manoeuvre, so
-that derivatives and numbers alone remain. Their prior is Gaussian.
+only shared parameters remain. The shared parameters have a Gaussian prior.
 """
 
 from collections.abc import Iterator, Sequence
@@ -21,92 +21,96 @@ from advisor.oem.axes.lateral.problem import LateralAssembly
 from advisor.oem.gauss_newton import weigh
 
 ROUNDS = 12
-"""Most Gauss-Newton steps of a fit; those from the table's starts take three to six."""
+"""Largest number of Gauss-Newton steps of a fit; a fit from a tabulated start takes three to six."""
 SETTLED = 0.05
-"""Decrease of the cost, -2 log likelihood, per step, below which a fit is done: far below one nat."""
+"""Decrease of the cost, -2 log likelihood, in one step, below which a fit has converged: far below one
+nat."""
 N = len(LATERAL.shared)
 _NO_MOTION = np.empty((0, 2, len(LATERAL.states)))
 
 
 class Free(NamedTuple):
-    """One number of the setting that is estimated."""
+    """One effect parameter that a fit estimates."""
 
     place: Place
     std: float
-    """Standard deviation about zero, or about ``mean``, before the flight."""
+    """Prior standard deviation of the parameter about zero, or about ``mean``."""
     step: float
-    """Step of the differences."""
+    """Finite-difference step of the parameter."""
     bounds: tuple[float, float] = (-np.inf, np.inf)
     mean: float = 0.0
     column: FloatArray | None = None
-    """(N,) derivative of the outputs that an earlier fit has found; None: every step takes differences."""
+    """Shape (N,): known derivative of the outputs by the parameter; None: computed by differences in every
+    step."""
     adds: bool = False
-    """Whether the outputs are the simulated ones and as much of the column as the number says."""
+    """Whether the parameter adds its column to the simulated outputs, so that no simulation uses it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """Gaussian knowledge of derivatives and numbers before the flight."""
+    """Gaussian prior of derivatives and effect parameters."""
 
     mean: FloatArray
     precision: FloatArray
-    """(15 + k,) inverse variances."""
+    """Shape (15 + k,): inverse prior variances."""
 
     def prior(self, values: FloatArray) -> Prior:
-        """Return the prior about the values (15 + k,) of a fit."""
+        """Return the prior relative to the values (15 + k,) of a fit."""
         return Prior(self.precision, self.mean - values)
 
 
 class Point(NamedTuple):
-    """Parameters of a fit."""
+    """Parameters of a fit: derivatives, effect parameters and local parameters."""
 
     theta: FloatArray
     """(15,)"""
     local: FloatArray
-    """(m, l)"""
+    """Shape (m, l): trims, initial states and biases of each manoeuvre."""
     setting: Setting
 
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """The optimum of one model."""
+    """Optimum of one model's fit."""
 
     point: Point
     assembly: LateralAssembly
     free: tuple[Free, ...]
     fitted: FloatArray
-    """(N,) outputs."""
+    """Shape (N,): simulated outputs at the optimum."""
     noise: FloatArray
     """(outputs,)"""
     likelihood: float
-    """Log likelihood up to a constant, of white noise."""
+    """Log likelihood for white noise, up to a constant."""
     columns: FloatArray
-    """(N, 15 + k) derivatives of the outputs, free of what trims, initial states and biases absorb."""
+    """Shape (N, 15 + k): sensitivities to shared parameters, without what trims, initial states and biases
+    absorb."""
     slopes: FloatArray
-    """(N, k) derivatives of the outputs by the free numbers alone."""
+    """Shape (N, k): derivatives of the outputs by the effect parameters."""
     sensitivities: FloatArray
-    """(N, 15 + l) derivatives of the outputs by derivatives and local parameters."""
+    """Shape (N, 15 + l): derivatives of the outputs by the aerodynamic derivatives and the local
+    parameters."""
 
     @property
     def values(self) -> FloatArray:
-        """(15 + k,) derivatives and numbers."""
+        """Shape (15 + k,): values of the derivatives and of the effect parameters."""
         return np.concatenate([self.point.theta, _numbers(self.point, self.free)])
 
     @property
     def residual(self) -> FloatArray:
-        """(N,) measured minus fitted outputs."""
+        """Shape (N,): measured minus fitted outputs."""
         return np.asarray(self.assembly.z - self.fitted)
 
     @property
     def weight(self) -> FloatArray:
-        """(N,) inverse standard deviation of each row's noise."""
+        """Shape (N,): inverse standard deviation of each row's noise."""
         return np.asarray(1.0 / self.noise[self.assembly.channel])
 
 
 def fitted(
     flown: Flown, begin: Point, free: Sequence[Free], known: Known, rounds: int = ROUNDS
 ) -> Fit | None:
-    """Return the optimum from a start; None where the model runs away there."""
+    """Return the optimum from a start; None where the simulation diverges."""
     at = _at(flown, begin, free, known)
     if at is None:
         return None
@@ -151,24 +155,24 @@ def _at(flown: Flown, point: Point, free: Sequence[Free], known: Known) -> _At |
 
 
 class _Step(NamedTuple):
-    """A Gauss-Newton step, with the linear model that it follows."""
+    """A Gauss-Newton step with its linear model."""
 
     values: FloatArray
-    """(15 + k,) derivatives and numbers before the step."""
+    """Shape (15 + k,): derivatives and effect parameters before the step."""
     change: FloatArray
-    """(15 + k,)"""
+    """Shape (15 + k,): change of the derivatives and effect parameters by the step."""
     columns: FloatArray
-    """(N, 15 + k) weighed derivatives of the outputs."""
+    """Shape (N, 15 + k): weighted derivatives of the outputs."""
     residual: FloatArray
-    """(N,) weighed."""
+    """Shape (N,): weighted residual."""
     own: list[tuple[slice, FloatArray]]
-    """Rows of each manoeuvre, and the weighed derivatives by its own parameters."""
+    """Rows of each manoeuvre, and the weighted derivatives by the manoeuvre's local parameters."""
     promise: float
     """Decrease of the cost that the linear model promises."""
 
 
 def _step(at: _At, slopes: FloatArray, known: Known) -> _Step:
-    """Return the step within the bounds of all numbers."""
+    """Return the Gauss-Newton step within the bounds of all effect parameters."""
     columns = np.column_stack([at.g[:, :N], slopes])
     weight = 1.0 / at.noise[at.assembly.channel]
     residual = weight * (at.assembly.z - at.y)
@@ -186,7 +190,8 @@ def _step(at: _At, slopes: FloatArray, known: Known) -> _Step:
 
 
 def _trials(flown: Flown, at: _At, known: Known, step: _Step) -> Iterator[_At | None]:
-    """Yield points along the step, each a quarter as far, that lower the cost; else None."""
+    """Yield points along the step, each a quarter as far as the one before, that lower the cost; else
+    None."""
     for share in (1.0, 0.25, 0.06):
         moved = share * step.change
         left = step.residual - step.columns @ moved
@@ -202,9 +207,9 @@ def _trials(flown: Flown, at: _At, known: Known, step: _Step) -> Iterator[_At | 
 def _projected(
     at: _At, columns: FloatArray, weight: FloatArray
 ) -> tuple[FloatArray, list[tuple[slice, FloatArray]]]:
-    """Return the columns without what each manoeuvre's own parameters absorb, and its own weighed columns.
+    """Return the columns without what local parameters absorb, and each manoeuvre's weighted local columns.
 
-    Columns of derivatives that the flight does not show are zero.
+    The columns of derivatives that the flight does not show are zero.
     """
     result, bases = columns.copy(), []
     for rows in at.assembly.blocks:
@@ -216,7 +221,7 @@ def _projected(
 
 
 def _slopes(flown: Flown, at: _At) -> FloatArray:
-    """Return the derivatives (N, k) of the outputs by the free numbers, by differences."""
+    """Return the finite-difference derivatives (N, k) of the outputs by the effect parameters."""
     found = np.zeros((len(at.y), len(at.free)))
     for k, (one, value) in enumerate(zip(at.free, _numbers(at.point, at.free), strict=True)):
         if one.column is not None:
@@ -232,12 +237,12 @@ def _slopes(flown: Flown, at: _At) -> FloatArray:
 
 
 def _added(point: Point, free: Sequence[Free]) -> FloatArray:
-    """Return what numbers with a column of their own add to the outputs, (N,) or zero."""
+    """Return the outputs' change (N,) by parameters whose column is known; zero without one."""
     return np.asarray(sum(x * f.column for x, f in zip(_numbers(point, free), free, strict=True) if f.adds))
 
 
 def outputs(flown: Flown, point: Point) -> FloatArray:
-    """Return the outputs (N,) of a point."""
+    """Return the simulated outputs (N,) at a point of the parameters."""
     assembly = laid_out(flown, point.setting)
     y = np.empty(len(assembly.z))
     no_slopes = np.empty((0, N + point.local.shape[1]))

@@ -1,4 +1,4 @@
-"""Roll and yaw, as the engine asks for it: fits with an effect, their evidence, and what they leave."""
+"""Roll and yaw flight for the diagnosis: fits with an effect, their evidence and their residuals."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -25,58 +25,58 @@ from advisor.gap.inference.stage import AT_THE_FILE, LAWS, Pairs, Stage, likelie
 
 _TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
 LIKELY = 0.01
-"""Probability above which an effect is tried in side gusts and its sizes are stated."""
+"""Probability above which an effect is also fitted with side gusts, and above which its sizes are stated."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SideModel(Explanation):
-    """An explanation in roll and yaw with its fit."""
+    """One explanation of a lateral flight with its fit."""
 
     effect: SideEffect | None
-    """Effect that is added; None for derivatives alone."""
+    """Effect that the model adds to the derivatives; None for derivatives alone."""
     fit: Fit
     beyond: float
-    """Nats of the evidence beyond the marginal likelihood: sides of a prior, loss on unseen manoeuvres."""
+    """Correction of the log evidence for choices of sign and for loss on held-out manoeuvres, nats."""
     gain: Gain
-    """Gain on unseen manoeuvres over fitted derivatives alone, nats."""
+    """Gain on held-out manoeuvres over fitted derivatives alone, nats."""
     starts: Starts | None = None
-    """Starts of all effects in addition to the plain model; None elsewhere."""
+    """Linear starts of all further effects; None except in the plain model."""
     gusts: Gusts | None = None
     """Side gusts of the model; None in still air."""
 
     @property
     def solution(self) -> Fit:
-        """The fit, which explanations in still and in moving air share."""
+        """Fit of the explanation, equal in still and in moving air."""
         return self.fit
 
     @property
     def tolerance(self) -> float:
-        """Likelier relative error of the derivatives."""
+        """Likelier of the two relative errors of the file's derivatives."""
         return ERROR_IF_RIGHT if self.evidence.right > self.evidence.wrong else ERROR_IF_WRONG
 
 
 @dataclass(frozen=True)
 class SideFlight:
-    """A flight in roll and yaw, with its plain fit."""
+    """A flight in roll and yaw, with its fit without effects."""
 
     case: Case
     plain: Fit
     table: Sequence[SideEffect]
     laws: Sequence[SideEffect] = ()
-    """Laws without a name."""
+    """Laws of a surface or of a curve that have no name in the catalogue."""
 
     @property
     def tried(self) -> tuple[int, int]:
-        """Numbers of effects and laws by name."""
+        """Number of candidate effects, and number of distinct names among the laws."""
         return len(self.table), len({law.name for law in self.laws})
 
     @property
     def is_stated(self) -> bool:
-        """Whether the aircraft file states derivatives."""
+        """Whether the aircraft file states any lateral derivative."""
         return bool(self.case.stated)
 
     def explained(self, base: SideModel | None, most: int) -> tuple[float, list[SideModel]]:
-        """Return the temperature, and a model with each likely effect in addition."""
+        """Return the temperature of the likelihood, and a model with each likely effect in addition."""
         begin = self.plain
         if base is not None:
             # With an effect, another lateness of commands and outputs changes the outputs by something else.
@@ -102,9 +102,9 @@ class SideFlight:
         return share**-2, everyone
 
     def at_the_files(self, one: SideModel, plain: SideModel, heat: float) -> SideModel | None:
-        """Return an explanation fitted again where the file's derivatives are right; None without a fit.
+        """Return an explanation refitted about the file's derivatives; None without such a fit.
 
-        Where they are the likelier ones already, the fit is near enough for the quadratic expansion.
+        If the file's derivatives are likelier already, the first fit suffices for the quadratic expansion.
         """
         share, near = heat**-0.5, one.evidence.right > one.evidence.wrong
         free = one.fit.free if one.effect is not None else free_near(self.case, one.fit)
@@ -114,17 +114,17 @@ class SideFlight:
         return replace(self._model(one.effect, made, plain.fit, share), starts=one.starts)
 
     def apart(self, one: SideModel, other: SideModel) -> float:
-        """Return the largest difference between two models, as a share of the peaks."""
+        """Return the largest difference between two models' outputs, as a share of the outputs' peaks."""
         return change_of(one.fit, other.fit)
 
     def residual(self, one: SideModel, heat: float) -> Residual:
-        """Return the disturbance that explains what a model leaves."""
+        """Return the disturbance that explains the residual of a model best."""
         return residual_of(one.fit, self.case.flown, heat**-0.5)
 
     def pairs(self, stage: Stage[SideModel], leads: Sequence[SideModel]) -> Pairs:
-        """Yield the price of each lead with each other effect, and both names, where that may be a cause too.
+        """Yield the price of each pair of effects with both names, if the second effect may be a cause too.
 
-        The effect's share of the prior must be made up for.
+        The second effect's likelihood gain must exceed the cost of its prior probability.
         """
         looked = stage.plain.starts
         assert looked is not None
@@ -136,10 +136,10 @@ class SideFlight:
                     yield price, lead.name, other.name
 
     def in_moving_air(self, stage: Stage[SideModel]) -> Stage[SideModel]:
-        """Return the likely explanations again, in side gusts that enter all outputs together.
+        """Return the likely explanations refitted with side gusts, which disturb all outputs together.
 
-        The plain model in still air and in gusts differ by the likelihood of their residuals: coloured
-        instruments against gusts.
+        The likelihoods of coloured instruments and of gusts distinguish the plain model in still and in
+        moving air.
         """
         plain = stage.plain
         each = float(np.log(max(len(self.table), 1)))
@@ -163,7 +163,7 @@ class SideFlight:
         return self.case.prior_of(ERROR_IF_WRONG, fit.free)
 
     def _blown(self, one: SideModel, gusts: Gusts) -> SideModel:
-        """Return an explanation in side gusts."""
+        """Return an explanation with side gusts in addition."""
         evidence, natural = self._weighed(one.fit, one.effect, gusts.likelihood, gusts.matrix, gusts.gradient)
         highest = gusts.highest(self._wide(one.fit))
         blown = replace(one, gusts=gusts, evidence=evidence, natural=natural, likelihood=highest)
@@ -172,13 +172,14 @@ class SideFlight:
     def _weighed(
         self, fit: Fit, effect: SideEffect | None, likelihood: float, matrix: FloatArray, gradient: FloatArray
     ) -> Iterator[Evidence]:
-        """Yield the evidence of a fit, and that with as little of its effect as every aircraft has."""
+        """Yield the evidence of a fit, then the evidence with the effect at the small size natural to every
+        aircraft."""
         for free in (fit.free, _narrowed(fit.free, effect)):
             priors = (self.case.prior_of(tolerance, free).prior(fit.values) for tolerance in _TOLERANCES)
             yield marginal(likelihood, matrix, gradient, *priors)
 
     def _model(self, effect: SideEffect | None, fit: Fit, plain: Fit, share: float) -> SideModel:
-        """Return a model with its evidence, which unseen manoeuvres may cut."""
+        """Return a model with its evidence, which a loss on held-out manoeuvres may reduce."""
         told, likelihood = information_of(fit, share), share**2 * fit.likelihood
         matrix, gradient = (np.sum(part, axis=0) for part in told)
         evidence, natural = self._weighed(fit, effect, likelihood, matrix, gradient)
@@ -209,13 +210,13 @@ class SideFlight:
 
 
 def _beside(base: SideModel | None, table: Sequence[SideEffect]) -> list[SideEffect]:
-    """Return the effects that set no number which that of a model sets."""
+    """Return the effects that share no entry with the effect of a model."""
     taken = set(base.effect.places) if base is not None and base.effect is not None else set()
     return [effect for effect in table if not taken & set(effect.places)]
 
 
 def _narrowed(free: Sequence[Free], effect: SideEffect | None) -> list[Free]:
-    """Return the free numbers with as narrow a prior of an effect's own as every aircraft has."""
+    """Return the free parameters, with the effect's prior narrowed to the size natural to every aircraft."""
     if effect is None:
         return list(free)
     share = natural_share(effect.variant)

@@ -3,7 +3,7 @@
 A gust adds its angle to the sideslip that fin, wing and vane meet, so it enters side force, roll and yaw
 together. The gust's angle is linear between knots, with an exponential correlation, as in Dryden's
 turbulence across the flight path. Noise of an instrument, however coloured, enters its own output alone. The
-likelihoods of the residuals distinguish the two.
+likelihoods of the residuals distinguish gusts from instrument noise.
 """
 
 from collections.abc import Sequence
@@ -23,36 +23,36 @@ from advisor.oem.colour import Stretch, find_colour
 from advisor.oem.whitening import schedule, whiten
 
 _MEMORY_S = 1.0
-"""Correlation time with which the search begins, s: 60 m at 25 m/s are 2.4 s."""
+"""Correlation time of the gusts at which the search begins, s."""
 _RANGE = (1e-3, 1e3)
-"""Range of every standard deviation, over its start."""
+"""Range of every standard deviation in the search, relative to its start."""
 _LONGEST_MEMORY_S = 60.0
 _MOST_STEPS = 400
 _BEND = 0.2
-"""Step of the logarithm of the gust angle for the curvature of its likelihood."""
+"""Finite-difference step of the gust angle's logarithm, for the curvature of the likelihood."""
 
 
 @dataclass(frozen=True, slots=True)
 class Gusts:
-    """White noise of the outputs, and a gust angle in every manoeuvre."""
+    """White noise of the outputs and the gust angle's statistics, as estimated from the residuals."""
 
     noise: FloatArray
-    """(outputs,) standard deviation of the white noise."""
+    """Shape (outputs,): standard deviation of each output's white noise."""
     angle: float
     """Standard deviation of the gust angle, rad."""
     memory_s: float
-    """Correlation time, s."""
+    """Correlation time of the gust angle, s."""
     angle_std: float
-    """Standard deviation of that number, with all other numbers at their values."""
+    """Standard error of the gust angle's standard deviation, rad, with all other parameters fixed."""
     likelihood: float
     """Log likelihood of the residuals, on the scale of ``Fit.likelihood``."""
     matrix: FloatArray
-    """(k, k) information about derivatives and numbers, where gusts colour the residuals."""
+    """Shape (k, k): information about derivatives and effect parameters under gust-coloured residuals."""
     gradient: FloatArray
-    """(k,) gradient of the log likelihood at the fit."""
+    """Shape (k,): gradient of the log likelihood at the fit."""
 
     def highest(self, known: Known) -> float:
-        """Return the log likelihood at the optimum in the gusts, where a prior keeps what is not seen."""
+        """Return the log likelihood at the optimum with gusts and prior."""
         whole = self.matrix + np.diag(known.precision)
         return self.likelihood + 0.5 * float(self.gradient @ np.linalg.solve(whole, self.gradient))
 
@@ -60,14 +60,15 @@ class Gusts:
 def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | None = None) -> Gusts:
     """Return the likeliest white noise and gusts in the residuals of a fit.
 
-    Derivatives and numbers are integrated over: a fit under white noise has taken up a part of the gusts.
+    Derivatives and effect parameters are integrated out, because a white-noise fit has absorbed part of the
+    gusts.
 
     Parameters
     ----------
     known
-        Prior of derivatives and numbers.
+        Prior of derivatives and effect parameters.
     near
-        Gusts of a similar fit, from which the search begins.
+        Gusts of a similar fit, at which the search begins.
     """
     prior = known.prior(fit.values)
     sums = [_Sums.of(fit, m, course) for m, course in enumerate(courses)]
@@ -119,7 +120,8 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | 
 
 
 def coloured_likelihood(fit: Fit) -> float:
-    """Return the log likelihood of the residuals under instruments of any colour, on the same scale."""
+    """Return the residuals' log likelihood with coloured noise in each instrument, on the scale of
+    ``Fit.likelihood``."""
     cost = 0.0
     for name in LATERAL.outputs:
         parts = [fit.residual[named[name]] for named in fit.assembly.rows if name in named]
@@ -136,30 +138,30 @@ def coloured_likelihood(fit: Fit) -> float:
 
 
 def _root(knots: FloatArray, angle: float, memory_s: float) -> FloatArray:
-    """Return the Cholesky factor (k, k) of the covariance of a gust angle at its knots."""
+    """Return the Cholesky factor (k, k) of the gust angle's covariance at its knots."""
     apart = np.abs(knots[:, None] - knots)
     return np.asarray(angle * np.linalg.cholesky(np.exp(-apart / memory_s) + 1e-9 * np.eye(len(knots))))
 
 
 class _Sums(NamedTuple):
-    """Products of one manoeuvre from which the likelihood under any gusts follows.
+    """Inner products of one manoeuvre, from which the likelihood under any gusts is computed.
 
-    The k columns are the residual, and the changes of the outputs by derivatives and numbers.
+    The k columns are the residual and the derivatives of the outputs by the parameters.
     """
 
     knots: FloatArray
     counts: FloatArray
-    """(outputs,) rows of each output."""
+    """Shape (outputs,): number of rows of each output."""
     squares: FloatArray
-    """(outputs, k, k)"""
+    """Shape (outputs, k, k): inner products of the columns."""
     pulls: FloatArray
-    """(outputs, knots, k)"""
+    """Shape (outputs, knots, k): inner products of gust responses and columns."""
     grams: FloatArray
-    """(outputs, knots, knots)"""
+    """Shape (outputs, knots, knots): inner products of the gust responses."""
 
     @classmethod
     def of(cls, fit: Fit, m: int, course: Course) -> "_Sums":
-        """Return the products of manoeuvre ``m``."""
+        """Return the inner products of manoeuvre ``m``."""
         rows = fit.assembly.owner == m
         channel = fit.assembly.channel[rows]
         columns = np.column_stack([fit.residual[rows], fit.columns[rows]])
@@ -173,7 +175,8 @@ class _Sums(NamedTuple):
         )
 
     def weighed(self, noise: FloatArray, root: FloatArray) -> tuple[float, FloatArray]:
-        """Return the log determinant of the covariance, and the products (k, k) weighed by its inverse.
+        """Return the log determinant of the residuals' covariance, and the products (k, k) weighted by its
+        inverse.
 
         White noise has standard deviations (outputs,); the gusts' covariance has a factor (knots, knots).
         """

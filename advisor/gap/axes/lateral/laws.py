@@ -1,7 +1,7 @@
-"""Laws of roll and yaw without a name, as in pitch: surfaces that stop, stick or ring, and curves.
+"""Laws of roll and yaw without a name: surfaces that stop, stick or ring, and nonlinear curves.
 
-A curve is a disturbance of one block. It grows with the square and the cube of what moves there: a control's
-deflection, states in an equation, or a sensor's reading. Left and right are alike.
+A curve is a disturbance of one block. The curve consists of x·|x| and x³, where x is a deflection, a state or
+a reading. The curve is equal to the left and to the right.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,11 +26,11 @@ _LAG_AND_DAMPING = replace(
     starts=tuple((2.0 * damping / omega, damping) for omega, damping in RINGING.starts),
     steps=(5e-4, 0.01), bounds=((0.0, 0.25), RINGING.bounds[1]),
 )  # fmt: skip
-"""The servo of second order by the numbers that a surface reads."""
+"""Second-order servo: parameters of lag and damping, and their entries in the simulator."""
 
 
 def side_laws(case: Case, fit: Fit) -> Iterator[SideEffect]:
-    """Yield every law that the records of a flight can show."""
+    """Yield every law without a name that the records of a flight can show."""
     problem = case.flown.problem
     for of in filter(problem.flies, LATERAL.inputs):
         moved = np.concatenate(
@@ -53,7 +53,7 @@ def side_laws(case: Case, fit: Fit) -> Iterator[SideEffect]:
 def _curves(
     case: Case, fit: Fit, motions: Sequence[Mapping[str, FloatArray]], block: str, slopes: Mapping[str, float]
 ) -> Iterator[SideEffect]:
-    """Yield the curves of a block with what moves there, by the linear terms ``slopes``."""
+    """Yield the nonlinear curves of a block, from the linear terms ``slopes``."""
     most = {of: max(float(np.max(np.abs(motion[of]))) for motion in motions) + 1e-12 for of in slopes}
     parts = []
     for m, motion in enumerate(motions):
@@ -68,7 +68,7 @@ def _curves(
 
 
 def _motion(fit: Fit, m: int) -> Mapping[str, FloatArray]:
-    """Return states, deflections and readings of a manoeuvre at equal steps, the controls from trim."""
+    """Return the states, deflections and readings of a manoeuvre at equal time steps, controls minus trim."""
     assembly, grid = fit.assembly, fit.assembly.grid
     events = slice(grid.first[m], grid.first[m + 1])
     stamps = assembly.begin[m] + np.concatenate([[0.0], np.cumsum(grid.step_s[events][:-1])])

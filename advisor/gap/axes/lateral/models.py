@@ -1,4 +1,4 @@
-"""Models of a lateral flight: the plain one with natural lateness, and one for each effect."""
+"""Models of a lateral flight: one without effects and one for each effect."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,33 +23,35 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.prepare import signal_of
 
 SMALL_SHARE = 0.1
-"""Least size of a derivative for a relative error, over its natural size (``natural_size``)."""
+"""Least size of a derivative for its relative error, over the derivative's natural size
+(``natural_size``)."""
 NATURAL_STEP = 1e-3
-"""Step of the differences of a natural number, s or m."""
+"""Finite-difference step of a natural delay (s) or arm (m)."""
 _PLACES = {"command": COMMAND, "air": AIR_SPEED}
-"""Kind of a nuisance parameter to its place in a setting, where it is of no control and no output."""
+"""Place in a setting of each kind of nuisance parameter that belongs to no control or output."""
 _ENTRIES = {"delay": "skew_s", "arm": "arm_m", "lag": "lag_s"}
-"""Kind of a nuisance parameter to its entry in a setting."""
+"""Entry in a setting of each kind of nuisance parameter, by the kind's name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One flight and one simulator, ready for the fits."""
+    """One flight and one simulator, prepared for the fits."""
 
     flown: Flown
     theta: FloatArray
-    """(15,) derivatives of the simulator; those of the flight where the file states none."""
+    """Shape (15,): derivatives of the simulator; those of the flight where the file states none."""
     stated: tuple[str, ...]
-    """Derivatives that the file states and the flight tells."""
+    """Derivatives that the aircraft file states and the flight determines."""
     natural: tuple[Free, ...]
-    """Lateness of commands and outputs, and errors of stated lags: part of every model."""
+    """Nuisance parameters of every model: delays of commands and outputs, and errors of stated lags."""
     begin: Point
-    """Start of the plain fit."""
+    """Start of the fit without effects."""
 
     def prior_of(self, tolerance: float, free: Sequence[Free], share: float = 1.0) -> Known:
-        """Return the prior of derivatives, of relative error ``tolerance`` where stated, and of numbers.
+        """Return the prior of the derivatives, with relative error ``tolerance`` where stated, and of the
+        parameters.
 
-        ``share`` is that of white noise among coloured residuals, by which the fit weighs a prior.
+        ``share`` scales the prior's weight because the residuals are coloured.
         """
         sizes = natural_size(self.theta)
         size = np.array([sizes[name] for name in SIDE_PARAMETERS])
@@ -62,7 +64,7 @@ class Case:
     def fit(
         self, at: Point, free: Sequence[Free], tolerance: float = ERROR_IF_WRONG, share: float = 1.0
     ) -> Fit | None:
-        """Return the fit from a start, with stated derivatives of this relative error."""
+        """Return the fit from a start; ``tolerance`` is the relative error of the stated derivatives."""
         return fitted(self.flown, at, free, self.prior_of(tolerance, free, share))
 
 
@@ -103,7 +105,8 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
 
 
 def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
-    """Return the free numbers of a model with an effect, which replaces a natural number at its place."""
+    """Return the free parameters of a model with an effect, which replaces a nuisance parameter at its
+    place."""
     variant = effect.variant
     kept = [one for one in free_near(case, plain) if one.place not in effect.places]
     columns = [None] * len(effect.places) if effect.columns is None else effect.columns.T
@@ -117,9 +120,9 @@ def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
 
 
 def free_near(case: Case, plain: Fit) -> tuple[Free, ...]:
-    """Return the free numbers of a model near the plain one.
+    """Return the free parameters of a model whose optimum is near the plain fit.
 
-    The natural numbers keep the derivatives of the plain fit; those of an effect found before do not.
+    Nuisance parameters keep the outputs' derivatives of the plain fit; parameters of known effects do not.
     """
     natural = {one.place for one in case.natural}
     return tuple(
@@ -129,6 +132,6 @@ def free_near(case: Case, plain: Fit) -> tuple[Free, ...]:
 
 
 def base_of(case: Case, effect: SideEffect) -> FloatArray:
-    """Return the numbers that the simulator has at an effect's places."""
+    """Return the values that the simulator has at an effect's places."""
     setting = case.begin.setting
     return np.array([setting[place][0] if place in setting else 0.0 for place in effect.places])

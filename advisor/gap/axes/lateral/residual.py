@@ -1,4 +1,4 @@
-"""The residual of a lateral model: the disturbance that explains most of it, block by block."""
+"""Residual of a lateral model: the disturbance of each block that explains most of the residual."""
 
 from collections.abc import Sequence
 
@@ -14,12 +14,12 @@ from advisor.oem.axes.lateral.motion import FLOOR
 
 
 def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
-    """Return the disturbance that explains the residual of a fit; its block is never the air.
+    """Return the disturbance that explains a fit's residual best, in any block but the air.
 
     Parameters
     ----------
     share
-        Share of white noise in the residuals: a nat of white noise counts as ``share``² nats.
+        Share of white noise in the residuals: one nat of white-noise likelihood counts as ``share``² nats.
     """
     noise = _white(fit)
     probes = [_probe(fit, block, courses_of(fit, flown, block), noise) for block in blocks_of(fit, flown)]
@@ -39,7 +39,7 @@ def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
 
 
 def _probe(fit: Fit, block: str, courses: Sequence[Course], noise: FloatArray) -> Probe:
-    """Return the disturbance of a block at its likeliest size."""
+    """Return the disturbance of a block at its most likely size."""
     weight = 1.0 / noise[fit.assembly.channel]
     values, powers, total, unit = [], [], 0.0, 0.0
     for m, course in enumerate(courses):

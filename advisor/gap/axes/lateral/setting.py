@@ -1,7 +1,7 @@
-"""Numbers of servos, instruments and propeller with which lateral records are simulated.
+"""Parameters of servos, instruments and propeller in a lateral simulation.
 
 Surfaces are those of the pitch axis: delay, lag, rate limit, play and dead band between command and
-deflection (``gap.simulator.surface``). Instruments act on the outputs: late stamps, a scale, an arm.
+deflection (``gap.simulator.surface``). Instruments act on the outputs: skew of stamps, a scale error, an arm.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,19 +18,19 @@ from advisor.oem.rows import Signal
 from advisor.oem.surface import LONGEST_STEP_S, Servo
 
 Place = tuple[str, str]
-"""Control or output, and the entry of it that a number sets: ``("aileron", "lag_s")``, ``("p", "scale")``."""
+"""Control or output, with the entry that a parameter sets: ``("aileron", "lag_s")``, ``("p", "scale")``."""
 COMMAND = ("command", "delay_s")
 PROPELLER = ("throttle", "aileron_rad")
 AIR_SPEED = ("air", "scale")
-"""Relative excess of the true over the read air speed."""
+"""Place of the air speed's scale error: the relative excess of the true over the read air speed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Flown:
-    """Records of a flight for the comparison."""
+    """Lateral records of a flight, prepared for the comparison with the simulator."""
 
     problem: LateralProblem
-    """Records with the instruments of the aircraft file; servos are part of a ``Setting``."""
+    """Records with the instruments of the aircraft file; the servos are part of a ``Setting``."""
     throttle: tuple[Signal | None, ...]
     """Throttle of each record, 0..1; None where it was not recorded."""
     arm_is_stated: bool = False
@@ -41,17 +41,18 @@ class Flown:
 
 
 Setting = Mapping[Place, FloatArray]
-"""Numbers by their place, shape (manoeuvres,) each; an absent one is zero, as in an ideal aircraft."""
+"""Parameter values by their place, shape (manoeuvres,) each; an absent value is zero, as in an ideal
+aircraft."""
 
 
 def moved_to(setting: Setting, places: Sequence[Place], values: FloatArray) -> Setting:
-    """Return the setting with one value (k,) at each of k places, equal in all manoeuvres."""
+    """Return the setting with k values set at k places, equal in all manoeuvres."""
     count = len(next(iter(setting.values())))
     return {**setting, **{place: np.full(count, v) for place, v in zip(places, values, strict=True)}}
 
 
 def laid_out(flown: Flown, setting: Setting) -> LateralAssembly:
-    """Return the records laid out for the kernel, under a setting."""
+    """Return the records in the memory layout of the simulation kernel, under a setting."""
 
     def whole(place: Place) -> float:
         return float(setting[place][0]) if place in setting else 0.0
@@ -77,7 +78,7 @@ def laid_out(flown: Flown, setting: Setting) -> LateralAssembly:
 
 
 def _driven(flown: Flown, m: int, setting: Setting) -> LateralRecord:
-    """Return record ``m`` with the deflections of its surfaces as inputs."""
+    """Return record ``m`` with the deflections of its surfaces as inputs instead of the commands."""
     record = flown.problem.records[m]
     return replace(record, inputs={name: deflection(flown, m, name, setting) for name in record.inputs})
 
@@ -97,7 +98,7 @@ def deflection(flown: Flown, m: int, control: str, setting: Setting) -> Signal:
 
 
 def _deflected(command: Signal, p: FloatArray) -> Signal:
-    """Return the deflection behind all parts between command and surface; ``p`` (entries,) drives them."""
+    """Return the deflection that follows from a command; ``p`` (entries,) holds the servo's parameters."""
     late = float(p[INDEX["delay_s"]])
     if np.ptp(command.y) == 0.0:
         return Signal(command.t[[0, -1]], command.y[[0, -1]])

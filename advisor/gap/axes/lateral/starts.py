@@ -1,4 +1,4 @@
-"""Starts of effects in addition to a fit: all else is refitted linearly, and so is every pair."""
+"""Starting values of effects in addition to a fit, with all other parameters refitted linearly."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -16,34 +16,34 @@ from advisor.gap.fitting.prior import ERROR_IF_WRONG
 from advisor.model.axes.lateral import LATERAL
 
 SECANT = (0.25, 2.0)
-"""Least and greatest part of a start that the straight line from no effect may suggest."""
+"""Range of a secant estimate of an effect's size, relative to the simulated size."""
 
 
 class Start(NamedTuple):
-    """A start of an effect's fit."""
+    """Starting value of an effect's fit."""
 
     effect: SideEffect
     cost: float
-    """Twice the negative log likelihood, after a linear refit of all else."""
+    """-2 log likelihood at the start, after a linear refit of all other parameters."""
     point: Point
     way: FloatArray
-    """(N,) weighed change of the outputs from no effect to the start, without what all else absorbs."""
+    """Shape (N,): weighted change of the outputs by the effect, without what other parameters absorb."""
     saved: float = 0.0
-    """Part of the decrease of the cost that is the prior of a natural number at the effect's place."""
+    """Part of the cost's decrease that comes from the prior of a replaced nuisance parameter."""
 
     @property
     def name(self) -> str:
-        """Name of the effect."""
+        """Name of the effect to which the start belongs."""
         return self.effect.name
 
     @property
     def price(self) -> float:
-        """Cost with a price for the number of numbers (Akaike's criterion)."""
+        """Cost of the start plus twice the number of parameters (Akaike's criterion)."""
         return self.cost + 2.0 * len(self.effect.places)
 
 
 class Starts:
-    """The best start of each effect of a table."""
+    """Best starting value of each effect."""
 
     def __init__(
         self, case: Case, plain: Fit, table: Sequence[SideEffect], tolerance: float = ERROR_IF_WRONG
@@ -60,15 +60,16 @@ class Starts:
         self.of_each = [self._best(effect) for effect in table]
 
     def together(self, one: Start, other: Start) -> float:
-        """Return the price of both effects at once, by the ways to their starts."""
+        """Return the price of two effects together, from the output changes of their starts."""
         left = nnls(np.column_stack([one.way, other.way]), self._begin)[1] ** 2
         count = len(one.effect.places) + len(other.effect.places)
         return self._cost + left - one.saved - other.saved + 2.0 * count
 
     def _best(self, effect: SideEffect) -> Start:
-        """Return the start of an effect that leaves least.
+        """Return the starting value of an effect with the least residual.
 
-        An effect at the place of a natural number starts at that number, and saves what its prior has cost.
+        An effect that replaces a nuisance parameter starts at that parameter's value and saves the prior's
+        cost.
         """
         if effect.columns is not None:
             return self._linear(effect, effect.columns)
@@ -86,10 +87,10 @@ class Starts:
         return Start(effect, cost, plain.point, np.zeros(len(self._begin)), saved)
 
     def _tangent(self, effect: SideEffect) -> Start:
-        """Return the start of an effect by the slope of the outputs.
+        """Return the starting value of an effect from the derivative of the outputs.
 
-        Where a reading is late, the clocks of all other channels may be late too. Together they move by as
-        much without a residual, but only in small steps do they all count as linear.
+        If one reading is late, the clocks of all other channels may be late too. A common delay of all clocks
+        leaves no residual, but the linear model holds for small delays only.
         """
         point, step = self._plain.point, np.array(effect.variant.steps)
         setting = moved_to(point.setting, effect.places, base_of(self._case, effect) + step)
@@ -97,7 +98,7 @@ class Starts:
         return self._linear(effect, (moved - self._plain.fitted)[:, None] / step)
 
     def _linear(self, effect: SideEffect, columns: FloatArray) -> Start:
-        """Return the best start of an effect whose outputs are linear in its numbers."""
+        """Return the best start of an effect whose outputs are linear in its parameters."""
         ways = np.column_stack([self._without(column * self._plain.weight) for column in columns.T])
         prior = np.array(effect.std) ** -2.0
         values = np.asarray(np.linalg.solve(ways.T @ ways + np.diag(prior), ways.T @ self._begin))
@@ -108,7 +109,8 @@ class Starts:
         return Start(effect, cost, point._replace(setting=setting), way)
 
     def _each(self, effect: SideEffect) -> Iterator[Start]:
-        """Yield every start of an effect. The outputs count as linear in an effect's size up to its start."""
+        """Yield every starting value of an effect, each with its cost. The outputs are taken as linear in an
+        effect's size up to the starting value."""
         case, point = self._case, self._plain.point
         place, sides = effect.sides or (("", ""), (0.0,))
         base = base_of(case, effect)
@@ -132,7 +134,7 @@ class Starts:
             yield Start(effect, cost, point._replace(setting=setting), way)
 
     def _without(self, left: FloatArray) -> FloatArray:
-        """Return weighed rows (N,) without what all other parameters absorb."""
+        """Return weighted rows (N,) without the part that all other parameters absorb."""
         left = left.copy()
         for rows in self._parts:
             mine = self._own[rows]
