@@ -10,11 +10,11 @@ from advisor.gap.simulator.reading import differences, filtered
 from advisor.gap.simulator.right_sides import MOTION, right_sides
 
 _ANY_AIRCRAFT = dict(zip(PARAMETERS, (0.0, -4.0, 0.0, -0.3, 0.0, -30.0, -4.0, -50.0), strict=True))
-"""Numerical: parameters of an aircraft that is flown to compile the kernels."""
+"""Numerical: parameters of an aircraft that is simulated to compile the kernels."""
 
 
 def warm_up() -> None:
-    """Foresee a tiny plan, then compare and filter some samples, so that every kernel is compiled."""
+    """Simulate a tiny plan and filter some samples, so that every kernel is compiled."""
     foresee_plan(Aircraft(model=_ANY_AIRCRAFT), ("pulse", "pulse"), 50.0, 1.0)
     right_sides(LAYOUT, np.zeros((2, len(ENTRIES))), np.ones(len(MOTION)), 1.0, np.ones(2), np.ones(2))
     none = np.zeros(2, dtype=np.int64)

@@ -12,23 +12,23 @@ from advisor.gap.alternative import Weighed
 from advisor.words.quantiles import NORMAL_95
 
 GapVerdict = Literal["none", "parameters", "effect", "unknown", "untested"]
-"""Verdict of a diagnosis. ``untested``: no simulator was given and no effect was found; JSON writes null."""
+"""Verdict of a diagnosis. ``untested`` means that no simulator was given and no effect was found; JSON writes
+null."""
 IMPROVING: frozenset[str | None] = frozenset(("effect", "parameters"))
-"""Verdicts after which there is something to improve."""
+"""Verdicts after which the simulator can be improved."""
 VISIBLE = 0.05
-"""Least gap that is called visible: mean square error over the floor's square, minus 1."""
+"""Least gap that counts as visible: mean square error over the floor's square, minus 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A number and its standard deviation, in the unit of the number."""
+    """A number and its standard deviation, in one unit."""
 
     value: float
     std: float
 
     def agreeing(self, other: "Value") -> "Value":
-        """Return the number; its interval contains that of another reading of the log from which it
-        differs."""
+        """Return the number with an interval that contains another reading's value."""
         apart = abs(self.value - other.value) / NORMAL_95
         return self if apart <= hypot(self.std, other.std) else Value(self.value, apart + other.std)
 
@@ -45,7 +45,7 @@ class ComparedDerivative:
 
     @property
     def half(self) -> float:
-        """Half of the 95 % interval of the flight's value."""
+        """Half-width of the 95 % interval of the flight's value."""
         return NORMAL_95 * self.found.std
 
     @property
@@ -55,7 +55,8 @@ class ComparedDerivative:
 
     @property
     def percent(self) -> float | None:
-        """Change of the size, per cent of the simulator's; None with another sign, or from zero."""
+        """Change of the derivative's size, per cent of the simulator's; None with another sign, or from
+        zero."""
         return 100.0 * (self.found.value / self.given - 1.0) if self.given * self.found.value > 0.0 else None
 
 
@@ -70,15 +71,15 @@ class Gap:
     floor: Mapping[str, float]
     """Standard deviation of the residual where nothing was flown, by channel, in the channel's SI unit."""
     floor_note: str
-    """How the floor was found: measured, or stated because the record was filtered before storage."""
+    """Source of the floor: measured, or stated because the record was filtered before storage."""
     by_channel: Mapping[str, float]
     by_channel_after: Mapping[str, float]
     by_maneuver: tuple[tuple[int, float, float], ...]
-    """Manoeuvre number, gap before, gap after."""
+    """Number of each manoeuvre, with its gap before and after."""
     by_phase: Mapping[str, float]
-    """Gap before, for ``step edge``, ``plateau`` and ``free response``."""
+    """Gap of the simulator as given, for ``step edge``, ``plateau`` and ``free response``."""
     by_band_hz: tuple[tuple[float, float, float], ...]
-    """Band limits in Hz, and the band's share of the power of the pitch-rate error."""
+    """Limits of each frequency band in Hz, with the band's share of the pitch-rate error's power."""
     by_air: float = 0.0
     """Part of the gap that the likeliest course of moving air removes from the final model."""
 
@@ -90,7 +91,7 @@ class Cause:
     effect: str
     block: str
     probability: float
-    """Probability that the effect causes the gap, or is its main cause where several are present."""
+    """Probability that the effect causes the gap, or is its main cause among several."""
     parameters: Mapping[str, Value]
     cannot_be_told_from: tuple[str, ...]
     tell_apart_by: str
@@ -106,21 +107,21 @@ class Where:
     block: str
     share: float
     ranking: tuple[tuple[str, float], ...]
-    """Blocks with their scores; the best explanation scores 1."""
+    """Blocks with their scores relative to the best block, which scores 1."""
 
 
 def ranked(scores: Mapping[str, float]) -> tuple[tuple[str, float], ...]:
-    """Return blocks with their scores over the largest one, which stands first."""
+    """Return blocks with their scores relative to the largest score, which is first."""
     best = max([*scores.values(), 1e-12])
     return tuple((b, round(scores[b] / best, 4)) for b in sorted(scores, key=lambda b: -scores[b]))
 
 
 @dataclass(frozen=True, slots=True)
 class Shrink:
-    """Shrink of the gap on manoeuvres whose parameters were fitted without them.
+    """Shrink of the gap on manoeuvres that were held out of the fit.
 
-    In moving air the likeliest course of the air is removed. The air's course is fitted to the held-out
-    samples, because no other manoeuvre predicts a gust.
+    In moving air the likeliest course of the air is removed from the gap. The air's course is fitted to the
+    held-out samples, because no other manoeuvre predicts a gust.
     """
 
     holdout: tuple[int, ...]
@@ -130,9 +131,9 @@ class Shrink:
     percent: float
     ci95_percent: tuple[float, float]
     beyond_air_percent: float | None = None
-    """Share of the innovation power beyond noise that the effects remove, in per cent, on held-out
-    manoeuvres. The filter of the innovations knows the moving air. Without an effect: share of the gap that
-    fitted derivatives remove. None in still air."""
+    """Share of the innovation power beyond noise that the effects remove on held-out manoeuvres, per cent.
+    The filter of the innovations contains moving air. Without an effect, the share of the gap that fitted
+    derivatives remove. In still air the value is None."""
     by_numbers_percent: float | None = None
     """Share of the gap, in per cent, that fitted derivatives remove without any effect. None where the
     file's derivatives are right."""
@@ -168,13 +169,14 @@ class Qualification:
 
     channel: str
     limit: float | None
-    """Tolerance of 14 CFR Part 60, Appendix A, test 2.c.10, in SI units; None where none is published."""
+    """Tolerance of 14 CFR Part 60, Appendix A, test 2.c.10, in SI units; None for a channel without
+    tolerance."""
     before: float
     """Largest error of the simulator as given, on held-out manoeuvres, in SI units."""
     after: float | None
     """Largest error with the effects added to the simulator; None where no effect was added."""
     theil: tuple[float, float | None]
-    """Theil's inequality coefficient before and after."""
+    """Theil's inequality coefficient of the simulator as given, and with the effects."""
 
     @property
     def passes_before(self) -> bool | None:
@@ -189,36 +191,36 @@ class Qualification:
 
 @dataclass(frozen=True, slots=True)
 class InSimulator:
-    """The gap of the user's own simulator on held-out manoeuvres."""
+    """Gap of the user's own simulator on held-out manoeuvres."""
 
     simulator: str
     """Description of the simulator for people."""
     maneuvers: tuple[int, ...]
-    """Numbers of the manoeuvres on which the gap is measured. No search and no fit has used them, where
-    something was found."""
+    """Numbers of the manoeuvres on which the gap is measured. If something was found, these manoeuvres were
+    part of no search and no fit."""
     before: float
     """Gap of the simulator as given."""
     after: float | None
-    """Gap with the effects and numbers of an export in the simulator. Equal to ``before`` where nothing was
-    changed; None where the simulator does not fly with them, or where no manoeuvre could be kept apart."""
+    """Gap with the effects and derivatives of an export in the simulator. Equal to ``before`` without a
+    change; None if the changed simulator does not fly or no manoeuvre was held out."""
     percent: float | None
-    """Shrink by what was changed, in per cent; 0 where nothing was changed."""
+    """Shrink of the gap by the changes in the simulator, per cent; 0 without a change."""
     on_paper: tuple[str, ...]
     """Corrections that the simulator cannot take: effects, ``derivatives``, ``its own servo``."""
     qualification: tuple[Qualification, ...]
     after_air_and_instruments: float | None = None
-    """Gap ``after`` without what the air's course and the instruments' natural errors explain in the same
-    samples. This part of the gap is not counted as shrink. None where nothing was changed."""
+    """Gap ``after`` without the part that the air's course and natural instrument errors explain. This part
+    of the gap is not counted as shrink. None without a change."""
     refused: str = ""
-    """Why the simulator does not fly with the effects; empty where it does, or where none was added."""
+    """Reason why the simulator does not fly with the effects; empty otherwise."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrimDifference:
-    """One quantity of the trimmed flight, in the simulator and in the aircraft: means over the manoeuvres."""
+    """One quantity of the trimmed flight, in simulator and aircraft, averaged over the manoeuvres."""
 
     quantity: str
-    """``alpha`` and ``elevator`` in rad, ``throttle`` from 0 to 1."""
+    """Name of the quantity: ``alpha`` and ``elevator`` in rad, ``throttle`` from 0 to 1."""
     simulator: float
     aircraft: float
     std: float
@@ -250,51 +252,50 @@ class Diagnosis(Weighed):
     where: Where
     causes: tuple[Cause, ...]
     shrink: Shrink | None
-    """None where no manoeuvre could be held out, or where there is no gap."""
+    """Shrink of the gap; None if no manoeuvre could be held out, or without a gap."""
     waterfall: tuple[tuple[str, float], ...]
-    """Effects in the order of addition, each with the gap after its addition."""
+    """Gap after the addition of each effect, in the order of addition."""
     cannot_see: tuple[Unseen, ...]
     kinematics: KinematicCheck
     model: Mapping[str, Value]
     """The eight parameters of the final model at the reference speed."""
     reference_airspeed_m_s: float | None
-    """Speed of the derivatives: as measured, or of the file, or implied by the motion; None where unknown."""
+    """Air speed of the derivatives: measured, from the file, or from the motion; None if unknown."""
     effects: Mapping[str, Mapping[str, float]]
     """Section ``effects`` of the improved simulator's aircraft file."""
     yardsticks: Mapping[str, tuple[Yardsticks, Yardsticks]]
-    """Channel to the measures of the simulator as given and of the final model."""
+    """Fidelity measures of each channel, for the simulator as given and for the final model."""
     share_irreducible: float
-    """Share of the final model's error that is noise and moving air. The rest of the remaining gap is model
-    error."""
+    """Share of the final model's error that is noise and moving air. The other part of the remaining gap is
+    model error."""
     derivatives: tuple[ComparedDerivative, ...] = ()
     """Derivatives of simulator and flight, those that differ most first; empty without a simulator."""
     traces: tuple[Trace, ...] = ()
     notes: tuple[str, ...] = ()
     static: tuple[str, ...] = ()
-    """Sentences on errors that no motion shows, which the sentence tells first: trim, air speed, numbers that
-    differ together."""
+    """Sentences on errors that no motion shows, such as trim and air speed."""
     taken_back: tuple[str, ...] = ()
-    """Sentences on corrections that raise the gap of manoeuvres kept apart, and that the improved simulator
-    therefore lacks. The sentence ends with them."""
+    """Sentences on corrections that raise the gap of held-out manoeuvres, and that the improved simulator
+    lacks. The diagnosis' sentence ends with these sentences."""
     trims: tuple[TrimDifference, ...] = ()
     """Trimmed flight of the user's own simulator and of the aircraft."""
     in_simulator: InSimulator | None = None
-    """The gap of the user's own simulator; None where no simulator was named."""
+    """Gap of the user's own simulator; None without a named simulator."""
     maneuvers: tuple[int, ...] = field(default=())
     air: AirData | None = None
-    """Air of the manoeuvres: the kind of their air speed, and the density; None where nobody asked."""
+    """Air of the manoeuvres: kind of the air speed, and density; None unless requested."""
     airspeed_excess: float = 0.0
-    """Relative excess of the true air speed over the one in use, as the final model has it."""
+    """Relative excess of the true air speed over the used air speed, from the final model."""
     although_refused: tuple[int, ...] = ()
-    """Numbers of the manoeuvres in use that ``advisor analyze`` refuses by their data alone."""
+    """Numbers of used manoeuvres that ``advisor analyze`` refuses because of their data."""
 
     @property
     def improves(self) -> bool:
-        """Whether there is an improved simulator: by an effect, or by other numbers."""
+        """Whether the diagnosis gives an improved simulator, by an effect or by other derivatives."""
         return self.verdict in IMPROVING
 
 
 def spelled(effect: str) -> str:
-    """Return the name of an effect as people write it; a skew is a late time stamp."""
+    """Return the name of an effect for sentences; a skew is a late time stamp."""
     channel = effect.removesuffix("_skew")
     return (effect if channel == effect else f"late_{channel}_stamps").replace("_", " ")

@@ -1,4 +1,4 @@
-"""The diagnosis without a simulator: the aircraft file holds no model."""
+"""Diagnosis without a simulator, for an aircraft file without a model."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ _STATEMENT = (
 
 
 def without_simulator(diagnosis: Diagnosis) -> Diagnosis:
-    """Return the diagnosis as a statement about the flight alone, which never claims that there is no gap."""
+    """Return the diagnosis as a statement about the flight alone, without the claim that there is no gap."""
     notes = (_NOT_GIVEN, *diagnosis.notes)
     if diagnosis.verdict != "none":
         return replace(diagnosis, notes=notes)

@@ -148,13 +148,13 @@ def _one_each(variants: Sequence[Variant]) -> list[Variant]:
 
 
 def _reach(variant: Variant) -> float:
-    """Return the largest size, with its sign, for which an effect is sought."""
+    """Return the largest signed size for which an effect is sought."""
     low, high = variant.bounds[0]
     return high if high >= -low or variant.starts[0][0] > 0.0 else low
 
 
 def _first_size(variant: Variant) -> float:
-    """Return the size, with its sign, at which an effect's response is evaluated first."""
+    """Return the signed size at which an effect's response is first evaluated."""
     return float(np.copysign(abs(variant.starts[0][0]) or variant.steps[0], _reach(variant)))
 
 
@@ -169,9 +169,9 @@ def _signature_of(
 ) -> Signature:
     """Return the model's response to an effect, per unit of its first parameter.
 
-    An effect whose search starts at zero is linear there, and its derivative is used. Others are nonlinear: a
-    limit that no command reaches leaves no signature. The response of a nonlinear effect is evaluated at the
-    size that just shows. ``vector`` is the signature at the first size.
+    An effect whose search starts at zero is linear there, so its derivative is used. Other effects are
+    nonlinear: a limit that no command reaches leaves no signature. The response of a nonlinear effect is
+    evaluated at its smallest detectable size. ``vector`` is the signature of the effect at its first size.
     """
     reach = _reach(variant)
     numbers = len(variant.names)
@@ -190,7 +190,7 @@ def _signature_of(
 def _responses(
     problem: EffectProblem, fitted: EffectFit, sized: Sequence[tuple[Variant, float]]
 ) -> list[list[FloatArray]]:
-    """Return per effect the change of every manoeuvre's channels, shape (rows,), per unit of size."""
+    """Return for each effect the change of every manoeuvre's channels, shape (rows,), per unit of size."""
     driving = []
     for variant, size in sized:
         sides = np.zeros(len(problem.flights)) if variant.sides is not None else None
@@ -208,7 +208,7 @@ def _responses(
 
 
 def _needed(signatures: Signatures, numbers: int) -> float:
-    """Return the least power of a signature: near-sure detection, the parameters' price, enough change."""
+    """Return the least power of a signature for near-sure detection and enough change of the outputs."""
     price = numbers * float(np.log(signatures.rows))
     # A filter of moving air leaves far less of a change than the outputs show.
     least = _least_change(signatures.problem) * float(np.mean(floor_margins(signatures.problem.flights) ** 2))
@@ -251,9 +251,10 @@ def _foreseen(
 
 
 def _shares(problem: EffectProblem, fitted: EffectFit) -> Mapping[str, float]:
-    """Return nonlinear terms as shares of the linear one, per unit of size, at the plan's largest motion.
+    """Return each nonlinear term as a share of its linear term, per unit of size, at the plan's largest
+    motion.
 
-    A linear term of zero has no shares.
+    A term whose linear term is zero has no share.
     """
     p = problem.driving(fitted.point)
     flights = problem.flights.flights
@@ -279,8 +280,8 @@ def _cosine(a: FloatArray, b: FloatArray) -> float:
 def _least_change(problem: EffectProblem) -> float:
     """Return the least mean square change of the outputs for a named effect, over the instruments' noise.
 
-    With very good instruments their noise does not limit. A low-order description is itself no better than a
-    share of each channel's peak.
+    The noise of very good instruments is not the limit. A low-order effect describes an output only within a
+    share of the channel's peak.
     """
     if problem.instruments is None:
         return VISIBLE

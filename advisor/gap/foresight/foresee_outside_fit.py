@@ -1,8 +1,8 @@
 """Foresight of effects that are judged outside the fits: moving air, air speed, and the offset of α.
 
-Moving air is found when a filter that knows of it explains the data far better than still air. The expected
-gain in log likelihood follows from the eigenvalues of the responses. For a disturbance of size s with
-independent unit coefficients and gains λ,
+Moving air is found if a filter with moving air explains the data far better than one with still air. The
+expected gain in log likelihood follows from the eigenvalues of the responses. For a disturbance of size s
+with independent unit coefficients and gains λ,
 
     E{gain} = ½ Σ (λ + s²λ² + a²g²) s_f²/(1 + s_f²λ) − ½ Σ ln(1 + s_f²λ),
 
@@ -30,26 +30,26 @@ from advisor.gap.search.air import AIR_MANEUVERS, LEAST_GUST_ANGLE
 from advisor.gap.simulator.layout import DISTURB_AIR, REFERENCE, SPEED
 
 CLIMB_RATE_STD_M_S = 0.1
-"""Prior: noise assumed for an unmeasured climb rate, m/s, with one independent reading per second."""
+"""Prior: noise of an unmeasured climb rate, m/s, with one independent reading per second."""
 _ANGLES = np.geomspace(1e-5, 0.5, 200)
-"""Numerical: gust angles that are tried, rad, one angle for each filter."""
+"""Numerical: candidate gust angles, rad, one for each filter."""
 _SPEED_STEP = 0.01
-"""Numerical: relative change of speed with which the signature of the air speed is evaluated."""
+"""Numerical: relative step of the speed for the signature of the air speed."""
 
 
 @dataclass(frozen=True)
 class _Air:
-    """Responses to moving air along their principal axes, over the manoeuvres in which air is sought."""
+    """Responses to moving air along their principal axes, over the manoeuvres searched for moving air."""
 
     gains: FloatArray
-    """λ of every axis, in units of the noise's variance per rad²."""
+    """Eigenvalue λ of every axis, in units of the noise's variance per rad²."""
     gust: FloatArray
-    """g of every axis for a gust of 1 rad."""
+    """Response g of every axis to a gust of 1 rad."""
     inside: float
-    """Cosine between the gust and the nearest course of turbulence."""
+    """Cosine between the gust's response and the nearest response to turbulence."""
 
     def expected(self, spread: float, peak: float) -> float:
-        """Return the expected gain for turbulence and a gust, rad, at the best size for a filter."""
+        """Return the expected log likelihood gain for turbulence and a gust, rad, with the best filter."""
         power = self.gains + (spread * self.gains) ** 2 + (peak * self.gust) ** 2
         assumed = (_ANGLES**2)[:, None]
         taken = assumed / (1.0 + assumed * self.gains) * power - np.log1p(assumed * self.gains)
@@ -59,7 +59,8 @@ class _Air:
 def foresee_air(
     problem: EffectProblem, fitted: EffectFit, signatures: Signatures, unit_s: float
 ) -> list[Foreseen]:
-    """Return the smallest turbulence and the smallest (1 − cos) gust, of two time units of the input."""
+    """Return the smallest detectable turbulence and (1 − cos) gust, which lasts two time units of the
+    input."""
     if "alpha" not in problem.channels:
         return [impossible(effect, problem.flights) for effect in ("turbulence", "gust")]
     air = _air(problem, fitted, signatures, 2.0 * unit_s)
@@ -74,7 +75,8 @@ def foresee_air(
 
 
 def speed_signature(problem: EffectProblem, fitted: EffectFit, signatures: Signatures) -> Signature:
-    """Return the signature of alternately fast and slow manoeuvres, against a simulator at constant speed."""
+    """Return the signature of the speed effect for alternately fast and slow manoeuvres, at a constant-speed
+    simulator."""
     p = problem.driving(fitted.point)
     columns = []
     for i, flight in enumerate(problem.flights.flights):
@@ -86,7 +88,7 @@ def speed_signature(problem: EffectProblem, fitted: EffectFit, signatures: Signa
 
 
 def foresee_offset(problem: EffectProblem, noise: FloatArray) -> Foreseen:
-    """Return the detectability of a constant offset of α, from θ minus climb angle, without derivatives."""
+    """Return the detectability of a constant α offset from θ minus climb angle, without derivatives."""
     flights = problem.flights
     if not {"alpha", "theta"} <= set(flights.channels) or not {"climb_rate", "airspeed"} <= flights.has:
         return impossible("alpha_bias", flights)
@@ -104,7 +106,7 @@ def impossible(effect: str, flights: PreparedManeuvers) -> Foreseen:
 
 
 def _air(problem: EffectProblem, fitted: EffectFit, signatures: Signatures, length_s: float) -> _Air:
-    """Return the responses to moving air; a gust falls into the first manoeuvre, after its last step."""
+    """Return the responses to moving air, with a gust after the last step of the first manoeuvre."""
     p = problem.driving(fitted.point)
     gains, gusts = [], []
     for i, flight in enumerate(problem.flights.flights[:AIR_MANEUVERS]):

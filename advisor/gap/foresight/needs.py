@@ -1,4 +1,4 @@
-"""Requirements for seeing an effect: channels, and a flight in which its cause varies."""
+"""Requirements for the detection of an effect: recorded channels, and a flight in which the cause varies."""
 
 from dataclasses import replace
 
@@ -7,14 +7,15 @@ from advisor.gap.kit.effect import Need
 from advisor.gap.records.flights import PreparedManeuvers
 
 OTHERWISE = "fly another time unit and another amplitude"
-"""Advice where nothing particular is known that would distinguish two effects."""
+"""Advice if no measurement is known that would distinguish two effects."""
 _CHANNELS = {"alpha": "AOA_SSA at 50 Hz", "a_z": "RAW_IMU at 50 Hz", "theta": "ATTITUDE at 50 Hz"}
 ONE_IMU = ("the angle of attack is made of the same inertial sensors", "a vane")
-"""Why an autopilot's own angle of attack cannot show some effects, and what would show them."""
+"""Reason why an autopilot's own angle of attack cannot show some effects, and the measurement that would."""
 
 
 def need_of(name: str, flights: PreparedManeuvers) -> Need:
-    """Return why these flights cannot show an effect: its channel was not recorded, or did not vary."""
+    """Return the reason why these flights cannot show an effect: its channel was not recorded or did not
+    vary."""
     effect = EFFECTS[name]
     assert effect.need is not None
     if effect.unrecorded is not None:
@@ -28,7 +29,7 @@ def need_of(name: str, flights: PreparedManeuvers) -> Need:
 
 
 def hidden_from(effect: str, flights: PreparedManeuvers) -> tuple[str, str]:
-    """Return why an effect that was sought has no signature of its own, and what to add."""
+    """Return the reason why an effect has no signature of its own, and the channel or manoeuvre to add."""
     if not EFFECTS[effect].of_the_stick:
         need = need_of(effect, flights)
         return need.because, need.add

@@ -32,15 +32,15 @@ STEPS = {
     "doublet": ((1, -1.0), (1, 1.0)),
     "pulse": ((1, -1.0),),
 }
-"""Numerical: steps of each input: units of time, and share of the amplitude with trailing edge down. The
-areas of all but a pulse sum to zero, so that the aircraft returns to trim. The first step of a ``3211``
-raises the nose."""
+"""Numerical: steps of each input, as pairs of time units and share of the amplitude with trailing edge down.
+The steps of every input but a pulse sum to zero area, so that the aircraft returns to trim. The first step of
+a ``3211`` raises the nose."""
 TYPICAL_NOISE = {"alpha": np.radians(0.1), "q": np.radians(0.2), "a_z": 0.1, "theta": np.radians(0.1)}
 """Prior: standard deviations assumed for unmeasured instruments, in SI units of the channel."""
 SPARED = ("alpha", "a_z", "theta", "airspeed", "climb_rate", "throttle")
-"""Channels that a plan may do without."""
+"""Channels that a planned flight may lack."""
 _IN_FILE = "it is in the aircraft file, and taken as it stands there"
-"""Remark about an effect with a shape in the aircraft file, of which no other amount is sought."""
+"""Remark about an effect whose shape in the aircraft file is used as stated."""
 _SPACING_S = 30.0
 """Numerical: time between two manoeuvres of a plan, s."""
 _HIGHEST_RATE_HZ, _LARGEST_STEP_DEG = 1000.0, 60.0
@@ -50,7 +50,7 @@ _HIGHEST_RATE_HZ, _LARGEST_STEP_DEG = 1000.0, 60.0
 def foresee_plan(
     aircraft: Aircraft, plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: Sequence[str] = ()
 ) -> list[Foreseen]:
-    """Return for every effect the smallest size that this plan could detect, and the similar effects.
+    """Return for every effect the smallest size that a plan could detect, and the similar effects.
 
     Returns
     -------
@@ -93,7 +93,7 @@ def foresee_flights(
 ) -> list[Foreseen]:
     """Return for every effect the smallest size that prepared manoeuvres could detect.
 
-    Only stamps, commands and slow channels of the given manoeuvres count.
+    Only the stamps, commands and slow channels of the given manoeuvres are used.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def foresee_flights(
     noise
         Shape (channels,): standard deviation of each channel's noise.
     unit_s
-        Time unit of the input in s; a gust lasts two of them.
+        Time unit of the input in s; a gust lasts two time units.
     """
     variants = variants_for(flights)
     known = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
@@ -152,7 +152,7 @@ def _refuse(plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: 
 def _maneuver(
     n: int, name: str, unit: float, amplitude: float, rate_hz: float, speed: float, without: Sequence[str]
 ) -> Maneuver:
-    """Return stamps and command of a planned manoeuvre; its outputs provide stamps only."""
+    """Return stamps and command of a planned manoeuvre, whose outputs have stamps but no values."""
     start, length = 1.0, 1.0 + unit * sum(width for width, _ in STEPS[name])
     end = length + max(10.0 * unit, 3.0)
     t = np.arange(0.0, end, 1.0 / rate_hz) + _SPACING_S * n

@@ -1,9 +1,10 @@
-"""The signature of an effect in the data: its response without the part that other parameters imitate.
+"""Signature of an effect: its response in the data, without the part that other parameters imitate.
 
 The length of a signature, in standard deviations of the noise, gives the smallest detectable size. The angle
-between two signatures tells how easily one effect is taken for the other. Parameters with a prior, such as
-the edges of the command, are eliminated with it as additional rows. Lengths and angles are therefore those of
-the marginal likelihood. Latency may absorb an effect too, but only within its bounds.
+between two signatures shows how easily one effect is confused with the other. Parameters with a prior, such
+as the edges of the command, are eliminated with their prior as additional rows. Lengths and angles of
+signatures are therefore those of the marginal likelihood. Latency may absorb an effect too, but only within
+its bounds.
 """
 
 from collections.abc import Sequence
@@ -16,12 +17,11 @@ from advisor.gap.fitting.problem import EffectProblem, row_weights
 from advisor.gap.kit.variant import Variant
 
 _RANK = 1e-7
-"""Numerical: relative singular value of a direction of the shared parameters below which the direction is
-ignored."""
+"""Numerical: relative singular value below which a direction of the shared parameters is ignored."""
 
 
 class Signatures:
-    """Signatures about a point of the model: responses with the effect of all parameters removed."""
+    """Signatures at a point of the model: responses without the part that all parameters can imitate."""
 
     def __init__(self, problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> None:
         self.problem = problem
@@ -46,7 +46,8 @@ class Signatures:
         self._latency_bounds = low - now, high - now
 
     def of(self, columns: Sequence[FloatArray]) -> FloatArray:
-        """Return the signature of a response, per manoeuvre of shape (rows,), in the channels' units."""
+        """Return the signature of a response, one array of shape (rows,) per manoeuvre, in the channels'
+        units."""
         parts = [self.within(i, column[:, None])[:, 0] for i, column in enumerate(columns)]
         return self._freed_of_shared(np.concatenate(parts))
 
@@ -57,9 +58,9 @@ class Signatures:
         return self._freed_of_own(i, weighted)
 
     def smallest(self, signature: FloatArray, power: float) -> float:
-        """Return the size at which a signature has this power, whatever latency absorbs; else infinite.
+        """Return the size at which a signature has ``power`` even if latency absorbs a part; else infinite.
 
-        That is the smallest s with min |s·x − λ·l|² = power over the latencies λ within their bounds.
+        The size is the smallest s with min |s·x − λ·l|² = power over the latencies λ within their bounds.
         """
         x, latency = signature, self._latency
         own, ll = float(x @ x), float(latency @ latency)
@@ -83,11 +84,11 @@ class Signatures:
 
 
 def _latency_at(fitted: EffectFit) -> int | None:
-    """Return the index of the latency among the shared parameters; None where the model has none."""
+    """Return the index of the latency among the shared parameters; None for a model without latency."""
     found = _latency_in(fitted)
     return fitted.point.place(fitted.point.effects.index(found[0])).start if found else None
 
 
 def _latency_in(fitted: EffectFit) -> list[Variant]:
-    """Return the latency of the model, in a list that is empty without one."""
+    """Return a list with the latency of the model; empty for a model without latency."""
     return [effect for effect in fitted.point.effects if effect.effect == "latency"]

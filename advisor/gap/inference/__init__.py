@@ -1,1 +1,2 @@
-"""Every explanation of a flight as a full model with its evidence; their posterior is the answer."""
+"""Inference: every explanation of a flight is a full model with its evidence, and their posterior is the
+answer."""

@@ -1,4 +1,4 @@
-"""The posterior of all explanations of a flight in pitch, with the offset of α and the air."""
+"""Posterior of all explanations of a flight in pitch, including an offset of α and moving air."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -29,20 +29,20 @@ from advisor.gap.records.floor import tolerance_of
 from advisor.gap.search.air import SoughtAir, moving_air
 
 _SET_WITHIN_RAD = {True: 0.009, False: 0.0035}
-"""Prior: standard deviation of an offset of α without a fault, rad, of an autopilot's estimate and of a vane.
+"""Prior: standard deviation of α's offset without a fault, rad, for an autopilot's estimate and for a vane.
 ArduPlane's estimate is off by 0.2 to 0.5 degrees; a vane's zero is set to 0.2 degrees."""
 _OFF_BY_RAD = 0.03
-"""Prior: standard deviation of an offset of α that is a fault, rad."""
+"""Prior: standard deviation of a faulty α offset, rad."""
 
 
 @dataclass(frozen=True)
 class Inference(Decided[PitchModel]):
-    """Everything that the answer reads."""
+    """Everything that the answer of a diagnosis is made from."""
 
     problem: EffectProblem
     sought_air: SoughtAir
     floor: FloatArray
-    """Shape (channels,): noise where nothing was flown."""
+    """Shape (channels,): noise of each channel before and after the manoeuvre's input."""
 
 
 def infer(
@@ -58,7 +58,7 @@ def infer(
     Parameters
     ----------
     problem, baseline
-        The data, and the plain model fitted to the data.
+        Flight data, and the plain model fitted to these data.
     aircraft
         The aircraft file, whose effects are part of every model.
     kinematics
@@ -86,7 +86,8 @@ def infer(
 def _table(
     problem: EffectProblem, flight: FlightProblem, aircraft: Aircraft
 ) -> tuple[list[Variant], list[Variant]]:
-    """Return the effects of the catalogue beyond those of the file, and laws outside of it, with sizes."""
+    """Return catalogue effects beyond those of the aircraft file, and laws outside the catalogue, with prior
+    sizes."""
     stated = {change.effect for change, _ in problem.changes}
     variants = beyond_known(aircraft.effects, beyond_servo(aircraft, variants_for(problem.flights)))
     described = [w for v in variants if v.effect not in stated for w in (v, *v.likewise)]
@@ -105,8 +106,8 @@ def _with_offset(
 ) -> list[Row[PitchModel]]:
     """Return the rows with a constant offset of α as one more explanation.
 
-    Trims absorb an offset, so that an offset goes with every other explanation. Only the answer "nothing"
-    excludes an offset.
+    Trims absorb an offset of α, so an offset may occur together with any other explanation. Only the answer
+    "nothing" excludes an offset of α.
     """
     offset = kinematics.offset
     if "alpha" not in problem.channels or not offset.stays or not np.isfinite(offset.rad):
@@ -127,7 +128,7 @@ def _gaining(row: Row[PitchModel], nats: float) -> Row[PitchModel]:
 
 
 def _known_air(problem: EffectProblem, aircraft: Aircraft) -> float:
-    """Return the gust angle, rad, that the aircraft file states of the air."""
+    """Return the gust angle, rad, that the aircraft file states for moving air."""
     sigma = aircraft.effects.get("turbulence", {}).get("sigma_w_m_s", 0.0)
     return float(sigma) / problem.flights.reference_m_s
 
@@ -135,7 +136,7 @@ def _known_air(problem: EffectProblem, aircraft: Aircraft) -> float:
 def _with_air(
     rows: Sequence[Row[PitchModel]], plain: PitchModel, sought: SoughtAir, known: float, floor: FloatArray
 ) -> list[Row[PitchModel]]:
-    """Return the rows with moving air as the main cause where an effect removes less of the gap than air."""
+    """Return the rows with moving air as the main cause, if air removes more of the gap than an effect."""
     air = sought.found
     if air is None or air.is_natural or (not air.gust and air.angle_std <= known):
         return list(rows)
@@ -153,7 +154,7 @@ def _with_air(
 
 
 def floor_of(problem: EffectProblem, last: EffectFit, held_out: HeldOut) -> FloatArray:
-    """Return the noise of each channel where nothing was flown, shape (channels,)."""
+    """Return the noise of each channel before and after the input, shape (channels,)."""
     # Jitter of the stamps belongs to the instruments, but appears only where a channel moves.
     measured = quiet_rms(problem, last) ** 2 + stamp_power(problem, last)
     tolerance = tolerance_of(problem.flights)

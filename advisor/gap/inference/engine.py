@@ -1,4 +1,4 @@
-"""From the plain model of a flight to the posterior of its explanations, whatever the axis."""
+"""Posterior of a flight's explanations, computed from the plain model, for any axis."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,39 +10,39 @@ from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.stage import Flight, Stage, stage_of
 
 Progress = Callable[[str, float], None]
-"""Function that receives a sentence about the work and the share done, 0 to 1."""
+"""Function that receives a sentence about the work, and the completed share, 0 to 1."""
 _EFFECTS, _SECOND = 6, 3
-"""Numerical: number of effects that are fitted in full, as a first and as a second cause."""
+"""Numerical: number of effects that are fully fitted as first cause, and as second cause."""
 _LEADS = 4
-"""Numerical: number of effects that are paired with all others."""
+"""Numerical: number of effects that are paired with all other effects."""
 
 
 @dataclass(frozen=True)
 class Decided(Generic[E]):
-    """The posterior of all explanations."""
+    """Posterior of all explanations of a flight."""
 
     posteriors: tuple[Posterior[E], ...]
-    """Posterior of the first effect, and of a second one in addition to it."""
+    """Posterior of the first effect, then that of a second effect in addition."""
     chosen: tuple[E, ...]
     """The plain model, then the model of each added effect."""
     heat: float
-    """Nats of white noise that count as one."""
+    """Number of nats of white-noise likelihood that count as one nat."""
 
 
 def first_stage(flight: Flight[E]) -> Stage[E]:
-    """Return the plain model of a flight, and all that may be added to it."""
+    """Return the plain model of a flight, and all effects and laws that may be added."""
     return stage_of(flight, None, _EFFECTS)
 
 
 def decided(
     flight: Flight[E], stage: Stage[E], prior: FieldPrior, beyond: Callable[[list[Row[E]]], list[Row[E]]]
 ) -> Decided[E]:
-    """Return the posterior after the first stage, and the second cause where the answer is an effect.
+    """Return the posterior after the first stage, with a second cause if the answer is an effect.
 
     Parameters
     ----------
     beyond
-        Function that returns the rows of the first stage with what the axis knows beyond the models.
+        Function that adds explanations outside the models to the rows of the first stage.
     """
     lead = _lead(flight, stage)
     pair = None if lead is None else (lead, stage_of(flight, lead, _SECOND))
@@ -60,9 +60,10 @@ def decided(
 
 
 def _lead(flight: Flight[E], stage: Stage[E]) -> E | None:
-    """Return the likely effect that explains most together with a second one, by a quick look at every pair.
+    """Return the likely effect that explains most together with a second effect, by a quick look at every
+    pair.
 
-    Two effects may hide each other: neither alone explains anything.
+    Two effects may hide each other, so that neither alone explains anything.
     """
     likely: dict[str, E] = {}
     for one in sorted(stage.effects, key=lambda one: -one.evidence.either):

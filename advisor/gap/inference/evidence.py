@@ -1,8 +1,8 @@
-"""Marginal likelihood of a fitted model (Laplace), with the file's derivatives right or wrong one by one.
+"""Marginal likelihood of a fitted model (Laplace), with each derivative of the file right or wrong.
 
-About a fit the log likelihood is quadratic, so the integral over all numbers is closed for every Gaussian
-prior. No simulator is right to the last digit: the residual of the best model is coloured, and alike in all
-manoeuvres. A nat of white noise therefore counts as 1/``temperature`` nats.
+Near a fit the log likelihood is quadratic, so the integral over all parameters has a closed form. The
+residual of even the best simulator is coloured, and similar in all manoeuvres. One nat of white-noise
+likelihood therefore counts as 1/``temperature`` nats.
 """
 
 from dataclasses import dataclass, replace
@@ -18,14 +18,14 @@ from advisor.gap.inference.explanation import Evidence
 from advisor.gap.inference.marginal import Prior, marginal
 
 _UNSTATED = 1.0
-"""Prior: relative standard deviation of derivatives that no file states."""
+"""Prior: relative standard deviation of a derivative that the aircraft file does not state."""
 _FLAT = 1e6
-"""Numerical: prior standard deviation of a nuisance parameter without a stated one."""
+"""Numerical: prior standard deviation of a nuisance parameter whose prior is not stated."""
 
 
 @dataclass(frozen=True)
 class FlightProblem(EffectProblem):
-    """A flight with a tolerance of the simulator's derivatives."""
+    """A flight together with the tolerance of the simulator's derivatives."""
 
     tolerance: float = ERROR_IF_WRONG
     """Relative standard deviation of the file's derivatives in a fit."""
@@ -34,7 +34,8 @@ class FlightProblem(EffectProblem):
 
     @classmethod
     def of(cls, plain: EffectProblem, fitted: EffectFit) -> "FlightProblem":
-        """Return the problem with the derivatives of the plain fit as centre of an unstated prior."""
+        """Return the problem whose prior is centred at the plain fit's derivatives if the file states
+        none."""
         fields = {name: getattr(plain, name) for name in EffectProblem.__dataclass_fields__}
         return cls(**fields, centre=fitted.point.derivatives)
 
@@ -51,7 +52,7 @@ class FlightProblem(EffectProblem):
         return mean
 
     def within(self, tolerance: float) -> "FlightProblem":
-        """Return the problem with another tolerance of the file's derivatives."""
+        """Return the problem with another relative standard deviation of the file's derivatives."""
         return replace(self, tolerance=tolerance)
 
     def prior_of(self, point: SearchPoint) -> tuple[FloatArray, FloatArray]:
@@ -60,7 +61,8 @@ class FlightProblem(EffectProblem):
         return self.prior_with(point, self.tolerance if self.is_stated else _UNSTATED)
 
     def prior_with(self, point: SearchPoint, width: float) -> tuple[FloatArray, FloatArray]:
-        """Return the same for a relative error ``width`` of the derivatives."""
+        """Return inverse prior variances and prior mean minus values for a relative error ``width`` of the
+        derivatives."""
         inverse = [1.0 / (width * derivative_scale(self.mean)) ** 2]
         expected = [self.mean]
         if "alpha" not in self.channels:
@@ -75,10 +77,10 @@ class FlightProblem(EffectProblem):
 
 
 def temperature(problem: EffectProblem, fitted: EffectFit) -> float:
-    """Return the number of nats of white noise that count as one, at least 1.
+    """Return the number of white-noise nats that count as one nat, at least 1.
 
-    The residual's colour within a manoeuvre leaves fewer independent samples. Power beyond the known noise
-    is a misfit that all manoeuvres share, so that the manoeuvres count as one.
+    Coloured residuals contain fewer independent samples. Power above the known noise is a misfit that all
+    manoeuvres share, so all manoeuvres count as one.
     """
     power = float(np.mean(fitted.noise**2)) if problem.knows_the_noise else 1.0
     shared = max(0.0, 1.0 - 1.0 / max(power, 1e-9))
@@ -86,14 +88,14 @@ def temperature(problem: EffectProblem, fitted: EffectFit) -> float:
 
 
 def log_likelihood(problem: EffectProblem, fitted: EffectFit) -> float:
-    """Return the log likelihood of a fit, profiled over the noise, up to a constant of the flight."""
+    """Return the log likelihood of a fit, profiled over the noise, up to a constant."""
     return -0.5 * (fitted.cost - problem.prior_cost(fitted.point))
 
 
 def evidence_of(problem: FlightProblem, fitted: EffectFit, heat: float, narrower: float = 1.0) -> Evidence:
-    """Return the evidence of a model; ``problem`` is the one of its fit.
+    """Return the evidence of a model; ``problem`` is the problem to which the model was fitted.
 
-    About the fit the gradient of the log likelihood balances the pull of the fit's own prior.
+    At the fit the gradient of the log likelihood balances that of the fit's prior.
 
     Parameters
     ----------

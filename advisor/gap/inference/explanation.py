@@ -1,4 +1,4 @@
-"""One explanation of a flight: a full model with its evidence; and the row that it makes."""
+"""One explanation of a flight: a full model with its evidence, and its row in the posterior."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -15,13 +15,13 @@ class Evidence:
     """Log marginal likelihood of one explanation, nats."""
 
     right: float
-    """With all of the file's derivatives right."""
+    """Log evidence if all derivatives of the aircraft file are right."""
     wrong: float
-    """With some of them wrong."""
+    """Log evidence if some derivatives of the aircraft file are wrong."""
 
     @property
     def either(self) -> float:
-        """Log marginal likelihood where both cases are alike likely before the flight."""
+        """Log evidence if right and wrong derivatives have equal prior probability."""
         return float(np.logaddexp(self.right, self.wrong) - np.log(2.0))
 
     def more(self, nats: float) -> "Evidence":
@@ -31,44 +31,42 @@ class Evidence:
 
 @dataclass(frozen=True, kw_only=True)
 class Explanation:
-    """A model of the flight with at most one effect more than the model of the stage; an axis adds its
-    fit."""
+    """A model of the flight with at most one effect more than the stage's model."""
 
     alternative: Alternative | None
-    """The answer that the added effect is; None for derivatives alone."""
+    """Alternative that the added effect stands for; None for derivatives alone."""
     name: str = ""
     """Name of the added effect or law."""
     numbers: tuple[str, ...] = ()
-    """Names of its numbers."""
+    """Names of the effect's parameters."""
     evidence: Evidence
     natural: Evidence
-    """Evidence with as little of the effect as every aircraft has."""
+    """Evidence with the effect at the small size that every aircraft has."""
     likelihood: float
-    """Log likelihood over the temperature, nats: the part of the evidence that the fit makes."""
+    """Log likelihood of the fit over the temperature, nats."""
     unseen: float = 0.0
-    """Part of the evidence, at most 0, by which the effect gains less on unseen manoeuvres than in the
-    fit."""
+    """Loss of evidence, at most 0, because the effect gains less on held-out manoeuvres than in the fit."""
     change: float = 0.0
-    """Change of the outputs by the effect, all else refitted, as a share of the peaks."""
+    """Change of the outputs by the effect after a refit of all other parameters, as a share of the peaks."""
     model_error: float = 0.0
-    """Part of the evidence that the error of every simulator makes up for."""
+    """Part of the evidence that allows for the error of every simulator, nats."""
 
     @property
     def solution(self) -> object:
-        """The fit, which explanations in still and in moving air share."""
+        """Fit of the explanation, equal in still and in moving air."""
         return self
 
     @property
     def form_error(self) -> float:
-        """Error of the outputs by the form of the effect, as a share of the peaks."""
+        """Error of the outputs due to the effect's simplified form, as a share of the peaks."""
         return form_error(self.numbers, self.change)
 
     def more(self, nats: float) -> Self:
-        """Return the explanation with so much more evidence."""
+        """Return the explanation with ``nats`` more evidence."""
         return replace(self, evidence=self.evidence.more(nats), natural=self.natural.more(nats))
 
     def lifted(self, nats: float) -> Self:
-        """Return the explanation with evidence for the error of every simulator."""
+        """Return the explanation with ``nats`` more evidence for the error of every simulator."""
         return replace(self.more(nats), model_error=nats)
 
 
@@ -77,23 +75,23 @@ E = TypeVar("E", bound=Explanation)
 
 @dataclass(frozen=True)
 class Row(Generic[E]):
-    """One way in which an alternative may be true, with the parts of its log weight."""
+    """One model of an alternative, with the parts of its log weight."""
 
     alternative: Alternative
     explanation: E
     terms: Mapping[str, float]
-    """Parts of the log weight by name, nats."""
+    """Parts of the model's log weight by name, nats."""
     pair: E | None = None
-    """Model with a second effect in addition."""
+    """Model with a second effect in addition; None for a single effect."""
     in_moving_air: bool = False
-    """Whether the air moves more than it always does."""
+    """Whether the air moves more than in every natural flight."""
 
     @property
     def model(self) -> E:
-        """Whole model of the way."""
+        """Full model of the row."""
         return self.pair or self.explanation
 
     @property
     def weight(self) -> float:
-        """Log of prior times marginal likelihood, nats, up to a constant of the flight."""
+        """Log of prior probability times marginal likelihood, nats, up to a constant."""
         return float(sum(self.terms.values()))

@@ -16,34 +16,35 @@ from advisor.gap.uncatalogued.wind_shear import Shear
 
 @dataclass(frozen=True)
 class Added:
-    """The effect that leads from one model to the next."""
+    """Effect that is added from one model to the next."""
 
     effect: str
     sole_maneuver: int | None = None
-    """Index of the only manoeuvre that determines the effect; None where another could confirm it."""
+    """Index of the only manoeuvre that determines the effect; None where another manoeuvre could confirm
+    it."""
 
 
 @dataclass(frozen=True)
 class Model:
-    """One model of the answer."""
+    """One model of the answer, between the plain and the final model."""
 
     fitted: EffectFit
     held_out: HeldOut
     added: Added | None = None
-    """Effect of the next model; None at the last one."""
+    """Effect that leads to the next model; None at the last model."""
     flights: PreparedManeuvers | None = None
-    """Flight to which the model is fitted; None: that of the findings."""
+    """Flight to which the model is fitted; None for the flight of the findings."""
 
 
 @dataclass(frozen=True)
 class Unexplained:
-    """Motion without a name, and the block in which it arises."""
+    """Motion that no known effect explains, and the block in which it arises."""
 
     block: str
     share: float
-    """Probability of the block, given that something without a name acts."""
+    """Probability of the block, given that an effect without a name acts."""
     ranking: tuple[tuple[str, float], ...]
-    """Blocks with their scores; the likeliest block scores 1."""
+    """Blocks with their scores relative to the likeliest block, which scores 1."""
     note: str = ""
     """A sentence about the law that describes the motion."""
 
@@ -53,9 +54,9 @@ class Circumstances:
     """Readings of the flight and entries of the aircraft file that belong to every model."""
 
     shear: Shear | None = None
-    """Wind that changes with height."""
+    """Wind that changes with height; None without significant shear."""
     weight: WeightReading | None = None
-    """The accelerometer's reading of the weight; None where too few manoeuvres tell it."""
+    """Weight that the accelerometer reads; None with too few manoeuvres for a reading."""
     known: Effects = field(default_factory=dict)
     """Effects of the aircraft file."""
     left_aside: tuple[str, ...] = ()
@@ -64,27 +65,27 @@ class Circumstances:
 
 @dataclass(frozen=True)
 class Findings:
-    """Everything that the numbers and sentences of an answer are made from."""
+    """All findings from which the numbers and sentences of an answer are made."""
 
     problem: EffectProblem
     models: tuple[Model, ...]
     """The plain model, then the model of each named effect."""
     unexplained: Unexplained | None
     air: MovingAir | None
-    """Moving air, where it is the answer."""
+    """Moving air, if moving air is the answer."""
     floor: FloatArray
-    """Shape (channels,): noise where nothing was flown."""
+    """Shape (channels,): noise of each channel before and after the input."""
     file_model: HeldOut | None
-    """Hold-out of the aircraft file's own derivatives, not fitted."""
+    """Hold-out of the aircraft file's derivatives without a fit."""
     constant_speed: HeldOut | None
-    """Hold-out of the final model at constant air speed."""
+    """Hold-out of the final model with derivatives that do not scale with the air speed."""
     airspeed_scale: AirspeedScale | None
-    """Relative excess of the true over the used air speed, where significant."""
+    """Relative excess of the true over the used air speed; None if insignificant."""
     circumstances: Circumstances = field(default_factory=Circumstances)
 
     @property
     def last(self) -> Model:
-        """The final model."""
+        """Final model of the answer."""
         return self.models[-1]
 
     @property

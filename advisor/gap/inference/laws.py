@@ -1,4 +1,4 @@
-"""Laws outside the catalogue that rival the effects: where one is the likeliest, the answer is "unknown"."""
+"""Laws outside the catalogue that compete with the effects; the likeliest one makes the answer "unknown"."""
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.variant import Variant
@@ -9,8 +9,8 @@ AIR_SPEED = Variant(
     "air_speed_scale", "accelerometer", ("scale",), ((0.0,),), (0.002,), ((-0.7, 3.0),), 0.0,
     entries=("speed_scale",), prior_std=(0.15,),
 )  # fmt: skip
-"""An air speed that reads too little or too much, by more than a static port does. An accelerometer's scale
-looks the same."""
+"""A scale error of the air speed beyond that of a static port. A scale error of the accelerometer looks the
+same."""
 
 
 def laws_of(flights: PreparedManeuvers) -> list[Variant]:
@@ -20,7 +20,7 @@ def laws_of(flights: PreparedManeuvers) -> list[Variant]:
 
 
 def sentence_of_law(law: str, values: FloatArray) -> str:
-    """Return a sentence about a law with its numbers, of shape (numbers,)."""
+    """Return a sentence about a law with its parameter values, shape (numbers,)."""
     if law == AIR_SPEED.effect:
         percent = 100.0 * float(values[0])
         return f"The true air speed is {percent:+.0f} % off the one that is read, by the motion."

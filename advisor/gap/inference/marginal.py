@@ -1,5 +1,4 @@
-"""The closed integral over derivatives and numbers, with each derivative of the file right or wrong by
-itself."""
+"""Closed integral over derivatives and parameters, with each derivative of the file right or wrong."""
 
 from typing import NamedTuple
 
@@ -10,12 +9,12 @@ from advisor.gap.inference.explanation import Evidence
 
 
 class Prior(NamedTuple):
-    """Gaussian knowledge of derivatives and numbers before the flight."""
+    """Gaussian prior of derivatives and parameters."""
 
     precision: FloatArray
-    """(k,) inverse variances."""
+    """Shape (k,): inverse prior variances."""
     pull: FloatArray
-    """(k,) means minus the values of a fit."""
+    """Shape (k,): prior means minus the values of a fit."""
 
 
 def marginal(
@@ -23,8 +22,8 @@ def marginal(
 ) -> Evidence:
     """Return the log marginal likelihood with all derivatives right, and with some of them wrong.
 
-    Where the two priors differ, the file states a derivative, which goes both ways and is integrated out by
-    itself. All derivatives of the file are right in half of the flights.
+    Where the two priors differ, the file states a derivative, which is integrated as right and as wrong. All
+    derivatives of the file are right in half of the flights.
 
     Parameters
     ----------

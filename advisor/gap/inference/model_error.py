@@ -1,26 +1,25 @@
-"""The error of every simulator: two models that differ by less cannot be told apart by any number of
-samples."""
+"""Error of every simulator, below which no number of samples distinguishes two models."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 _MODEL = 0.005
-"""Prior: error of every simulator, as a share of the peak."""
+"""Prior: error of every simulator's outputs, as a share of each output's peak."""
 _FORM, _PLAY = 0.03, 0.1
-"""Prior: error of an effect's form, as a share of its change; of play, dead bands and friction, which
-differ from servo to servo."""
+"""Prior: error of an effect's form as a share of its change, in general, and for play, dead bands and
+friction."""
 _INDEPENDENT = 40.0
-"""Prior: number of independent numbers that such an error has."""
+"""Prior: number of independent values in the error of a simulator."""
 
 
 def form_error(names: Sequence[str], change: float) -> float:
-    """Return the error of the outputs by the form of an effect, as a share of the peaks.
+    """Return the error of the outputs due to an effect's simplified form, as a share of the peaks.
 
     Parameters
     ----------
     names
-        Numbers of the effect.
+        Names of the effect's parameters.
     change
         Change of the outputs by the effect, as a share of the peaks.
     """
@@ -28,14 +27,14 @@ def form_error(names: Sequence[str], change: float) -> float:
 
 
 def most_nats(apart: float, *forms: float) -> float:
-    """Return by how many nats two models differ at most.
+    """Return the largest log likelihood difference, nats, that two models can have.
 
     Parameters
     ----------
     apart
-        Difference of their outputs, as a share of the peaks.
+        Difference between the outputs of both models, as a share of the peaks.
     forms
-        Errors of the forms of their effects, as shares of the peaks.
+        Errors of the outputs due to the effects' simplified forms, as shares of the peaks.
     """
     error = float(np.linalg.norm((_MODEL, *forms)))
     return 0.5 * _INDEPENDENT * (apart / error) ** 2

@@ -1,4 +1,4 @@
-"""Pitch, as the engine asks for it: fits with an effect, their evidence, and what they leave."""
+"""Pitch flight for the diagnosis: fits with an effect, their evidence and their residuals."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -20,23 +20,23 @@ from advisor.gap.kit.variant import Variant
 from advisor.gap.search.screen import Screen, Screened
 
 _SYMMETRIC = float(np.log(2.0))
-"""Log prior gain, nats, of a number that cannot be negative: its Gaussian prior has half the range."""
+"""Log prior gain, nats, of a parameter that cannot be negative: its Gaussian prior has half the range."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PitchModel(Explanation):
-    """An explanation in pitch with its fit."""
+    """One explanation of a pitch flight with its fit."""
 
     variant: Variant | None
-    """Effect or law that is added; None for derivatives alone."""
+    """Effect or law that the model adds; None for derivatives alone."""
     problem: FlightProblem
-    """The flight with the tolerance of the derivatives under which the model was fitted."""
+    """Flight, with the tolerance of the derivatives under which the model was fitted."""
     fitted: EffectFit
     held_out: HeldOut
 
     @property
     def values(self) -> FloatArray:
-        """Numbers of the added effect, shape (numbers,); empty for derivatives alone."""
+        """Parameter values of the added effect, shape (numbers,); empty for derivatives alone."""
         return np.zeros(0) if self.variant is None else np.asarray(self.fitted.point.values[-1])
 
     def seen_in(self, flight: EffectProblem) -> "PitchModel":
@@ -50,19 +50,19 @@ class PitchModel(Explanation):
 
 @dataclass(frozen=True)
 class PitchFlight:
-    """A flight in pitch."""
+    """A flight in pitch, with its fit without effects."""
 
     problem: FlightProblem
     plain: EffectFit
     table: Sequence[Variant]
     laws: Sequence[Variant]
-    """Effects of the catalogue, and laws outside of it, with a prior on each number."""
+    """Laws outside the catalogue, with a prior on each parameter."""
     looked: dict[int, list[Screened]] = field(default_factory=dict)
-    """Quick looks at a second effect, by the identity of the fit with the first."""
+    """Quick fits of a second effect, by the identity of the fit with the first effect."""
 
     @property
     def tried(self) -> tuple[int, int]:
-        """Numbers of effects and laws by name."""
+        """Number of candidate effects, and number of distinct names among the laws."""
         return len({v.effect for v in self.table}), len({v.effect for v in self.laws})
 
     @property
@@ -71,7 +71,8 @@ class PitchFlight:
         return self.problem.is_stated
 
     def explained(self, base: PitchModel | None, most: int) -> tuple[float, list[PitchModel]]:
-        """Return the temperature, and a model with each likely effect or law in addition."""
+        """Return the temperature of the likelihood, and a model with each likely effect or law in
+        addition."""
         problem, begin = (self.problem, self.plain) if base is None else (base.problem, base.fitted)
         table = self._beside(base)
         loose = problem.within(ERROR_IF_WRONG)
@@ -95,41 +96,41 @@ class PitchFlight:
         ]
 
     def at_the_files(self, one: PitchModel, plain: PitchModel, heat: float) -> PitchModel | None:
-        """Return an explanation fitted again where the file's derivatives are right; None without a fit."""
+        """Return an explanation refitted about the file's derivatives; None without such a fit."""
         near = one.problem.within(ERROR_IF_RIGHT)
         made = fit(near, one.fitted.point, one.fitted.noise, iterations=5)
         return self._model(near, one.variant, made, plain.fitted, heat) if np.isfinite(made.cost) else None
 
     def apart(self, one: PitchModel, other: PitchModel) -> float:
-        """Return the largest difference between two models, as a share of the peaks."""
+        """Return the largest difference between two models' outputs, as a share of the outputs' peaks."""
         return change_of(self.problem, one.fitted, other.fitted)
 
     def residual(self, one: PitchModel, heat: float) -> Residual:
-        """Return the disturbance that explains what a model leaves."""
+        """Return the disturbance that explains the residual of a model best."""
         return residual_of(self.problem, one.fitted, heat)
 
     def in_moving_air(self, stage: Stage[PitchModel]) -> None:
-        """Return nothing: the air is compared with the answer afterwards."""
+        """Return None: moving air is compared with the answer afterwards."""
 
     def pairs(self, stage: Stage[PitchModel], leads: Sequence[PitchModel]) -> Pairs:
-        """Yield the price of each lead with each other effect, and both names."""
+        """Yield the price of each pair of a lead and another effect, and both names."""
         yield from ((quick.cost, lead.name, quick.name) for lead in leads for quick in self._looks(lead))
 
     def _looks(self, lead: PitchModel) -> list[Screened]:
-        """Return a look at each effect next to that of a model, one linear step far, which is taken once."""
+        """Return a one-step fit of each effect in addition to that of a model, computed once."""
         if id(lead.fitted) not in self.looked:
             screen = Screen(lead.problem, lead.fitted, steps=1)
             self.looked[id(lead.fitted)] = screen.quick_fits(self._beside(lead))
         return self.looked[id(lead.fitted)]
 
     def _beside(self, base: PitchModel | None) -> list[Variant]:
-        """Return the effects that may act next to that of a model."""
+        """Return the effects that may act in addition to that of a model."""
         return [variant for variant in self.table if base is None or variant.effect != base.name]
 
     def _model(
         self, problem: FlightProblem, variant: Variant | None, made: EffectFit, plain: EffectFit, heat: float
     ) -> PitchModel:
-        """Return a model with its evidence, which unseen manoeuvres may cut."""
+        """Return a model with its evidence, which a loss on held-out manoeuvres may reduce."""
         held, told = hold_out(problem, made), evidence_of(problem, made, heat)
         likelihood = log_likelihood(problem, made) / heat
         if variant is None:
@@ -152,14 +153,15 @@ class PitchFlight:
 
 
 def change_of(problem: EffectProblem, one: EffectFit, other: EffectFit) -> float:
-    """Return the largest difference between two models, as a share of each telling channel's peak."""
+    """Return the largest difference between two models' outputs, as a share of each identifying channel's
+    peak."""
     squares = mean_squares(problem, [a - b for a, b in zip(one.residuals, other.residuals, strict=True)])
     share = np.sqrt(np.mean(squares, axis=0)) / problem.flights.peaks
     return float(np.max(share[problem.flights.telling]))
 
 
 def _extra(variant: Variant, maneuvers: int) -> float:
-    """Return the log prior, nats, of what a Gaussian about zero leaves out: one side, choices, a time."""
+    """Return the log prior, nats, of choices beyond a Gaussian about zero: a sign, sides, a time."""
     low, high = variant.bounds[0]
     extra = _SYMMETRIC if low >= 0.0 or high <= 0.0 else 0.0
     if variant.sides is not None:
@@ -170,7 +172,7 @@ def _extra(variant: Variant, maneuvers: int) -> float:
 
 
 def _lost_unseen(problem: EffectProblem, plain: EffectFit, made: EffectFit, held: HeldOut) -> float:
-    """Return by how much less an effect gains on manoeuvres held out than in the fit, nats; at most 0."""
+    """Return how much less an effect gains on held-out manoeuvres than in the fit, nats, at most 0."""
     n = counts(problem)
     in_fit = float(np.sum(n * np.log(plain.noise / made.noise)))
     was, now = (np.maximum(h.innovation_square, 1e-12) for h in (hold_out(problem, plain), held))

@@ -1,4 +1,4 @@
-"""From evidence to probabilities: one row for each way in which an alternative may be true."""
+"""From evidence to probabilities, with one row for each model of an alternative."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,15 +14,15 @@ from advisor.gap.inference.residual import Residual, if_lacking, if_right
 from advisor.gap.inference.stage import Flight, Stage
 
 _ALWAYS = frozenset({"air"})
-"""Blocks with a disturbance in most flights: such a residual is no law that the simulator lacks."""
+"""Blocks with a disturbance in most flights, whose residual indicates no missing law."""
 _SEARCHED = 2
-"""Numerical: the residuals of so many models are searched for a law, the likeliest models first. An
-alternative that is not searched counts with the residual of the likeliest."""
+"""Numerical: number of the likeliest models whose residual is searched for a law. An alternative whose
+residual is not searched gets the residual of the likeliest model."""
 
 
 @dataclass(frozen=True)
 class Posterior(Generic[E]):
-    """Probabilities of all alternatives of a stage, which sum to 1."""
+    """Probabilities of all alternatives after one stage, which sum to 1."""
 
     rows: tuple[Row[E], ...]
     """Rows of all alternatives, the likeliest first."""
@@ -30,7 +30,7 @@ class Posterior(Generic[E]):
     """Probability of each row."""
 
     def of(self, alternative: Alternative) -> float:
-        """Return the probability of an alternative."""
+        """Return the probability of an alternative, over all its rows."""
         return self.by_alternative.get(alternative, 0.0)
 
     @property
@@ -43,24 +43,24 @@ class Posterior(Generic[E]):
 
     @property
     def answer(self) -> Alternative:
-        """The likeliest of nothing, wrong numbers, each effect, and all blocks of the unknown together."""
+        """Likeliest alternative, with all blocks of an effect without a name taken together."""
         return together(self.by_alternative.items())[0][0]
 
     def explanation_of(self, alternative: Alternative) -> E:
-        """Return the likeliest explanation of an alternative."""
+        """Return the likeliest model of an alternative."""
         mine = [row for row in self.rows if row.alternative == alternative]
         return max(mine, key=lambda row: row.weight).explanation
 
 
 def stated_as(name: str) -> Alternative:
-    """Return an effect of the catalogue as an alternative."""
+    """Return the alternative for an effect of the catalogue."""
     block = EFFECTS[name].block
     return Alternative("air" if block == "air" else "effect", name, block)
 
 
 NONE, PARAMETERS = Alternative("none", "none"), Alternative("parameters", "parameters")
 UNKNOWN = Alternative("unknown", "unknown")
-"""Something without a name, in any block."""
+"""Effect without a name, in any block."""
 
 
 def rows_of(
@@ -69,14 +69,14 @@ def rows_of(
     prior: FieldPrior,
     second: tuple[E, Stage[E]] | None = None,
 ) -> list[Row[E]]:
-    """Return the rows of one stage.
+    """Return the rows of all alternatives after one stage.
 
     Parameters
     ----------
     prior
-        How often each kind of answer is right before a flight is looked at.
+        Prior probability of each kind of answer.
     second
-        An effect and the stage after it: with a second cause, the first one leaves another residual.
+        First effect with its following stage: a second cause leaves another residual.
     """
     ways = [*_ways(flight, stage, prior)]
     if second is not None:
@@ -102,7 +102,7 @@ def rows_of(
 
 
 def _ways(flight: Flight[E], stage: Stage[E], prior: FieldPrior) -> Iterator[Row[E]]:
-    """Yield the ways in which each alternative may be true, without a look at the residual."""
+    """Yield the models of each alternative, without evidence from the residual."""
     stated, (names, laws) = flight.is_stated, flight.tried
     plain, each = stage.plain, prior.effect / max(names, 1)
     none = prior.none + (0.0 if stated else prior.parameters)
@@ -127,10 +127,10 @@ def _ways(flight: Flight[E], stage: Stage[E], prior: FieldPrior) -> Iterator[Row
 def _pairs(
     ways: Sequence[Row[E]], plain: E, lead: E, second: Stage[E], tried: tuple[int, int], prior: FieldPrior
 ) -> Iterator[Row[E]]:
-    """Yield the ways in which an effect is true together with a second one.
+    """Yield the models in which an effect acts together with a second effect.
 
-    Where a law outside the table is the second, both may be one law that the effect resembles. One law is
-    the likelier, the larger the share that the effect leaves to the law.
+    If the second cause is a law without a name, one law alone may look like both causes. A single law is the
+    likelier, the larger the share of the motion that the law explains.
     """
     first = next(way for way in ways if way.explanation is lead and way.alternative.is_effect)
     of_first = max(lead.evidence.either - plain.evidence.either, 0.0)
@@ -158,9 +158,9 @@ def _row(alternative: Alternative, one: E, evidence: float, share: float) -> Row
 
 
 def _with_residual(way: Row[E], residual: Residual, prior: FieldPrior) -> Iterator[Row[E]]:
-    """Yield the way as right, and as one that only resembles a law outside the table.
+    """Yield the row as right, and as a model that only resembles an effect without a name.
 
-    A law without a name leaves a residual that a disturbance of free course in one block explains.
+    An effect without a name leaves a residual that a disturbance in one block explains.
     """
     size = residual.beside_air if way.in_moving_air else residual.size
     yield replace(way, terms={**way.terms, "residual": if_right(size)})
@@ -183,5 +183,5 @@ def posterior_of(rows: Iterable[Row[E]]) -> Posterior[E]:
 
 
 def relabelled(row: Row[E], alternative: Alternative) -> Row[E]:
-    """Return the row as a way in which another alternative is true."""
+    """Return the row as a model of another alternative."""
     return replace(row, alternative=alternative)

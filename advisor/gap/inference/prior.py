@@ -1,4 +1,4 @@
-"""The field prior: how often each kind of answer is right before a flight is looked at."""
+"""Field prior: probability of each kind of answer before the flight."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from advisor.words.problems import ConfigurationError
 
 @dataclass(frozen=True, slots=True)
 class FieldPrior:
-    """Shares of the four kinds of answers, which sum to 1."""
+    """Prior probabilities of the four kinds of answers, which sum to 1."""
 
     none: float
     parameters: float
@@ -16,12 +16,12 @@ class FieldPrior:
 
 
 FIELD = FieldPrior(none=0.4, parameters=0.2, effect=0.3, unknown=0.1)
-"""Prior: shares that are assumed without a statement of the user. Most flights of a simulator in use show no
-gap, or wrong numbers; the flights of the fit have far more effects."""
+"""Prior: probabilities that are assumed without a statement of the user. Most flights of a simulator in use
+show no gap or wrong derivatives, unlike the flights used for tuning."""
 
 
 def field_prior(text: str) -> FieldPrior:
-    """Read shares as people write them: ``none=40,parameters=20,effect=30,unknown=10``.
+    """Read prior shares from text: ``none=40,parameters=20,effect=30,unknown=10``.
 
     Raises
     ------

@@ -1,7 +1,8 @@
-"""The air speed at which the aircraft file's derivatives hold, where the file states none.
+"""Air speed at which the aircraft file's derivatives hold, if the file states no speed.
 
-The mean speed of the manoeuvres is the default. A manoeuvre costs speed, and pilots begin one slower than the
-last. Derivatives of the trim speed can then be off by some per cent, all by their power of the speed.
+The mean speed of the manoeuvres is the default. Each manoeuvre costs speed, and pilots may begin the next
+manoeuvre slower. Derivatives stated for the trim speed can then be off by some per cent, by their power of
+the speed.
 """
 
 import numpy as np
@@ -17,19 +18,18 @@ from advisor.gap.inference.marginal import Prior, marginal
 from advisor.gap.simulator.layout import DERIVATIVES, SPEED
 
 _POWERS = np.array([float(SPEED_EXPONENTS[name]) for name in DERIVATIVES])
-"""Power of the air speed with which each derivative grows."""
+"""Exponent of the air speed for each derivative."""
 _FARTHEST = 0.06
-"""Prior: largest relative distance of the speed from the mean. Derivatives that hold at no speed within this
-distance are wrong."""
+"""Prior: largest relative distance of the derivatives' speed from the mean speed. Derivatives that hold at no
+speed within this distance are wrong."""
 _TRIED = 25
-"""Numerical: number of speeds that are tried."""
+"""Numerical: number of candidate speeds."""
 
 
 def prior_speed(problem: EffectProblem, baseline: EffectFit) -> float | None:
     """Return the speed in m/s, within those flown, at which the file's derivatives are right.
 
-    None where the file's derivatives may be right at the mean speed of the manoeuvres, or are wrong at every
-    speed.
+    None if the derivatives may be right at the mean speed, or are wrong at every speed.
     """
     flights, prior = problem.flights, problem.prior_derivatives
     if prior is None or not flights.speed_measured:
@@ -51,9 +51,9 @@ def prior_speed(problem: EffectProblem, baseline: EffectFit) -> float | None:
 
 
 def evidence_of_file(derivatives: FloatArray, known: FloatArray, prior: FloatArray) -> Evidence:
-    """Return the evidence for right and for wrong derivatives of a file, (6,).
+    """Return the evidence for right and for wrong derivatives (6,) of an aircraft file.
 
-    ``derivatives`` (6,) and ``known`` (6, 6) are fitted ones with their covariance.
+    ``derivatives`` (6,) and ``known`` (6, 6) are the fitted derivatives and their covariance.
     """
     right, wrong = (
         Prior(prior_precision(prior, tolerance), prior - derivatives)

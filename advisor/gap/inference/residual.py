@@ -1,4 +1,4 @@
-"""The residual of a model: the disturbance of free course that explains most of it, block by block."""
+"""Residual of a model: the disturbance in each block that explains most of the residual."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,31 +13,31 @@ from advisor.gap.noise.probes import probe_blocks
 from advisor.gap.records.floor import tolerance_of
 
 _HARDLY = 1e-6
-"""Numerical: share below which a block counts as excluded."""
+"""Numerical: probability below which a block counts as excluded."""
 NATURAL = 0.004
-"""Prior: motion that a right simulator leaves unexplained, as a share of a channel's peak."""
+"""Prior: motion that even a right simulator leaves unexplained, as a share of a channel's peak."""
 _RIGHT, _LACKING = (0.0, 0.6), (np.log(3.0), 0.9)
 """Prior: mean and standard deviation of the log of the residual's size (``Residual.size``), of a right model
 and of one that lacks a law."""
 _LEAST_MISFIT = 0.25
-"""Numerical: size of a residual below which it is not told from none."""
+"""Numerical: size of a residual below which the residual counts as zero."""
 
 
 @dataclass(frozen=True)
 class Residual:
-    """Motion that a model does not explain and that is no noise."""
+    """Motion that a model does not explain, beyond noise."""
 
     size: float
-    """Motion beyond the noise that the likeliest disturbance explains, over what every simulator leaves. The
-    channel with the largest ratio counts."""
+    """Size of the motion that the likeliest disturbance explains, over the residual natural to every
+    simulator. The size is that of the channel with the largest ratio."""
     blocks: Mapping[str, float]
-    """Probability of each block, given that something without a name acts in one."""
+    """Probability of each block, given that an effect without a name acts in one block."""
     size_beside_air: float | None = None
-    """Size of what moving air does not explain; None where the air is no part of the models."""
+    """Size of the motion that moving air does not explain; None where the models contain no air."""
 
     @property
     def beside_air(self) -> float:
-        """Size of the residual where the air moves."""
+        """Size of the residual beyond moving air."""
         return self.size if self.size_beside_air is None else self.size_beside_air
 
 
@@ -47,7 +47,7 @@ def residual_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> Resid
     Parameters
     ----------
     heat
-        Nats of white noise that count as one (``evidence.temperature``).
+        Number of white-noise nats that count as one nat (``evidence.temperature``).
     """
     assert problem.instruments is not None
     probes = probe_blocks(problem, fitted, innovation_noise(problem))

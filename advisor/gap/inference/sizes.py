@@ -1,7 +1,7 @@
-"""Prior width of every number of every effect, before a flight is looked at.
+"""Prior width of every effect's parameters, before the flight.
 
-A width says how large the number is on an aircraft that has the effect. Widths follow from physics and from
-data sheets of servos and sensors. No test flight set these widths.
+A width is the typical size of the parameter on an aircraft that has the effect. Widths follow from physics
+and from data sheets of servos and sensors. No test flight set these widths.
 """
 
 from dataclasses import replace
@@ -17,11 +17,12 @@ from advisor.gap.simulator.layout import natural_frequency
 _TIME_S, _SHARE = 0.05, 0.1
 """Prior: standard deviations of late stamps, s, and of relative errors of a reading."""
 BENT = 0.5
-"""Prior: standard deviation of a curve at the largest departure flown, relative to the linear term."""
+"""Prior: standard deviation of a nonlinear term at the largest flown deviation, relative to the linear
+term."""
 _SLOWEST_RAD_S = 0.5
-"""Numerical: least frequency of a short period from which a length follows, rad/s."""
+"""Numerical: least frequency of the short period for the prior width of an arm, rad/s."""
 _LEAST_ALPHA_RAD, _LEAST_DELTA_RAD = 0.05, 0.02
-"""Numerical: least departures of angle of attack and elevator for which a curve's width is computed, rad."""
+"""Numerical: least deviations of angle of attack and elevator for the width of a nonlinear term, rad."""
 _OF_EFFECT = {
     "actuator_lag.lag_s": 0.05, "transport_delay.delay_s": 0.05, "actuator_rate_limit.rate_rad_s": 1.5,
     "actuator_backlash.half_width_rad": 0.01, "actuator_deadband.half_width_rad": 0.01,
@@ -37,26 +38,26 @@ _OF_EFFECT = {
     "mass_change.step": 0.15, "mass_change.inertia": 0.15, "cg_shift.step": 0.2, "icing.Z_alpha": 0.15,
     "icing.Z_delta_e": 0.15, "icing.M_alpha": 0.15, "icing.M_delta_e": 0.15,
 }  # fmt: skip
-"""Prior: standard deviations by effect and number, in the unit of the search."""
+"""Prior: standard deviation of each effect's parameters, in the unit of the search."""
 _ARM = {"alpha_vane_offset": 0.2, "accelerometer_offset": 0.1}
-"""Prior: standard deviation of an arm, as a share of the way flown in one radian of the short period.
+"""Prior: standard deviation of an arm, as a share of the distance flown per radian of the short period.
 
 A small UAV flies 2.5 m in one radian of its short period. A jet with a nose boom of 13 m flies 50 m."""
 _NATURAL, _OF_A_SERVO = 0.02, 0.2
-"""Prior: size of an effect that every aircraft has, as a share of its size on an aircraft with the effect.
+"""Prior: size of an effect natural to every aircraft, as a share of its size on an aircraft with the effect.
 The lag and the delay of a servo are known to 10 ms, play to 0.2 mrad, scales to 0.2 %."""
 _SERVO = ("actuator_lag", "transport_delay")
 _OF_RANGE = 0.5
-"""Prior: standard deviation of any other number, as a share of the largest value that is searched."""
+"""Prior: standard deviation of any other parameter, as a share of the largest searched value."""
 
 
 def with_sizes(variant: Variant, derivatives: FloatArray, flights: PreparedManeuvers) -> Variant:
-    """Return the variant with a Gaussian prior about zero on each of its numbers; one that it has stays.
+    """Return the variant with a Gaussian prior about zero on each parameter that has none.
 
     Parameters
     ----------
     derivatives
-        Shape (6,): derivatives of the simulator, or fitted ones where no file states them.
+        Shape (6,): derivatives of the simulator, or fitted derivatives if the file states none.
     """
     if variant.prior_std:
         return variant
@@ -80,17 +81,17 @@ def with_sizes(variant: Variant, derivatives: FloatArray, flights: PreparedManeu
 
 
 def of_range(variant: Variant) -> tuple[float, ...]:
-    """Return the prior widths of numbers of which no more is known than the range that is searched."""
+    """Return the prior widths of parameters of which only the searched range is known."""
     return tuple(_OF_RANGE * max(map(abs, bounds)) for bounds in variant.bounds)
 
 
 def natural_share(variant: Variant) -> float:
-    """Return the size that every aircraft has of an effect, as a share of the effect's prior width."""
+    """Return the size of an effect on every aircraft, as a share of the effect's prior width."""
     return _OF_A_SERVO if variant.effect in _SERVO else _NATURAL
 
 
 def _departures(flights: PreparedManeuvers) -> tuple[float, float]:
-    """Return half of the range flown of angle of attack and elevator, rad."""
+    """Return half of the flown range of angle of attack and of elevator, rad."""
     alphas = [np.ptp(f.outputs["alpha"].y) / 2.0 for f in flights.flights if "alpha" in f.outputs]
     deltas = [np.ptp(f.u) / 2.0 for f in flights.flights]
     return float(max([_LEAST_ALPHA_RAD, *alphas])), float(max([_LEAST_DELTA_RAD, *deltas]))

@@ -1,4 +1,4 @@
-"""One stage: every explanation that may be added to a model, weighed by its evidence."""
+"""One stage of the inference: every explanation that may be added to a model, with its evidence."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -9,27 +9,28 @@ from advisor.gap.inference.model_error import most_nats
 from advisor.gap.inference.residual import Residual
 
 LAWS = 2
-"""Numerical: number of laws outside the catalogue that are fitted in full."""
+"""Numerical: number of laws outside the catalogue that are fully fitted."""
 AT_THE_FILE = 3
-"""Numerical: number of effects that are fitted in full because they are the likeliest with the file's
-derivatives. A wrong derivative hides such an effect from the fit in which all derivatives are free."""
+"""Numerical: number of effects that are fully fitted because they are the likeliest with the file's
+derivatives. A wrong derivative hides such an effect in a fit with free derivatives."""
 _FORMS = 2
-"""Numerical: number of descriptions of one effect that are fitted in full."""
+"""Numerical: number of variants of one effect that are fully fitted."""
 REFINED = 120.0
-"""Numerical: nats behind the best explanation beyond which none is fitted further."""
+"""Numerical: evidence deficit to the best explanation, nats, beyond which no explanation is fitted
+further."""
 
 
 @dataclass(frozen=True)
 class Stage(Generic[E]):
-    """All explanations of one stage."""
+    """All explanations that one stage of the inference compares."""
 
     plain: E
-    """Derivatives alone."""
+    """Model with free derivatives alone."""
     effects: tuple[E, ...]
     laws: tuple[E, ...]
-    """Laws outside the catalogue."""
+    """Models with a law outside the catalogue."""
     heat: float
-    """Nats of white noise that count as one."""
+    """Number of white-noise nats that count as one nat."""
 
     @property
     def best(self) -> E:
@@ -38,11 +39,11 @@ class Stage(Generic[E]):
 
 
 Pairs = Iterator[tuple[float, str, str]]
-"""Price and names of two effects."""
+"""Price of a pair of effects, and both names."""
 
 
 class Quick(Protocol):
-    """An effect or law after a quick look."""
+    """An effect or law after a quick fit."""
 
     @property
     def name(self) -> str:
@@ -50,14 +51,14 @@ class Quick(Protocol):
 
     @property
     def price(self) -> float:
-        """Twice the negative log likelihood, with a price for the number of its numbers."""
+        """-2 log likelihood plus the price of the effect's parameters."""
 
 
 Q = TypeVar("Q", bound=Quick)
 
 
 class Flight(Protocol[E]):
-    """A flight along one axis, as far as the engine asks for it."""
+    """A flight along one axis, as the inference uses it."""
 
     @property
     def is_stated(self) -> bool:
@@ -65,40 +66,40 @@ class Flight(Protocol[E]):
 
     @property
     def tried(self) -> tuple[int, int]:
-        """Numbers of effects of the catalogue, and of laws outside of it, by name."""
+        """Number of candidate effects, and number of distinct names among the laws outside the catalogue."""
 
     def explained(self, base: E | None, most: int) -> tuple[float, list[E]]:
-        """Return the temperature, the model ``base`` alone, and with each likely effect or law in addition.
+        """Return the temperature, the model ``base`` alone, and ``base`` with each likely effect or law.
 
-        ``most`` is the number of effects that are fitted in full. A model that cannot be fitted is left out.
+        ``most`` is the number of effects that are fully fitted. A model that cannot be fitted is left out.
         The effect None stands for the plain model.
         """
 
     def at_the_files(self, one: E, plain: E, heat: float) -> E | None:
-        """Return an explanation fitted again where the file's derivatives are right; None without a fit."""
+        """Return an explanation refitted about the file's derivatives; None without such a fit."""
 
     def apart(self, one: E, other: E) -> float:
         """Return the largest difference between the outputs of two models, as a share of the peaks."""
 
     def residual(self, one: E, heat: float) -> Residual:
-        """Return the disturbance that explains what a model leaves."""
+        """Return the disturbance that explains the residual of a model best."""
 
     def in_moving_air(self, stage: Stage[E]) -> Stage[E] | None:
-        """Return the explanations again in moving air; None where the air is no part of the models."""
+        """Return the explanations refitted with moving air; None where the models contain no air."""
 
     def pairs(self, stage: Stage[E], leads: Sequence[E]) -> Pairs:
-        """Yield the price of each lead with each other effect, by a quick look, and both names."""
+        """Yield the price of each pair of a lead and another effect, by a quick fit, and both names."""
 
 
 def stage_of(flight: Flight[E], base: E | None, most: int) -> Stage[E]:
-    """Return all that may be added to a model, with its evidence.
+    """Return all explanations that may be added to a model, with their evidence.
 
     Parameters
     ----------
     base
         Model to which effects are added; None for the plain model.
     most
-        Number of effects that are fitted in full.
+        Number of effects that are fully fitted.
     """
     heat, everyone = flight.explained(base, most)
     best = max(one.evidence.either for one in everyone)
@@ -111,9 +112,9 @@ def stage_of(flight: Flight[E], base: E | None, most: int) -> Stage[E]:
 
 
 def _at_the_files(flight: Flight[E], one: E, plain: E, heat: float, best: float) -> E:
-    """Return an explanation fitted again where the file's derivatives are right, if that is likelier.
+    """Return an explanation refitted about the file's derivatives, if that fit is likelier.
 
-    The quadratic expansion about fitted derivatives does not reach far.
+    The quadratic expansion about fitted derivatives holds only near the fit.
     """
     if not flight.is_stated or max(one.evidence.wrong, one.evidence.right) < best - REFINED:
         return one
@@ -129,7 +130,7 @@ def _at_the_files(flight: Flight[E], one: E, plain: E, heat: float, best: float)
 
 
 def likeliest(screened: Sequence[Q], most: int) -> Iterator[Q]:
-    """Yield the quick fits of the likeliest effects, at most ``_FORMS`` of each."""
+    """Yield the quick fits of the likeliest effects, at most ``_FORMS`` of each effect."""
     kept: dict[str, list[Q]] = {}
     for one in sorted(screened, key=lambda s: s.price):
         if one.name in kept or len(kept) < most:
@@ -139,15 +140,15 @@ def likeliest(screened: Sequence[Q], most: int) -> Iterator[Q]:
 
 
 def within_model_error(flight: Flight[E], everyone: Sequence[E], error: float) -> list[E]:
-    """Return all explanations, none of whose likelihoods is less than the error of a simulator allows.
+    """Return all explanations with likelihood differences limited by the error of a simulator.
 
-    Residuals cannot distinguish two models whose outputs differ by less than such an error. More samples do
-    not help. The prior still does.
+    Residuals cannot distinguish two models whose outputs differ by less than the simulator's error. More
+    samples do not help to distinguish such models. The prior still distinguishes such models.
 
     Parameters
     ----------
     error
-        Error of the form of the effects that all explanations have, as a share of the peaks.
+        Error of the outputs due to the forms of effects common to all explanations, as a share of the peaks.
     """
     best = max(everyone, key=lambda one: one.likelihood)
 

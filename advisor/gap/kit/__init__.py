@@ -1,1 +1,1 @@
-"""Parts of an effect: its description, its forms in a fit, and shapes that several effects share."""
+"""Parts of an effect: its description, its variants in a fit, and shapes that several effects share."""

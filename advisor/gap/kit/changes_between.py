@@ -12,18 +12,19 @@ from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 
 Change = Callable[[FloatArray, FloatArray], None]
-"""Function that changes driving numbers (manoeuvres, entries), given each manoeuvre's relative change."""
+"""Function that changes simulator inputs (manoeuvres, entries), given each manoeuvre's relative change."""
 
 Course = Callable[[FloatArray, Values, FloatArray], None]
-"""Function that changes driving numbers, given an effect's parameters and its share in each manoeuvre."""
+"""Function that changes simulator inputs, given an effect's parameters and its share in each manoeuvre."""
 
 ONSET = {"rate_per_s": ANY, "step": ANY, "at_s": ANY, "over_s": 0.0}
 """Parameters of a change in the aircraft file, each with its least allowed value."""
 _FOR_GRADUAL = 4
-"""Least number of manoeuvres for a change that begins and ends in flight. With fewer, a step or a drift
-describes it."""
+"""Least number of manoeuvres for a change that begins and ends in flight. With fewer manoeuvres, a step or a
+drift describes the change."""
 _TIME_STEP = 0.02
-"""Finite-difference step of begin and duration of a gradual change, as a share of the flight's duration."""
+"""Finite-difference step for the begin and the duration of a gradual change, as a share of the flight's
+duration."""
 
 
 def shift_moments(p: FloatArray, by: FloatArray) -> None:
@@ -37,12 +38,13 @@ def shift_moments(p: FloatArray, by: FloatArray) -> None:
 
 
 def shift_stability(p: FloatArray, by: FloatArray) -> None:
-    """Change M_α alone, as textbooks describe a shift: tail and elevator, far behind, hardly notice."""
+    """Change M_α alone, as in textbooks: a shift hardly changes the arms of the distant tail and elevator."""
     p[:, INDEX["M_alpha"]] *= 1.0 + by
 
 
 def divide(*entries: str) -> Change:
-    """Return a function that divides these derivatives by 1 + change, as additional mass does."""
+    """Return a function that divides the derivatives of ``entries`` by 1 + change, as additional mass
+    does."""
     columns = [INDEX[name] for name in entries]
 
     def change(p: FloatArray, by: FloatArray) -> None:
@@ -57,7 +59,7 @@ def starts_of(flights: PreparedManeuvers) -> FloatArray:
 
 
 def breaks(flights: PreparedManeuvers) -> list[float]:
-    """Return every possible time of a step, in s: the middle between two manoeuvres."""
+    """Return every possible time of a step, in s, each at the middle between two manoeuvres."""
     t = starts_of(flights)
     ends = t + np.array([f.duration_s for f in flights.flights])
     return [float(at_s) for at_s in (ends[:-1] + t[1:]) / 2.0]
@@ -85,7 +87,7 @@ def ramps_and_steps(effect: str, block: str, flights: PreparedManeuvers, change:
 
 
 def steps_in(flights: PreparedManeuvers, one: Variant, course: Course) -> list[Variant]:
-    """Return a step at each place between two manoeuvres; ``one`` has names, starts and bounds of the change.
+    """Return a step at each place between two manoeuvres, with the names, starts and bounds of ``one``.
 
     Every step has a gradual change as alternative, fitted from the step's result: fuel that is pumped, people
     who move, ice that grows.
@@ -103,7 +105,7 @@ def steps_in(flights: PreparedManeuvers, one: Variant, course: Course) -> list[V
 
 
 def _longer(flights: PreparedManeuvers, one: Variant, course: Course) -> tuple[Variant, ...]:
-    """Return the change as a gradual one that begins in flight; none where manoeuvres are too few."""
+    """Return the change as a gradual one that begins in flight; empty with too few manoeuvres."""
     if len(flights) < _FOR_GRADUAL:
         return ()
     t, span = starts_of(flights), _span_of(flights)

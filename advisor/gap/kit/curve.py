@@ -1,7 +1,7 @@
 """Nonlinear curves over an angle, either about the trim of each manoeuvre or about one common angle.
 
-A linear model knows deviations from trim only, a wing or an elevator its angle. Where speeds differ, trims
-differ too, and each manoeuvre is flown on another part of the same curve.
+A linear model uses deviations from trim only, but a wing's or an elevator's curve depends on the angle.
+Manoeuvres at different speeds have different trims, so each covers another part of one curve.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -25,13 +25,14 @@ class Curve:
     """Terms of a force or of the pitching moment in powers of one variable, at constant dynamic pressure."""
 
     variable: str
-    """``alpha``, ``delta_e`` or ``alpha_dot``, in rad or rad/s."""
+    """Variable of the curve, ``alpha``, ``delta_e`` or ``alpha_dot``, in rad or rad/s."""
     powers: Mapping[str, int]
-    """Parameters, each with its power of the variable. The first letter is Z for force, M for moment."""
+    """Power of the variable for each parameter. The first letter of a parameter is Z for force and M for
+    moment."""
 
     @property
     def slope(self) -> str:
-        """Derivative of the linear term in the variable."""
+        """Derivative of the linear term with respect to the variable."""
         return f"{next(iter(self.powers))[0]}_{self.variable}"
 
 

@@ -1,7 +1,7 @@
-"""An effect of the catalogue: everything that the program knows about it, in one object.
+"""An effect of the catalogue: all that the program states about an effect, in one object.
 
-Each module of ``advisor.gap.effects`` makes one such object. The search, the aircraft file, the sentences,
-the pages, the user's simulator and the exports read what they need from it.
+Each module of ``advisor.gap.effects`` makes one ``Effect``. The search, the aircraft file, the sentences, the
+pages, the user's simulator and the exports read that object.
 """
 
 import re
@@ -14,21 +14,21 @@ from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 
 Said = str | tuple[str, str]
-"""Sentence about an effect. A second sentence holds for a negative first parameter, and shows sizes
-without sign. Sizes are written as ``{parameter:.0f}``; ``_ms``, ``_deg``, ``_percent``, ``_power`` may
-follow a name."""
+"""Sentence about an effect, with its sizes. A second sentence is used for a negative first parameter, and
+shows sizes without sign. Sizes are written as ``{parameter:.0f}``; the suffix ``_ms``, ``_deg``, ``_percent``
+or ``_power`` sets the unit."""
 BLOCKS = (
     "input", "moment_equation", "force_equation", "air", "alpha_sensor", "pitch_rate_sensor", "accelerometer",
     "timing",
 )  # fmt: skip
 """Blocks of a simulator that effects belong to, in their order on every page."""
 ANY = float("-inf")
-"""Least allowed value of a parameter that may have any."""
+"""Least allowed value of a parameter that may have any value."""
 
 
 @dataclass(frozen=True, slots=True)
 class Need:
-    """Why an effect cannot be seen, and what would make it visible."""
+    """Reason why an effect cannot be detected, and the measurement that would detect it."""
 
     parameter: str
     """The effect's first parameter, in the spelling of the aircraft file."""
@@ -41,49 +41,50 @@ class Effect:
     """An effect of the catalogue."""
 
     name: str
-    """Name, which is also that of the effect's module."""
+    """Name of the effect, and of its module."""
     block: str
     """Block of the simulator that the effect belongs to, of ``BLOCKS``."""
     keys: Mapping[str, float]
-    """Parameters in the aircraft file, each with its least allowed value."""
+    """Least allowed value of each parameter in the aircraft file."""
     variants: Callable[[PreparedManeuvers], Sequence[Variant]]
-    """Function that returns the effect's descriptions in a fit: parameters, bounds, priors, least sizes, and
-    the terms of Eqs. (1)-(2) that they change. None where the effect is judged outside the fits."""
+    """Function that returns the effect's variants in a fit, with parameters, bounds and priors. The function
+    returns no variant if the effect is judged outside the fits."""
     said: Said
     said_with: Mapping[str, Said] = field(default_factory=dict)
-    """Sentence by a parameter that only some variants of the effect have."""
+    """Sentence for each parameter that only some variants of the effect have."""
     said_or: str = ""
-    """Words for the effect as the second of two that look alike; empty: it is only listed."""
+    """Words for the effect as an alternative to a similar effect; empty if it is only listed."""
     said_beyond: Said = ""
-    """Sentence where the simulator has some of the effect already; empty: ``said`` serves."""
+    """Sentence if the simulator already has some of the effect; empty if ``said`` is used."""
     channel: str = ""
-    """Output without which the effect cannot be tried; empty where any will do."""
+    """Output without which the effect cannot be tried; empty where any output will do."""
     stated: tuple[str, str] | None = None
     """Section and key of the aircraft file that state the effect's size in the simulator."""
     outside_fits: Callable[[PreparedManeuvers], bool] | None = None
-    """Function that returns whether flights let it be judged outside the fits; None for other effects."""
+    """Function that returns whether the effect can be judged outside the fits; None for other effects."""
     of_one_flight: bool = False
-    """Whether the effect belongs to one flight and says nothing about another."""
+    """Whether the effect belongs to one flight and does not occur in another."""
     of_one_imu: bool = False
     """Whether an α that an autopilot computes from its own rates and accelerations cannot show the effect."""
     of_the_stick: bool = True
-    """Whether the elevator alone can show the effect; if not, another input must vary."""
+    """Whether the elevator alone can show the effect; otherwise another input must vary."""
     need: Need | None = None
-    """Requirement for seeing the effect, where its channel or its cause may be missing."""
+    """Requirement for the detection of the effect, if its channel or its cause may be missing."""
     unrecorded: tuple[str, str, str] | None = None
-    """Slow channel that shows the effect, and reason and remedy where that channel was not recorded."""
+    """Slow channel that shows the effect, with the reason and the remedy if it was not recorded."""
     without_speed: tuple[str, str] | None = None
-    """Reason and remedy where the air speed reads next to nothing."""
+    """Reason and remedy if the air speed sensor reads almost nothing."""
     imitated_by: tuple[str, str] | None = None
-    """Cause outside the catalogue that looks the same, and what distinguishes the two."""
+    """Cause outside the catalogue that looks like the effect, and the measurement that distinguishes both."""
     imitated_without: tuple[str, str, str] | None = None
-    """Output, cause that looks the same where that output is missing, and what distinguishes the two."""
+    """Output, cause that looks like the effect without that output, and the measurement that distinguishes
+    both."""
     distinguished_by: Mapping[str, str] = field(default_factory=dict)
-    """Effects that look alike, each with what distinguishes it; stated by one of the two."""
+    """Measurement that distinguishes the effect from a similar one, by the similar effect's name."""
     curve: Curve | None = None
-    """Form in an export of force and moment; None where no format carries the effect there."""
+    """Form of the effect in an export of force and moment; None where no format supports it."""
     servo: Mapping[str, tuple[str, float]] = field(default_factory=dict)
-    """Form in an export of the servo: parameter to the field of ``ExportedServo`` it adds to, and factor."""
+    """Field of ``ExportedServo`` to which each parameter adds in an export of the servo, and the factor."""
 
 
 def without_sizes(said: Said, size: str) -> tuple[str, ...]:
@@ -93,7 +94,7 @@ def without_sizes(said: Said, size: str) -> tuple[str, ...]:
 
 
 def always(*variants: Variant) -> Callable[[PreparedManeuvers], Sequence[Variant]]:
-    """Return a function that returns these descriptions for any flights."""
+    """Return a function that returns ``variants`` for any flights."""
     return partial(_given, variants)
 
 
@@ -102,5 +103,5 @@ def _given(variants: Sequence[Variant], _: PreparedManeuvers) -> Sequence[Varian
 
 
 def not_fitted(_: PreparedManeuvers) -> Sequence[Variant]:
-    """Return no description: the effect is judged outside the fits."""
+    """Return no variant, because the effect is judged outside the fits."""
     return ()

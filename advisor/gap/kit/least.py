@@ -1,4 +1,4 @@
-"""Least sizes with which effects are named, where several effects share a limit."""
+"""Least sizes at which effects are named, for limits that several effects share."""
 
 from advisor.gap.records.flights import PreparedManeuvers
 
@@ -9,7 +9,8 @@ filters."""
 SMALL_ANGLE_RAD = 0.00175
 """Least angle that is named, rad (0.1 deg): no linkage has less play."""
 ARM_M, _OF_A_DELAY = 0.02, 0.75
-"""Least arm that is named, m; and the least arm over the air speed, as a share of the least delay."""
+"""Least arm that is named, m, and the share of the least delay that gives the least arm over the air
+speed."""
 
 
 def least_delay_s(flights: PreparedManeuvers) -> float:

@@ -1,4 +1,4 @@
-"""The stamps of one channel, earlier or later than those of the others."""
+"""Skew of one channel: stamps that are earlier or later than those of the other channels."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -14,7 +14,7 @@ UNFILTERED = (
     "a filter of that channel with an equal delay",
     "log the channel as its sensor reads it, before any filter",
 )
-"""Cause that looks like a late channel, and what distinguishes the two."""
+"""Cause that looks like a late channel, and the measurement that distinguishes both."""
 
 
 def skewed(effect: str, channel: str) -> Callable[[PreparedManeuvers], Sequence[Variant]]:
@@ -33,12 +33,12 @@ def skew_of(effect: str, channel: str, flights: PreparedManeuvers) -> Variant:
 
 
 def skew_beyond(effect: str, least_s: float) -> Variant:
-    """Return the skew of any channel, named where it is at least ``least_s``, s."""
+    """Return the variant for the skew of any channel, named if at least ``least_s``, s."""
     return Variant(
         effect, "timing", ("skew_s",), ((0.02,), (-0.02,), (0.1,), (-0.1,)), (1e-3,), ((-0.4, 0.4),), least_s
     )
 
 
 def _whole_skew(entry: str, p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
-    """Set the whole skew of a stream, including the delay of a filter."""
+    """Set the total skew of a channel, including the delay of a filter."""
     p[:, INDEX[entry]] = values[0]

@@ -1,9 +1,8 @@
-"""The place of an unknown disturbance: one block of the simulator after another is tried.
+"""Location of an unknown disturbance, found by trying one block of the simulator after another.
 
 A first-order Gauss-Markov disturbance is added to the input, to either equation, to the air or to one sensor
-of the fitted model. Its response in *all* channels is known, so a disturbance in the wrong block cannot
-explain that in the right one. Marginal likelihoods are compared; a Kalman filter's innovations would give the
-same values, here obtained by linear algebra.
+of the fitted model. A disturbance in the wrong block cannot explain the responses in *all* channels. The
+compared marginal likelihoods come from linear algebra; a Kalman filter would give equal values.
 """
 
 from collections.abc import Sequence
@@ -29,8 +28,8 @@ from advisor.oem.arrow import solved
 
 KNOTS_S = 0.1
 MEMORY_S = 0.6
-"""Numerical: distance between the knots of a disturbance, s; and its correlation time, s. Faster and slower
-disturbances are combinations of such ones."""
+"""Numerical: distance between the knots of a disturbance, and its correlation time, s. Sums of such
+disturbances represent faster and slower disturbances."""
 SENSOR_CHANNELS = {
     "alpha_sensor": "alpha",
     "pitch_rate_sensor": "q",
@@ -49,11 +48,11 @@ _SIZES = np.geomspace(1e-3, 30.0, 24)
 
 @dataclass(frozen=True)
 class Probe:
-    """A disturbance in one block at its likeliest size."""
+    """A disturbance in one block at its most likely size."""
 
     block: str
     gain: float
-    """Log likelihood above that of white noise alone."""
+    """Log likelihood gain of the disturbance over white noise alone, nats."""
     size: float
     """Standard deviation of the disturbance in its own unit (rad of elevator, 1/s², rad/s², rad of air)."""
     explained: float
@@ -61,14 +60,14 @@ class Probe:
 
 
 def probe_blocks(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> list[Probe]:
-    """Return the disturbance of every block, likeliest first.
+    """Return the likeliest disturbance of every block, likeliest block first.
 
-    With a filter in the problem, the disturbance is one beyond the noise that the filter knows.
+    With a filter in the problem, the disturbance exceeds the noise that the filter assumes.
 
     Parameters
     ----------
     noise
-        Shape (channels,): noise of the innovations, or without a filter that of the instruments alone.
+        Shape (channels,): noise of the innovations; without a filter, noise of the instruments alone.
     """
     shown = {*problem.channels, *(["air"] if problem.flights.shows_air else [])}
     needed = {**SENSOR_CHANNELS, "air": "air"}
@@ -97,7 +96,7 @@ def probe_blocks(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -
 
 
 def at_its_size(block: str, value: FloatArray, power: FloatArray, unit: float, total: float) -> Probe:
-    """Return the disturbance of a block at the likeliest of its sizes.
+    """Return the disturbance of a block at its most likely size.
 
     Parameters
     ----------
@@ -120,7 +119,7 @@ def disturbance_columns(
 ) -> FloatArray:
     """Return the response of all channels to a Gauss-Markov disturbance of unit variance, shape (rows, k).
 
-    A gust is read by a vane, not by an estimate of α from inertial sensors.
+    A vane reads a gust; an α estimated from inertial sensors does not.
     """
     return np.asarray(_answers_at_knots(problem, flight, p, block) @ _colour(flight))
 
@@ -128,7 +127,7 @@ def disturbance_columns(
 def _answers_at_knots(
     problem: EffectProblem, flight: PreparedManeuver, p: FloatArray, block: str
 ) -> FloatArray:
-    """Return the response of all channels to a disturbance at one knot after the other, shape (rows, k)."""
+    """Return the response of all channels to a disturbance at each knot in turn, shape (rows, k)."""
     knots = np.arange(0.0, flight.duration_s, KNOTS_S)
     hat = round(KNOTS_S / flight.h)
     shape = np.concatenate([np.arange(1, hat + 1), np.arange(hat - 1, 0, -1)]) / hat

@@ -1,7 +1,8 @@
-"""The noise of a flight, from the stretches in which nothing was flown.
+"""Noise of a flight, from the quiet stretches before and after the input.
 
-Before the first step and late in the free response the elevator rests. Motion there is noise of instruments
-and air, not an effect that the stick excites. Every explanation of the rest is judged against that noise.
+Before the first step and late in the free response the elevator rests. Motion in a quiet stretch is noise of
+instruments and air, not an effect that the elevator excites. Every explanation of the other motion is judged
+against the noise in quiet stretches.
 """
 
 from collections.abc import Sequence
@@ -28,24 +29,24 @@ from advisor.oem.turbulence import Rows, cost_of, find_turbulence, spread_of
 _LEAST_SAMPLES = 50
 """Record: least number of a channel's samples in quiet stretches for an estimate of its noise."""
 _LONE = 8.0
-"""Power of a quiet stretch over the median of all, above which a gust passed in it."""
+"""Power of a quiet stretch over the median of all stretches, above which a gust disturbed the stretch."""
 _LOUD = 3.0
-"""Power of a manoeuvre over the quietest quarter, above which a gust may be the cause."""
+"""Power of a manoeuvre over that of the quietest quarter, above which a gust may be the cause."""
 _MARGIN = 1.2
-"""Least ratio of the log likelihood that moving air explains to that of any other block, for a gust. A change
-of mass looks like moving air too."""
+"""Least ratio of log likelihood gains, moving air over any other block, for a gust. A change of mass also
+looks like moving air."""
 _NO_LESS = 0.98
-"""Numerical: weight of a sample above which the fit takes the sample's stamp as exact."""
+"""Numerical: weight of a sample above which the fit treats the sample's stamp as exact."""
 _NONE_OF_PEAK = 1e-9
-"""Numerical: white noise over the channel's peak that stands for no noise at all; avoids a division by
+"""Numerical: white noise over the channel's peak that replaces a noise of zero, to avoid a division by
 zero."""
 
 
 def whitening_of(problem: EffectProblem, fitted: EffectFit, first_look: bool = False) -> Whitening | None:
-    """Return the filter or the weights that the noise of this flight requires; None where it is white.
+    """Return the filter or the weights that the noise of this flight requires; None for white noise.
 
-    At a first look a gust has spoilt the derivatives. Every suspect manoeuvre is then set aside, and the fit
-    of the others shows whether a gust was in it.
+    Before the first fit with a filter, a gust may have biased the derivatives. Every suspect manoeuvre is
+    then excluded, and the fit of the others shows whether it had a gust.
     """
     extra = stamp_variance(problem, fitted)
     air = noise_in_quiet(problem, fitted)
@@ -62,7 +63,7 @@ def whitening_of(problem: EffectProblem, fitted: EffectFit, first_look: bool = F
 
 
 def noise_in_quiet(problem: EffectProblem, fitted: EffectFit) -> AirModel | None:
-    """Return coloured instruments or moving air where nothing was flown; None where it is white."""
+    """Return coloured instruments or moving air in quiet stretches; None for white noise."""
     if not problem.flights.shows_air:
         return None
     parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, fitted, i)]
@@ -91,10 +92,10 @@ def loudness(problem: EffectProblem, fitted: EffectFit) -> float:
 def gusts_in(
     problem: EffectProblem, fitted: EffectFit, still: AirModel, first_look: bool
 ) -> dict[int, AirModel]:
-    """Return the air of the manoeuvres with a gust, whose residual far exceeds that of the quietest quarter.
+    """Return the air model of each manoeuvre with a gust, whose residual far exceeds that of the quietest
+    quarter.
 
-    An effect of the stick may appear in some manoeuvres only, but then moving air explains the residual no
-    better than a disturbance elsewhere.
+    An elevator effect may appear in some manoeuvres only, but another block then explains it equally well.
     """
     noise = np.array([float(np.hypot(still.white[c], still.coloured[c]))
                       for c in (OUTPUTS.index(name) for name in problem.channels)])  # fmt: skip
@@ -109,7 +110,7 @@ def gusts_in(
 def _begun_anew(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> list[FloatArray]:
     """Return per manoeuvre the stacked residuals, with nuisances refitted to the instruments' noise.
 
-    A filter that allows for any gust tells nothing of an initial state, which a fit may leave anywhere.
+    A filter that allows for any gust does not determine an initial state.
     """
     problem, fitted = unfiltered(problem, fitted)
     owns = solve_blocks(problem, fitted.linear, 1.0 / noise, fitted.point).free
@@ -118,7 +119,7 @@ def _begun_anew(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) ->
 
 
 def _likelier(problem: EffectProblem, fitted: EffectFit, i: int, noise: FloatArray) -> float:
-    """Return how much better moving air explains a manoeuvre's residual than any other block, else 0."""
+    """Return how much better moving air explains a manoeuvre's residual than any other block, at least 0."""
     best, second, *_ = probe_blocks(*in_one_maneuver(problem, fitted, i), noise)
     return best.gain / max(second.gain, 1e-9) if best.block == "air" else 0.0
 
@@ -150,15 +151,15 @@ def unfiltered(problem: EffectProblem, fitted: EffectFit) -> tuple[EffectProblem
 
 
 def _seen(problem: EffectProblem) -> float:
-    """Return 1 where the α channel reads the air, 0 where it is computed from inertial sensors."""
+    """Return 1 if a vane measures α, and 0 if α is computed from inertial sensors."""
     return 0.0 if problem.flights.alpha_is_derived else 1.0
 
 
 def with_floor(problem: EffectProblem, air: AirModel) -> AirModel:
-    """Return the model of the air with white noise of at least half the stated floor.
+    """Return the air model with white noise of at least half the stated floor.
 
-    A record that was filtered before storage has almost no white noise. Whitened by so little noise, the
-    errors of a simplified model would count a thousandfold.
+    A record that was filtered before storage has almost no white noise. With so little noise, the errors of a
+    simplified model would be overweighted a thousandfold.
     """
     white = air.white.copy()
     for c, least in zip(problem.channels, 0.5 * stated_floor(problem.flights), strict=True):
@@ -167,7 +168,7 @@ def with_floor(problem: EffectProblem, air: AirModel) -> AirModel:
 
 
 def quiet_rms(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
-    """Return the root mean square of the residual where nothing was flown, shape (channels,)."""
+    """Return the root mean square residual in quiet stretches, shape (channels,)."""
     power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
     for flight, residual in zip(problem.flights.flights, fitted.residuals, strict=True):
         for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
@@ -180,9 +181,10 @@ def quiet_rms(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
 
 
 def instrument_noise(problem: EffectProblem) -> FloatArray:
-    """Return the white noise of each channel from differences of its samples, shape (4,); 1 where missing.
+    """Return the white noise of each channel from differences of its samples, shape (4,); 1 for a missing
+    channel.
 
-    A channel with a resolution coarser than its noise shows no differences where nothing is flown.
+    In quiet stretches a channel with a resolution coarser than its noise shows no differences.
     """
     least = _NONE_OF_PEAK * problem.flights.peaks
     white = dict(zip(problem.channels, np.maximum(problem.flights.white, least), strict=True))
@@ -190,7 +192,7 @@ def instrument_noise(problem: EffectProblem) -> FloatArray:
 
 
 def system_of(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
-    """Return Z_α, Z_q, M_α, M_q of the response to moving air."""
+    """Return Z_α, Z_q, M_α, M_q for the response to moving air."""
     return short_period(problem.driving(fitted.point)[0])
 
 
@@ -216,7 +218,7 @@ def _quiet_parts(problem: EffectProblem, fitted: EffectFit, i: int) -> list[Rows
 
 
 def _without_offsets(rows: Sequence[Rows]) -> list[Rows]:
-    """Return the stretches without the mean of each channel: an offset is an effect, not coloured noise."""
+    """Return the stretches without each channel's mean, because an offset is an effect and not noise."""
     offset = np.zeros(len(OUTPUTS))
     for c in range(len(OUTPUTS)):
         picked = [r.residual[r.channel == c] for r in rows]

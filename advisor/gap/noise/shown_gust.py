@@ -1,8 +1,8 @@
-"""The largest gust that the instruments of a flight show, without aerodynamics.
+"""Largest gust that the instruments of a flight show, without aerodynamics.
 
 A vane turns with a gust, and the motion of the aircraft follows later. In still air α̇ equals the pitch rate
-and the turning of the path. What the vane reads beyond the integral of both is the gust angle w/V, next to
-errors of the instruments.
+minus the rate of the flight path angle. The vane reading beyond the integral of that difference is the gust
+angle w/V plus instrument errors.
 """
 
 import numpy as np
@@ -17,16 +17,17 @@ _NEEDED = ("alpha", "q", "a_z", "theta")
 
 
 def largest_gust(flights: PreparedManeuvers, z_alpha: float) -> float:
-    """Return the largest gust angle that the flight shows, rad: by its vane and motion, and by its lift.
+    """Return the largest gust angle that the flight shows, rad, from its vane and motion, and from its lift.
 
-    A vane reads a gust, and lift follows a gust. A wrong model asks for any gust.
+    A gust moves the vane, and the lift follows the gust. A fit with a wrong model can require a gust of any
+    size.
 
     Parameters
     ----------
     flights
-        The manoeuvres.
+        Manoeuvres of the flight, prepared for the comparison.
     z_alpha
-        Lift derivative, 1/s, of a model that may be wrong.
+        Lift derivative Z_α, 1/s, of a model that may be wrong.
     """
     shown = [LARGEST_GUST_RAD]
     if "alpha" in flights.channels and not flights.alpha_is_derived:
@@ -38,9 +39,9 @@ def largest_gust(flights: PreparedManeuvers, z_alpha: float) -> float:
 
 
 def _beyond_motion(flight: PreparedManeuver) -> FloatArray:
-    """Return α minus the angle of attack by the motion, rad, shape (n,); α alone without the motion.
+    """Return α minus the angle of attack from the motion, rad, shape (n,); α alone without the motion.
 
-    A straight line is left out: the offsets of gyro and accelerometer.
+    A straight line in time is removed, because it is the offset of gyro and accelerometer.
     """
     t, alpha = flight.outputs["alpha"].t, flight.outputs["alpha"].y
     if not all(name in flight.outputs for name in _NEEDED):

@@ -1,9 +1,9 @@
-"""Uncertain stamps: how exactly the time of a sample is known, and the error of its value that follows.
+"""Uncertain stamps: the time error of samples, and the error that follows in their values.
 
-A stamp with an error δt makes an error of δt times the rate of the channel. The error that a wrong stamp
-makes is white, however smooth the motion is. Differences of the residual show it as the part of their mean
-square that grows with the square of the rate. Where a step of the command jerks the accelerometer, time is
-known no better than the simulation's grid.
+A stamp with an error δt makes an error of δt times the rate of the channel. The error from wrong stamps is
+white, however smooth the motion is. The part of the residual differences' mean square that grows with the
+squared rate is due to wrong stamps. At a step of the command the time of the acceleration is known no better
+than the simulation's grid.
 """
 
 import numpy as np
@@ -15,22 +15,21 @@ from advisor.gap.records.airspeed import STEP_S
 from advisor.gap.simulator.layout import ENTRIES
 
 _LEAST = {"q": 0.3, "a_z": 0.45}
-"""By channel, least error through its stamps, relative to its noise, that counts. Only channels that move
-quickly and are measured well are used. The accelerometer's limit is higher, because it is rough at every step
-of the command."""
+"""Least error from wrong stamps relative to the noise, by channel, above which stamps count as uncertain.
+Only channels that change quickly and have little noise are used. The accelerometer's limit is higher, because
+its signal is rough at every step of the command."""
 _THIRD = np.array([1.0, -3.0, 3.0, -1.0])
 """Numerical: weights of a third difference."""
 _BINS = 12
-"""Numerical: number of bins of a channel's rate over which the roughness is followed."""
+"""Numerical: number of bins of a channel's rate for the dependence of the roughness on the rate."""
 _MEDIAN = 0.455
 """Numerical: median of the square of a standard normal number."""
 _FAR = 2.0
-"""Numerical: number of standard deviations of a stamp within which a sample may lie on the other side of a
-step."""
+"""Numerical: number of a stamp's standard deviations within which a sample may lie across a step."""
 
 
 def stamp_variance(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray]:
-    """Return per manoeuvre, shape (rows,): variance of each sample for the uncertainty of its stamp."""
+    """Return the variance of each sample due to its uncertain stamp, per manoeuvre, shape (rows,)."""
     return [
         (problem.jitter_s * rate) ** 2 + 0.25 * jerk**2
         for rate, jerk in zip(rates_of(problem, fitted), _jerks_of(problem, fitted), strict=True)
@@ -38,7 +37,7 @@ def stamp_variance(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray
 
 
 def stamp_power(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
-    """Return the mean square that jitter of the stamps adds to each channel, for any model, (channels,)."""
+    """Return the mean square that jitter of the stamps adds to each channel, shape (channels,)."""
     power = np.zeros(len(problem.channels))
     if problem.jitter_s == 0.0:
         return power
@@ -81,7 +80,7 @@ def _flown(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray]:
 
 
 def stamp_jitter(problem: EffectProblem, fitted: EffectFit, rates: list[FloatArray]) -> float:
-    """Return the standard deviation of the stamps in s; 0 where no residual roughens with the channel's rate.
+    """Return the standard deviation of the stamps, s; 0 if no residual gets rougher with the channel's rate.
 
     The channel with the largest error relative to its noise decides.
     """
@@ -93,8 +92,8 @@ def stamp_jitter(problem: EffectProblem, fitted: EffectFit, rates: list[FloatArr
 def _jitter_in(
     problem: EffectProblem, fitted: EffectFit, rates: list[FloatArray], channel: str
 ) -> tuple[float, float]:
-    """Return two numbers of a channel: the noise power that errors of stamps make, over its limit, and the
-    standard deviation of these errors, s."""
+    """Return the ratio of stamp error power to its limit, and the standard deviation of the stamp errors,
+    s."""
     c = problem.channels.index(channel)
     power = float(np.sum(_THIRD**2))
     rough, moving = [], []
@@ -114,5 +113,5 @@ def _jitter_in(
 
 
 def _read(problem: EffectProblem, i: int, series: list[FloatArray]) -> FloatArray:
-    """Return series on the grid, one for each output, at the stamps of each channel, stacked."""
+    """Return series on the time grid, one per output, at the stamps of each channel, stacked."""
     return problem.read(problem.flights.flights[i], np.stack(series), np.zeros(len(ENTRIES)))

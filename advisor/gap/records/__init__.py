@@ -1,1 +1,1 @@
-"""Manoeuvres prepared for the comparison: which channels were measured, by which instrument, and how well."""
+"""Manoeuvres prepared for the comparison: measured channels, their instruments and their noise."""

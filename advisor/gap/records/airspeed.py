@@ -1,7 +1,8 @@
-"""The air speed during a manoeuvre: a slow, noisy instrument, smoothed by the accelerometers.
+"""Air speed during a manoeuvre, from a slow, noisy sensor and the accelerometers.
 
 V̇ = a_x cos α + a_z sin α − g sin γ is integrated. A parabola in time, fitted to the measured air speed,
-removes the drift of the integral. The instrument gives the level, the accelerometers the shape.
+removes the drift of the integral. The air speed sensor gives the level, and the accelerometers give the
+shape.
 """
 
 from collections.abc import Sequence
@@ -15,12 +16,12 @@ from advisor.flight.signals.motion import integrated, speed_rate_at
 from advisor.oem.airspeed import LARGEST_DISAGREEMENT
 
 STEP_S = 0.005
-"""Numerical: step of the grid in s: a hundredth of the fastest short period, and as fine as stamps are
-known."""
+"""Numerical: step of the time grid, s: a hundredth of the fastest short period, and the resolution of
+stamps."""
 
 
 def smooth(y: FloatArray, seconds: float) -> FloatArray:
-    """Return the centred moving average over ``seconds`` of a series on the grid, shape (n,)."""
+    """Return the centred moving average of a series on the time grid, over ``seconds``, shape (n,)."""
     width = max(1, round(seconds / STEP_S)) | 1
     padded = np.pad(y, width // 2, mode="edge")
     return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
@@ -28,23 +29,21 @@ def smooth(y: FloatArray, seconds: float) -> FloatArray:
 
 _LEAST_SAMPLES = 6
 """Record: least number of air speed samples in a manoeuvre for the fit of a parabola. With fewer samples the
-smoothed reading is used."""
+smoothed air speed is used."""
 _LEAST_SPARE = 10
 """Record: least number of samples in all manoeuvres, minus three for each manoeuvre's parabola, for an
 estimate of the instrument's noise."""
 _LONGEST_MEMORY = 0.95
-"""Prior: largest correlation between neighbouring samples that is ascribed to the instrument. A higher
+"""Prior: largest correlation between successive samples that the air speed sensor may cause. A higher
 correlation is motion of the aircraft."""
 _READ_OVER_S = 0.5
-"""Numerical: length in s of the average over the air speed where no accelerometer shows the change between
-two readings."""
+"""Numerical: length in s of the air speed's moving average if no accelerometer is available."""
 _SLOW_S = 1.0
-"""Numerical: length in s of the average over thrust minus drag: shorter than the speed changes, longer than
-accelerometer noise."""
+"""Numerical: length in s of the moving average of thrust minus drag, against accelerometer noise."""
 
 
 def measures_speed(maneuver: Maneuver) -> bool:
-    """Return whether the manoeuvre has a plausible air speed; a tube may be missing, or still plugged."""
+    """Return whether the manoeuvre has a plausible air speed; a pitot tube may be missing or covered."""
     speed = maneuver.channels.get("airspeed")
     if speed is None or speed.provenance == "given":
         return False
@@ -54,9 +53,10 @@ def measures_speed(maneuver: Maneuver) -> bool:
 def airspeed_on(
     grid: FloatArray, maneuver: Maneuver, start_s: float, true_over_read: float = 1.0
 ) -> FloatArray:
-    """Return the air speed as it is read, in m/s, shape (n,), at ``grid`` seconds after ``start_s``.
+    """Return the air speed as the sensor reads it, m/s, shape (n,), at ``grid`` seconds after ``start_s``.
 
-    Accelerometers show the change of the true air speed, which is ``true_over_read`` times the reading's.
+    Accelerometers show the change of the true air speed, which is ``true_over_read`` times the sensor's
+    reading.
     """
     found = maneuver.channels
     t, y = found["airspeed"].t - start_s, found["airspeed"].y
@@ -77,8 +77,7 @@ def airspeed_on(
 def speed_error_factors(
     stamps: Sequence[FloatArray], residuals: Sequence[FloatArray], durations_s: Sequence[float]
 ) -> list[FloatArray]:
-    """Return how uncertain level, slope and curvature of each manoeuvre's air speed are for the instrument's
-    noise.
+    """Return the uncertainty of level, slope and curvature of each manoeuvre's air speed due to sensor noise.
 
     Parameters
     ----------
@@ -86,7 +85,7 @@ def speed_error_factors(
         Per manoeuvre, shape (n,): seconds since the start of the record, and the instrument's reading minus
         the smoothed air speed. Size and correlation of the noise are estimated over all manoeuvres.
     durations_s
-        Lengths of the records.
+        Length of each manoeuvre's record, s.
 
     Returns
     -------

@@ -1,7 +1,7 @@
-"""Channels with the stamps that the log gave them, so that the diagnosis names a late stream itself.
+"""Channels with their stamps from the log, so that the diagnosis finds a late stream itself.
 
-The examination of instruments sets late streams earlier for the estimates. It removes from each manoeuvre
-what was known until then, so that the rest differs from manoeuvre to manoeuvre.
+The instrument examination shifts late streams forward for the estimates. The removed delays differ between
+manoeuvres, so the diagnosis restores them.
 """
 
 from dataclasses import replace
@@ -9,7 +9,7 @@ from dataclasses import replace
 from advisor.flight.maneuvers.maneuver import Maneuver
 
 _TOGETHER = {"a_z": ("a_z", "a_x")}
-"""Channels of one message, by the channel that the findings name."""
+"""Channels of one message, by the name of the channel in the findings."""
 
 
 def as_stamped(maneuver: Maneuver) -> Maneuver:

@@ -1,4 +1,4 @@
-"""How much of a residual is noise.
+"""Noise floor of a residual.
 
 Differences of raw samples show the white noise of an instrument (``Flights.white``), unless the record was
 filtered before storage. A coloured residual has a smaller effective sample size.
@@ -12,17 +12,17 @@ from advisor.gap.records.flights import PreparedManeuvers
 TOLERANCE = 0.02
 """Prior: noise that is assumed in a record filtered before storage, as a share of the channel's peak."""
 STATED_FLOOR_MARGIN = 2.5
-"""Factor by which a residual must exceed a stated floor to count. A stated floor is an assumption, not a
-measurement."""
+"""Factor by which a residual must exceed a stated floor to be significant. A stated floor is an assumption,
+not a measurement."""
 _SMOOTH = 1e-3
-"""White noise over the channel's peak below which a channel was filtered: no instrument is so quiet."""
+"""White noise over the channel's peak below which a channel was filtered, because no instrument is so
+quiet."""
 _RAW = 1e-2
-"""White noise over the channel's peak above which a channel still has its instrument's noise, although a
-vane's α was filtered."""
+"""White noise over the channel's peak above which a channel still shows its instrument's noise."""
 
 
 def prefiltered(flights: PreparedManeuvers) -> dict[str, bool]:
-    """Return by channel whether it was filtered, or is smoother than an instrument's white noise."""
+    """Return for each channel whether it was filtered or is smoother than an instrument's white noise."""
     # An angle of attack that an autopilot computes is smooth by nature, and says nothing of other channels.
     filtered = flights.alpha_is_smoothed and not flights.alpha_is_derived
     smooth = flights.white < (_RAW if filtered else _SMOOTH) * flights.peaks
@@ -31,19 +31,20 @@ def prefiltered(flights: PreparedManeuvers) -> dict[str, bool]:
 
 
 def floor_margins(flights: PreparedManeuvers) -> FloatArray:
-    """Return the factor by which each channel must exceed its floor, shape (channels,)."""
+    """Return the factor by which each channel's residual must exceed its floor, shape (channels,)."""
     return np.where(list(prefiltered(flights).values()), STATED_FLOOR_MARGIN, 1.0)
 
 
 def stated_floor(flights: PreparedManeuvers) -> FloatArray:
-    """Return the least noise of each channel, shape (channels,): 2 % of the peak where it was filtered before
+    """Return the least noise of each channel, shape (channels,): 2 % of the peak if filtered before
     storage."""
     smooth = np.array(list(prefiltered(flights).values()))
     return np.maximum(flights.white, np.where(smooth, TOLERANCE * flights.peaks, 0.0))
 
 
 def tolerance_of(flights: PreparedManeuvers) -> FloatArray:
-    """Return the assumed noise of channels that were filtered before storage, else 0, shape (channels,)."""
+    """Return the assumed noise of channels filtered before storage, 0 for other channels, shape
+    (channels,)."""
     return np.where(list(prefiltered(flights).values()), stated_floor(flights), 0.0)
 
 

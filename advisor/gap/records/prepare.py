@@ -1,4 +1,5 @@
-"""Preparation of the manoeuvres: slow inputs on the grid, and the properties of the instruments."""
+"""Preparation of the manoeuvres for the diagnosis: slow inputs on the time grid, and instrument
+properties."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -35,7 +36,7 @@ _CHORD_OF_1_KG_M = 0.15
 def prepare(
     maneuvers: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float = 1.0
 ) -> PreparedManeuvers:
-    """Prepare the manoeuvres for the comparison, without those that ``usable_of`` rejects.
+    """Prepare the manoeuvres for the diagnosis, without those that ``usable_of`` rejects.
 
     ``true_over_read`` is the ratio of the true air speed to the air speed that is read, 1 if unknown.
     """
@@ -64,7 +65,7 @@ def prepare(
 
 
 def _chord(reference: Reference) -> float | None:
-    """Return the chord that the aircraft file states, or that of an aircraft of the stated mass."""
+    """Return the chord from the aircraft file, or the typical chord for the stated mass."""
     if reference.chord_m is not None or reference.mass_kg is None:
         return reference.chord_m
     return float(_CHORD_OF_1_KG_M * np.cbrt(reference.mass_kg))
@@ -73,7 +74,8 @@ def _chord(reference: Reference) -> float | None:
 def _at_measured_speed(
     usable: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float
 ) -> tuple[float, tuple[PreparedManeuver, ...], float]:
-    """Return reference speed (m/s), flights, and largest relative change of speed, from the instrument."""
+    """Return reference speed (m/s), flights, and largest relative change of speed, from a measured air
+    speed."""
     means = [np.mean(m.channels["airspeed"].y) for m in usable]
     reference = aircraft.reference_airspeed_m_s or float(np.mean(means))
     flights = _about_their_mean(_ready(m, reference, None, true_over_read) for m in usable)
@@ -83,7 +85,8 @@ def _at_measured_speed(
 def _at_speed_of_motion(
     usable: Sequence[Maneuver], aircraft: Aircraft
 ) -> tuple[float, tuple[PreparedManeuver, ...], float]:
-    """Return reference speed (m/s), flights, and largest relative change of speed, without an instrument."""
+    """Return reference speed (m/s), flights, and largest relative change of speed, without an air speed
+    sensor."""
     reference = aircraft.stated_airspeed_m_s or ASSUMED_M_S
     shown = speeds_about(usable, reference)
     flights = _about_their_mean(
@@ -99,7 +102,7 @@ def _kind_of_alpha(
 ) -> tuple[bool, bool]:
     """Return whether α was smoothed before it was stored, and whether it is an estimate.
 
-    ``in_all``: every manoeuvre has an angle of attack; otherwise its smoothness is not looked at.
+    ``in_all``: every manoeuvre has an angle of attack; otherwise the smoothness is not examined.
     """
 
     def quiet(channel: str) -> list[FloatArray]:
@@ -112,7 +115,7 @@ def _kind_of_alpha(
 
 
 def _departure(y: FloatArray) -> float:
-    """Return the largest departure of a series from its starting value."""
+    """Return the largest deviation of a series from its starting value."""
     return float(np.max(np.abs(y - np.median(y[: max(5, len(y) // 50)]))))
 
 
@@ -142,7 +145,7 @@ def _with_speed_errors(
 
 
 def _largest_departure(flights: Sequence[PreparedManeuver]) -> float:
-    """Return the largest relative departure of the air speed from its mean over all manoeuvres, or 0."""
+    """Return the largest relative deviation of the air speed from its mean over all manoeuvres, or 0."""
     if not flights:
         return 0.0
     speeds = np.concatenate([flight.slow[SPEED] for flight in flights])
@@ -150,7 +153,7 @@ def _largest_departure(flights: Sequence[PreparedManeuver]) -> float:
 
 
 def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: float) -> PreparedManeuver:
-    """Return a manoeuvre on the grid.
+    """Return a manoeuvre on the time grid.
 
     ``level`` is the air speed in m/s before the first step; None where the log has an air speed.
     """
@@ -199,7 +202,7 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
 
 
 def _trimmed_alpha(m: Maneuver, outputs: Mapping[str, Signal], start: float, first: float) -> float:
-    """Return the angle of attack before the first step, rad: measured, or by the motion; 0 without any."""
+    """Return the angle of attack before the first step, rad: measured, or from the motion; else 0."""
     if "alpha" in outputs:
         return _at_start(outputs["alpha"], first)
     alpha = m.channels.get("alpha")
@@ -209,7 +212,7 @@ def _trimmed_alpha(m: Maneuver, outputs: Mapping[str, Signal], start: float, fir
 
 
 def _at_start(out: Signal, first_step_s: float) -> float:
-    """Return the mean of an output before the first step, or over its first 0.1 s where that is longer."""
+    """Return the mean of an output before the first step, or over at least its first 0.1 s."""
     return float(np.mean(out.y[out.t <= max(first_step_s, out.t[0] + 0.1)]))
 
 

@@ -1,8 +1,8 @@
-"""Smoothness of a record: white noise, or a filter before storage, identified by differences of raw samples.
+"""Smoothness of a record: white noise or a filter before storage, from differences of raw samples.
 
-Where nothing is flown, differences of white noise are equally large over one and over two samples. Moving air
-is a first-order process at short times, and its differences grow by at most √2. Differences of filtered
-records grow by more.
+In quiet stretches, differences of white noise are equally large over one and over two samples. Moving air is
+a first-order process at short times, and its differences grow by at most √2. Differences of filtered records
+grow by more.
 """
 
 from collections.abc import Sequence
@@ -17,8 +17,8 @@ _WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 _SMOOTHED = 2.0
 """Growth of the differences above which the record was filtered. ArduPilot's estimates show 2.4 and more."""
 _FILTERED = 6.0
-"""Growth of the differences above which a filter left almost nothing above its edge. No estimator on board
-does that."""
+"""Growth of the differences above which a low-pass filter removed almost all noise above its cutoff. No
+estimator on board smooths so strongly."""
 
 
 def white_part(series: Sequence[FloatArray], stride: int = 1) -> float:
@@ -37,7 +37,7 @@ def white_part(series: Sequence[FloatArray], stride: int = 1) -> float:
 
 
 def is_smoothed(quiet: Sequence[FloatArray]) -> bool:
-    """Return whether quiet stretches are smoother than instruments and moving air can be."""
+    """Return whether quiet stretches are smoother than instruments and moving air allow."""
     return _growth(quiet) > _SMOOTHED
 
 
@@ -47,6 +47,6 @@ def is_filtered(quiet: Sequence[FloatArray]) -> bool:
 
 
 def _growth(quiet: Sequence[FloatArray]) -> float:
-    """Return the ratio of the differences over two samples to those over one; 0 where nothing moves."""
+    """Return the ratio of the differences over two samples to those over one; 0 for a constant series."""
     white = white_part(quiet)
     return white_part(quiet, stride=2) / white if white > 0.0 else 0.0

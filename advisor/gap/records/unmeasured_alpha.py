@@ -1,7 +1,7 @@
-"""An angle of attack that no instrument measures: the motion gives its trim, and no output is compared.
+"""An angle of attack without a sensor: the motion gives its trim, and it is not compared.
 
-Estimate and diagnosis leave out the same angle of attack. One derived from the climb rate says less than
-pitch rate and specific force, and in moving air it is wrong.
+The estimate and the diagnosis leave out the same inferred angle of attack. An α derived from the climb rate
+adds no information to pitch rate and specific force.
 """
 
 from collections.abc import Sequence
@@ -14,33 +14,33 @@ from advisor.gap.simulator.layout import OUTPUTS
 from advisor.oem.alpha_use import can_do_without, infer, why_not_measured
 
 _INFERRED = "inferred"
-"""Provenance of an angle of attack that the motion implies."""
+"""Provenance of an angle of attack that is inferred from the motion."""
 
 
 def is_known_by_motion(maneuver: Maneuver) -> bool:
-    """Return whether the motion gives the angle of attack, which no instrument measures."""
+    """Return whether the angle of attack comes from the motion and not from an instrument."""
     alpha = maneuver.channels.get("alpha")
     return alpha is not None and alpha.provenance == _INFERRED
 
 
 def outputs_with(maneuver: Maneuver) -> tuple[str, ...]:
-    """Return the outputs that a simulation of the manoeuvre is compared with, as far as they were recorded.
+    """Return the recorded outputs with which a simulation of the manoeuvre is compared.
 
-    Without a measured angle of attack these are those of the estimate. The residual of the attitude is the
-    integral of every gust, and nothing but the angle of attack shows gusts.
+    Without a measured angle of attack these outputs are those of the estimate. The attitude's residual
+    integrates every gust, and only the angle of attack shows gusts.
     """
     return ("q", "a_z") if is_known_by_motion(maneuver) else OUTPUTS
 
 
 def is_known(maneuvers: Sequence[Maneuver]) -> bool:
-    """Return whether every manoeuvre has an angle of attack, measured or by the motion."""
+    """Return whether every manoeuvre has an angle of attack, measured or from the motion."""
     return all("alpha" in m.channels for m in maneuvers)
 
 
 def alpha_by_motion(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> list[Maneuver]:
-    """Return the manoeuvres with the angle of attack that the motion implies, where none was measured.
+    """Return the manoeuvres with an angle of attack from the motion, where none was measured.
 
-    Manoeuvres are unchanged where the motion lacks a channel to imply an angle.
+    Manoeuvres without the required channels are unchanged.
     """
     replaceable = [m for m in maneuvers if can_do_without(m, aircraft)]
     if not replaceable or not why_not_measured(maneuvers, aircraft):
@@ -56,8 +56,8 @@ second."""
 def is_estimate(m: Maneuver, smoothed: bool) -> bool:
     """Return whether α is an estimate from inertial sensors.
 
-    ArduPilot marks every α as derived, and the bundled aircraft marks its own as simulated. An α that is
-    renewed faster than its estimator is a vane's. A smooth record is an estimate all the same.
+    ArduPilot marks every α as derived, and the bundled aircraft marks its own as simulated. An α renewed
+    faster than ArduPilot's estimator comes from a vane. A smooth record of α is an estimate at any rate.
     """
     alpha = m.channels.get("alpha")
     if alpha is None or alpha.provenance not in ("derived", "simulated"):

@@ -1,4 +1,4 @@
-"""The air speed of a flight without an air speed sensor: level and changes, from the motion.
+"""Air speed of a flight without an air speed sensor: level and changes, from the motion.
 
 The factor 1/V turns specific force into rate of α, α̇ − q = (a_z cos α − a_x sin α + g cos(θ − α))/V. The
 accelerometers show how V changes.
@@ -15,11 +15,9 @@ from advisor.flight.signals.motion import channel_at, integrated, path_turning, 
 from advisor.gap.decision import SIGMAS
 
 _BLOCK_S = 1.0
-"""Prior: length in s of the blocks over which errors of the motion are fully correlated: a gust, or the rest
-of an offset."""
+"""Prior: length in s of the blocks over which motion errors are fully correlated."""
 _LARGER = 3.0
-"""Prior: factor by which errors may exceed the scatter between blocks: α sees gusts, the integral of the
-force does not."""
+"""Prior: factor by which errors may exceed the scatter between blocks, because only α shows gusts."""
 _FLOWN = 0.05
 """Prior: prior standard deviation of a manoeuvre's speed about the intended speed, relative."""
 _LEAST_STD = 0.01
@@ -39,12 +37,12 @@ class Speeds:
 
     @property
     def moves(self) -> float:
-        """Largest relative departure from the mean speed; 0 where the speeds do not certainly differ."""
+        """Largest relative deviation from the mean speed; 0 where the speeds do not significantly differ."""
         return float(np.max(np.abs(self.before_m_s / np.mean(self.before_m_s) - 1.0))) if self.differ else 0.0
 
 
 def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
-    """Return the air speed in m/s that relates specific force to the rate of α; no sensor is needed.
+    """Return the air speed in m/s that relates specific force to the rate of α, without an air speed sensor.
 
     None where a channel is missing, or where the flight shows no force.
     """
@@ -60,10 +58,11 @@ def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
 
 
 def speeds_about(maneuvers: Sequence[Maneuver], level_m_s: float) -> Speeds:
-    """Return the speed of each manoeuvre about the intended speed, as far as its motion shows a difference.
+    """Return the speed of each manoeuvre relative to the intended speed, as far as its motion shows a
+    difference.
 
-    A scale error of α or of an accelerometer shifts all speeds alike by some per cent. The mean therefore
-    stays at the intended speed.
+    A scale error of α or of an accelerometer shifts all speeds equally by some per cent. The mean speed
+    therefore stays at the intended speed.
     """
     meant = np.full(len(maneuvers), level_m_s)
     unknown = Speeds(meant, _FLOWN * meant, False)

@@ -1,4 +1,4 @@
-"""Which manoeuvres can be used, and the part of each in which command and pitch rate were both recorded."""
+"""Selection of usable manoeuvres, and of the part in which command and pitch rate were both recorded."""
 
 from collections.abc import Sequence
 
@@ -12,13 +12,15 @@ from advisor.oem.lost_input import LOST_INTERVAL
 from advisor.oem.rows import Signal
 
 _STEEP, _SHORT_S = 0.15, 0.02
-"""Record: least jump between two stamps that counts as an edge, as a share of the command's range. The share
-holds for intervals of the second number, s; for others the product of jump and interval is compared."""
+"""Record: least jump between two stamps that is an edge of the command, as a share of the command's range.
+The share holds for intervals of ``_SHORT_S``; for other intervals the product of jump and interval is
+compared."""
 _HOLE_S, _HOLE = 0.15, 3.5
-"""Record: least length of a hole in the command's log, in s, and in usual intervals. A longer of the two
-counts."""
+"""Record: least length of a gap in the command's log, in s, and in usual intervals. The longer of the two
+lengths is used."""
 _PULSE_S = 0.25
-"""Record: length in s of a hole that may hide a whole pulse. Pulses for a fast short period are shorter."""
+"""Record: length in s of a gap in the log that may hide a whole pulse. Pulses for a fast short period are
+shorter."""
 
 
 def edges_of(t: FloatArray, u: FloatArray) -> FloatArray:
@@ -40,14 +42,15 @@ def edges_of(t: FloatArray, u: FloatArray) -> FloatArray:
 
 
 def held_from(t: FloatArray) -> FloatArray:
-    """Return the time after which each value was held, shape (n,): its stamp, or the lost stamps' middle."""
+    """Return the time after which each command value was held, shape (n,): its stamp, or the lost stamps'
+    middle."""
     return np.asarray(t - np.append(0.0, 0.5 * _lost(t)))
 
 
 def step_unseen(maneuver: Maneuver) -> bool:
-    """Return whether a step of the command may lie in a hole of the log, so that its time is unknown.
+    """Return whether a step of the command may lie in a gap of the log, so that its time is unknown.
 
-    A whole pulse may lie in a hole between the first and the last step: the command is equal on both sides.
+    A whole pulse may lie in a gap if the command is equal on both sides.
     """
     t, span = maneuver.channels["elevator"].t, maneuver.span
     interval = np.diff(t)
@@ -59,36 +62,36 @@ def step_unseen(maneuver: Maneuver) -> bool:
 
 
 def _lost(t: FloatArray) -> FloatArray:
-    """Return by how much each interval exceeds the usual one where a stamp was lost, else 0, (n - 1,)."""
+    """Return the excess of each interval over the usual interval where a stamp was lost, else 0, shape (n -
+    1,)."""
     interval = np.diff(t)
     usual = float(np.median(interval))
     return np.where(interval > LOST_INTERVAL * usual, interval - usual, 0.0)
 
 
 LEAST_SAMPLES = 15
-"""Record: least number of samples of a channel in a manoeuvre. A derived α at 8 Hz has as many in the
+"""Record: least number of samples of a channel in a manoeuvre. An α derived at 8 Hz has 15 samples in the
 shortest manoeuvre."""
 _LEAST_RENEWED = 30
-"""Record: least number of renewals below which a repeated value is kept, because a vane may stick."""
+"""Record: least number of renewed samples for the removal of repeated values, because a vane may stick."""
 _MANY_HZ, _ENOUGH_HZ = 80.0, 50.0
-"""Numerical: rate in Hz above which neighbouring samples are averaged, and the rate that remains. The rest
-gives six samples per period of the fastest structural mode, and fifteen of the fastest short period."""
+"""Numerical: rate in Hz above which successive samples are averaged, and the rate after averaging. The rate
+after averaging gives six samples per structural mode period and fifteen per short period."""
 _PAIR = 2
 _NEIGHBOURS = 1.5
-"""Numerical: least number of samples that are averaged, and longest distance between neighbouring stamps, in
-usual intervals."""
+"""Numerical: least number of averaged samples, and longest interval between averaged stamps, in usual
+intervals."""
 DEPARTED_RAD = 1.0
-"""Record: range of the angle of attack in rad at which the aircraft departed: no equation about a trim
-applies."""
+"""Record: range of the angle of attack in rad at which the aircraft departed from controlled flight."""
 _ENOUGH = 4
-"""Record: least number of complete manoeuvres that allows incomplete ones to be left out."""
+"""Record: least number of complete manoeuvres with which incomplete manoeuvres are left out."""
 
 
 def usable_of(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
     """Return the usable manoeuvres in their order.
 
-    A manoeuvre without elevator or pitch rate, or with a departure, is left out. Where enough others remain,
-    so is one without angle of attack, or with a step of the command in a hole of the log.
+    A manoeuvre without elevator or pitch rate, or with a departure, is left out. If enough others remain, a
+    manoeuvre without angle of attack or with an unseen step is also left out.
     """
     usable = [m for m in maneuvers if _is_recorded(m) and not _departed(m)]
     for is_whole in (_steps_seen, _has_alpha):
@@ -99,7 +102,7 @@ def usable_of(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
 
 
 def why_left_out(m: Maneuver) -> str:
-    """Return what a manoeuvre lacks that ``usable_of`` left out."""
+    """Return the reason why ``usable_of`` left out a manoeuvre."""
     if not _is_recorded(m):
         return "elevator or pitch rate were not recorded throughout"
     if _departed(m):
@@ -116,7 +119,7 @@ def recorded(m: Maneuver) -> tuple[float, float]:
 
 
 def outputs_of(m: Maneuver) -> dict[str, Signal]:
-    """Return the compared channels with their renewed samples, in seconds since the manoeuvre's beginning."""
+    """Return the compared channels with their renewed samples, in seconds since the manoeuvre's start."""
     start, end = recorded(m)
     outputs = {}
     for name in outputs_with(m):
@@ -131,10 +134,9 @@ def outputs_of(m: Maneuver) -> dict[str, Signal]:
 
 
 def condensed(t: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the means of neighbouring samples where a channel comes faster than needed, shapes (n,).
+    """Return the means of successive samples of a channel that is faster than needed, shapes (n,).
 
-    Effects change little between neighbours, and the noise keeps its weight, so every step of a fit takes
-    less time.
+    Effects change little between successive samples, so the averages keep the information and save time.
     """
     interval = float(np.median(np.diff(t))) if len(t) > 1 else 1.0
     together = int(1.0 / (_ENOUGH_HZ * interval) + 1e-3) if interval < 1.0 / _MANY_HZ else 1

@@ -1,1 +1,1 @@
-"""The search for effects: screening, fits, judgement on held-out manoeuvres, and addition one by one."""
+"""Search for effects: screening, fits, judgement on held-out manoeuvres, and addition one by one."""

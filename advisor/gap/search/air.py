@@ -1,7 +1,7 @@
 """Moving air: turbulence and gusts, distinguished from coloured instrument noise by their pattern.
 
-A gust enters vane, lift and moment at once; noise of instruments does not, however coloured. The Kalman
-likelihood of ``advisor.oem.turbulence`` decides. The probe of the air gives the course of the gust.
+A gust enters vane, lift and moment at once; coloured instrument noise enters one channel. The Kalman
+likelihood of ``advisor.oem.turbulence`` decides. The probe of the air block gives the course of the gust.
 """
 
 from collections.abc import Iterable, Sequence
@@ -22,28 +22,24 @@ from advisor.model.response import OUTPUTS
 from advisor.oem.turbulence import Turbulence, find_turbulence
 
 AIR_MANEUVERS = 5
-"""Numerical: number of manoeuvres, the loudest ones, in which moving air is sought: enough to recognise
-turbulence."""
+"""Numerical: number of the noisiest manoeuvres in which moving air is sought."""
 
 LEAST_GUST_ANGLE = 0.001
 """Least standard deviation of the gust angle, rad, for which the air counts as moving: 0.025 m/s at 25 m/s.
-Five calm logs of ArduPlane's simulator show 0.0002 to 0.0006, with gains of 340 to 400 nats: a rest of the
-model that gusts imitate. An improved simulator looks too good where an error of the model passes for moving
-air."""
+Five calm logs of ArduPlane's simulator show 0.0002 to 0.0006, with gains of 340 to 400 nats. If a model error
+is mistaken for moving air, an improved simulator looks too good."""
 NATURAL_GUST_ANGLE = 0.006
-"""Largest standard deviation of the gust angle, rad, as found, that is part of every flight and no cause. At
-25 m/s that is 0.15 m/s, the lightest turbulence that the development flights of three generators name."""
+"""Largest standard deviation of the gust angle, rad, that is natural in every flight and no cause. At 25 m/s
+the limit is 0.15 m/s, the lightest turbulence named in flights of three generators."""
 _LEAST_GUST_PEAK = 0.0025
-"""Least peak of the gust angle for a gust to be named, rad. A gust that passed once hardly changes the
-standard deviation."""
+"""Least peak of the gust angle for a named gust, rad. A single gust hardly changes the standard deviation."""
 _STANDS_OUT = 4.0
-"""Residual power of one manoeuvre over the median of all, above which a gust is sought in it alone. Noise of
-equal colour in all manoeuvres does not explain a manoeuvre that stands out."""
+"""Residual power of one manoeuvre over the median of all, above which a gust is sought in that manoeuvre.
+Noise of equal colour in all manoeuvres does not explain a manoeuvre that stands out."""
 _TRIED = 6
-"""Numerical: number of prior sizes of a gust that are tried, from that of turbulence up to any."""
+"""Numerical: number of candidate prior sizes of a gust."""
 _AS_MUCH = 0.995
-"""Numerical: least share of the residual that a gentler course must explain, relative to the strongest
-one."""
+"""Numerical: least share of the residual that a gentler gust must explain, relative to the strongest gust."""
 
 
 @dataclass(frozen=True)
@@ -54,11 +50,11 @@ class MovingAir:
     """Standard deviation of the gust angle w/V, rad."""
     gain: float
     gust: bool
-    """Whether the air has one or a few bumps and is otherwise still, instead of turbulent."""
+    """Whether the air has one or a few gusts and is otherwise still."""
     gust_number: int
-    """Number of the manoeuvre in which a gust shows most."""
+    """Number of the manoeuvre in which a gust is strongest."""
     gust_angle: float
-    """Largest departure of the gust angle in that manoeuvre, rad."""
+    """Largest deviation of the gust angle in the gust's manoeuvre, rad."""
     gust_at_s: float
     """Vehicle time of the gust's peak, s."""
     mean_square_beyond_air: FloatArray
@@ -67,27 +63,27 @@ class MovingAir:
     """Per manoeuvre: residuals of the stacked channels without the likeliest course of the air, in the
     channels' units."""
     instruments: FloatArray
-    """Shape (channels,): noise of the instruments in addition to moving air."""
+    """Shape (channels,): instrument noise in addition to moving air."""
 
     @property
     def is_natural(self) -> bool:
-        """Whether the air moves no more than in any flight, so that it is no cause."""
+        """Whether the air moves no more than in any natural flight, so that it is no cause."""
         return not self.gust and self.angle_std < NATURAL_GUST_ANGLE
 
 
 @dataclass(frozen=True)
 class SoughtAir:
-    """The result of a search for moving air, whether or not air was found."""
+    """Result of a search for moving air, with or without air found."""
 
     gain: float = 0.0
-    """Gain in log likelihood over coloured instruments."""
+    """Log likelihood gain of moving air over coloured instruments, nats."""
     angle_std: float = 0.0
     """Standard deviation of the likeliest gust angle, rad."""
     found: MovingAir | None = None
 
 
 def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
-    """Seek moving air; none is found where noise of the instruments explains the residual equally well."""
+    """Seek moving air; instrument noise that explains the residual equally well is preferred."""
     if not problem.flights.shows_air:
         return SoughtAir()
     floor = 1.0 if problem.instruments is None else problem.instruments
@@ -135,7 +131,7 @@ def _stands_out(powers: FloatArray) -> bool:
 
 
 def _moving_in(problem: EffectProblem, fitted: EffectFit, maneuvers: Iterable[int]) -> Turbulence:
-    """Return the likelihood of moving air in the residuals of some manoeuvres."""
+    """Return the likelihood of moving air in the residuals of the given manoeuvres."""
     rows = [rows_of(problem, fitted, i) for i in maneuvers]
     derived = problem.flights.alpha_is_derived
     return find_turbulence(rows, system_of(problem, fitted), instrument_noise(problem), not derived)
@@ -144,9 +140,10 @@ def _moving_in(problem: EffectProblem, fitted: EffectFit, maneuvers: Iterable[in
 def _of_a_gust(
     problem: EffectProblem, fitted: EffectFit, instruments: FloatArray, least: float
 ) -> DisturbanceCourse:
-    """Return the gentlest course of a gust that explains as much as the largest one that the flight shows.
+    """Return the gentlest gust that explains almost as much of the residual as the largest gust that the
+    flight shows.
 
-    A course of unlimited size would wander far where the instruments hardly show the air.
+    A gust of unlimited size would wander where the instruments hardly show the air.
     """
     most = largest_gust(problem.flights, float(fitted.point.derivatives[0]))
     sizes = [*np.geomspace(least, most, _TRIED)] if least < most else [most]

@@ -1,4 +1,4 @@
-"""The start of the search: the baseline model, fitted without a guess from the user."""
+"""Start of the search: the baseline model, fitted without a guess from the user."""
 
 from dataclasses import replace
 
@@ -23,26 +23,25 @@ from advisor.gap.search.screen import Screen
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, NUISANCES
 
 _LOUD = 1.5
-"""Power of the residual where nothing is flown, relative to white noise, above which an effect is sought."""
+"""Residual power in quiet stretches over white noise above which an effect is sought."""
 _QUIETER = 0.7
-"""Largest ratio of that power with one more effect to the power before, for the effect to be kept."""
+"""Largest ratio of the quiet residual's power with an effect to that without, for the effect to be kept."""
 _AT_MOST = 2
-"""Most effects in the model through which the noise is seen."""
+"""Largest number of effects in the model for the noise estimate."""
 _MAIN = [DERIVATIVES.index(name) for name in ("Z_alpha", "M_alpha", "M_delta_e")]
 """Indices of the derivatives that a regression hardly ever misses by a factor of three."""
 _ALIKE = 1.0 / 3.0
 """Numerical: least ratio of Z_α, M_α and M_δe between regression and aircraft file, above which the file's
 derivatives are the only start."""
 _MUCH = 0.1
-"""Numerical: largest residual of the fit from the file's derivatives, as a share of a channel's peak, for
-which no other start is tried."""
+"""Numerical: largest residual of the fit from the file's derivatives for which no other start is tried."""
 
 
 def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float = 0.0) -> SearchPoint:
     """Return the point with all nuisance parameters that are part of every model.
 
-    The latency is one loop of the autopilot; ``with_telemetry`` widens the latency once the reading of the
-    command is known.
+    The latency is one loop of the autopilot; ``with_telemetry`` widens it after the command's motion is
+    known.
     """
     late = point.with_effect(LOOP, (latency_s,))
     if flights.alpha_is_derived:
@@ -57,15 +56,16 @@ def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float 
 
 
 def with_telemetry(point: SearchPoint, flights: PreparedManeuvers) -> SearchPoint:
-    """Return the point with the delay that telemetry may put between stamps of the command and effect."""
+    """Return the point with the delay that telemetry may cause between command stamps and effect."""
     effects = tuple(latency(flights) if e is LOOP else e for e in point.effects)
     return replace(point, effects=effects)
 
 
 def fit_telemetry(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> EffectFit:
-    """Return the fit with that delay, from the present one and from both ends of the prior.
+    """Return the fit with the telemetry's delay, started from the present fit and from both ends of the
+    prior.
 
-    Edges of the command follow a delay, so that the cost has local minima in between.
+    Edges of the command move with the delay, so the cost has local minima.
     """
     point = with_telemetry(fitted.point, problem.flights)
     k = point.index_of(LOOP.effect)
@@ -78,7 +78,8 @@ def fit_telemetry(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) 
 
 
 def base_entries(aircraft: Aircraft) -> FloatArray:
-    """Return the driving numbers that the aircraft file states of servo and instruments, shape (entries,)."""
+    """Return the simulator inputs that the aircraft file states for servo and instruments, shape
+    (entries,)."""
     base = np.zeros(len(ENTRIES))
     base[INDEX["lag_s"]] = aircraft.elevator.lag_s or 0.0
     base[INDEX["delay_s"]] = aircraft.elevator.delay_s or 0.0
@@ -88,18 +89,18 @@ def base_entries(aircraft: Aircraft) -> FloatArray:
 
 
 def prior_derivatives(aircraft: Aircraft) -> FloatArray | None:
-    """Return the aircraft file's derivatives, shape (6,); None where one is missing."""
+    """Return the aircraft file's derivatives, shape (6,); None if a derivative is missing."""
     if any(name not in aircraft.model for name in DERIVATIVES):
         return None
     return np.array([aircraft.model[name] for name in DERIVATIVES])
 
 
 def first_fit(problem: EffectProblem, aircraft: Aircraft) -> EffectFit:
-    """Return the baseline model fitted from the aircraft file's derivatives, or by a regression of rates.
+    """Return the baseline model, fitted from the aircraft file's derivatives or from a regression of rates.
 
-    The file's derivatives are usually nearer. Where a sign or a unit in the file is wrong, no step leads
-    away from the file's derivatives. All starts are tried where the regression differs strongly, or the fit
-    leaves a large residual.
+    The file's derivatives are usually nearer to the optimum. If a sign or a unit in the file is wrong, no
+    step leads away from the file's derivatives. All starts are tried if the regression differs strongly, or
+    if the fit leaves a large residual.
     """
     flights = problem.flights
     own = np.zeros((len(flights), len(NUISANCES)))
@@ -137,7 +138,7 @@ def fit_unfiltered(flights: PreparedManeuvers, aircraft: Aircraft) -> tuple[Effe
 
 
 def _at_rest(problem: EffectProblem, fitted: EffectFit, aircraft: Aircraft) -> EffectFit:
-    """Return the fit with the side on which the file's play rests, which every manoeuvre begins anew."""
+    """Return the fit with the side on which the file's play rests at the start of each manoeuvre."""
     for variant in variants_for(problem.flights):
         if variant.sides is not None and variant.effect in aircraft.effects:
             point = Neighbourhood(problem, fitted).choose_sides(fitted.point, variant.sides[1])
@@ -146,10 +147,11 @@ def _at_rest(problem: EffectProblem, fitted: EffectFit, aircraft: Aircraft) -> E
 
 
 def of_this_flight(flights: PreparedManeuvers, aircraft: Aircraft) -> Aircraft:
-    """Return the aircraft without the file's changes in flight, if these manoeuvres are likelier without.
+    """Return the aircraft without the file's changes in flight, if these manoeuvres are likelier without
+    them.
 
-    Such a change belongs to one flight. An aircraft file that this flight improved contains the change
-    already.
+    A change in flight belongs to one flight. An aircraft file that this flight improved already contains the
+    change.
     """
     others = replace(aircraft, effects=lasting(aircraft.effects))
     if others == aircraft:
@@ -179,11 +181,10 @@ def at_another_speed(
 
 
 def quietest(problem: EffectProblem, fitted: EffectFit) -> EffectFit:
-    """Return the model through which the noise is estimated, with the likeliest effects where the residual
-    gets quieter.
+    """Return the model for the noise estimate, with likely effects that make the quiet residual smaller.
 
-    Motion from a missing effect decays long after the last step, and would pass for coloured noise. The
-    right effect removes such motion; no effect removes motion that exists in still flight.
+    Motion from a missing effect decays long after the last step, and would look like coloured noise. The
+    right effect removes the decaying motion, but no motion that occurs in still flight.
     """
     best, loud = fitted, loudness(problem, fitted)
     for _ in range(_AT_MOST):

@@ -1,4 +1,4 @@
-"""The motion of the command between its stamps: held or linear."""
+"""Motion of the command between its stamps: held or linear."""
 
 from dataclasses import replace
 
@@ -11,15 +11,15 @@ from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.search.screen import Screen
 
 _SLIGHT_S = 0.005
-"""Numerical: delay or lag from which its fit begins, s."""
+"""Numerical: starting value of a delay or lag in its fit, s."""
 
 
 def read_command(linear: EffectProblem, fitted: EffectFit) -> tuple[EffectProblem, EffectFit]:
-    """Return the baseline model with the command held or linear between its stamps, as the data decide.
+    """Return the baseline model with the command held or linear between stamps, whichever the data favour.
 
-    A held command looks like a linear one with a delay of half an interval. The linear reading may have a
-    delay and a lag, at their price (Schwarz). The held command is chosen where it explains more without a
-    delay and a lag. Otherwise half an interval goes into the delay's error.
+    A held command looks like a linear one with a delay of half an interval. The linear command may have a
+    delay and a lag, at their price (Schwarz). The held command is chosen if it explains more without a delay
+    and a lag. Otherwise half an interval is added to the delay's error.
     """
     best = min(Screen(linear, fitted).quick_fits((DELAY, LAG)), key=lambda s: s.cost, default=None)
     if best is None:
@@ -36,6 +36,7 @@ def read_command(linear: EffectProblem, fitted: EffectFit) -> tuple[EffectProble
 
 
 def read_otherwise(problem: EffectProblem, fitted: EffectFit) -> tuple[EffectProblem, EffectFit]:
-    """Return the baseline model with the other reading of the command: held, not linear, or the reverse."""
+    """Return the baseline model with the other motion of the command: held instead of linear, or the
+    reverse."""
     other = replace(problem, held=not problem.held)
     return other, fit(other, fitted.point, fitted.noise)

@@ -12,14 +12,13 @@ from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.kit.variant import Variant
 
 _STEPS = 4
-"""Numerical: most Gauss-Newton steps of a quick fit."""
+"""Numerical: largest number of Gauss-Newton steps of a quick fit."""
 _AT_ONCE = 64
-"""Numerical: points that are simulated together: enough to fill the packs, few enough for the memory."""
+"""Numerical: number of points that are simulated together, which fill the packs."""
 _HARDLY = 6.0
-"""Numerical: decrease of the cost (twice the log likelihood) below which a description is not followed
-further."""
+"""Numerical: decrease of the cost (twice the log likelihood) below which a variant is dropped."""
 _HOPELESS = 0.05
-"""Numerical: share of the best decrease so far below which a description is not followed further."""
+"""Numerical: share of the best decrease of the cost below which a variant is dropped."""
 
 
 @dataclass(frozen=True)
@@ -34,30 +33,32 @@ class Screened:
 
     @property
     def name(self) -> str:
-        """Name of the effect."""
+        """Name of the effect that the candidate belongs to."""
         return self.variant.effect
 
     @property
     def price(self) -> float:
-        """Cost with a price for the number of numbers (Akaike's criterion)."""
+        """Cost of the quick fit plus twice the number of parameters (Akaike's criterion)."""
         return self.cost + 2.0 * len(self.variant.names)
 
 
 _Descent = Generator[SearchPoint, tuple[SimulatedPoint | None, float], Screened | None]
-"""A search that asks for one point after another, and receives its evaluation and the best decrease."""
+"""Search that requests one point after another, and receives its evaluation and the best decrease of the
+cost."""
 
 
 class Screen:
-    """A baseline model prepared for many candidates, each of which is followed for a few steps."""
+    """A baseline model prepared for a few fit steps of each of many candidates."""
 
     def __init__(self, problem: EffectProblem, fitted: EffectFit, steps: int = _STEPS) -> None:
         self.problem, self.fitted, self.steps = problem, fitted, steps
         self.around = Neighbourhood(problem, fitted)
 
     def likeliest(self, variants: Sequence[Variant]) -> Screened | None:
-        """Return the quick fit that leaves least at the price of its numbers; None where none leads anywhere.
+        """Return the quick fit with the least cost including the price of its parameters; None without
+        progress.
 
-        A number costs ln N (Schwarz 1978).
+        Each parameter costs ln N (Schwarz 1978).
         """
         price = float(np.log(max(np.sum(self.around.count), 2.0)))
         return min(
@@ -68,7 +69,7 @@ class Screen:
         """Return the best quick fit of each variant over its starts, for variants of which some start
         converges.
 
-        Variants that promise next to nothing relative to the best one are not followed.
+        Variants that promise far less than the best variant are dropped.
         """
         began = [(n, start) for n, variant in enumerate(variants) for start in variant.starts]
         ended = self._together([self._descend(variants[n], start) for n, start in began])
@@ -79,7 +80,7 @@ class Screen:
         return list(best.values())
 
     def _together(self, descents: Sequence[_Descent]) -> list[Screened | None]:
-        """Follow all descents side by side, so that the next points of many are simulated at once."""
+        """Advance all searches together, so that the next points of many are simulated at once."""
         ended: list[Screened | None] = [None] * len(descents)
         most = 0.0
         asked = {n: next(descent) for n, descent in enumerate(descents)}

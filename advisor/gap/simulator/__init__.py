@@ -1,1 +1,1 @@
-"""The simulator under diagnosis: the short period with every effect, and the reading of its outputs."""
+"""Simulator under diagnosis: the short period with every effect, and its measured outputs."""

@@ -1,4 +1,4 @@
-"""Cosine and sine as sums of their power series.
+"""Cosine and sine as polynomials.
 
 A library function takes one number at a time. The compiler evaluates a polynomial for all lanes of a pack at
 once (``advisor.gap.simulator.simulate``).

@@ -1,8 +1,7 @@
-"""The vector of driving numbers of the gap's simulation: the meaning of each entry.
+"""Vector of simulator inputs in the gap diagnosis: the meaning of each entry.
 
 The entries are the six derivatives of Eqs. (1)-(2), which manoeuvres share, four nuisance parameters of each
-manoeuvre, and the parameters of every candidate effect. An entry of zero means that the effect is
-absent, so adding an effect means freeing its entries.
+manoeuvre, and the parameters of every candidate effect. An entry of zero means that the effect is absent.
 """
 
 from collections import namedtuple
@@ -53,7 +52,7 @@ EFFECT_ENTRIES = (
     "mode_attitude",
 )  # fmt: skip
 EQUATION_ENTRIES = EFFECT_ENTRIES[EFFECT_ENTRIES.index("M_delta2") : EFFECT_ENTRIES.index("alpha_lag_s")]
-"""Parameters of effects in Eqs. (1)-(2)."""
+"""Entries for effects in Eqs. (1)-(2)."""
 ENTRIES = (*DERIVATIVES, *NUISANCES, *EFFECT_ENTRIES)
 INDEX = {name: i for i, name in enumerate(ENTRIES)}
 
@@ -66,7 +65,7 @@ FILTER = ("filter_lag_s", "filter_shape", "filter_output")
 
 
 def places(names: Sequence[str]) -> Any:
-    """Return the index of each name in a list; compiled functions read an index as ``places(names).name``."""
+    """Return the index of each name in a list, read in compiled functions as ``places(names).name``."""
     named: Callable[..., Any] = namedtuple
     return named("Places", names)(*range(len(names)))
 
@@ -74,10 +73,10 @@ def places(names: Sequence[str]) -> Any:
 AT, READ, FILTERED = places(ENTRIES), places(OUTPUTS), places(FILTER)
 SLOW = places(("speed", "a_x", "bank", "throttle", "height", "thrust", "turn"))
 SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST, TURN = SLOW
-"""Rows of the slow inputs, which have one value per step."""
+"""Row numbers of the slow inputs, which have one value per time step."""
 DISTURBED = places(("input", "force", "moment", "air"))
 DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = DISTURBED
-"""Rows of the disturbances, one value per step, which are added to δ, α̇, q̇ and the angle of the air."""
+"""Row numbers of the disturbances, one value per time step, added to δ, α̇, q̇ and the angle of the air."""
 TRIM = places(("alpha", "theta", "reference", "scaled"))
 ALPHA_TRIM, THETA_FROM, REFERENCE, SCALED = TRIM
 """Indices in a manoeuvre's trim: initial α and θ (rad), reference speed of the derivatives (m/s), and 1 where
@@ -85,7 +84,7 @@ derivatives scale with the air speed."""
 
 
 def key_of(*lists: Any) -> int:
-    """Return a hash of lists of ``places``, which changes with every name and every index."""
+    """Return a hash of index lists from ``places``, which changes with every name and every index."""
     return crc32(repr(lists).encode())
 
 
@@ -96,7 +95,7 @@ __pycache__/*.nbi in advisor/gap/simulator, and start again."""
 
 
 def natural_frequency(derivatives: FloatArray) -> float:
-    """Return the undamped natural frequency of the short period in rad/s, 0 where there is none.
+    """Return the undamped natural frequency of the short period in rad/s; 0 without a short period.
 
     ``derivatives`` has shape (6,).
     """

@@ -1,6 +1,7 @@
-"""A pack of simulations: an array of shape (``ROWS``, ``LANES``), its rows' meaning, and its initial values.
+"""A pack of simulations: an array of shape (``ROWS``, ``LANES``), the meaning of its rows, and initial
+values.
 
-The first rows are the driving numbers of ``advisor.gap.simulator.layout``. Each column of an array, called a
+The first rows are the simulator inputs of ``advisor.gap.simulator.layout``. Each column of an array, called a
 lane, is one simulation.
 """
 
@@ -28,7 +29,7 @@ _ANYWHERE = 9.0
 def begin(
     x: FloatArray, lane: int, p: FloatArray, dose: float, h: float, speed: float, trim: FloatArray
 ) -> None:
-    """Fill one lane of a pack with its driving numbers, the constants of the run, and the initial state."""
+    """Fill one lane of a pack with its simulator inputs, the constants of the run, and the initial state."""
     x[: len(p), lane] = p
     x[DOSE, lane] = dose
     x[ENGINE_DECAY, lane] = np.exp(-h / max(p[AT.engine_lag_s], 1e-3 * h))

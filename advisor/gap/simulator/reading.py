@@ -18,9 +18,9 @@ def read_rows(
     Parameters
     ----------
     packs
-        Result of ``advisor.gap.simulator.simulate.simulate``, with any number of lanes in a pack.
+        Packs from ``advisor.gap.simulator.simulate.simulate``, with any number of lanes.
     h
-        Step in s.
+        Time step of the simulation, s.
     stamps
         Shape (rows,).
     output
@@ -79,7 +79,7 @@ def differences(read: FloatArray, measured: FloatArray, base: np.ndarray, step: 
 
 @kernel(error_model="numpy")
 def _late(response: FloatArray, c: int, k: int, part: float) -> float:
-    """Return an output ``k`` points and a ``part`` of a step after the start of a response; 0 before it."""
+    """Return an output ``k`` points and a ``part`` of a step after a response's start; 0 before the start."""
     here = response[c, k] if k >= 0 else 0.0
     before = response[c, k - 1] if k > 0 else 0.0
     return float((1.0 - part) * here + part * before)

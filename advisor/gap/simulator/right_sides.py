@@ -10,7 +10,7 @@ from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 MOTION = SPEED, HEIGHT, ALPHA, ALPHA_DOT, Q, DEFLECTION, ALPHA_TRIM = range(7)
-"""Places in a motion: air speed (m/s), height (m), α and its rate, q, elevator from trim, α at trim."""
+"""Indices in a motion: air speed (m/s), height (m), α and its rate, q, elevator from trim, α at trim."""
 
 
 @kernel(error_model="numpy", fastmath={"contract"})
@@ -24,13 +24,14 @@ def right_sides(
     layout
         ``layout.LAYOUT``.
     p
-        Shape (k, entries): driving numbers.
+        Shape (k, entries): simulator inputs.
     motion
         Shape (7,), in the order of ``MOTION``.
     reference
         Reference speed of the derivatives, m/s.
     lift, engine
-        Shape (k,): lagging angle of attack (rad) and lagging throttle, relative to its start, of each set.
+        Shape (k,): lagging angle of attack (rad) and lagging throttle, relative to its start, of each
+        parameter set.
 
     Returns
     -------

@@ -1,23 +1,24 @@
-"""The answer of a servo to one piece of its command: lag and rate limit, play, or dry friction."""
+"""Response of a servo to one piece of its command: lag and rate limit, play, or dry friction."""
 
 import numpy as np
 
 from advisor.process.compiled import kernel
 
 ARRIVED_RAD = 1e-9
-"""Deflection error in rad below which the servo counts as arrived."""
+"""Deflection error in rad below which the servo has reached its command."""
 _PARTS = 8
-"""Most parts of one piece of the command: at the rate limit, lagging, and at the opposite limit."""
+"""Largest number of parts of one command piece: at the rate limit, lagging, and at the opposite limit."""
 
 
 @kernel()
 def through_servo(
     servo: float, link: float, begin: float, end: float, dt: float, tau: float, most: float, play: float
 ) -> tuple[float, float, float]:
-    """Return servo and linkage at the end of a linear piece of the command, and the deflection's integral.
+    """Return servo and linkage at the end of a linear command piece, and the deflection's integral.
 
-    The servo moves by (command − servo)/τ, but no faster than ``most`` rad/s. A piece therefore consists of a
-    few exponential and linear parts. The linkage rests until the servo has crossed its play.
+    The servo moves by (command − servo)/τ, but no faster than ``most`` rad/s. The motion in a command piece
+    therefore consists of a few exponential and linear parts. The linkage rests until the servo has crossed
+    its play.
     """
     slope, left, command, area = (end - begin) / dt, dt, begin, 0.0
     way, limit = np.sign(slope), most * tau
@@ -54,9 +55,9 @@ def through_friction(
 ) -> tuple[float, float, float]:
     """Return surface, direction of sliding and integral of the deflection after a linear command.
 
-    The model is a position loop with dry friction. At rest the surface holds until the command is ``holds``
-    rad away. A sliding surface lags by ``tau`` s behind a point ``drags`` rad short of the command, and rests
-    where its direction would reverse.
+    The friction model is a position loop with dry friction. At rest the surface holds until the command is
+    ``holds`` rad away. A sliding surface lags by ``tau`` s behind a point ``drags`` rad short of the command,
+    and rests where its direction would reverse.
     """
     slope, left, command, area = (end - begin) / dt, dt, begin, 0.0
     tau = max(tau, 1e-3)

@@ -1,8 +1,8 @@
 """The simulator under diagnosis: short-period motion at a measured air speed, with every candidate effect.
 
 The equations are Eqs. (1)-(2) about the trim of each manoeuvre, with exact kinematics of accelerometer and
-attitude. Where the air speed is measured, derivatives scale with it. Terms of the candidate effects are of
-low order, and a zero switches each off (``advisor.gap.simulator.layout``).
+attitude. Where the air speed is measured, derivatives scale with it. Terms of the effects are of low order,
+and an entry of zero switches each off (``advisor.gap.simulator.layout``).
 
     v = V/V_r,  Δα = α − α_trim,  Δδ = δ − δ_trim
     N  = v (1 + k_h e^(−h/b)) (Z_trim + Z_α Δα_e + Z_δe Δδ + ...) + Z_q q       normal force over m·V
@@ -15,8 +15,8 @@ measured air speed plus a parabola in time for its error. The last equation is t
 q) + V̇ sin α − g cos θ with V̇ taken from a_x.
 
 A step depends on the step before, so a single simulation leaves most of the processor idle. Many parameter
-sets fly the same inputs. The loop therefore advances a pack of simulations side by side, each in its lane, in
-the time of one.
+sets fly the same inputs. The loop therefore advances a pack of simulations side by side, in the time of one
+simulation.
 """
 
 import numpy as np
@@ -54,7 +54,7 @@ def simulate(
     Parameters
     ----------
     layout
-        ``layout.LAYOUT``, which says how ``p`` and the other arrays are laid out.
+        ``layout.LAYOUT``, which defines the order of ``p`` and of the other arrays.
     h
         Step in s.
     deflections, moved
@@ -67,11 +67,11 @@ def simulate(
     disturbance
         Shape (4, n), or (4, 0) for none: added to δ, α̇, q̇ and the angle of the air.
     doses
-        Shape (k,). Factor of the disturbance in each simulation.
+        Shape (k,): factor of the disturbance in each simulation.
     trim
-        Shape (4,). α, θ at the start, reference speed; and 1 when derivatives scale with speed.
+        Shape (4,): α and θ at the start, reference speed, and 1 if derivatives scale with speed.
     p
-        Shape (k, entries). Driving numbers of each simulation, in the order of ``layout.ENTRIES``.
+        Shape (k, entries): simulator inputs of each simulation, in the order of ``layout.ENTRIES``.
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """The parts of one step of the simulation, each for all lanes of a pack (``advisor.gap.simulator.pack``).
 
-The argument ``lanes`` always equals ``LANES``. The compiler must not know that number: it would unroll the
-loops lane by lane instead of using wide registers.
+The argument ``lanes`` always equals ``LANES``. The number is hidden from the compiler, which would otherwise
+unroll the loops lane by lane.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ _inlined = kernel(error_model="numpy", fastmath={"contract"}, inline="always")
 
 @kernel()
 def _attached(beyond: float) -> float:
-    """Return the attached share of the lift. At 0, Kirchhoff's flow is separated over half the chord."""
+    """Return the attached share of the lift; Kirchhoff's flow is separated over half the chord at 0."""
     chord = 1.0 / (1.0 + np.exp(2.0 * beyond))
     return float(0.25 * (1.0 + np.sqrt(chord)) ** 2)
 
@@ -28,7 +28,7 @@ def _attached(beyond: float) -> float:
 def _separate(x: FloatArray, m: int, before: float, now: float) -> None:
     """Separate the flow above one angle and attach it again below another, with the memory of a relay.
 
-    The angle is met within a step; the next step makes up for the part that was missed.
+    The angle is met within a step; the next step corrects the part that was missed.
     """
     x[row.MISSING, m] = x[row.SEPARATED, m]
     if x[row.SEPARATED, m] == 0.0 and now > x[AT.separation_rad, m]:
@@ -50,7 +50,7 @@ def take_speed(
     speed
         Air speed as read, m/s.
     along
-        Place in the record, -1 at its start and 1 at its end.
+        Normalised time in the record, -1 at its start and 1 at its end.
     scaled
         Whether derivatives scale with the air speed.
     powers
@@ -162,7 +162,7 @@ def normal_force(x: FloatArray, m: int, a: float, q: float, da: float, behind: f
 
 @_inlined
 def moment(x: FloatArray, m: int, q: float, alpha_dot: float, da: float, behind: float) -> float:
-    """Return the pitch acceleration in rad/s²: Eq. (2). ``normal_force`` has the other arguments."""
+    """Return the pitch acceleration in rad/s²: Eq. (2). The other arguments are those of ``normal_force``."""
     turned = da - x[AT.moment_share, m] * behind
     v = x[row.RATIO, m]
     bent = (x[AT.M_alpha2, m] + x[AT.M_alpha3, m] * da) * da
@@ -199,7 +199,7 @@ def rates(x: FloatArray, lanes: int, h: float, d_air: float, alpha_trim: float, 
 def read_sensors(
     x: FloatArray, lanes: int, out: FloatArray, d_air: float, a_x: float, alpha_trim: float, theta_from: float
 ) -> None:
-    """Write what the instruments read at the start of a step into ``out``, shape (4, LANES)."""
+    """Write the instrument readings at the start of a step into ``out``, shape (4, LANES)."""
     for m in range(lanes):
         alpha, q, air = x[row.ALPHA, m], x[row.Q, m], x[row.DOSE, m] * d_air
         x[row.AIR, m] = air

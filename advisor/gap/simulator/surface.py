@@ -1,4 +1,4 @@
-"""From stick to surface: delay, lag, rate limit, play, dead band and stops, each switched off by a zero."""
+"""From command to surface: delay, lag, rate limit, play, dead band and stops, each switched off by zero."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ _READ = (
     AT.half_play_rad, AT.play_side, AT.half_deadband_rad, AT.neutral_rad, AT.stop_up_rad, AT.stop_down_rad,
     AT.breakaway_rad, AT.sliding_share, AT.loop_s,
 )  # fmt: skip
-"""Entries that change a deflection."""
+"""Entries of the simulator that change a deflection."""
 
 _UNLIMITED = 1e6
 """Rate of a servo without a rate limit, rad/s: fast enough for a step to take no time."""
@@ -22,7 +22,8 @@ _UNLIMITED = 1e6
 def surfaces(
     layout: int, h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray
 ) -> tuple[FloatArray, np.ndarray]:
-    """Return the different deflections among the rows of ``p``, shape (k, entries), and which each row has.
+    """Return the distinct deflections among the rows of ``p``, shape (k, entries), and the index for each
+    row.
 
     Deflections have shape (different, 2, n): the mean over each step, and that mean minus the deflection at
     the start of the step. The second result has shape (k,), int64. Raises ValueError where the function was
@@ -58,8 +59,7 @@ def _differ(one: FloatArray, other: FloatArray) -> bool:
 def above_start(mean: FloatArray) -> FloatArray:
     """Return the mean over each step minus the value at the start of the step, shape (n,).
 
-    Two steps meet at that point, and the flatter one decides: a jump within the other leaves the value
-    unchanged, or has happened already.
+    Two steps meet at the step's start, and the flatter step decides.
     """
     n = len(mean)
     out = np.empty(n)
@@ -84,11 +84,11 @@ def _lesser(one: float, other: float) -> float:
 def surface(
     h: float, n: int, t_u: FloatArray, u: FloatArray, held: bool, trim: float, p: FloatArray
 ) -> FloatArray:
-    """Return the mean deflection over each step, relative to trim, behind all parts from stick to surface.
+    """Return the mean deflection over each step, relative to trim, after all parts from command to surface.
 
     The command consists of pieces that end at its stamps. Nonlinear parts take every piece separately, so
-    that an edge inside a step keeps its area. Linear parts are solved for the mean of the command over the
-    step. The result is smooth in the delay.
+    that an edge inside a step keeps its area. Linear parts use the mean of the command over the step. The
+    mean deflection is smooth in the delay.
     """
     out = np.empty(n)
     k = 0
@@ -159,7 +159,7 @@ def surface(
 def _piece(
     k: int, at: float, until: float, t_u: FloatArray, u: FloatArray, held: bool, trim: float
 ) -> tuple[float, float, float]:
-    """Return where the piece of the command ends that begins at time ``at``, and its values at both ends.
+    """Return the end of the command piece that begins at time ``at``, and the values at both ends.
 
     ``k`` is the index of the last stamp up to ``at``, ``until`` the end of the step. Values in rad from trim.
     """
@@ -175,7 +175,7 @@ def _piece(
 
 @kernel()
 def _limited(begin: float, end: float, p: FloatArray) -> tuple[float, float, float]:
-    """Return the ends and the mean of a linear piece of the command behind the dead band and the stops.
+    """Return the ends and the mean of a linear command piece after the dead band and the stops.
 
     ``begin`` and ``end`` are relative to trim, rad; ``p`` has shape (entries,).
     """
@@ -197,7 +197,8 @@ def _limited(begin: float, end: float, p: FloatArray) -> tuple[float, float, flo
 
 @kernel()
 def _first_order(servo: float, want: float, h: float, tau: float, decay: float) -> tuple[float, float]:
-    """Return the deflection of a servo with a lag of ``tau`` s at the end of a step, and its mean over that.
+    """Return the deflection of a servo with a lag of ``tau`` s at the end of a step, and its mean over the
+    step.
 
     ``want`` is the mean of the command over the step of ``h`` s, ``decay`` is exp(-h/tau).
     """

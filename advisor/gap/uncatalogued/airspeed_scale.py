@@ -1,8 +1,8 @@
-"""Consistency of air speed and accelerometer: both determine the curvature of the flight path.
+"""Consistency of air speed and accelerometer, which both determine the curvature of the flight path.
 
-Every model has a nuisance parameter for their difference. A difference of a few per cent is normal, because a
-static port reads a pressure that the wing changes. With a larger difference one of the two is wrong, unless
-the air speed is an indicated one in thin air.
+Every model has a nuisance parameter for the difference between air speed and accelerometer. A difference of a
+few per cent is normal, because a static port reads a pressure that the wing changes. With a larger difference
+one sensor is wrong, unless the air speed is an indicated one in thin air.
 """
 
 from dataclasses import dataclass
@@ -18,28 +18,27 @@ from advisor.gap.uncatalogued.weight_check import WeightReading
 from advisor.words.quantiles import NORMAL_95
 
 _REPORTED = 0.03
-"""Least relative difference that is reported. A larger one may come from an indicated air speed."""
+"""Least relative difference of air speed and accelerometer that is reported. A larger difference may come
+from an indicated air speed."""
 _ITS_OWN = 0.5
-"""Largest error of the weight that the accelerometer reads, as a share of the difference, for an indicated
-air speed."""
+"""Largest weight error of the accelerometer, as a share of the difference, for an indicated air speed."""
 
 
 @dataclass(frozen=True)
 class AirspeedScale:
-    """Relative excess of the air speed in the motion over the one in use; an accelerometer scale error looks
-    the same."""
+    """Relative excess of the air speed from the motion over the used air speed."""
 
     scale: float
     std: float
 
     def is_indicated(self, weight: WeightReading | None) -> bool:
-        """Return whether the air speed may be an indicated one in thin air: the accelerometer reads the
-        weight right."""
+        """Return whether the air speed may be an indicated one in thin air, because the accelerometer reads
+        the right weight."""
         return weight is not None and self.scale > max(0.0, (weight.share - 1.0) / _ITS_OWN)
 
     @property
     def sentence(self) -> str:
-        """Sentence for the reader of the diagnosis."""
+        """Sentence of the diagnosis about the air speed's scale."""
         too = "too high" if self.scale > 0.0 else "too low"
         off = f"{100.0 * self.scale:+.1f} ± {100.0 * NORMAL_95 * self.std:.1f} %"
         return (
@@ -49,12 +48,12 @@ class AirspeedScale:
 
 
 def true_over_read(found: AirspeedScale | None, weight: WeightReading | None) -> float:
-    """Return the ratio of true to read air speed where the latter may be an indicated one; otherwise 1."""
+    """Return the ratio of true to read air speed if the read one may be indicated; otherwise 1."""
     return 1.0 + found.scale if found is not None and found.is_indicated(weight) else 1.0
 
 
 def airspeed_excess(fitted: EffectFit) -> float:
-    """Return the relative excess of the true air speed that a fitted model has; 0 where not measured."""
+    """Return the relative excess of the true air speed in a fitted model; 0 without a measured air speed."""
     point = fitted.point
     if TRUE_AIR_SPEED not in point.effects:
         return 0.0
@@ -62,8 +61,8 @@ def airspeed_excess(fitted: EffectFit) -> float:
 
 
 def airspeed_scale_of(problem: EffectProblem, fitted: EffectFit) -> AirspeedScale | None:
-    """Return the difference of the air speed that the fitted model shows; None where the difference is
-    insignificant or not measured."""
+    """Return the fitted model's difference of air speed and accelerometer; None if insignificant or not
+    measured."""
     point, scale = fitted.point, airspeed_excess(fitted)
     if not scale:
         return None

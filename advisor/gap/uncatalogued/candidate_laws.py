@@ -3,9 +3,9 @@
 The catalogue scales α and q, but not a_z and θ. The catalogue has no nonlinear reading, and no gyro that is
 sensitive to acceleration. Moments of the catalogue are nonlinear in deflection and α, but not in pitch rate.
 The catalogue's servo may lag or reach a rate limit, but neither overshoots nor meets a stop. The catalogue's
-α may lag, but no vane has friction or a stop. The catalogue's channels may be late, but not filtered. The
-catalogue's lift may be nonlinear and delayed, but has no hysteresis. Ice reduces lift and elevator power,
-but no effect reduces elevator power alone.
+α may lag, but no vane has friction or a stop. The catalogue's channels may be late, but have no filter. The
+catalogue's lift may be nonlinear and delayed, but has no hysteresis. Ice reduces lift and elevator power, but
+no effect reduces elevator power alone.
 """
 
 from collections.abc import Sequence
@@ -24,7 +24,7 @@ _FORCE = "force_equation"
 
 
 def lift_memory(flights: PreparedManeuvers) -> Variant:
-    """Return lift with the hysteresis of a play, the elementary one of a gradual stall."""
+    """Return lift with the hysteresis of play, an elementary model of a gradual stall."""
     swing = float(np.median([np.ptp(f.outputs["alpha"].y) for f in flights.flights]))
     return Variant(
         LIFT_MEMORY, _FORCE, ("Z_memory", "half_width_rad"),
@@ -35,7 +35,7 @@ def lift_memory(flights: PreparedManeuvers) -> Variant:
 
 
 def flow_lets_go(flights: PreparedManeuvers) -> Variant:
-    """Return lift that is lost at one angle of attack and returns at a lower one, like a relay."""
+    """Return lift that is lost at one angle of attack and returns at a lower angle, like a relay."""
     trims = np.array([flight.alpha_trim for flight in flights.flights])
     above = [float(np.max(f.outputs["alpha"].y)) - f.alpha_trim for f in flights.flights]
     most, middle = float(np.median(above)), float(np.median(trims))
@@ -61,14 +61,14 @@ _TRIMMED_RAD = 0.002
 
 
 def surface_stops(flights: PreparedManeuvers) -> list[Variant]:
-    """Return an elevator with a stop up, down or both."""
+    """Return variants of an elevator with a stop up, down, or both."""
     trims = np.array([flight.u_trim for flight in flights.flights])
     flown = np.concatenate([flight.u for flight in flights.flights])
     return stops(SURFACE_STOP, "input", STOPS, trims, flown)
 
 
 def vane_stops(flights: PreparedManeuvers) -> list[Variant]:
-    """Return a vane with a stop up, down or both."""
+    """Return variants of a vane with a stop up, down, or both."""
     trims = np.array([flight.alpha_trim for flight in flights.flights])
     flown = np.concatenate([flight.outputs["alpha"].y for flight in flights.flights])
     return stops(VANE_STOP, "alpha_sensor", ("vane_stop_up_rad", "vane_stop_down_rad"), trims, flown)
@@ -79,7 +79,7 @@ def stops(
 ) -> list[Variant]:
     """Return stops at the same angles in all manoeuvres, given relative to the median trim.
 
-    ``trims`` has shape (manoeuvres,); ``flown`` has all commands or readings, rad.
+    ``trims`` has shape (manoeuvres,); ``flown`` holds all commands or readings, rad.
     """
     middle = float(np.median(trims))
     furthest = float(np.max(flown)) - middle, middle - float(np.min(flown))
@@ -124,7 +124,7 @@ def _curve(name: str, block: str, channel: str, unit: float) -> Variant:
 
 
 def _filter(block: str, channel: str) -> Variant:
-    """Return a filter of first or second order in a reading, which nothing compensates."""
+    """Return a filter of first or second order in one channel, without compensation."""
 
     def pass_through(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
         p[:, [INDEX[name] for name in FILTER]] = (*values, OUTPUTS.index(channel))
@@ -174,7 +174,7 @@ _MOMENTS = (
 
 
 def _rings(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
-    """Replace the file's servo lag by a second-order servo, which is late by 2ζ/ω."""
+    """Replace the file's servo lag by a second-order servo, whose delay is 2ζ/ω."""
     omega, damping = values
     p[:, INDEX["lag_s"]], p[:, INDEX["lag_damping"]] = 2.0 * damping / omega, damping
 
@@ -208,7 +208,7 @@ _SENTENCES = {
 
 
 def sticking(most: float) -> Variant:
-    """Return a surface that dry friction holds until the command is far enough away.
+    """Return a surface that dry friction holds until the command has moved far enough away.
 
     ``most`` is the largest change of the command, rad.
     """
@@ -222,7 +222,7 @@ def sticking(most: float) -> Variant:
 
 
 def _weaker(flights: PreparedManeuvers) -> list[Variant]:
-    """Return an elevator that loses power after some manoeuvre, with all else unchanged."""
+    """Return an elevator that loses power after one manoeuvre, with all other terms unchanged."""
     if len(flights) < 3:
         return []
     columns = [INDEX["Z_delta_e"], INDEX["M_delta_e"]]
@@ -235,7 +235,7 @@ def _weaker(flights: PreparedManeuvers) -> list[Variant]:
 
 
 def laws_for(flights: PreparedManeuvers) -> list[Variant]:
-    """Return all laws of the identifying readings, of the moment, of the surface and of the lift."""
+    """Return all laws for the readings, the moment, the surface and the lift."""
     readings = [flights.channels[c] for c in flights.telling]
     of_readings = [variant for channel in readings for variant in _READINGS.get(channel, ())]
     of_readings += vane_stops(flights) if "alpha" in readings else []
@@ -246,7 +246,7 @@ def laws_for(flights: PreparedManeuvers) -> list[Variant]:
 
 
 def sentence_of(law: str, values: FloatArray) -> str:
-    """Return a sentence about a law with its numbers, of shape (numbers,)."""
+    """Return a sentence about a law with its parameter values, shape (numbers,)."""
     degrees = " and ".join(f"{np.degrees(value):.1f}" for value in values)
     first = float(values[0])
     return _SENTENCES[law].format(

@@ -1,8 +1,8 @@
-"""The accelerometer's reading of the weight: its mean compared with the flight path, without aerodynamics.
+"""Accelerometer check: its mean reading is compared with the flight path's, without aerodynamics.
 
 Over a manoeuvre a_z = (V (α̇ − q − G) + a_x sin α)/cos α, with G = (g/V)(cos α cos θ cos φ + sin α sin θ) as
 in ``simulate``. The fit has an offset for every channel and manoeuvre. An offset of more than a seventh of
-the weight is no zero error of an accelerometer.
+the weight is too large for an accelerometer's zero error.
 """
 
 from collections.abc import Sequence
@@ -18,35 +18,35 @@ from advisor.words.quantiles import NORMAL_95
 
 _NEEDED = ("a_z", "alpha", "theta")
 _LEAST_MANEUVERS = 3
-"""Record: least number of manoeuvres for a scatter."""
+"""Record: least number of manoeuvres for an estimate of the scatter."""
 _LEVEL_RAD = 0.26
 """Record: largest bank in rad at which the rate of the pitch angle equals the pitch rate."""
 _ENDS_S = 0.3
-"""Record: length in s of the average over each end of an angle."""
+"""Record: length in s of the averages at both ends of an angle."""
 _LEAST = 0.15
-"""Least departure of the share from 1 that no offset of an accelerometer explains."""
+"""Least deviation of the weight share from 1 that no accelerometer offset explains."""
 
 
 @dataclass(frozen=True)
 class WeightReading:
-    """The share of the required specific force that the accelerometer reads."""
+    """Share of the required specific force that the accelerometer reads."""
 
     share: float
     std: float
 
     @property
     def departure(self) -> float:
-        """Departure of the share from 1, over the largest one that an accelerometer's offset explains."""
+        """Deviation of the share from 1, over the largest deviation that an accelerometer offset explains."""
         return abs(self.share - 1.0) / max(_LEAST, SIGMAS * self.std)
 
     @property
     def is_off(self) -> bool:
-        """Whether the share differs from 1 by more than an accelerometer's offset."""
+        """Whether the share differs from 1 by more than an accelerometer offset."""
         return self.departure > 1.0
 
     @property
     def sentence(self) -> str:
-        """Sentence for the reader of the diagnosis."""
+        """Sentence of the diagnosis about the accelerometer's weight reading."""
         return (
             f"The accelerometer reads {self.share:.2f} ± {NORMAL_95 * self.std:.2f} of what weight and path "
             "demand: its scale or its zero is off."
@@ -54,7 +54,7 @@ class WeightReading:
 
 
 def weight_reading(maneuvers: Sequence[Maneuver], airspeed_m_s: float) -> WeightReading | None:
-    """Return the share that the accelerometer reads; None where too few manoeuvres are usable.
+    """Return the share of the weight that the accelerometer reads; None with too few usable manoeuvres.
 
     ``airspeed_m_s`` is used where no air speed was logged.
     """
@@ -67,7 +67,7 @@ def weight_reading(maneuvers: Sequence[Maneuver], airspeed_m_s: float) -> Weight
 
 
 def _means(maneuver: Maneuver, airspeed_m_s: float) -> tuple[float, float] | None:
-    """Return the mean of a_z as measured, and as the flight path requires."""
+    """Return the mean a_z as measured, and the mean that the flight path requires."""
     channels = maneuver.channels
     if not all(name in channels and len(channels[name]) > 1 for name in _NEEDED):
         return None

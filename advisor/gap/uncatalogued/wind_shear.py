@@ -1,8 +1,8 @@
-"""Wind that changes with height: the air speed compared with accelerations, without aerodynamics.
+"""Wind shear: the air speed compared with the accelerations, without aerodynamics.
 
-In steadily moving air the air speed changes by the integral of the accelerations. Where the wind changes with
-height, it also changes by the gradient times the climb, everywhere or in a layer. A parabola in time is
-removed from every manoeuvre, for the drift of the integral and for slow changes of the wind.
+In steadily moving air the air speed changes by the integral of the accelerations. With wind shear the air
+speed also changes by the gradient times the climb, everywhere or in a layer. A parabola in time is removed
+from every manoeuvre, for the drift of the integral and for slow changes of the wind.
 """
 
 from collections.abc import Sequence
@@ -20,48 +20,49 @@ from advisor.gap.decision import CHANCE
 
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10
-"""Record: least number of air speed samples in a manoeuvre beyond the parabola's three."""
+"""Record: least number of air speed samples in a manoeuvre, beyond the parabola's three parameters."""
 _LEAST_PER_S = 0.08
-"""Least gradient of the wind, 1/s, that matters: a knot in six metres."""
+"""Least wind gradient, 1/s, that is reported: a knot in six metres."""
 _MOST_PER_S = 0.5
 """Prior: largest gradient of a wind, 1/s. Wind shear that airports call severe begins at 0.2 1/s (ICAO Doc
 9817)."""
 _LEAST_MANEUVERS = 4
-"""Record: least number of manoeuvres that must agree on a gradient."""
+"""Record: least number of manoeuvres that must agree on a wind gradient."""
 _LEAST_SHARE = 0.17
-"""Least share of the air speed's residual that heights explain. In 770 simulated flights, in
-moving air and with delayed thrust, heights explained up to a seventh by chance. A wind gradient explains a
-fifth and more."""
+"""Least share of the air speed's residual that heights must explain. In 770 simulated flights, in moving air
+and with delayed thrust, heights explained up to a seventh by chance. A wind gradient explains a fifth and
+more."""
 _ALONE = 1e-3
-"""Numerical: least share of the squared height changes that all manoeuvres but one hold, for a scatter."""
+"""Numerical: least share of the squared height changes in all manoeuvres but one, for the scatter."""
 _LATE_S = (0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0)
-"""Numerical: delays of the air speed that are tried, s: a long line to the tube, and a filter."""
+"""Numerical: candidate delays of the air speed, s, by a long pressure line and a filter."""
 _HEIGHTS = 14
 _THINNEST_M = 2.0
-"""Numerical: least thickness of a layer, m. A layer is sought between any two of ``_HEIGHTS`` quantiles of
+"""Numerical: least thickness of a layer, m. Candidate layers lie between any two of ``_HEIGHTS`` quantiles of
 the height."""
 
 
 @dataclass(frozen=True)
 class Shear:
-    """A wind that changes with height."""
+    """Wind shear: a wind that changes with height."""
 
     gradient_per_s: float
     """Change of the air speed per metre climbed, 1/s."""
     std: float
-    """Standard deviation from leaving out one manoeuvre after the other, 1/s."""
+    """Standard deviation of the gradient by leaving out each manoeuvre in turn, 1/s."""
     share: float
-    """Share of the air speed's residual, beyond the accelerations, that heights explain."""
+    """Share of the air speed's residual, after the accelerations, that heights explain."""
     maneuvers: int
     """Number of manoeuvres that determine the gradient."""
 
     @property
     def is_implausible(self) -> bool:
-        """Whether the gradient is larger than any wind's: a gust in moving air, or a wrong air speed."""
+        """Whether the gradient exceeds that of any wind, as with a gust or a wrong air speed."""
         return abs(self.gradient_per_s) > _MOST_PER_S
 
     def is_agreed(self, tried: int = 1) -> bool:
-        """Return whether the manoeuvres agree on the gradient, the likeliest of ``tried``, and it matters."""
+        """Return whether the manoeuvres agree on a gradient that matters, the likeliest of ``tried``
+        gradients."""
         scatter = float(stdtrit(self.maneuvers - 1, 1.0 - 0.5 * CHANCE / tried)) * self.std
         return self.share >= _LEAST_SHARE and abs(self.gradient_per_s) >= max(_LEAST_PER_S, scatter)
 
@@ -73,28 +74,28 @@ class _Path:
     height: FloatArray
     """Height, m; NaN where it was not measured."""
     climbed: FloatArray
-    """Height climbed without the parabola, m."""
+    """Climbed height without its parabola in time, m."""
     speed: FloatArray
     """Air speed minus the integral of the accelerations, without the parabola, m/s."""
     parabola: FloatArray
     """Shape (n, 3): orthonormal basis of the parabola."""
 
     def freed(self, y: FloatArray) -> FloatArray:
-        """Return a course without its parabola."""
+        """Return a time series without its parabola."""
         return np.asarray(y - self.parabola @ (self.parabola.T @ y))
 
 
 def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Shear | None:
-    """Return the gradient of the wind; None where the air speed follows from the accelerations.
+    """Return the gradient of the wind; None if the accelerations explain the air speed.
 
     The effect of a wind that changes in one layer depends on the height of every sample.
 
     Parameters
     ----------
     maneuvers
-        Manoeuvres; those without the channels of the path are ignored.
+        Manoeuvres of the flight; those without the path's channels are ignored.
     true_over_read
-        Ratio of the true air speed to the air speed that is read.
+        Ratio of the true air speed to the read air speed.
     """
     found = _shear_of(_paths_of(maneuvers))
     if found is None:
@@ -107,7 +108,7 @@ def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Sh
 
 
 def _shear_of(paths: Sequence[_Path]) -> Shear | None:
-    """Return the gradient everywhere, or in the likeliest layer; None where there is none."""
+    """Return the wind gradient everywhere or in the likeliest layer; None without a gradient."""
     if len(paths) < _LEAST_MANEUVERS:
         return None
     everywhere = _gradient(paths)
@@ -123,7 +124,7 @@ def _shear_of(paths: Sequence[_Path]) -> Shear | None:
 
 
 def _gradient(paths: Sequence[_Path], low: float = -np.inf, high: float = np.inf) -> Shear:
-    """Return the gradient over all manoeuvres, of a wind that changes between two heights only."""
+    """Return the wind gradient over all manoeuvres, for a wind that changes between two heights only."""
     whole = not np.isfinite(high - low)
     winds = [p.climbed if whole else p.freed(np.clip(p.height, low, high)) for p in paths]
     products = np.array([float(w @ p.speed) for w, p in zip(winds, paths, strict=True)])
@@ -155,9 +156,9 @@ def _unexplained(paths: Sequence[_Path]) -> float:
 def _path_of(
     maneuver: Maneuver, true_over_read: float = 1.0, late_s: float = 0.0, skipped_s: float = 0.0
 ) -> _Path | None:
-    """Return path and air speed of a manoeuvre with a late instrument; None without channels or samples.
+    """Return path and air speed of a manoeuvre with a late sensor; None without channels or samples.
 
-    The first ``skipped_s`` seconds are left out, so that all delays are compared over the same samples.
+    The first ``skipped_s`` seconds are left out, so that all delays use the same samples.
     """
     found = maneuver.channels
     if not all(name in found and len(found[name]) > _LEAST_SAMPLES for name in _NEEDED):

@@ -1,4 +1,5 @@
-"""The answer: a reader of the posterior. Sizes, numbers and sentences are those of the answer's own model."""
+"""Answer of a diagnosis, made from the posterior. Sizes, derivatives and sentences are those of the answer's
+own model."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -65,14 +66,14 @@ def answer_of(
     most: int | None = None,
     seen: EffectProblem | None = None,
 ) -> tuple[Diagnosis, Findings]:
-    """Return the diagnosis that follows from the posterior, and the findings that it is made from.
+    """Return the diagnosis that follows from the posterior, and the findings behind it.
 
     Parameters
     ----------
     most
-        Number of effects of the answer that the improved simulator gets, the first ones; None: all of them.
+        Number of the answer's first effects in the improved simulator; None for all effects.
     seen
-        Flight to which the answer's own model is fitted anew, where that is likelier; None: no other flight.
+        Flight to which the answer's model is refitted if that is likelier; None for no other flight.
     """
     problem, floor = found.problem, found.floor
     plain = found.chosen[0]
@@ -96,14 +97,14 @@ def answer_of(
 
 
 def _named(found: Inference, answer: Alternative) -> tuple[PitchModel, ...]:
-    """Return the models of the effects that the answer names, one after another."""
+    """Return the models of the answer's effects, in the order of addition."""
     if answer.kind != "effect" or len(found.chosen) < 2 or found.chosen[1].name != answer.name:
         return ()
     return found.chosen[1:]
 
 
 def _models(found: Inference, named: Sequence[PitchModel]) -> tuple[Model, ...]:
-    """Return the plain model and the model of each named effect, each with the effect that comes next."""
+    """Return the plain model and the model of each named effect, each with the following effect."""
     explanations = [found.chosen[0], *named]
     models = [
         Model(one.fitted, one.held_out, None if following is None else _added(following), one.problem.flights)
@@ -113,7 +114,7 @@ def _models(found: Inference, named: Sequence[PitchModel]) -> tuple[Model, ...]:
 
 
 def _added(one: PitchModel) -> Added:
-    """Return the effect of an explanation; throttle or height may have moved in one manoeuvre only."""
+    """Return the effect of an explanation, with the manoeuvre that alone determines it, if any."""
     assert one.variant is not None
     place = one.fitted.point.place(one.fitted.point.index_of(one.name)).start
     return Added(one.name, sole_informative_maneuver(one.fitted, place) if one.variant.needs else None)
@@ -122,7 +123,7 @@ def _added(one: PitchModel) -> Added:
 def _unexplained(
     posterior: Posterior[PitchModel], answer: Alternative, law: PitchModel | None
 ) -> Unexplained | None:
-    """Return the residual without a name, where that is the answer."""
+    """Return the residual without a name, if the residual is the answer."""
     if answer.kind != "unknown":
         return None
     blocks = {a.block: p for a, p in posterior.by_alternative.items() if a.kind == "unknown"}
@@ -193,7 +194,7 @@ def _diagnosed(
 
 
 def _of_the_air(sought: SoughtAir) -> Iterator[Decision]:
-    """Yield the likelihood of moving air, where there is some."""
+    """Yield the decision on moving air, if the air moves."""
     if sought.found is not None:
         name = "gust" if sought.found.gust else "turbulence"
         yield Decision(name, "likelihood", sought.found.gain, CERTAIN, "nats")
@@ -202,7 +203,7 @@ def _of_the_air(sought: SoughtAir) -> Iterator[Decision]:
 def _where(
     posterior: Posterior[PitchModel], e: Findings, gap: Gap, known: FloatArray, present: Sequence[Cause]
 ) -> Where:
-    """Return the block of the answer; blocks score by the probability of all that is in them."""
+    """Return the block of the answer; a block's score is the probability of all causes in it."""
     if posterior.answer == PARAMETERS:
         return _of_the_derivatives(e.problem, e.last.fitted, known, gap)
     if e.unexplained is not None:
@@ -226,8 +227,7 @@ def speed_is_known(problem: EffectProblem, aircraft: Aircraft) -> bool:
 def _improvements(
     fitted: EffectFit, std: FloatArray, causes: tuple[Cause, ...]
 ) -> dict[str, dict[str, float]]:
-    """Return the effects of the improved simulator: the named ones, and the propeller's terms where
-    significant."""
+    """Return the improved simulator's effects: the named ones, and significant propeller terms."""
     effects = {c.effect: {k: v.value for k, v in c.parameters.items()} for c in causes if c.present}
     point = fitted.point
     if PROPELLER in point.effects:
@@ -239,7 +239,7 @@ def _improvements(
 
 
 def _of_the_derivatives(problem: EffectProblem, fitted: EffectFit, known: FloatArray, gap: Gap) -> Where:
-    """Return the equation whose derivatives in the aircraft file are further off, relative to their
+    """Return the equation whose derivatives in the aircraft file deviate most, relative to their
     uncertainty."""
     assert problem.prior_derivatives is not None
     off = fitted.point.derivatives - problem.prior_derivatives

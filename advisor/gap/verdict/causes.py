@@ -1,4 +1,4 @@
-"""The causes of an answer, moving air among them, with the sizes of the answer's own model."""
+"""Causes of an answer, including moving air, with sizes from the answer's own model."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,9 +21,9 @@ from advisor.gap.result import Cause, Gap, Value
 from advisor.gap.verdict.holdout_numbers import without_air
 
 MOST_CAUSES = 5
-"""Words: most causes that are stated."""
+"""Words: largest number of causes that are stated."""
 _CREDIBLE = 0.05
-"""Words: least probability of an effect that is listed as not told from the answer."""
+"""Words: least probability of an effect that is listed as not distinguished from the answer."""
 
 
 def causes_of(
@@ -34,8 +34,7 @@ def causes_of(
     gap: Gap,
     named: Sequence[PitchModel],
 ) -> tuple[Cause, ...]:
-    """Return the named causes in the order of the model, then the alternatives to the first, likeliest
-    first."""
+    """Return the named causes in the order of the model, then the alternatives to the first cause."""
     answer = posterior.answer
     present: list[Cause] = []
     together = 1.0
@@ -71,7 +70,7 @@ def _cause(
     probability: float,
     present: bool,
 ) -> Cause:
-    """Return an effect with its sizes in a model, whose posterior gives their errors."""
+    """Return an effect with its sizes from a model, whose posterior gives their errors."""
     point = model.fitted.point
     k = point.index_of(one.name)
     std = np.sqrt(np.maximum(np.diag(covariance_of(model.problem, model.fitted, found.heat)), 0.0))
@@ -96,7 +95,8 @@ def _offset(kinematics: KinematicCheck, posterior: Posterior[PitchModel], gap: G
 def _not_told_from(
     name: str, posterior: Posterior[PitchModel], channels: Sequence[str]
 ) -> tuple[tuple[str, ...], str]:
-    """Return the effects that the evidence does not exclude, and what would distinguish them."""
+    """Return the effects that the evidence does not exclude, and the measurement that would distinguish
+    them."""
     names = [
         a.name
         for a, p in posterior.by_alternative.items()
@@ -112,17 +112,17 @@ def _not_told_from(
 
 
 _GUST_ERROR = 0.25
-"""Prior: relative error of a gust's strength, whose course is a low-order estimate."""
+"""Prior: relative error of a gust's strength, because its course is a low-order estimate."""
 _TURBULENCE_ERROR = 0.5
-"""Prior: relative error of the strength of turbulence. Waves longer than a record pass for its trim. Where
-Dryden's scale length takes at least three seconds to fly through, 0.5 to 0.7 of the strength is found. Where
+"""Prior: relative error of the strength of turbulence. Waves longer than a record are absorbed by its trim.
+If Dryden's scale length takes at least three seconds to fly through, 0.5 to 0.7 of the strength is found. If
 the scale length takes one second, 1.2 of the strength is found."""
 _GUST_TIME_ERROR_S = 0.1
 """Prior: error of a gust's time, s: the distance between two knots of its course."""
 
 
 def moving_air_of(e: Findings) -> Cause | None:
-    """Return turbulence or a gust with the strength of its course; None where the air is not the answer."""
+    """Return turbulence or a gust with its strength; None if the air is not the answer."""
     if e.air is None:
         return None
     reference = e.problem.flights.reference_m_s
@@ -142,11 +142,11 @@ def moving_air_of(e: Findings) -> Cause | None:
 
 
 _TIMES = frozenset({"delay_s", "lag_s", "skew_s"})
-"""Parameters that are times."""
+"""Names of the parameters that are times."""
 _TIME_ERROR_S = 0.0006
-"""Prior: error of a delay, lag or skew in s, for the simulation's grid and the resolution of the stamps."""
+"""Prior: error of a delay, lag or skew in s, from the simulation's grid and the stamps' resolution."""
 _SHAPE_ERROR = 0.03
-"""Prior: relative error of a size for the low-order description of its effect."""
+"""Prior: relative error of a size due to the effect's low-order description."""
 
 
 def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, Value]:
@@ -167,7 +167,8 @@ def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, 
 
 
 def with_model_errors(cause: Cause, problem: EffectProblem) -> Cause:
-    """Return the cause with errors that no fit shows: of the low-order description and of the time grid."""
+    """Return the cause with errors that no fit shows: those of the low-order description and of the time
+    grid."""
     widened = {
         name: Value(v.value, float(np.hypot(v.std, _model_error(name, v.value))))
         for name, v in cause.parameters.items()
@@ -177,14 +178,12 @@ def with_model_errors(cause: Cause, problem: EffectProblem) -> Cause:
 
 
 def _model_error(name: str, value: float) -> float:
-    """Return the standard deviation of a size for model errors: a share of it, and for times part of a
-    step."""
+    """Return the standard deviation of a size due to model errors."""
     return float(np.hypot(_SHAPE_ERROR * value, _TIME_ERROR_S if name in _TIMES else 0.0))
 
 
 def _with_edge_error(cause: Cause, problem: EffectProblem) -> Cause:
-    """Return a delay or lag with the error of steps that may lie anywhere between two stamps of the
-    command."""
+    """Return a delay or lag with the error of steps that lie anywhere between two command stamps."""
     intervals = [flight.edges[:, 2] for flight in problem.flights.flights if len(flight.edges)]
     section, name = EFFECTS[cause.effect].stated or ("", "")
     if problem.held or not intervals or section != "elevator":

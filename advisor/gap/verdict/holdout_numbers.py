@@ -1,5 +1,4 @@
-"""The manoeuvres on which the numbers of a diagnosis are measured: held out of the fit, with channels as
-read."""
+"""Manoeuvres for the numbers of a diagnosis: held out of the fit, with channels as read."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,9 +15,9 @@ from advisor.oem.rows import Signal
 
 
 def on_holdout(e: Findings, holdout: int | None) -> tuple[Findings, list[int]]:
-    """Return the findings on the last ``holdout`` manoeuvres, from fits without them, and their indices.
+    """Return the findings on the last ``holdout`` manoeuvres, from fits without these, and their indices.
 
-    With None, or with as many as there are, every manoeuvre is held out in turn.
+    With None, or with the number of all manoeuvres, every manoeuvre is held out in turn.
     """
     kept, folds = kept_and_folds(e.problem, holdout)
     if len(kept) == len(e.problem.flights):
@@ -36,9 +35,9 @@ def on_holdout(e: Findings, holdout: int | None) -> tuple[Findings, list[int]]:
 
 
 def as_measured(problem: EffectProblem, models: Sequence[Model]) -> tuple[Model, ...]:
-    """Return the models with the residuals of the fit in manoeuvres that alone determine an effect.
+    """Return the models with the fit's residuals in manoeuvres that alone determine an effect.
 
-    No other manoeuvre predicts these.
+    No other manoeuvre predicts such a manoeuvre.
     """
     sole: set[int] = set()
     found = []
@@ -53,7 +52,7 @@ def as_measured(problem: EffectProblem, models: Sequence[Model]) -> tuple[Model,
 def kept_and_folds(problem: EffectProblem, holdout: int | None) -> tuple[list[int], list[list[int]]]:
     """Return the indices of the manoeuvres for the numbers, and the folds that are held out in turn.
 
-    ``holdout`` is the number of manoeuvres, the last ones; None, or as many as there are, means all.
+    ``holdout`` is the number of the last manoeuvres; None, or the number of all, means all.
     """
     n, folds = len(problem.flights), folds_for(problem.flights)
     if holdout is None or not 0 < holdout < n:
@@ -63,7 +62,8 @@ def kept_and_folds(problem: EffectProblem, holdout: int | None) -> tuple[list[in
 
 
 def over_maneuvers(problem: EffectProblem, held: HeldOut, kept: Sequence[int]) -> HeldOut:
-    """Return the hold-out with mean squares over some manoeuvres only; every sample counts alike."""
+    """Return the hold-out with mean squares over the ``kept`` manoeuvres only; every sample has equal
+    weight."""
     flights = [problem.flights.flights[i] for i in kept]
     samples = np.array([[len(f.outputs[c].t) for c in problem.channels] for f in flights], float)
     shares = samples / np.sum(samples, axis=0)
@@ -73,7 +73,7 @@ def over_maneuvers(problem: EffectProblem, held: HeldOut, kept: Sequence[int]) -
 
 
 def as_read(problem: EffectProblem, offset_rad: float) -> EffectProblem:
-    """Return the flights with the offset of α that was removed before the fit."""
+    """Return the flights with the offset of α that was subtracted before the fit."""
     flights = tuple(
         replace(
             f,
@@ -85,7 +85,7 @@ def as_read(problem: EffectProblem, offset_rad: float) -> EffectProblem:
 
 
 def with_offset(problem: EffectProblem, held: HeldOut, offset_rad: float) -> HeldOut:
-    """Return the residuals of a simulator that does not know the offset of α."""
+    """Return the residuals of a simulator without the offset of α."""
     c = problem.channels.index("alpha")
     residuals = []
     for flight, residual in zip(problem.flights.flights, held.residuals, strict=True):
@@ -95,9 +95,9 @@ def with_offset(problem: EffectProblem, held: HeldOut, offset_rad: float) -> Hel
 
 
 def without_air(held: HeldOut, air: MovingAir) -> HeldOut:
-    """Return the hold-out without the share of moving air, equally in every manoeuvre.
+    """Return the hold-out without the part of moving air, in every manoeuvre.
 
-    The residuals are those without the likeliest course of the air.
+    The residuals exclude the likeliest course of the air.
     """
     share = np.minimum(air.mean_square_beyond_air / held.mean_square, 1.0)
     powers = held.by_maneuver * share
@@ -107,9 +107,10 @@ def without_air(held: HeldOut, air: MovingAir) -> HeldOut:
 def at_constant_speed(
     problem: EffectProblem, fitted: EffectFit, folds: Sequence[Sequence[int]] | None = None
 ) -> HeldOut | None:
-    """Return the hold-out of the model with derivatives that do not scale with the air speed, refitted.
+    """Return the refitted model's hold-out with derivatives that do not scale with the air speed.
 
-    None where the speed hardly varies, or was not measured. ``folds`` are those of ``hold_out``.
+    None if the air speed hardly varies or was not measured. ``folds`` has the same meaning as in
+    ``hold_out``: groups of manoeuvres that are held out together.
     """
     flights = problem.flights
     if flights.speed_moves < SPEED_CHANGE:

@@ -16,19 +16,19 @@ from advisor.gap.verdict.text import place
 from advisor.words.quantiles import NORMAL_95
 
 _ANOTHER_SPEED = 0.005
-"""Words: least relative difference between two means of the air speed that is reported."""
+"""Words: least relative difference between two mean air speeds that is reported."""
 _MATTERS = 0.3
-"""Words: least gap of a simulator at constant speed that is reported."""
+"""Words: least gap of a constant-speed simulator that is reported."""
 _FEW = 6
-"""Words: number of manoeuvres below which changes between them can hardly be seen."""
+"""Words: number of manoeuvres below which changes between them are hardly visible."""
 
 
 def notes_of(
     e: Findings, aircraft: Aircraft, holdout: int | None, verdict: GapVerdict, nuisances: Collection[str]
 ) -> tuple[str, ...]:
-    """Return all notes that these flights and their aircraft file require, a sentence each.
+    """Return all notes on these flights and their aircraft file, one sentence each.
 
-    ``nuisances`` are effects that the improved simulator gets although they are no cause.
+    ``nuisances`` are effects in the improved simulator that are no cause.
     """
     return (
         *_of_the_hold_out(holdout, len(e.problem.flights)),
@@ -52,7 +52,7 @@ def _of_the_hold_out(holdout: int | None, flown: int) -> Iterator[str]:
 
 
 def _of_the_speed(e: Findings, aircraft: Aircraft) -> Iterator[str]:
-    """Yield the source of the air speed, and its errors."""
+    """Yield notes on the source of the air speed and its errors."""
     flights = e.problem.flights
     flown, reference = _mean_speed(flights), flights.reference_m_s
     is_stated = aircraft.reference_airspeed_m_s is not None
@@ -77,7 +77,7 @@ def _of_the_speed(e: Findings, aircraft: Aircraft) -> Iterator[str]:
 
 
 def _of_a_constant_speed(e: Findings, verdict: GapVerdict) -> Iterator[str]:
-    """Yield the gap of a simulator at constant speed, where the verdict is none and the air speed varied."""
+    """Yield the gap of a constant-speed simulator, if the verdict is none and the air speed varied."""
     if verdict != "none" or e.constant_speed is None or not e.problem.flights.speed_measured:
         return
     constant, given = (whole_gap(h.mean_square, e.floor) for h in (e.constant_speed, e.last.held_out))
@@ -127,7 +127,7 @@ def _of_the_air(e: Findings) -> Iterator[str]:
 
 
 def _of_the_file(e: Findings, aircraft: Aircraft, nuisances: Collection[str]) -> Iterator[str]:
-    """Yield the additional terms of the improved simulator, and the treatment of the file's effects."""
+    """Yield notes on the improved simulator's additional terms and on the file's effects."""
     if nuisances:
         yield (
             f"The improved simulator also has a propeller's terms ({_listed(sorted(nuisances))}). Every "
@@ -160,7 +160,7 @@ def _of_what_is_missing(e: Findings, aircraft: Aircraft) -> Iterator[str]:
 
 
 def _command(e: Findings) -> str:
-    """Return how the command moved between its stamps, and what looks the same."""
+    """Return a note on the motion of the command between its stamps, and on the alternative."""
     if not e.problem.held:
         return "The command was taken as linear between its stamps, with edges anywhere between two."
     half = 0.5 * float(np.median(np.diff(e.problem.flights.flights[0].t_u)))
@@ -171,7 +171,7 @@ def _command(e: Findings) -> str:
 
 
 def left_out(maneuvers: Sequence[Maneuver]) -> tuple[str, ...]:
-    """Return the manoeuvres that were not used, each with the reason."""
+    """Return the unused manoeuvres, each with the reason."""
     return tuple(f"Left out: manoeuvre {m.number}: {why_left_out(m)}." for m in maneuvers)
 
 
@@ -180,7 +180,7 @@ def _listed(effects: Sequence[str]) -> str:
 
 
 def unusual_signs(model: Mapping[str, float]) -> tuple[str, ...]:
-    """Return a note on a sign of the aircraft file's model that is right for few aircraft only."""
+    """Return a note on a sign in the aircraft file's model that is right for few aircraft only."""
     if model.get("M_delta_e", 0.0) <= 0.0:
         return ()
     return (

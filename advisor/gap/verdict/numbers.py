@@ -1,7 +1,7 @@
 """The numbers of a diagnosis: gap, shrink, waterfall, model, fidelity and traces.
 
 The measures are Theil's inequality coefficient (Theil 1966), R², and the tolerance of simulator
-qualification. The coefficient is split into bias, variance and covariance (Jategaonkar, *Flight Vehicle
+qualification. Theil's coefficient is split into bias, variance and covariance (Jategaonkar, *Flight Vehicle
 System Identification*, section 11.3). For the short period the tolerance is ±1.5° of pitch or ±2 °/s, and
 ±0.10 g. The source is 14 CFR Part 60, Appendix A, and EASA CS-FSTD(A), test 2.c.10.
 """
@@ -25,7 +25,7 @@ from advisor.gap.result import Cause, ComparedDerivative, Gap, Shrink, Trace, Va
 from advisor.gap.simulator.layout import DERIVATIVES
 
 _UNCHANGED = 0.1
-"""Share of the change of the derivatives below which a manoeuvre counts as flown before the change."""
+"""Share of the change in flight below which a manoeuvre was flown before the change."""
 
 
 def gap_numbers(problem: EffectProblem, floor: FloatArray, before: HeldOut, last: HeldOut) -> Gap:
@@ -60,7 +60,7 @@ def irreducible(mean_square: FloatArray, floor: FloatArray, gap: Gap) -> float:
 def shrink_of(
     e: Findings, kept: Sequence[int], gap: Gap, before: HeldOut, last: HeldOut, wrong_derivatives: bool
 ) -> Shrink:
-    """Return the shrink of the gap on held-out manoeuvres, with an interval from resampling.
+    """Return the shrink of the gap on held-out manoeuvres, with its 95 % interval by resampling.
 
     ``wrong_derivatives``: the file's derivatives were found wrong.
     """
@@ -79,8 +79,8 @@ def shrink_of(
 
 
 def _by_numbers(e: Findings) -> float | None:
-    """Return the share of the gap that fitted derivatives remove, per cent, with moving air; None without a
-    file's."""
+    """Return the share of the gap that fitted derivatives remove, per cent; None without derivatives in the
+    file."""
     if e.file_model is None:
         return None
     was, now = (whole_gap(held.mean_square, e.floor) for held in (e.file_model, e.models[0].held_out))
@@ -97,8 +97,8 @@ def _removed_beyond_air(models: Sequence[Model]) -> float | None:
     """Return the share of the residual beyond moving air that the effects remove, on held-out manoeuvres.
 
     The innovations contain no moving air. A right model's k parameters come from two of three folds, so its
-    squared innovations exceed 1 by 1.5 k over the samples. That is subtracted. None where no power exceeds
-    the noise.
+    squared innovations exceed 1 by 1.5 k over the samples. That excess is subtracted. None where no power
+    exceeds the noise.
     """
     last = models[-1]
     noise, samples = last.fitted.noise**2, sum(map(len, last.fitted.innovations))
@@ -110,7 +110,7 @@ def _removed_beyond_air(models: Sequence[Model]) -> float | None:
 def waterfall_of(
     models: Sequence[Model], floor: FloatArray, extra: Sequence[Cause], start: float
 ) -> tuple[tuple[str, float], ...]:
-    """Return the effects with the gap after their addition, in order.
+    """Return the gap after the addition of each effect, in order.
 
     ``extra`` are causes that are judged outside the fits, and ``start`` is the simulator's gap.
     """
@@ -124,7 +124,7 @@ def waterfall_of(
 
 
 def model_of(problem: EffectProblem, fitted: EffectFit, known: FloatArray) -> dict[str, Value]:
-    """Return the eight parameters about zero angles, from the trimmed ones of each manoeuvre.
+    """Return the eight parameters about zero angles, from the parameters about each manoeuvre's trim.
 
     ``known``, shape (k, k), is the covariance of the shared parameters. An error of the derivatives moves the
     terms at zero angles of all manoeuvres together, through the trim angles.
@@ -152,7 +152,7 @@ def model_of(problem: EffectProblem, fitted: EffectFit, known: FloatArray) -> di
 def compared_derivatives(
     problem: EffectProblem, fitted: EffectFit, known: FloatArray
 ) -> tuple[ComparedDerivative, ...]:
-    """Return the simulator's derivatives with the flight's, those that differ by most intervals first.
+    """Return the simulator's and the flight's derivatives, with the most significant difference first.
 
     ``known``, shape (k, k), is the covariance of the shared parameters. Without a simulator no derivative is
     compared.
@@ -170,10 +170,9 @@ def compared_derivatives(
 
 
 def _as_it_began(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
-    """Return which manoeuvres were flown before a change in flight, shape (manoeuvres,), bool; all without
-    one.
+    """Return whether each manoeuvre was flown before a change in flight, shape (manoeuvres,), bool.
 
-    A change of mass or centre of gravity changes the trim too, so the file holds the state before it.
+    A change of mass or centre of gravity changes the trim too, so the file holds the state before the change.
     """
     derivatives = problem.driving(fitted.point)[:, : len(DERIVATIVES)]
     off = np.max(
@@ -185,7 +184,8 @@ def _as_it_began(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
 def fidelity_of(
     problem: EffectProblem, before: HeldOut, last: HeldOut
 ) -> dict[str, tuple[Yardsticks, Yardsticks]]:
-    """Return the published measures of fidelity of every channel, before and after."""
+    """Return the published fidelity measures of every channel, for the given simulator and the final
+    model."""
     found = {}
     for c, name in enumerate(problem.channels):
         measured = np.concatenate([f.outputs[name].y for f in problem.flights.flights])

@@ -1,4 +1,4 @@
-"""The answer of a single manoeuvre: where the gap lies. One manoeuvre proves no cause."""
+"""Answer of a single manoeuvre, which shows only where the gap lies. One manoeuvre proves no cause."""
 
 from dataclasses import replace
 
@@ -30,7 +30,7 @@ from advisor.gap.verdict.numbers import (
 from advisor.gap.verdict.text import sentence_of, sentence_of_one_maneuver
 
 _FIXED = 0.1
-"""Numerical: tolerance of derivatives that stay at the file's, over that of right ones."""
+"""Numerical: tolerance of derivatives fixed at the file's values, over that of right derivatives."""
 
 
 def answer_of_one(
@@ -38,7 +38,7 @@ def answer_of_one(
 ) -> tuple[Diagnosis, Findings]:
     """Return the diagnosis of a single manoeuvre, and its findings.
 
-    The gap is that of the aircraft file's derivatives, or of fitted ones where no file states them.
+    The gap is that of the file's derivatives, or of fitted derivatives if the file states none.
     """
     held_out = hold_out(problem, baseline)
     floor = floor_of(problem, baseline, held_out)
@@ -73,7 +73,7 @@ def answer_of_one(
 
 
 def _located(problem: EffectProblem, baseline: EffectFit) -> Unexplained:
-    """Return the block of the disturbance that explains the file's model best."""
+    """Return the block whose disturbance explains the file model's residual best."""
     as_filed = baseline
     if problem.prior_derivatives is not None:
         file = replace(baseline.point, derivatives=problem.prior_derivatives)

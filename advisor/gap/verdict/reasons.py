@@ -1,4 +1,4 @@
-"""The reasons of an answer: its rival, and the parts of its log odds, which add up."""
+"""Reasons of an answer: its strongest rival, and the parts of the log odds between both."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -30,11 +30,11 @@ _WORDS = {
     "gap": "visible gap of the simulator as given",
     "rest": "other ways in which each may be true",
 }
-"""Words: parts of the log odds."""
+"""Words: name of each part of the log odds."""
 
 
 def weighed(posterior: Posterior[Any]) -> Weighed:
-    """Return all alternatives with the parts of their likeliest way, and the answer against its rival."""
+    """Return all alternatives with the evidence of their likeliest model, and the answer's rival."""
     answer, rival = posterior.answer, _rival_of(posterior)
     label = answer.block if answer.kind == "unknown" else answer.name
     (_, probability), *_ = together(posterior.by_alternative.items())
@@ -51,12 +51,12 @@ def weighed(posterior: Posterior[Any]) -> Weighed:
 
 
 def _rival_of(posterior: Posterior[Any]) -> Alternative:
-    """Return the likeliest alternative with another name than the answer."""
+    """Return the likeliest alternative whose name is not the answer's."""
     return together(posterior.by_alternative.items())[1][0]
 
 
 def _evidence_in(posterior: Posterior[Any]) -> Iterator[AlternativeEvidence]:
-    """Yield every alternative with the parts of its likeliest row."""
+    """Yield every alternative with the log weight's parts of its likeliest row."""
     for alternative, p in posterior.by_alternative.items():
         row = _best_row(posterior, alternative)
         columns = tuple(Column(n, value, "nats", _WORDS[n]) for n, value in row.terms.items())
@@ -64,7 +64,7 @@ def _evidence_in(posterior: Posterior[Any]) -> Iterator[AlternativeEvidence]:
 
 
 def _why_of(posterior: Posterior[Any], rival: Alternative) -> Iterator[Contribution]:
-    """Yield the parts of the log odds of the answer against its rival, the largest first; they add up."""
+    """Yield the parts of the log odds between the answer and its rival, the largest first."""
     mine, other = (_best_row(posterior, a) for a in (posterior.answer, rival))
     names = dict.fromkeys([*mine.terms, *other.terms])
     parts = {name: mine.terms.get(name, 0.0) - other.terms.get(name, 0.0) for name in names}
@@ -74,7 +74,8 @@ def _why_of(posterior: Posterior[Any], rival: Alternative) -> Iterator[Contribut
 
 
 def _log_odds(posterior: Posterior[Any], rival: Alternative) -> float:
-    """Return the log odds of the answer against a rival, nats; all blocks of the unknown count together."""
+    """Return the log odds between the answer and a rival, nats, over all blocks of an effect without a
+    name."""
     mine, other = (
         np.logaddexp.reduce([r.weight for r in posterior.rows if r.alternative.name == a.name])
         for a in (posterior.answer, rival)
@@ -91,8 +92,8 @@ def none_means_no_gap(
 ) -> Posterior[Any]:
     """Return the posterior in which "none" means that nothing is above the floor.
 
-    A visible gap moves the probability of "none" to wrong numbers, as far as fitted derivatives remove the
-    gap. The rest goes to the likeliest block of the unknown.
+    A visible gap moves probability from "none" to wrong derivatives, as far as fitted derivatives remove the
+    gap. The rest of that probability goes to the likeliest block of an effect without a name.
     """
     if file_model is None:
         return posterior

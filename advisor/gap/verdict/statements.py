@@ -1,4 +1,4 @@
-"""Statements about effects in a pilot's words, with their sizes."""
+"""Statements about effects and their sizes in a pilot's words."""
 
 import math
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from advisor.gap.result import Cause
 def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
     """Return the statement about an effect with its size.
 
-    ``in_simulator`` has the effects that the simulator has some of; the size is then the difference.
+    ``in_simulator`` holds the effects that the simulator already has; the size is then the difference.
     """
     sizes = _sizes(cause)
     effect = EFFECTS[cause.effect]
@@ -34,7 +34,7 @@ def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
 
 
 def or_else(first: Cause, causes: Sequence[Cause]) -> str:
-    """Return words for the other effects that the data cannot distinguish from the first one.
+    """Return words for the other effects that the data cannot distinguish from the first effect.
 
     A lag of the servo looks like a delay, and the reverse.
     """
@@ -56,8 +56,7 @@ def _sizes(cause: Cause) -> dict[str, float]:
 
 
 def in_simulator(aircraft: Aircraft) -> frozenset[str]:
-    """Return the effects that the simulator has some of: from ``effects``, as a parameter, or as its own
-    curves."""
+    """Return the effects that the simulator already has, from the aircraft file."""
     # A simulator beyond eight parameters may have curves.
     return frozenset(
         name

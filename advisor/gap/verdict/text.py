@@ -1,4 +1,4 @@
-"""The sentence of a diagnosis for pilots, its title, the answers in words, and its limits."""
+"""Texts of a diagnosis: the sentence for pilots, the title, the answers and the limits."""
 
 from collections.abc import Iterator, Sequence
 
@@ -8,7 +8,7 @@ from advisor.gap.verdict.statements import or_else, what
 from advisor.words.certainty import Answers, title
 
 _AS_LIKELY = 0.99
-"""Words: score relative to the best block at which another block is equally likely."""
+"""Words: block score relative to the best block above which both blocks are equally likely."""
 BLOCKS = {
     "input": "between the command and the surface",
     "force_equation": "in the lift",
@@ -36,7 +36,7 @@ def place(block: str) -> str:
 
 
 def in_words(alternative: Alternative) -> str:
-    """Return an alternative in words: ``something without a name in the lift``, ``ground effect``."""
+    """Return the words for an alternative: ``something without a name in the lift``, ``ground effect``."""
     words = {"none": "nothing to correct", "parameters": "wrong numbers"}
     if alternative.kind == "unknown":
         return f"something without a name {place(alternative.block)}"
@@ -59,8 +59,8 @@ def sentence_of(
     shrink: Shrink | None,
     in_simulator: frozenset[str] = frozenset(),
 ) -> str:
-    """Return one sentence for the crew; ``in_simulator`` has the effects that the aircraft file has some
-    of."""
+    """Return the sentence for the crew; ``in_simulator`` holds the effects that the aircraft file already
+    has."""
     present = [c for c in causes if c.present]
     if verdict == "none":
         return _of_no_gap(gap)
@@ -147,25 +147,25 @@ _TITLES = {
 
 
 def answers_of(evidence: Sequence[AlternativeEvidence]) -> Answers:
-    """Return the answers in words with their probabilities, the likeliest first."""
+    """Return the answers as texts with their probabilities, the likeliest first."""
     shares = together((one.alternative, one.probability) for one in evidence)
     return [(in_words(alternative), p) for alternative, p in shares]
 
 
 def title_of_verdict(verdict: GapVerdict, answers: Answers) -> str:
-    """Return the title over a verdict."""
+    """Return the title of a verdict."""
     return title(*_TITLES[verdict], answers)
 
 
 def title_of(d: Diagnosis) -> str:
-    """Return the title over a diagnosis."""
+    """Return the title of a diagnosis."""
     shown = title_of_verdict(d.verdict, answers_of(d.evidence))
     is_free = d.verdict == "none" and d.gap.before < VISIBLE
     return shown.replace("NOTHING TO CORRECT", "NO GAP") if is_free else shown
 
 
 def limits_of(d: Diagnosis) -> Iterator[str]:
-    """Yield the limits of the answer, which stand next to the answer."""
+    """Yield the limits of the answer, which the report prints next to it."""
     if d.verdict != "untested" and not d.derivatives:
         yield "No simulator was given: the answer is about the flight alone."
     air = "The air moved, and its course was fitted to the same samples."
