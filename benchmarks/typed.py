@@ -22,11 +22,12 @@ ROOT = Path(__file__).parents[1]
 PAGES = (ROOT / "README.md", ROOT / "docs" / "tutorial.md", *sorted((ROOT / "docs" / "how-to").glob("*.md")))
 WAITS = ("serve", "live", "mcp", "completion", "udpin:", "tcp://", "replay")
 """Words of commands that wait for somebody or something else."""
-REFERENCE = (
-    "\nreference: {mass_kg: 2.0, wing_area_m2: 0.45, chord_m: 0.24, span_m: 1.9, iyy_kg_m2: 0.11,"
-    " cg_percent_chord: 25}\n"
-)
-"""Mass and geometry of the sample's aircraft, which some exports need."""
+WHOLE = """
+reference: {mass_kg: 2.0, wing_area_m2: 0.45, chord_m: 0.24, span_m: 1.9, iyy_kg_m2: 0.11}
+aileron: {output: 1, calibration: [[1100, 25.0], [1500, 0.0], [1900, -25.0]]}
+rudder: {output: 4, calibration: [[1100, 20.0], [1500, 0.0], [1900, -20.0]]}
+"""
+"""What some exports need beyond the sample's aircraft file."""
 ANSWERS = "\n" * 40
 """A reader who takes every proposal of a question."""
 LONGEST_S = 300.0
@@ -44,7 +45,7 @@ def furnish(folder: Path, flight: Path) -> None:
     """Put the files into a folder that the pages name; the flight has several names."""
     folder.mkdir(parents=True)
     shutil.copytree(ROOT / "logs", folder / "logs")
-    aircraft = (ROOT / "logs" / "arduplane-calm.yaml").read_text(encoding="utf-8") + REFERENCE
+    aircraft = (ROOT / "logs" / "arduplane-calm.yaml").read_text(encoding="utf-8") + WHOLE
     (folder / "my-aircraft.yaml").write_text(aircraft, encoding="utf-8")
     (folder / "fleet.yaml").write_text('"*": my-aircraft.yaml\n', encoding="utf-8")
     (folder / "flights").mkdir()

@@ -154,23 +154,22 @@ def _show(
         app.run()
     if app.failure is not None:
         raise app.failure
-    for line in so_far(app.view.state, aircraft):
+    for line in so_far(app.view.state):
         click.echo(printable(line))
     if tempo is not None and app.view.problems:
         raise UnusableInputError.of(app.view.problems[:1])
 
 
-def so_far(state: "CampaignState", aircraft: Aircraft) -> Iterator[str]:
+def so_far(state: "CampaignState") -> Iterator[str]:
     """Yield each verdict of a flight test that was left, and stop or continue; nothing before the first
     verdict of an axis."""
     from advisor.report.facts.decision import decisions
-    from advisor.report.lateral import lateral_lines
-    from advisor.report.result_rows import maneuver_line
+    from advisor.report.result_rows import SIDE_ROOM, maneuver_line
 
     lateral = state.lateral is not None and state.lateral.maneuvers
     yield from map(maneuver_line, state.maneuvers)
     if state.lateral is not None and lateral:
         yield "Roll and yaw"
-        yield from lateral_lines(state.lateral, aircraft)
+        yield from (maneuver_line(one, SIDE_ROOM) for one in state.lateral.maneuvers)
     if state.maneuvers or lateral:
         yield from decisions(state, pitch=bool(state.maneuvers))

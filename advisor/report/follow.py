@@ -17,8 +17,7 @@ from advisor.flight.maneuvers.events import (
 )
 from advisor.flight.signals.messages import Columns
 from advisor.report.facts.decision import next_line, stop_line
-from advisor.report.lateral import ROOM
-from advisor.report.result_rows import maneuver_line
+from advisor.report.result_rows import SIDE_ROOM, maneuver_line
 from advisor.words.vehicle_time import CLOCK, clock
 
 
@@ -79,7 +78,7 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
             say(maneuver_line(judged))
             _say_decision(verdict, plan, say)
         case ManeuverJudged(judged, verdict, plan):
-            say(f"{maneuver_line(judged, ROOM)}  (roll and yaw)")
+            say(f"{maneuver_line(judged, SIDE_ROOM)}  (roll and yaw)")
             _say_decision(verdict, plan, say)
 
 

@@ -1,4 +1,4 @@
-"""The lateral half of the analysis: its JSON block, and its text."""
+"""The lateral half of the analysis: its JSON block, and the lines on its modes."""
 
 from collections.abc import Iterator
 from functools import partial
@@ -11,9 +11,7 @@ from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
 from advisor.oem.estimate import Estimate
 from advisor.report.axis_document import concluded, fitted, flown, with_intervals
-from advisor.report.facts.estimates import joint_source, of_all, untold
 from advisor.report.qualities import levels_document, levels_of, mode_facts, tests_document, tests_of
-from advisor.report.result_rows import maneuver_line
 from advisor.words.plain import picked, plain
 
 _quality = partial(picked, names="value std ci95")
@@ -74,36 +72,9 @@ def _modes(modes: LateralModes) -> dict[str, Any]:
     }
 
 
-ROOM = 18
-"""Columns of an input of aileron or rudder."""
-
-
-def lateral_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
-    """Yield the lines of the lateral half: verdicts, derivatives, modes, levels; none without manoeuvres."""
-    if state.maneuvers:
-        yield from (maneuver_line(one, ROOM) for one in state.maneuvers)
-        yield ""
-        yield from lateral_results(state, aircraft)
-
-
-def lateral_results(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
-    """Yield derivatives, modes, levels and tests of the joint estimate; nothing without one."""
-    if state.model is not None:
-        yield from _model_lines(state, state.model)
-        yield from _quality_lines(state, aircraft)
-
-
-def _model_lines(state: LateralState, model: LateralEstimate) -> Iterator[str]:
-    yield f"{joint_source(state)} at {model.airspeed_m_s:.1f} m/s; ± is half the 95 % interval."
-    for row in (of_all(name, state, {}) for name in model.names):
-        if not row.reason:
-            yield f"  {row.name:<6} {row.cell:>20} {row.unit}"
-    yield from (f"  {line}" for line in untold(model))
+def side_quality_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
+    """Yield the modes, the levels of light aircraft, and the tests of the aircraft file's model."""
     yield from (f"  {one.name:<18} {one.sentence}" for one in mode_facts(state))
-
-
-def _quality_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
-    """Yield the levels of light aircraft, and the tests of the aircraft file's model."""
     levels = [one for one in levels_of(state) if one.group == next(iter(GROUPS))]
     if levels:
         yield f"  {SOURCE}, Classes {levels[0].group}:"

@@ -3,13 +3,16 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from advisor.aircraft.reference import PARAMETERS
-from advisor.campaign.state import CampaignState, JudgedManeuver
+from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
+from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.flight.signals.track import ChannelStatus
 from advisor.report.facts.estimates import EstimatedParameter, of_all
 from advisor.report.qualities import reference_speed
 from advisor.report.table import Table, digits
 from advisor.words.vehicle_time import clock
+
+SIDE_ROOM = 18
+"""Columns of the name of an input of aileron or rudder."""
 
 
 def maneuver_line(judged: JudgedManeuver, room: int = 15) -> str:
@@ -19,11 +22,20 @@ def maneuver_line(judged: JudgedManeuver, room: int = 15) -> str:
     return f"{judged.maneuver.number:2d}  {at:>7}  {span.kind:<{room}}  {mark} {verdict.sentence}"
 
 
-def joint_table(state: CampaignState, prior: Mapping[str, float]) -> Table | None:
-    """Return the joint estimate of pitch against the simulator's model; None where nothing is accepted."""
+def joint_table(
+    state: CampaignState | LateralState, prior: Mapping[str, float], name: str = "joint"
+) -> Table | None:
+    """Return the joint estimate of an axis against the simulator's model; None where nothing is accepted.
+
+    ``name`` is that of the table, which is unique on a page.
+    """
     if state.model is None:
         return None
-    return joint_of("joint", reference_speed(state), [of_all(name, state, prior) for name in PARAMETERS])
+    if isinstance(state, CampaignState):
+        return joint_of(name, reference_speed(state), [of_all(one, state, prior) for one in PARAMETERS])
+    rows = [of_all(one, state, prior) for one in SIDE_PARAMETERS]
+    at = f" at {state.model.airspeed_m_s:.1f} m/s"
+    return joint_of(name, at, rows, " L and N hold the products of inertia.")
 
 
 def joint_of(name: str, at: str, rows: Sequence[EstimatedParameter], more: str = "") -> Table:

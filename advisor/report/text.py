@@ -13,9 +13,9 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.report.facts.decision import INDENT, decisions
 from advisor.report.facts.estimates import untold
 from advisor.report.facts.gap import counted
-from advisor.report.lateral import lateral_lines
+from advisor.report.lateral import side_quality_lines
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
-from advisor.report.result_rows import channel_table, joint_table, maneuver_line
+from advisor.report.result_rows import SIDE_ROOM, channel_table, joint_table, maneuver_line
 from advisor.words.vehicle_time import CLOCK, clock
 
 
@@ -89,12 +89,19 @@ class AnalysisText:
             yield Text()
         yield from self._rules()
 
-    def _lateral(self) -> Iterator[Text]:
-        """Yield the lateral half, where it was asked for."""
-        if self.state.lateral is not None:
-            lines = [Text(line) for line in lateral_lines(self.state.lateral, self.aircraft)]
-            if lines:
-                yield from (Text(), Text("Roll and yaw", style="bold"), *lines)
+    def _lateral(self) -> RenderResult:
+        """Yield the lateral half, where it was asked for and flown."""
+        side = self.state.lateral
+        if side is None or not side.maneuvers:
+            return
+        yield from (Text(), Text("Roll and yaw", style="bold"))
+        yield from (Text(maneuver_line(one, SIDE_ROOM)) for one in side.maneuvers)
+        joint = joint_table(side, self.aircraft.model)
+        if side.model is not None and joint is not None:
+            yield Text()
+            yield joint.on_console(joint.caption)
+            yield from map(Text, untold(side.model))
+            yield from map(Text, side_quality_lines(side, self.aircraft))
 
     def _movements(self) -> Iterator[Text]:
         """Yield the manoeuvres and, on request, all other elevator movements, in the order of time."""

@@ -55,7 +55,6 @@ PANES = (
     ("u", "flying qualities"),
     ("i", "whole flight"),
     ("d", "gap to the simulator"),
-    ("y", "roll and yaw"),
 )
 """Key and name of each pane, in the order of their numbers."""
 

@@ -7,7 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli import page_content
-from advisor.report.lateral import lateral_document, lateral_lines
+from advisor.report.lateral import lateral_document, side_quality_lines
 from advisor.report.page.blocks import Gallery, Listing, Paragraph
 from advisor.report.page.gap import gap
 from advisor.report.page.headline import headline
@@ -91,8 +91,9 @@ def test_the_document_keeps_to_its_schema():
     assert [one["holds"] for one in document["qualification"]] == [False, True, True]
 
 
-def test_the_text_names_the_level_and_the_test_that_fails():
-    text = "\n".join(lateral_lines(FLOWN, OFF))
+def test_the_lines_name_the_mode_the_level_and_the_test_that_fails():
+    text = "\n".join(side_quality_lines(FLOWN, OFF))
+    assert "Dutch roll ω" in text
     assert "Category B: Level" in text
     assert "✗ peak roll rate: flown" in text
 

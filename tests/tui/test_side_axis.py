@@ -90,15 +90,15 @@ async def test_an_exclusion_by_hand_concerns_the_axis_that_is_shown(monkeypatch)
         assert decided == [HandDecision("exclude", "gust", 1, "lateral")]
 
 
-async def test_the_pane_of_roll_and_yaw_has_derivatives_modes_and_levels():
+async def test_the_flying_qualities_are_those_of_the_axis_that_is_shown():
     async with stage(
         both_axes(judged(1, "aileron")), size=(120, 60), settings=Settings(screen="engineer")
     ) as here:
-        await here.press("y")
-        await here.until(lambda: "Dutch roll ω" in here.words("LateralPane HangingLines"))
-        said = here.words("LateralPane HangingLines")
-        assert "L_p" in said
-        assert "Category B: Level" in said
+        await here.press("u", "r")
+        await here.until(lambda: "Dutch roll ω" in here.words("Qualities HangingLines"))
+        assert "Category B: Level" in here.words("Qualities HangingLines")
+        await here.press("r")
+        await here.until(lambda: "Dutch roll" not in here.words("Qualities HangingLines"))
 
 
 def test_equal_states_give_identical_parts_so_that_nothing_is_painted_again():

@@ -6,7 +6,7 @@ from advisor.report.facts.estimates import untold
 from advisor.report.page.blocks import Block, Paragraph, Section, listing
 from advisor.report.page.content import Content
 from advisor.report.page.gap import glance
-from advisor.report.page.lateral import decided, derivatives
+from advisor.report.page.lateral import decided
 from advisor.report.result_rows import joint_table
 from advisor.report.table import Table
 
@@ -23,8 +23,9 @@ def _blocks(content: Content) -> Iterator[Block]:
     state = content.state
     sideways = not maneuvers and state.lateral is not None and bool(state.lateral.maneuvers)
     yield from decided(state, pitch=not sideways)
-    if (side := state.lateral_alone) is not None and side.model is not None:
-        yield derivatives(side, side.model, content.aircraft.model, "lateral-glance")
+    side = state.lateral_alone
+    if side is not None and (glance_at := joint_table(side, content.aircraft.model, "lateral-glance")):
+        yield glance_at
     if sideways:
         yield Paragraph(verdict["sentence"])
     if maneuvers:

@@ -1,8 +1,7 @@
 """Roll and yaw: verdict, derivatives, modes, levels, tests of the simulator, and fits."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
-from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.decision.axes.lateral_levels import GROUPS, SOURCE
 from advisor.decision.axes.lateral_qualification import LateralTest
@@ -11,14 +10,14 @@ from advisor.model.mil_f_8785c import MANNED
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
 from advisor.report.facts.decision import INDENT, decisions
-from advisor.report.facts.estimates import of_all, untold
+from advisor.report.facts.estimates import untold
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import picture
 from advisor.report.page.fits import by_fit, caption_of, paint_rows
 from advisor.report.page.maneuvers import ANCHORS, HEAD, maneuver_row
 from advisor.report.qualities import MODE_NAMES, levels_of, mode_facts, tests_of
-from advisor.report.result_rows import joint_of
+from advisor.report.result_rows import joint_table
 from advisor.report.table import Table
 from advisor.words.vehicle_time import CLOCK
 
@@ -40,10 +39,11 @@ def _blocks(content: Content, state: LateralState) -> Iterator[Block]:
         ANCHORS["R"], f"Inputs of aileron and rudder; times are {CLOCK}.", HEAD, rows,
         frozenset({0, 1}), anchored=True,
     )  # fmt: skip
-    if state.model is None:
+    joint = joint_table(state, content.aircraft.model, "lateral-joint")
+    if state.model is None or joint is None:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")
         return
-    yield derivatives(state, state.model, content.aircraft.model, "lateral-joint")
+    yield joint
     yield from listing(untold(state.model))
     yield from _modes(content, state)
     yield from lateral_fits(state)
@@ -53,16 +53,6 @@ def decided(state: CampaignState, *, pitch: bool = True) -> Iterator[Block]:
     """Yield stop or continue of each axis, and the next input."""
     for line in decisions(state, pitch=pitch):
         yield Paragraph(line.strip(), "plain" if line.startswith(INDENT) else "verdict")
-
-
-def derivatives(state: LateralState, model: LateralEstimate, prior: Mapping[str, float], name: str) -> Table:
-    """Return the table of the joint estimate under this name, which is unique on a page."""
-    return joint_of(
-        name,
-        f" at {model.airspeed_m_s:.1f} m/s",
-        [of_all(one, state, prior) for one in SIDE_PARAMETERS],
-        " L and N hold the products of inertia.",
-    )
 
 
 def _modes(content: Content, state: LateralState) -> Iterator[Block]:

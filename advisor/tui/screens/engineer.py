@@ -26,7 +26,7 @@ from advisor.tui.panes.maneuvers import Maneuvers
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.pane_tabs import PaneTabs
 from advisor.tui.panes.parameters import ParametersPane
-from advisor.tui.panes.qualities import LateralPane, Qualities
+from advisor.tui.panes.qualities import Qualities
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.residuals import Residuals
 from advisor.tui.panes.status_line import KeysLine, StatusLine
@@ -36,11 +36,11 @@ from advisor.tui.screens.pane_actions import PaneActions
 # In the order of their numbers.
 PANES: tuple[type[Pane], ...] = (
     Maneuvers, VerdictPane, ParametersPane, Fit, Live, Criterion, Channels, EventLogPane, Residuals,
-    Correlation, Courses, Qualities, WholeFlightPane, GapPane, LateralPane,
+    Correlation, Courses, Qualities, WholeFlightPane, GapPane,
 )  # fmt: skip
 _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
     "left": (Maneuvers, VerdictPane, ParametersPane),
-    "middle": (Fit, Residuals, Correlation, Courses, Qualities, WholeFlightPane, GapPane, LateralPane),
+    "middle": (Fit, Residuals, Correlation, Courses, Qualities, WholeFlightPane, GapPane),
     "right": (Live, Criterion, Channels, EventLogPane),
 }
 _WIDE, _MEDIUM = (160, 42), (110, 30)
@@ -51,7 +51,7 @@ _LOW_TABLE = 38
 
 
 class EngineerScreen(Face, PaneActions):
-    """Fifteen panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
+    """Fourteen panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
 
     The panes of the middle column share one place: fit, residuals, correlation, history, whole flight.
     """
@@ -68,10 +68,8 @@ residuals, correlation and history share one place.
 saves them into a file next to the log or the recording, and its plots as a picture (SVG). A browser
 is offered the files instead.
 
-**r** shows roll and yaw in the panes of manoeuvres, verdict, parameters, fit and criterion, and the
-elevator again. A pane with *(elevator)* in its title stays.
-The pane **y** has the derivatives and modes of roll and yaw. **x** and **n** work on the manoeuvres that
-are shown.
+**r** shows roll and yaw, and the elevator again. A pane with *(elevator)* in its title stays. **x** and **n**
+work on the manoeuvres that are shown.
 """
 
     def __init__(self) -> None:

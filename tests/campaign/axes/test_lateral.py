@@ -13,7 +13,8 @@ from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.parameters import filter_delay_s
 from advisor.report.facts.decision import lateral_decision
-from advisor.report.lateral import lateral_document, lateral_lines
+from advisor.report.lateral import lateral_document
+from advisor.report.result_rows import SIDE_ROOM, joint_table, maneuver_line
 from advisor.session.hand import HandDecision
 from tests.flight.columns import Wire, heartbeat, plane_parameters
 from tests.oem.axes.lateral.builders import JET, flown, steps
@@ -111,8 +112,11 @@ def test_a_derivative_is_told_or_not_identifiable_and_never_both(state):
 
 
 def test_the_text_says_every_verdict_and_the_decision(state):
-    lines = list(lateral_lines(state, AIRCRAFT))
+    lines = [maneuver_line(one, SIDE_ROOM) for one in state.maneuvers]
     assert sum("doublet" in line and "✓" in line for line in lines) == 2
+    table = joint_table(state, AIRCRAFT.model)
+    assert [row[0] for row in table.rows if row[1] != "–"][:2] == ["Y_β", "Y_p"]
+    assert table.caption.startswith("Joint estimate from manoeuvres 1, 2 at ")
     assert next(lateral_decision(state)).startswith("Roll and yaw: CONTINUE: ")
 
 
@@ -215,7 +219,7 @@ def test_where_nothing_states_an_output_that_is_said_and_not_that_nothing_was_fl
     state = without_parameters(both, aircraft)
     assert state.maneuvers == ()
     assert state.flight_test.next is None
-    assert list(lateral_lines(state, aircraft)) == []
+    assert joint_table(state, {}) is None
     (line,) = lateral_decision(state)
     assert line.startswith(f"Roll and yaw: {said}")
 
