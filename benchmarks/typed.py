@@ -2,8 +2,8 @@
 
     python -m benchmarks.typed [--program advisor] [--simulator MODULE] [--keep FOLDER]
 
-Each command runs in a folder with the files that the pages name: a sample flight, or a simulated one of
-aileron and rudder where the command asks for roll and yaw. Commands that wait for a link, a browser, an
+Each command runs in a folder with the files that the pages name: a sample flight, or a simulated one where
+the command asks for roll and yaw or for JSBSim's aircraft. Commands that wait for a link, a browser, an
 assistant or a shell are listed and not run. The exit code is 1 where a command fails.
 """
 
@@ -41,11 +41,17 @@ def lines_of(page: Path) -> Iterator[str]:
             yield told[1].strip()
 
 
+RECORDED = {"lateral": ["--plan", "lateral"], "c172p": ["--engine", "jsbsim", "--aircraft", "c172p"]}
+"""Word of a command to the simulated flight that it needs. All other commands have the sample flight."""
+
+
 def furnish(folder: Path, flight: Path) -> None:
     """Put the files into a folder that the pages name; the flight has several names."""
     folder.mkdir(parents=True)
     shutil.copytree(ROOT / "logs", folder / "logs")
     aircraft = (ROOT / "logs" / "arduplane-calm.yaml").read_text(encoding="utf-8") + WHOLE
+    if flight.stem == "c172p":
+        aircraft = "name: c172p\n"
     (folder / "my-aircraft.yaml").write_text(aircraft, encoding="utf-8")
     (folder / "fleet.yaml").write_text('"*": my-aircraft.yaml\n', encoding="utf-8")
     (folder / "flights").mkdir()
@@ -84,19 +90,20 @@ def main() -> int:
         root = (given.keep or Path(own)).resolve()
         root.mkdir(parents=True, exist_ok=True)
         python = Path(given.program).with_name("python")
-        side = root / "side.tlog"
-        record = [python, "-m", given.simulator, "record", "--plan", "lateral", "--out", side]
         home = ROOT if given.simulator == "sim" else root  # so that a wheel's own modules run
-        subprocess.run([*map(str, record)], check=True, capture_output=True, cwd=home)
-        flights = {"pitch": ROOT / "logs" / "arduplane-calm.tlog", "lateral": side}
+        flights = {"sample": ROOT / "logs" / "arduplane-calm.tlog"}
+        for word, options in RECORDED.items():
+            flights[word] = root / f"{word}.tlog"
+            record = [python, "-m", given.simulator, "record", *options, "--out", flights[word]]
+            subprocess.run([*map(str, record)], check=True, capture_output=True, cwd=home)
         for page in PAGES:
-            for axis, flight in flights.items():
-                furnish(root / page.stem / axis, flight)
+            for word, flight in flights.items():
+                furnish(root / page.stem / word, flight)
             for line in lines_of(page):
                 if any(word in line for word in WAITS):
                     print(f"{'waits':>7}         {page.name}: {line}", flush=True)
                     continue
-                folder = root / page.stem / ("lateral" if "lateral" in line else "pitch")
+                folder = root / page.stem / next((word for word in RECORDED if word in line), "sample")
                 if "-o my-aircraft.yaml" in line:
                     (folder / "my-aircraft.yaml").unlink()
                 code, seconds, last = typed(line, given.program, folder)
