@@ -73,12 +73,14 @@ def test_the_command_writes_the_document_and_the_improved_aircraft_file(capsys, 
 
 
 @pytest.mark.study
-def test_the_screen_says_how_far_in_the_simulator_and_which_channels_pass(capsys, monkeypatch, tmp_path):
+def test_the_whole_screen_says_how_far_in_the_simulator_and_which_channels_pass(
+    capsys, monkeypatch, tmp_path
+):
     aircraft = tmp_path / "mine.yaml"
     aircraft.write_text(f"simulator: {FACTORY}\n")
     log = recorded("uav", 1.0)
     out = tmp_path / "better.yaml"
-    _, text, _ = said(capsys, monkeypatch, log, "--aircraft", aircraft, "--out", out)
+    _, text, _ = said(capsys, monkeypatch, log, "--aircraft", aircraft, "--out", out, "--all")
     assert "in your simulator, Python tests.simulators.nonlinear:make" in text
     assert "FAIL → pass" in text
     assert "14 CFR Part 60" in text
