@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from advisor.gap.decision import Decision
+from advisor.process.parts import FailedPart
 
 Kind = Literal["none", "parameters", "effect", "air", "unknown"]
 """Kind of an alternative. ``air`` is an effect of the moving air; ``effect`` is an effect of the aircraft or
@@ -94,6 +95,8 @@ class Weighed:
     """The likeliest alternative; None for a single manoeuvre."""
     rival: str = ""
     """Label of the answer's strongest rival; empty without ``why``."""
+    failed: tuple[FailedPart, ...] = ()
+    """Effects whose model a numerical fault of the advisor ended: no alternative among the evidence."""
     decisions: tuple[Decision, ...] = ()
     """Every statistic that was compared with a limit, in the order of the comparisons."""
 

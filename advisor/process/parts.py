@@ -78,6 +78,10 @@ class Parts:
         """Parts whose newest attempt failed, in the order of their first failures."""
         return tuple(self._failed.values())
 
+    def kept(self, part: str, work: Callable[[], _Made | None]) -> _Made | None:
+        """Return what ``work`` makes, if anything; None where a fault ends the part."""
+        return self.make(part, work, lambda failed: None)
+
     def make(self, part: str, work: Callable[[], _Made], instead: Callable[[FailedPart], _Made]) -> _Made:
         """Return what ``work`` makes; what ``instead`` makes of the failure where a fault ends the part."""
         made = attempt(part, work)

@@ -50,6 +50,7 @@ def gap_document(
     if diagnosis is None:
         return {**document, **_NOTHING}
     d, gap = diagnosis, diagnosis.gap
+    document["problems"] += [part.entry for part in d.failed]
     tested = d.verdict != "untested"
     document |= plain({
         "verdict": d.verdict if tested else None,

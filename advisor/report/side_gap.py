@@ -30,6 +30,7 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
     if found.diagnosis is not None and found.verdict is not None:
         yield f"  {how_sure(found.diagnosis.answers)}"
         yield from _diagnosis_lines(found.diagnosis)
+    yield from (f"! {part.sentence}" for part in (found.diagnosis.failed if found.diagnosis else ()))
     yield from (f"  {line}" for line in changes(found.derivatives))
     if found.instruments:
         yield "Nuisance parameters of the fit, no part of the answer:"
@@ -78,7 +79,8 @@ def _diagnosis_lines(found: SideDiagnosis) -> Iterator[str]:
 
 def whole_document(found: SideGap) -> dict[str, Any]:
     """Return ``advisor.gap/1`` of roll and yaw alone; its other blocks are empty."""
-    return gap_document(None) | {"usable": True, "lateral": side_gap_document(found)}
+    failed = found.diagnosis.failed if found.diagnosis is not None else ()
+    return gap_document(None, failed=failed) | {"usable": True, "lateral": side_gap_document(found)}
 
 
 def side_gap_document(found: SideGap) -> dict[str, Any]:

@@ -32,6 +32,7 @@ from advisor.gap.inference.sizes import natural_share, with_sizes
 from advisor.gap.inference.stage import Stage, stage_of, within_model_error
 from advisor.gap.records.prepare import prepare
 from advisor.gap.verdict.reasons import none_means_no_gap, weighed
+from advisor.process.parts import Parts
 from advisor.report.gap_causes import decision_in_words
 from tests.gap.generator import Setup, fly
 
@@ -177,7 +178,7 @@ SPREAD = FieldPrior(none=0.3, parameters=0.3, effect=0.3, unknown=0.1)
 class Flight:
     """A flight whose models are made by hand; ``table`` has an effect by its name."""
 
-    is_stated, tried = True, (3, 0)
+    is_stated, tried, parts = True, (3, 0), Parts()
 
     def __init__(self, nats, second=(), residual=0.5, moving=None, together=()):
         self.nats, self.second, self.left, self.moving = nats, dict(second), residual, moving

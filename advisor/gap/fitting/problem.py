@@ -222,11 +222,6 @@ class EffectProblem:
         """Return the simulated outputs of one manoeuvre on the time grid, shape (4, n + 1)."""
         return lane(self.fly_all(flight, p[None]), 0)
 
-    def read_grids(self, flight: PreparedManeuver, grids: Sequence[FloatArray], p: FloatArray) -> FloatArray:
-        """Return series of outputs on the time grid, each of shape (4, n + 1), at the channels' stamps, shape
-        (rows, k)."""
-        return self.read_all(flight, packed(grids), np.tile(p, (len(grids), 1)))
-
     def read_delayed(
         self, flight: PreparedManeuver, response: FloatArray, delays: FloatArray, p: FloatArray
     ) -> FloatArray:
@@ -242,7 +237,7 @@ class EffectProblem:
 
     def read(self, flight: PreparedManeuver, grid: FloatArray, p: FloatArray) -> FloatArray:
         """Return one series of outputs on the time grid, read at the channels' stamps, shape (rows,)."""
-        return self.read_grids(flight, [grid], p)[:, 0]
+        return self.read_all(flight, packed([grid]), p[None])[:, 0]
 
     def rows(self, flight: PreparedManeuver) -> list[slice]:
         """Return the rows of each channel in the stacked vector of one manoeuvre."""

@@ -93,7 +93,8 @@ def foresee(
     present = {e.effect for e in fitted.point.effects}
     excluded = present | {signature.effect for signature in others}
     wanted = [v for v in _one_each(variants) if v.effect not in excluded]
-    sizes = [_first_size(v) for v in wanted]
+    # Signed sizes at which the responses of the effects are first evaluated.
+    sizes = [float(np.copysign(abs(v.starts[0][0]) or v.steps[0], _reach(v))) for v in wanted]
     seen = _responses(problem, fitted, list(zip(wanted, sizes, strict=True)))
     found = [
         _signature_of(problem, fitted, signatures, variant, size, signatures.of(response), rounds)
@@ -151,11 +152,6 @@ def _reach(variant: Variant) -> float:
     """Return the largest signed size for which an effect is sought."""
     low, high = variant.bounds[0]
     return high if high >= -low or variant.starts[0][0] > 0.0 else low
-
-
-def _first_size(variant: Variant) -> float:
-    """Return the signed size at which an effect's response is first evaluated."""
-    return float(np.copysign(abs(variant.starts[0][0]) or variant.steps[0], _reach(variant)))
 
 
 def _signature_of(

@@ -80,7 +80,7 @@ def infer(
 
     progress("looking for a second cause", 0.52)
     found = decided(flight, stage, prior, beyond)
-    return Inference(found.posteriors, found.chosen, found.heat, problem, sought, floor)
+    return Inference(found.posteriors, found.chosen, found.failed, found.heat, problem, sought, floor)
 
 
 def _table(

@@ -8,6 +8,7 @@ from advisor.gap.inference.explanation import E, Row
 from advisor.gap.inference.posterior import Posterior, posterior_of, rows_of
 from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.stage import Flight, Stage, stage_of
+from advisor.process.parts import FailedPart
 
 Progress = Callable[[str, float], None]
 """Function that receives a sentence about the work, and the completed share, 0 to 1."""
@@ -25,6 +26,8 @@ class Decided(Generic[E]):
     """Posterior of the first effect, then that of a second effect in addition."""
     chosen: tuple[E, ...]
     """The plain model, then the model of each added effect."""
+    failed: tuple[FailedPart, ...]
+    """Explanations that a numerical fault of the advisor ended."""
     heat: float
     """Number of nats of white-noise likelihood that count as one nat."""
 
@@ -56,7 +59,7 @@ def decided(
         also = posteriors[-1].answer
         if any(one.alternative == also for one in second.effects):
             chosen.append(posteriors[-1].explanation_of(also))
-    return Decided(tuple(posteriors), tuple(chosen), stage.heat)
+    return Decided(tuple(posteriors), tuple(chosen), flight.parts.failed, stage.heat)
 
 
 def _lead(flight: Flight[E], stage: Stage[E]) -> E | None:
@@ -68,6 +71,5 @@ def _lead(flight: Flight[E], stage: Stage[E]) -> E | None:
     likely: dict[str, E] = {}
     for one in sorted(stage.effects, key=lambda one: -one.evidence.either):
         likely.setdefault(one.name, one)
-    leads = list(likely.values())[:_LEADS]
-    _, *best = min(flight.pairs(stage, leads), default=(0.0, "", ""))
-    return next((lead for lead in leads if lead.name in best), None)
+    _, *best = min(flight.pairs(stage, list(likely.values())[:_LEADS]), default=(0.0, "", ""))
+    return next((lead for name, lead in likely.items() if name in best), None)

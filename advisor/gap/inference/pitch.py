@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from advisor.gap.inference.sizes import natural_share
 from advisor.gap.inference.stage import AT_THE_FILE, LAWS, REFINED, Pairs, Stage, likeliest
 from advisor.gap.kit.variant import Variant
 from advisor.gap.search.screen import Screen, Screened
+from advisor.process.parts import Parts
 
 _SYMMETRIC = float(np.log(2.0))
 """Log prior gain, nats, of a parameter that cannot be negative: its Gaussian prior has half the range."""
@@ -59,6 +61,7 @@ class PitchFlight:
     """Laws outside the catalogue, with a prior on each parameter."""
     looked: dict[int, list[Screened]] = field(default_factory=dict)
     """Quick fits of a second effect, by the identity of the fit with the first effect."""
+    parts: Parts = field(default_factory=Parts)
 
     @property
     def tried(self) -> tuple[int, int]:
@@ -81,19 +84,19 @@ class PitchFlight:
         quick = screen.quick_fits(table) if base is None else self._looks(base)
         chosen = [*likeliest(quick, most), *likeliest(screen.quick_fits(self.laws), LAWS)]
         if problem.is_stated:
-            seen = {one.name for one in chosen}
             near = problem.within(ERROR_IF_RIGHT)
             tight = Screen(near, fit(near, plain.point, plain.noise, iterations=4))
-            others = [variant for variant in table if variant.effect not in seen]
+            others = [v for v in table if v.effect not in {one.name for one in chosen}]
             chosen += likeliest(tight.quick_fits(others), AT_THE_FILE)
         far = min([plain.cost, *(q.cost for q in chosen)]) + 2.0 * REFINED * temperature(problem, plain)
-        fits = [(q.variant, fit(loose, q.point, q.noise, iterations=8, beaten_by=far)) for q in chosen]
-        fits = [(variant, made) for variant, made in fits if np.isfinite(made.cost)]
+        part, kept = "pitch, effect {}".format, self.parts.kept
+        full = partial(fit, loose, iterations=8, beaten_by=far)
+        tried = [(q, kept(part(q.name), partial(full, q.point, q.noise))) for q in chosen]
+        fits = [(q.variant, made) for q, made in tried if made is not None and np.isfinite(made.cost)]
         heat = temperature(problem, min((plain, *(made for _, made in fits)), key=lambda made: made.cost))
-        return heat, [
-            self._model(loose, None, plain, plain, heat),
-            *(self._model(loose, variant, made, plain, heat) for variant, made in fits),
-        ]
+        model = partial(self._model, loose, plain=plain, heat=heat)
+        models = [kept(part(v.effect), partial(model, v, made)) for v, made in fits]
+        return heat, [model(None, plain), *filter(None, models)]
 
     def at_the_files(self, one: PitchModel, plain: PitchModel, heat: float) -> PitchModel | None:
         """Return an explanation refitted about the file's derivatives; None without such a fit."""

@@ -7,6 +7,7 @@ from typing import Generic, Protocol, TypeVar
 from advisor.gap.inference.explanation import E
 from advisor.gap.inference.model_error import most_nats
 from advisor.gap.inference.residual import Residual
+from advisor.process.parts import Parts
 
 LAWS = 2
 """Numerical: number of laws outside the catalogue that are fully fitted."""
@@ -61,6 +62,10 @@ class Flight(Protocol[E]):
     """A flight along one axis, as the inference uses it."""
 
     @property
+    def parts(self) -> Parts:
+        """Return the wall that keeps a numerical fault inside the model of one effect."""
+
+    @property
     def is_stated(self) -> bool:
         """Whether the aircraft file states derivatives."""
 
@@ -71,7 +76,8 @@ class Flight(Protocol[E]):
     def explained(self, base: E | None, most: int) -> tuple[float, list[E]]:
         """Return the temperature, the model ``base`` alone, and ``base`` with each likely effect or law.
 
-        ``most`` is the number of effects that are fully fitted. A model that cannot be fitted is left out.
+        ``most`` is the number of effects that are fully fitted. A model that cannot be fitted is left out, as
+        is a model that a numerical fault ends.
         The effect None stands for the plain model.
         """
 

@@ -189,7 +189,7 @@ def _diagnosed(
         derivatives=compared_derivatives(problem, fitted, known),
         notes=notes_of(e, aircraft, holdout, verdict, nuisances),
         maneuvers=tuple(f.number for f in problem.flights.flights),
-        evidence=told.evidence, why=told.why, rival=told.rival, answer=answer,
+        evidence=told.evidence, failed=found.failed, why=told.why, rival=told.rival, answer=answer,
     )  # fmt: skip
 
 

@@ -35,7 +35,8 @@ _WORDS = {
 
 def weighed(posterior: Posterior[Any]) -> Weighed:
     """Return all alternatives with the evidence of their likeliest model, and the answer's rival."""
-    answer, rival = posterior.answer, _rival_of(posterior)
+    # The rival is the likeliest alternative whose name is not the answer's.
+    answer, rival = posterior.answer, together(posterior.by_alternative.items())[1][0]
     label = answer.block if answer.kind == "unknown" else answer.name
     (_, probability), *_ = together(posterior.by_alternative.items())
     return Weighed(
@@ -48,11 +49,6 @@ def weighed(posterior: Posterior[Any]) -> Weighed:
             Decision(label, "decided", probability, DECIDED, "probability"),
         ),
     )
-
-
-def _rival_of(posterior: Posterior[Any]) -> Alternative:
-    """Return the likeliest alternative whose name is not the answer's."""
-    return together(posterior.by_alternative.items())[1][0]
 
 
 def _evidence_in(posterior: Posterior[Any]) -> Iterator[AlternativeEvidence]:

@@ -166,6 +166,7 @@ def title_of(d: Diagnosis) -> str:
 
 def limits_of(d: Diagnosis) -> Iterator[str]:
     """Yield the limits of the answer, which the report prints next to it."""
+    yield from (str(part.problem) for part in d.failed)
     if d.verdict != "untested" and not d.derivatives:
         yield "No simulator was given: the answer is about the flight alone."
     air = "The air moved, and its course was fitted to the same samples."
@@ -177,7 +178,6 @@ def limits_of(d: Diagnosis) -> Iterator[str]:
     if len(d.maneuvers) == 1:
         yield "One manoeuvre alone proves no cause."
     if d.although_refused:
-        numbers = ", ".join(map(str, d.although_refused))
-        several = len(d.although_refused) > 1
+        numbers, several = ", ".join(map(str, d.although_refused)), len(d.although_refused) > 1
         used = f"Manoeuvres {numbers} are" if several else f"Manoeuvre {numbers} is"
         yield f"{used} used, although advisor analyze refuses {'them' if several else 'it'}."

@@ -153,8 +153,8 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
     told = weighed(found.posteriors[0])
     unseen_by = squares_of(plain, information_of(plain, 1.0), case.prior_of(ERROR_IF_WRONG, plain.free))
     return SideDiagnosis(
-        evidence=told.evidence, why=told.why, answer=told.answer, rival=told.rival, decisions=told.decisions,
-        causes=tuple(_causes(case, found, as_given))[:MOST_CAUSES],
+        evidence=told.evidence, failed=found.failed, why=told.why, answer=told.answer, rival=told.rival,
+        decisions=told.decisions, causes=tuple(_causes(case, found, as_given))[:MOST_CAUSES],
         peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain), cannot_see=unseen(case.flown),
         before=_gap(plain, np.asarray(np.bincount(plain.assembly.channel, as_given.residual**2), float)),
         after=_gap(plain, np.sum(unseen_by.held_out, axis=0)) if len(case.flown) > 1 else {},

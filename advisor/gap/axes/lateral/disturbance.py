@@ -70,7 +70,8 @@ def _course(fit: Fit, flown: Flown, m: int, block: str) -> Course:
     local = fit.sensitivities[own][:, fit.assembly.free[fit.assembly.free >= N]] * weight
     basis = np.linalg.svd(local, full_matrices=False)[0]
     # Speed and trim are constant: every knot but the first changes the outputs like the second one, later.
-    begun = _outputs(fit.point.theta, flown, m, block, _hats(t, knots[:2]))
+    hats = np.maximum(0.0, 1.0 - np.abs(t[:, None] - knots[:2]) / KNOTS_S)  # weights of the linear course
+    begun = _outputs(fit.point.theta, flown, m, block, hats)
     seen = {name: _later(two, len(knots)) for name, two in begun.items()}
     weighed = _read(fit, m, t, seen) * weight
     return Course(knots, (weighed - basis @ (basis.T @ weighed)) / weight)
@@ -147,8 +148,3 @@ def _drives(block: str, theta: FloatArray, aerodynamic: FloatArray) -> FloatArra
         if term.factor == block:
             drives[_STATES[term.state]] += value
     return drives
-
-
-def _hats(t: FloatArray, knots: FloatArray) -> FloatArray:
-    """Return the weight (n, k) of every knot at the times ``t``, for linear interpolation."""
-    return np.maximum(0.0, 1.0 - np.abs(t[:, None] - knots) / KNOTS_S)

@@ -1,7 +1,7 @@
 """Roll and yaw flight for the diagnosis: fits with an effect, their evidence and their residuals."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from advisor.gap.axes.lateral.fit import Fit, Free, Known
 from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
 from advisor.gap.axes.lateral.models import Case, free_near, free_with
 from advisor.gap.axes.lateral.residual import residual_of
-from advisor.gap.axes.lateral.starts import Starts
+from advisor.gap.axes.lateral.starts import Start, Starts
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.inference.explanation import Evidence, Explanation
 from advisor.gap.inference.marginal import marginal
@@ -22,6 +22,7 @@ from advisor.gap.inference.posterior import UNKNOWN
 from advisor.gap.inference.residual import Residual
 from advisor.gap.inference.sizes import natural_share
 from advisor.gap.inference.stage import AT_THE_FILE, LAWS, Pairs, Stage, likeliest, within_model_error
+from advisor.process.parts import Parts
 
 _TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
 LIKELY = 0.01
@@ -64,6 +65,7 @@ class SideFlight:
     table: Sequence[SideEffect]
     laws: Sequence[SideEffect] = ()
     """Laws of a surface or of a curve that have no name in the catalogue."""
+    parts: Parts = field(default_factory=Parts)
 
     @property
     def tried(self) -> tuple[int, int]:
@@ -96,10 +98,17 @@ class SideFlight:
             tight = Starts(self.case, near, others, ERROR_IF_RIGHT).of_each
             chosen += [(one, ERROR_IF_RIGHT) for one in likeliest(tight, AT_THE_FILE)]
         everyone = [replace(self._model(None, plain, plain, share), starts=starts)]
-        for one, tolerance in chosen:
+        models = (self._added(one, tolerance, plain, share) for one, tolerance in chosen)
+        return share**-2, [*everyone, *filter(None, models)]
+
+    def _added(self, one: Start, tolerance: float, plain: Fit, share: float) -> SideModel | None:
+        """Return the model with an effect; None where the model runs away or a fault ends the fit."""
+
+        def work() -> SideModel | None:
             fit = self.case.fit(one.point, free_with(self.case, one.effect, plain), tolerance, share)
-            everyone += [] if fit is None else [self._model(one.effect, fit, plain, share)]
-        return share**-2, everyone
+            return None if fit is None else self._model(one.effect, fit, plain, share)
+
+        return self.parts.kept(f"roll and yaw, effect {one.name}", work)
 
     def at_the_files(self, one: SideModel, plain: SideModel, heat: float) -> SideModel | None:
         """Return an explanation refitted about the file's derivatives; None without such a fit.
