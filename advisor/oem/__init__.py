@@ -1,1 +1,1 @@
-"""Output error: cost, optimiser, covariance, joint estimate."""
+"""Output-error estimation: cost, optimiser, covariance, joint estimate."""

@@ -1,12 +1,12 @@
-"""The air speed inside a manoeuvre, from a slow, late instrument and the accelerometers.
+"""Air speed inside a manoeuvre, from a slow, late sensor and the accelerometers.
 
-An air speed arrives a few times per second, filtered and late (0.3 s on an ArduPlane). Within a 3-2-1-1 the
-air speed changes by metres per second. Its rate follows from the motion alone,
+Air speed samples arrive a few times per second, filtered and late (0.3 s on an ArduPlane). Within a 3-2-1-1
+the air speed changes by metres per second. The rate of the air speed follows from the motion alone,
 
     V̇ = a_x·cos α + a_z·sin α - g·sin(θ - α)
 
-in still air. The integral gives the shape, the instrument level and drift, and the delay between the two is
-the instrument's. An instrument that disagrees with the motion (gusts) is preferred to the motion.
+in still air. The integral gives the shape; the sensor gives level, drift and delay. If the sensor disagrees
+with the motion, as in gusts, the sensor is used.
 """
 
 from collections.abc import Mapping
@@ -23,9 +23,9 @@ from advisor.oem.rows import Signal
 LONGEST_LAG_S = 0.6
 LAG_STEP_S = 0.02
 SMALLEST_GAIN = 0.3
-"""Least share of the disagreement's power that a lag must remove to be used."""
+"""Least share of the disagreement's power between sensor and motion that a lag must remove."""
 LARGEST_DISAGREEMENT = 0.03
-"""Largest disagreement of instrument and motion, relative to the mean speed, with which both are used."""
+"""Largest disagreement of sensor and motion, over the mean speed, at which both are used."""
 FEWEST_SAMPLES = 8
 MOTION = ("a_x", "a_z", "theta", "alpha")
 
@@ -35,15 +35,15 @@ class Airspeed:
     """Air speed over time, and its source."""
 
     signal: Signal
-    """V in m/s."""
+    """Air speed V over time, m/s."""
     lag_s: float
-    """Delay of the instrument, s; 0 when it cannot be estimated."""
+    """Delay of the air speed sensor, s; 0 if the delay cannot be estimated."""
     smooth: bool
-    """Whether the shape comes from the accelerometers; if not, the instrument's reading is used."""
+    """Whether the shape comes from the accelerometers instead of the sensor."""
 
 
 def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
-    """Return the air speed of a manoeuvre; None where none was measured, or where it is implausible."""
+    """Return the air speed of a manoeuvre; None if it was not measured or is implausible."""
     measured = channels.get("airspeed")
     if measured is None or len(measured) < 2 or not np.all(np.isfinite(measured.y)):
         return None
@@ -71,7 +71,7 @@ def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
 def _joined(
     t: FloatArray, y: FloatArray, grid: FloatArray, shape: FloatArray, lags: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return level and drift that join shape and instrument, and the residual mean square, for each lag."""
+    """Return level and drift that fit shape and sensor, and the residual mean square, for each lag."""
     late = t - lags[:, None]
     side = y - np.interp(late, grid, shape)
     since = late - grid[0]

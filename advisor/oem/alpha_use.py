@@ -1,8 +1,8 @@
-"""Use of a measured angle of attack, and its replacement by the motion.
+"""Use of a measured angle of attack, or its replacement by an angle from the motion.
 
-Most small aircraft have no vane. With pitch rate, specific force, attitude and air speed the angle of attack
-is a state that need not be measured. An angle of attack that an autopilot derives is used only where the
-kinematics support it (``advisor.flight.instruments.kinematics``).
+Most small aircraft have no vane. With pitch rate, specific force, attitude and air speed, the angle of attack
+is a state without a measurement. An autopilot's derived angle of attack is used only if the kinematics
+support it (``advisor.flight.instruments.kinematics``).
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,7 +17,7 @@ from advisor.flight.signals.inferred_alpha import NEEDED, inferred_alpha
 from advisor.flight.signals.record import Channel
 
 FEWEST_SAMPLES = 20
-"""Least number of samples of a channel in a manoeuvre that is used."""
+"""Least number of samples with which a channel of a manoeuvre is used."""
 
 
 def has(channels: Mapping[str, Channel], name: str) -> bool:
@@ -26,7 +26,7 @@ def has(channels: Mapping[str, Channel], name: str) -> bool:
 
 
 def lacking(maneuver: Maneuver, aircraft: Aircraft) -> tuple[str, ...]:
-    """Return the channels whose absence prevents the motion from replacing an angle of attack."""
+    """Return the missing channels without which the motion cannot replace an angle of attack."""
     absent = [name for name in NEEDED if not has(maneuver.channels, name)]
     airspeed = maneuver.channels.get("airspeed")
     measured = airspeed is not None and len(airspeed) > 1 and float(np.min(airspeed.y)) > 0.0
@@ -41,7 +41,8 @@ def can_do_without(maneuver: Maneuver, aircraft: Aircraft) -> bool:
 
 
 def why_not_measured(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
-    """Return why these manoeuvres have no measured angle of attack, as half a sentence; else empty."""
+    """Return the reason why these manoeuvres have no measured angle of attack, as half a sentence; else
+    empty."""
     if aircraft.alpha.source == "none":
         return "alpha is left out, as the aircraft file asks"
     if not all(has(m.channels, "alpha") for m in maneuvers):
@@ -52,7 +53,7 @@ def why_not_measured(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
 
 
 def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
-    """Return why no measured angle of attack is used in these manoeuvres, as half a sentence; else empty."""
+    """Return the reason why no measured angle of attack is used, as half a sentence; else empty."""
     if why := why_not_measured(maneuvers, aircraft):
         return why
     check = combine(
@@ -67,12 +68,12 @@ def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
 
 
 def infer(maneuver: Maneuver, aircraft: Aircraft) -> Channel:
-    """Return the angle of attack that the motion implies, for a manoeuvre that needs no measured one.
+    """Return the angle of attack that the motion implies, for a manoeuvre without a usable measurement.
 
     Raises
     ------
     ValueError
-        If the manoeuvre lacks a channel (``lacking``).
+        The manoeuvre lacks a required channel (``lacking``).
     """
     airspeed, t = maneuver.channels.get("airspeed"), maneuver.channels["q"].t
     if airspeed is not None and len(airspeed) > 1:

@@ -1,9 +1,8 @@
-"""Normal equations in the shape of an arrow, and their solutions.
+"""Normal equations in arrow shape, and their solutions.
 
-The derivatives are shared by all manoeuvres, and each manoeuvre has its own nuisance parameters. A
-manoeuvre's own parameters are eliminated manoeuvre by manoeuvre, so the work grows linearly with the number
-of manoeuvres. The compiled functions serve small systems in a search. LAPACK serves larger systems, and
-systems with bounds.
+All manoeuvres share the derivatives, and each manoeuvre has nuisance parameters. The nuisance parameters are
+eliminated manoeuvre by manoeuvre, so the work grows linearly with the number of manoeuvres. The compiled
+functions solve small systems in a search. LAPACK solves larger systems, and systems with bounds.
 """
 
 import numpy as np
@@ -14,17 +13,17 @@ from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 BLOCK = 64
-"""Number of rows whose products are summed at once."""
+"""Number of rows whose products are summed in one block."""
 LEAST_EIGENVALUE = 1e-13
-"""Eigenvalue of an information matrix with unit diagonal at which a direction counts as undetermined."""
+"""Eigenvalue of a unit-diagonal information matrix below which a direction is undetermined."""
 _SOUND = 1e-2
-"""Least pivot of a matrix with unit diagonal that shows it to be well conditioned: no singular value is below
-its square."""
+"""Least pivot of a unit-diagonal matrix that counts as well conditioned."""
 
 
 @kernel(fastmath={"reassoc", "contract"})
 def _add_products(block: FloatArray, information: FloatArray, gradient: FloatArray) -> None:
-    """Add the products of the rows of ``block`` (n + 1, BLOCK); sums may be reordered to run in parallel."""
+    """Add the inner products of the rows of ``block`` (n + 1, BLOCK); sums may be reordered to run in
+    parallel."""
     n = len(gradient)
     for j in range(n):
         for k in range(j + 1):
@@ -150,7 +149,7 @@ def _stack(
 
 @kernel()
 def _eliminate(carried: FloatArray, top: FloatArray, right: FloatArray) -> None:
-    """Subtract from the shared equations the part that the nuisance parameters absorb (Schur complement).
+    """Eliminate the nuisance parameters from the shared equations (Schur complement).
 
     Parameters
     ----------
@@ -169,7 +168,7 @@ def _eliminate(carried: FloatArray, top: FloatArray, right: FloatArray) -> None:
 def arrow_step(
     information: FloatArray, gradient: FloatArray, free: Index, damping: float, shared: int, local: int
 ) -> tuple[bool, FloatArray, FloatArray, float]:
-    """Solve the damped normal equations.
+    """Solve the damped normal equations of shared and nuisance parameters.
 
     Parameters
     ----------
@@ -231,7 +230,7 @@ def factored(normal: FloatArray) -> FloatArray:
 
 
 def solved(factor: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the solution for a right-hand side, shape (m,) or (m, k)."""
+    """Return the solution x of the factored system for a right-hand side, shape (m,) or (m, k)."""
     return np.asarray(dpotrs(factor, right, lower=1)[0])
 
 
@@ -240,9 +239,9 @@ def solved_within(
 ) -> FloatArray:
     """Return the x that minimises ½ xᵀHx − gᵀx with ``least`` ≤ x ≤ ``most``, all of shape (k,).
 
-    A component that would leave its range is fixed at the end of the range, and the others are solved for
-    again. Clipping the solution instead would lead away from the optimum where parameters are correlated. H
-    is scaled to a unit diagonal. Directions of relative singular values below ``indifferent`` stay.
+    A component outside its range is fixed at the end of the range, and the others are solved again. Clipping
+    the solution instead would lead away from the optimum where parameters are correlated. H is scaled to a
+    unit diagonal. Directions of relative singular values below ``indifferent`` are not moved.
     """
     scale = np.sqrt(np.maximum(np.diag(H), 1e-300))
     normal, right = H / np.outer(scale, scale), g / scale
@@ -259,7 +258,7 @@ def solved_within(
 
 
 def _solution(normal: FloatArray, right: FloatArray, indifferent: float) -> FloatArray:
-    """Return the solution for a matrix with unit diagonal; singular values only where some may be tiny."""
+    """Return the solution for a unit-diagonal matrix, by singular values only if some may be tiny."""
     factor, info = dpotrf(normal, lower=1, clean=0)
     if info == 0 and np.min(np.diag(factor)) > _SOUND:
         return solved(factor, right)
@@ -267,7 +266,8 @@ def _solution(normal: FloatArray, right: FloatArray, indifferent: float) -> Floa
 
 
 def inverse_of(information: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the inverse of a symmetric matrix (n, n), and each unknown's undetermined share (n,), 0 to 1.
+    """Return the inverse of a symmetric matrix (n, n), and the undetermined share (n,) of each unknown, 0 to
+    1.
 
     The matrix is scaled to a unit diagonal, so that units do not matter. Directions in which the matrix is
     singular to working precision are left out.
@@ -284,10 +284,10 @@ def inverse_of(information: FloatArray) -> tuple[FloatArray, FloatArray]:
 def unabsorbed(
     columns: FloatArray, own: FloatArray, weight: FloatArray, indifferent: float | None = None
 ) -> FloatArray:
-    """Return the part of ``columns`` (n, k) that a manoeuvre's nuisances ``own`` (n, l) cannot absorb.
+    """Return the part of ``columns`` (n, k) that a manoeuvre's nuisance columns ``own`` (n, l) cannot absorb.
 
     ``weight`` (n,) is the inverse noise of the rows. Directions of ``own`` with relative singular values
-    below ``indifferent`` absorb nothing; None: below rounding.
+    below ``indifferent`` absorb nothing; None means rounding.
     """
     weighed = own * weight[:, None]
     taken = np.linalg.lstsq(weighed, columns * weight[:, None], rcond=indifferent)[0]

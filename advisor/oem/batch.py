@@ -1,7 +1,7 @@
-"""Estimates of thousands of simulated manoeuvres on one grid, for studies of the information in an input.
+"""Estimates of thousands of simulated manoeuvres on one time grid, for studies of an input's information.
 
-All manoeuvres share input and stamps and differ in their measurements only. The grid is laid out once, and
-everything after that is compiled.
+All manoeuvres share input and stamps and differ only in their measurements. The time grid is laid out once,
+and all further computations are compiled.
 """
 
 from dataclasses import dataclass
@@ -19,25 +19,25 @@ from advisor.oem.solution import noise_floor, solve
 from advisor.process.arrays import FloatArray
 
 _POSITION = np.array([index if is_shared else N_SHARED + index for is_shared, index in REPORTED])
-"""Index of each of the eight parameters among all parameters."""
+"""Index of each of the eight reported parameters among all parameters."""
 
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """Estimates with one manoeuvre per row. A row without an estimate is NaN."""
+    """Estimates of simulated manoeuvres, one manoeuvre per row. A row without an estimate is NaN."""
 
     theta: FloatArray
-    """(n, 8), order of ``PARAMETERS``."""
+    """Shape (n, 8): parameters in the order of ``PARAMETERS``."""
     std_cr: FloatArray
-    """(n, 8) Cramér-Rao standard deviations."""
+    """Shape (n, 8): Cramér-Rao standard deviations."""
     noise: FloatArray
-    """(n, 2) σ of alpha and q."""
+    """Shape (n, 2): noise σ of alpha and q."""
     iterations: Index
     """(n,)."""
 
     @property
     def cost(self) -> FloatArray:
-        """(n,) J = σ_α²·σ_q², Eq. (7)."""
+        """Shape (n,): cost J = σ_α²·σ_q², Eq. (7)."""
         product: FloatArray = np.prod(self.noise**2, axis=1)
         return product
 
@@ -48,7 +48,7 @@ class Batch:
 
 
 def solve_many(elevator: Signal, t: FloatArray, alpha: FloatArray, q: FloatArray) -> Batch:
-    """Estimate every row separately.
+    """Estimate the parameters of every row separately.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def solve_many(elevator: Signal, t: FloatArray, alpha: FloatArray, q: FloatArray
     t : (k,) stamps of both outputs.
     alpha, q : (n, k) measurements.
 
-    Every search begins at the estimate of the rows' mean; if that leads nowhere, at the row's regression.
+    Every search begins at the estimate of the rows' mean, or after a failure at the row's regression.
     """
 
     def problem(a: FloatArray, b: FloatArray) -> OutputErrorProblem:

@@ -1,8 +1,8 @@
-"""A solution updated with the newest samples of a manoeuvre, without solving the whole model again.
+"""Update of a solution with the newest samples of a manoeuvre, without solving the whole model again.
 
 The model is solved over the new samples alone, from the state and the sensitivities at the end of the
-solution. Each new sample adds to running sums, from which the next Gauss-Newton step and the errors follow.
-All samples count at every refresh. Air speed and turning of the path stay at their last values, so a complete
+solution. Each new sample adds to running sums, which give the next Gauss-Newton step and the errors. Every
+refresh uses all samples. Air speed and turn rate of the path stay at their last values, so a complete
 solution follows twice per second.
 """
 
@@ -27,14 +27,15 @@ from advisor.oem.solution import Solution, noise_floor, reported
 from advisor.oem.weighted_sums import Sums
 
 LONGEST_PROMISE = 2.0
-"""Largest change of -2 log likelihood that a step may promise. Beyond this promise the model is solved again
-over all samples. Nine of ten updated estimates then lie within 0.17 standard deviations of the complete ones
-(the first manoeuvre of ``logs/arduplane-calm.tlog``)."""
+"""Largest change of -2 log likelihood that a Gauss-Newton step may promise. Beyond this change the model is
+solved again over all samples. Nine of ten updated estimates then lie within 0.17 standard deviations of the
+complete ones (the first manoeuvre of ``logs/arduplane-calm.tlog``)."""
 REST_S = 2.0
-"""Length in s of the command before the new samples that is kept. Servos have forgotten earlier movements."""
+"""Length in s of the command before the new samples that is kept for the servo. Earlier commands no longer
+move the servo."""
 NEARLY_SINGULAR = 1e12
-"""Largest sum of variances, each relative to that of the parameter alone, for a well-conditioned matrix.
-Above this sum round-off decides."""
+"""Largest sum of relative variances for a well-conditioned matrix. Above this sum rounding errors
+dominate."""
 _INITIAL = [N_SHARED + LOCAL.index(name) for name in ("alpha_initial", "q_initial", "theta_initial")]
 _Q_BIAS = LOCAL.index("q_bias")
 _EIGHT = np.array([i if is_shared else N_SHARED + i for is_shared, i in REPORTED])
@@ -42,29 +43,29 @@ _STATES = tuple(OUTPUTS.index(name) for name in ("alpha", "q", "theta"))
 
 
 class _Step(NamedTuple):
-    """A Gauss-Newton step from the point of the solution."""
+    """A Gauss-Newton step from the parameters of the solution."""
 
     change: FloatArray
-    """(n,) step of the free parameters."""
+    """Shape (n,): step of the free parameters."""
     information: FloatArray
-    """(n, n) information of the samples."""
+    """Shape (n, n): information of the samples."""
     inverse: FloatArray
-    """(n, n) inverse of the information plus that of the prior."""
+    """Shape (n, n): inverse of the information of samples and prior."""
     promise: float
-    """Promised change of -2 log likelihood."""
+    """Promised change of -2 log likelihood by the step."""
 
 
 class UpdatableSolution:
-    """An updatable solution of one manoeuvre.
+    """Solution of one manoeuvre that new samples can update.
 
     Parameters
     ----------
     solution
-        Solution of one record, with the model solved at its optimum.
+        Solution of one record, whose model was solved at the optimum.
     prepared
-        The prepared record of the solution.
+        Prepared record of the solution.
     reported
-        The estimate that the rest of the program sees.
+        Estimate that was reported for the solution.
     """
 
     def __init__(self, solution: Solution, prepared: Prepared, reported: Estimate) -> None:
@@ -87,7 +88,7 @@ class UpdatableSolution:
             self._sums[name].add(np.ascontiguousarray(g[:, self._free]), z - y)
 
     def on(self, maneuver: Maneuver) -> Estimate | None:
-        """Return the estimate with the newest samples; None where the model must be solved again."""
+        """Return the estimate with the newest samples; None if the model must be solved again."""
         new = {name: self._new(name, maneuver) for name in self._rows}
         stamps = np.concatenate([signal.t for signal in new.values()])
         if len(stamps) and not self._solve(maneuver, new, stamps):
@@ -95,7 +96,7 @@ class UpdatableSolution:
         return self._stepped()
 
     def _new(self, name: str, maneuver: Maneuver) -> Signal:
-        """Return the new samples of an output. A repeated angle of attack is not new."""
+        """Return the new samples of an output. A repeated angle of attack is no new sample."""
         channel = maneuver.channels[name]
         last_s, last = self._rows[name][-1][0][-1], self._rows[name][-1][1][-1]
         late = channel.delay_s + (self._solution.problem.alpha_delay_s if name == "alpha" else 0.0)
@@ -126,13 +127,14 @@ class UpdatableSolution:
         return True
 
     def _through(self, g: FloatArray) -> FloatArray:
-        """Return the derivatives (k, 14) of the outputs by all parameters, from those by the first state."""
+        """Return the derivatives (k, 14) of the outputs by all parameters, from the derivatives by the first
+        state."""
         whole = g.copy()
         whole[:, _INITIAL] = 0.0
         return np.asarray(whole + g[:, _INITIAL] @ self._sensitivities)
 
     def _grid(self, maneuver: Maneuver, new: Mapping[str, Signal]) -> tuple[Measurements, Grid]:
-        """Return the new samples laid out for the kernel, from the end of the solution."""
+        """Return the new samples laid out for the kernel, starting at the end of the solution."""
         problem, last = self._solution.problem, self._solution.assembly.grid
         command = maneuver.channels["elevator"]
         begin = int(np.searchsorted(command.t, self._end_s - REST_S))
@@ -160,7 +162,7 @@ class UpdatableSolution:
         )
 
     def _stepped(self) -> Estimate | None:
-        """Return the estimate after a step from the solution's point with all samples."""
+        """Return the estimate after one Gauss-Newton step from the solution, with all samples."""
         optimum = self._solution.optimum
         first = self._step({name: float(optimum.noise[OUTPUTS.index(name)]) for name in self._sums})
         noise = {} if first is None else self._noise_after(first.change)
@@ -185,7 +187,7 @@ class UpdatableSolution:
         )
 
     def _step(self, noise: Mapping[str, float]) -> "_Step | None":
-        """Return the step for this noise of the outputs; None where it is nearly undetermined."""
+        """Return the Gauss-Newton step for this noise of the outputs; None if nearly undetermined."""
         whole = np.sum([s.gram / noise[name] ** 2 for name, s in self._sums.items()], axis=0)
         information, gradient = whole[:-1, :-1], whole[:-1, -1]
         drawn = self._prior * self._place
@@ -207,7 +209,8 @@ class UpdatableSolution:
 
 
 def _end(grid: Grid, shared: FloatArray, local: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return α, q, θ at the last event (3,), and their derivatives by all parameters (3, 14)."""
+    """Return α, q, θ at the last event, shape (3,), and their derivatives by all parameters, shape (3,
+    14)."""
     row = np.full_like(grid.row, -1)
     row[list(_STATES), -1] = np.arange(len(_STATES))
     y, g = np.empty(len(_STATES)), np.empty((len(_STATES), N_PARAMETERS))

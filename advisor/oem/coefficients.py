@@ -1,13 +1,13 @@
-"""Non-dimensional coefficients from the derivatives, where geometry and mass are known.
+"""Non-dimensional coefficients from the derivatives, for known geometry and mass.
 
-V is the true air speed and q̄ = ½·ρ·V² the dynamic pressure. Rates are made non-dimensional by c/(2·V), and
-drag's part in the lift direction is neglected (Etkin & Reid, *Dynamics of Flight*, Table 4.4):
+V is the true air speed and q̄ = ½·ρ·V² the dynamic pressure. Rates are divided by 2·V/c, and the drag in the
+lift direction is neglected (Etkin & Reid, *Dynamics of Flight*, Table 4.4):
 
     Z_α = -q̄·S·C_Lα/(m·V)          M_α = q̄·S·c·C_mα/I_yy
     Z_q = -q̄·S·c·C_Lq/(2·m·V²)     M_q = q̄·S·c²·C_mq/(2·V·I_yy)
     Z_δe = -q̄·S·C_Lδe/(m·V)        M_δe = q̄·S·c·C_mδe/I_yy
 
-C_mq stands for C_mq + C_mα̇, because still air does not distinguish the two.
+C_mq includes C_mα̇, because still air does not distinguish both.
 """
 
 from collections.abc import Mapping
@@ -29,16 +29,16 @@ class Coefficient:
 
 
 def coefficients(estimate: Estimate, reference: Reference, air: AirData) -> Mapping[str, Coefficient]:
-    """Return the coefficients by name, as far as the reference data allow; empty without an air speed.
+    """Return the coefficients by name; without reference data or air speed a coefficient is missing.
 
     Parameters
     ----------
     estimate
-        Derivatives at ``estimate.airspeed_m_s``.
+        Derivatives at the air speed ``estimate.airspeed_m_s``.
     reference
-        Mass, wing area, chord and pitching inertia; those missing leave their coefficients out.
+        Mass, wing area, chord and pitching inertia; a missing value leaves out its coefficients.
     air
-        Density, and the ratio of true to logged air speed.
+        Air density, and the ratio of true to logged air speed.
     """
     if estimate.airspeed_m_s is None:
         return {}
@@ -52,9 +52,11 @@ def coefficients(estimate: Estimate, reference: Reference, air: AirData) -> Mapp
 
 
 def scales(airspeed_m_s: float, reference: Reference, air: AirData) -> Mapping[str, tuple[str, float]]:
-    """Return by coefficient name the derivative and the factor between the two, from Table 4.4.
+    """Return the derivative of each coefficient and the factor between both, by the coefficient's name (Table
+    4.4).
 
-    Coefficients without reference data are left out. ``airspeed_m_s`` is of the kind that ``air`` knows.
+    Coefficients without reference data are left out. ``airspeed_m_s`` is of the kind that ``air`` states,
+    such as true or indicated.
     """
     area, chord, mass, inertia = (
         reference.wing_area_m2,

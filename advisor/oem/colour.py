@@ -1,11 +1,12 @@
-"""The colour of an output's noise: white noise plus a first-order autoregression, by restricted likelihood.
+"""Colour of an output's noise: white noise plus a first-order autoregression, fitted by restricted
+likelihood.
 
     ν_k = w_k + x_k,   x_{k+1} = φ·x_k + e_k
 
-Real residuals are a mixture of white sensor noise and small, lasting errors of the model. Sample
+Residuals of real flights are a mixture of white sensor noise and small, slow model errors. Sample
 autocorrelations of residuals are too small, because the fitted parameters absorb part of the slow noise.
-Restricted maximum likelihood (Patterson & Thompson, *Biometrika* 58, 1971) uses only what no parameter can
-explain, and has no such bias.
+Restricted maximum likelihood (Patterson & Thompson, *Biometrika* 58, 1971) has no such bias, because it uses
+only what no parameter can explain.
 """
 
 import math
@@ -33,9 +34,9 @@ MEMORIES = (-0.4, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.993)
 WHITE_SHARES = (0.0, 0.1, 0.5, 2.0)
 """Starting values of var w / var x in the search."""
 SIGNIFICANT = 6.0
-"""Least gain in twice the log likelihood for coloured noise."""
+"""Least gain in twice the log likelihood of coloured over white noise."""
 PROMISING = 1.0
-"""Least gain of the best starting value for which the search is begun."""
+"""Least gain of the best starting value with which the search starts."""
 LARGEST_MEMORY = 0.9995
 SMALLEST_SHARE = 1e-4
 LOG_SMALLEST_SHARE = math.log(SMALLEST_SHARE)
@@ -46,12 +47,12 @@ _ROUND_OFF = float(np.finfo(float).eps)
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Residuals of one output in one manoeuvre, and the regressors of its parameters."""
+    """Residuals of one output in one manoeuvre, with the regressors of its parameters."""
 
     residual: FloatArray
-    """(n,) residuals."""
+    """Shape (n,): residuals of the output."""
     columns: FloatArray
-    """(n, p) derivatives by the manoeuvre's parameters."""
+    """Shape (n, p): derivatives of the output by the manoeuvre's parameters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,18 +60,17 @@ class Colour:
     """Noise model of one output."""
 
     variance: float
-    """Variance of the coloured part x, or of the whole noise when ``memory`` is 0."""
+    """Variance of the coloured part x, or of the whole noise if ``memory`` is 0."""
     memory: float
-    """φ; 0 for white noise."""
+    """Correlation φ of successive samples of the coloured part; 0 for white noise."""
     white_share: float
-    """var w / var x."""
+    """Ratio of the white noise's variance to the coloured part's, var w / var x."""
     uncertainty: FloatArray
-    """(k, k) covariance of the logarithm of ``variance`` and, for coloured noise, of the two parameters of
-    ``shape``."""
+    """Shape (k, k): covariance of log ``variance`` and, for coloured noise, of ``shape``."""
 
     @property
     def shape(self) -> FloatArray:
-        """(2,) φ and var w / var x, transformed to unbounded scales."""
+        """Shape (2,): φ and var w / var x, transformed to unbounded scales."""
         return _unbounded(self.memory, self.white_share)
 
 
@@ -118,7 +118,7 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
     variance = cost(memory, share)[1]
 
     def joint(x: FloatArray) -> float:
-        """Return -2·log-likelihood by log variance and shape."""
+        """Return -2·log-likelihood of the residuals for log variance and shape."""
         power, determinants = pooled(*_bounded(x[1:]))
         return float(freedom * x[0] + power * np.exp(-x[0]) + determinants)
 
@@ -137,7 +137,7 @@ def product(rows: FloatArray, colour: Colour) -> FloatArray:
 
 
 def moved(colour: Colour, step: FloatArray) -> Colour:
-    """Return the colour with log variance and shape displaced by ``step`` (3,)."""
+    """Return the colour with log variance and shape changed by ``step`` (3,)."""
     memory, share = _bounded(colour.shape + step[1:])
     return Colour(colour.variance * float(np.exp(step[0])), memory, share, colour.uncertainty)
 
@@ -157,7 +157,7 @@ def _simplex(x: FloatArray) -> FloatArray:
 
 
 def _orthogonal(stretch: Stretch, scale: float) -> FloatArray:
-    """Return (n, r + 1) orthonormal basis of the columns, and the residual last."""
+    """Return an orthonormal basis of the columns with the residual as last column, shape (n, r + 1)."""
     columns = stretch.columns / np.where(np.any(stretch.columns != 0.0, axis=0), 1.0, np.inf)
     size = np.linalg.norm(columns, axis=0)
     basis, values, _ = np.linalg.svd(columns[:, size > 0.0] / size[size > 0.0], full_matrices=False)
@@ -167,7 +167,7 @@ def _orthogonal(stretch: Stretch, scale: float) -> FloatArray:
 
 
 def _uncertainty(cost: Callable[[FloatArray], float], centre: FloatArray) -> FloatArray:
-    """Return the covariance of the parameters from the curvature of -2·log-likelihood."""
+    """Return the covariance of the noise parameters from the curvature of -2·log-likelihood."""
     n = len(centre)
     steps = np.array([0.05, 0.05, 0.3])
     hessian = np.empty((n, n))

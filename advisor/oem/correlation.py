@@ -1,4 +1,4 @@
-"""Correlation of residuals in time, and of parameters with one another."""
+"""Correlation of residuals in time, and of parameters with each other."""
 
 import numpy as np
 
@@ -6,14 +6,15 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 HIGH_CORRELATION = 0.9
-"""Absolute correlation of two parameters above which a note says that the input moved both alike."""
+"""Absolute correlation of two parameters above which a note is written."""
 
 
 def autocorrelation(residual: FloatArray, lags: int) -> FloatArray:
-    """Estimate the autocorrelation of a residual at whole numbers of samples.
+    """Return the autocorrelation of a residual at whole numbers of samples.
 
     The estimate is biased: r_k = Σ v_i v_{i+k} / Σ v_i². Here v is the residual less its mean.
-    Source: Box, Jenkins and Reinsel, *Time Series Analysis*, section 2.1. Samples count as evenly spaced.
+    Source: Box, Jenkins and Reinsel, *Time Series Analysis*, section 2.1. Samples are treated as evenly
+    spaced.
 
     Parameters
     ----------
@@ -25,7 +26,8 @@ def autocorrelation(residual: FloatArray, lags: int) -> FloatArray:
     Returns
     -------
     ndarray
-        Shape (m + 1,), r_0 to r_m with m = min(lags, n - 1); r_0 is 1. All are 0 without spread.
+        Shape (m + 1,), r_0 to r_m with m = min(lags, n - 1); r_0 is 1. All values are 0 for a constant
+        residual.
     """
     finite = residual[np.isfinite(residual)]
     if len(finite) == 0:
@@ -39,7 +41,7 @@ def autocorrelation(residual: FloatArray, lags: int) -> FloatArray:
 
 
 def white_noise_bound(samples: int) -> float:
-    """Half-width of the 95 % band of the autocorrelation of white noise: 1.96/√N.
+    """Return the half-width of the 95 % band of the autocorrelation of white noise: 1.96/√N.
 
     Parameters
     ----------
@@ -60,7 +62,7 @@ def correlation_matrix(covariance: FloatArray) -> FloatArray:
     Returns
     -------
     ndarray
-        Shape (n, n), from -1 to 1. NaN in the rows and columns of what has no variance above 0.
+        Shape (n, n), from -1 to 1. Rows and columns of a parameter without positive variance are NaN.
     """
     variance = np.diag(covariance)
     known = np.isfinite(variance) & (variance > 0.0)

@@ -1,10 +1,10 @@
 """Errors of an estimate: the Cramér-Rao bound, and its correction for coloured residuals.
 
-Near the optimum the estimate is linear in the noise, θ̂ - θ = Aᵀ·ν, where A is the influence of every
-measurement. White noise of covariance R gives AᵀRA, the Cramér-Rao bound. Real residuals are coloured. The
-covariance is then AᵀΓA with the noise's autocovariance Γ, estimated from the residuals. The source is Klein &
-Morelli, *Aircraft System Identification*, on output-error estimates with coloured residuals; the noise model
-here is that of ``colour``.
+Near the optimum the estimate is linear in the noise, θ̂ - θ = Aᵀ·ν, where A is the influence matrix of the
+measurements. White noise of covariance R gives AᵀRA, the Cramér-Rao bound. Residuals of real flights are
+coloured. The covariance is then AᵀΓA, with the noise's autocovariance Γ from the residuals. The source is
+Klein & Morelli, *Aircraft System Identification*, on output-error estimates with coloured residuals; the
+noise model here is that of ``colour``.
 """
 
 from collections.abc import Mapping
@@ -22,34 +22,35 @@ from advisor.oem.rows import Laid
 from advisor.words.quantiles import NORMAL_95
 
 OPEN_SHARE = 0.01
-"""Largest share of a parameter in undetermined directions. Above this share the parameter is unresolved."""
+"""Largest share of a resolved parameter in undetermined directions. Above this share the parameter counts as
+unresolved."""
 DIFFERENCE = 0.05
 LEAST_FREEDOM = 3.0
 REPORTED = NAMES.places
-"""Place of each of the eight parameters of the short period: whether it is shared, and its index."""
+"""Place of each of the eight short-period parameters: whether it is shared, and its index."""
 
 
 @dataclass(frozen=True, slots=True)
 class Influence:
-    """The linear map from measurements to the eight parameters."""
+    """Linear map from the measurements to the eight parameters."""
 
     rows: FloatArray
-    """(N, 8 + k) change of each parameter for a unit change of each measurement."""
+    """Shape (N, 8 + k): change of each parameter for a unit change of each measurement."""
     condition: float
-    """Condition number of the information matrix of the eight parameters, normalised to a unit diagonal."""
+    """Condition number of the eight parameters' information matrix, scaled to a unit diagonal."""
     unresolved: tuple[str, ...]
-    """Parameters in a direction about which the data say nothing."""
+    """Parameters with a part in a direction that the data do not determine."""
     extra_covariance: FloatArray
-    """(k, k) inverse information of the extra parameters, with all others free."""
+    """Shape (k, k): inverse information of the extra parameters, with all others free."""
     shared_inverse: FloatArray
-    """(f, 8 + k) inverse information of the f free shared parameters with each parameter."""
+    """Shape (f, 8 + k): rows of the inverse information for the f free shared parameters."""
     prior_rows: FloatArray
-    """(k, 8 + k) change of each parameter for a change of each extra parameter's prior mean by one standard
-    deviation of the prior."""
+    """Shape (k, 8 + k): change of each parameter when a prior mean moves by the prior's standard
+    deviation."""
 
     @property
     def prior_covariance(self) -> FloatArray:
-        """(8 + k, 8 + k) covariance from the errors of the priors."""
+        """Shape (8 + k, 8 + k): covariance from the errors of the priors."""
         return np.asarray(self.prior_rows.T @ self.prior_rows)
 
     def step(self, residual: FloatArray, extra: Extra | None) -> FloatArray:
@@ -58,18 +59,18 @@ class Influence:
         return np.asarray(self.rows.T @ residual + pulled)
 
     def first(self, parameters: int) -> "Influence":
-        """Return the influence on the first parameters only; the others stay free."""
+        """Return the influence on the first ``parameters`` parameters only; the others stay free."""
         return replace(self, rows=self.rows[:, :parameters], prior_rows=self.prior_rows[:, :parameters])
 
 
 @dataclass(frozen=True, slots=True)
 class Coloured:
-    """The noise model of a fit."""
+    """Noise model of a fit, with its uncertainty."""
 
     colours: Mapping[str, Colour]
-    """Output name to the noise model of the output."""
+    """Noise model of each output, by the output's name."""
     widening: FloatArray
-    """(8 + k,) factor on each standard deviation for the uncertainty of the noise model."""
+    """Shape (8 + k,): factor on each standard deviation due to the uncertainty of the noise model."""
 
 
 def influence(
@@ -79,7 +80,7 @@ def influence(
     extra: Extra | None = None,
     prior: FloatArray | None = None,
 ) -> Influence | None:
-    """Return the influence of every measurement on the eight parameters; None when it overflows.
+    """Return the influence of every measurement on the eight parameters; None on numerical overflow.
 
     Z_0 and M_0 are means over the manoeuvres.
 
@@ -162,7 +163,7 @@ def cramer_rao(assembly: Laid, rows: FloatArray, noise: FloatArray) -> FloatArra
 
 
 def colours_of(assembly: Laid, residual: FloatArray, g: FloatArray) -> Mapping[str, Colour]:
-    """Return by output name the noise model of the output, pooled over the manoeuvres."""
+    """Return the noise model of each output, pooled over the manoeuvres, by the output's name."""
     return {
         output: find_colour([Stretch(residual[s], g[s][:, assembly.free]) for s in stretches])
         for output, stretches in _stretches(assembly).items()
@@ -180,9 +181,9 @@ def coloured(assembly: Laid, rows: FloatArray, noise: Coloured) -> FloatArray:
 
 
 def widening(assembly: Laid, rows: FloatArray, colours: Mapping[str, Colour]) -> FloatArray:
-    """Return the factor on each standard deviation for the uncertainty of the noise model, shape (8 + k,).
+    """Return the factor on each standard deviation due to the noise model's uncertainty, shape (8 + k,).
 
-    The uncertainty of the noise model is carried to each variance (Satterthwaite's degrees of freedom). The
+    The noise model's uncertainty is carried to each variance (Satterthwaite's degrees of freedom). The
     deviation is enlarged by the ratio of Student's to Gauss's 97.5 % point. ±1.96 standard deviations then
     hold the truth in 95 % of cases.
     """
@@ -210,7 +211,7 @@ def widening(assembly: Laid, rows: FloatArray, colours: Mapping[str, Colour]) ->
 
 
 def _stretches(assembly: Laid) -> dict[str, list[slice]]:
-    """Return output name to its rows in each manoeuvre that has it."""
+    """Return the rows of each output in each manoeuvre that has it, by the output's name."""
     return {
         output: [named[output] for named in assembly.rows if output in named]
         for output in assembly.names.outputs

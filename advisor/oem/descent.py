@@ -1,7 +1,7 @@
-"""Gauss-Newton over the derivatives, servos and clocks of a problem in one pass, for every axis.
+"""Gauss-Newton search over the derivatives, servos and clocks of a problem together, for every axis.
 
-Every trial lays the records anew at its servos and clocks. All derivatives are analytic, and come from the
-pass over the motion that gives the outputs. The steps and the damping are those of ``gauss_newton``.
+Every trial lays out the records again with its servos and clocks. All derivatives are analytic, and the pass
+that simulates the outputs computes them. The steps and the damping are those of ``gauss_newton``.
 """
 
 from collections.abc import Mapping, Sequence
@@ -32,65 +32,65 @@ from advisor.oem.rows import Laid
 from advisor.oem.solution import RUNS_AWAY
 
 SETTLED = 1e-3
-"""Promised change of -2 log of the posterior at which a search ends. A decrease of this size moves no
+"""Promised change of -2 log posterior density at which a search ends. A decrease of this size moves no
 parameter by more than 0.03 of its standard deviation."""
 
 
 class Response(NamedTuple):
-    """Outputs of the model with their derivatives, at one setting of all parameters."""
+    """Simulated outputs with their derivatives, at one setting of all parameters."""
 
     y: FloatArray
     """(N,)."""
     g: FloatArray
-    """(N, s + l) derivatives by the shared parameters, and by those that each manoeuvre has of its own."""
+    """Shape (N, s + l): derivatives by the shared parameters and by each manoeuvre's local parameters."""
     columns: FloatArray
-    """(N, k) derivatives by the nuisance parameters."""
+    """Shape (N, k): derivatives by the nuisance parameters."""
     begun: FloatArray
-    """(m, states) rates of the states at the first event of each record. A delay may move this first
+    """Shape (m, states): rates of the states at the first event of each record. A delay may move this first
     event."""
 
 
 class Motion(Protocol):
-    """The motion of one axis, as the search needs it. A problem holds records, servos and clocks."""
+    """Interface of an axis' simulated motion for the search. A problem holds records, servos and clocks."""
 
     names: Names
 
     def laid(self, problem: Any, /) -> Laid:
-        """Return the measurements as rows."""
+        """Return the measurements as stacked rows."""
 
     def floor(self, laid: Any, /) -> FloatArray:
-        """Return the least standard deviation of each output, (outputs,), SI."""
+        """Return the least standard deviation of each output, shape (outputs,), SI."""
 
     def respond(
         self, problem: Any, laid: Any, shared: FloatArray, local: FloatArray, nuisances: Sequence[Any], /
     ) -> Response | None:
-        """Return the response; None where the model runs away."""
+        """Return the response of the model; None where the simulation diverges."""
 
     def begins(self, laid: Any, /) -> FloatArray:
-        """Return the time of the first event of each record, (m,), s."""
+        """Return the time of the first event of each record, shape (m,), s."""
 
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """A problem at one setting of all parameters."""
+    """A problem with one setting of all parameters, and its residuals."""
 
     problem: Any
-    """Records, with the present values of servos and clocks."""
+    """Records with the present values of servos and clocks."""
     assembly: Any
     optimum: Optimum
     extra: Extra
-    """Nuisance parameters at their values."""
+    """Nuisance parameters at their present values."""
     begun: FloatArray
-    """(m, states) as in ``Response``."""
+    """Shape (m, states): rates of the states at the first event of each record, as in ``Response``."""
 
     @property
     def cost(self) -> float:
-        """-2 log of the posterior, up to a constant."""
+        """-2 log posterior density, up to a constant."""
         return self.optimum.log_likelihood_cost
 
     @property
     def place(self) -> tuple[FloatArray, FloatArray]:
-        """Derivatives and local parameters, from which another search begins."""
+        """Derivatives and local parameters, as the start of another search."""
         return self.optimum.shared, self.optimum.local
 
 
@@ -102,7 +102,7 @@ class _Setting(NamedTuple):
     prior: Priors
 
     def at(self, problem: Any, assembly: Laid, shared: FloatArray, local: FloatArray) -> Fit | None:
-        """Return the fit at one setting; None where the model runs away."""
+        """Return the fit at one setting; None where the simulation diverges."""
         found = self.motion.respond(problem, assembly, shared, local, self.nuisances)
         if found is None:
             return None
@@ -116,9 +116,10 @@ class _Setting(NamedTuple):
         return Fit(problem, assembly, optimum, extra, found.begun)
 
     def step(self, fit: Fit, damping: float) -> "_Step | None":
-        """Return the damped step from a fit; None where the data do not determine it.
+        """Return the damped step from a fit; None if the data do not determine the step.
 
-        A nuisance parameter that would leave its range goes to the end of the range, and all others follow.
+        A nuisance parameter that would leave its range is fixed at the range's end, and the others are solved
+        again.
         """
         system = _System.of(self.prior, fit)
         held: dict[int, float] = {}
@@ -136,7 +137,7 @@ class _Setting(NamedTuple):
         return found
 
     def moved(self, fit: Fit, step: "_Step") -> Fit | None:
-        """Return the fit after a step; None where the model runs away."""
+        """Return the fit after a step; None where the simulation diverges."""
         optimum, count = fit.optimum, len(fit.optimum.shared)
         problem = moved_by(step.shared[count:], fit.problem, self.nuisances)
         assembly = self.motion.laid(problem)
@@ -147,7 +148,7 @@ class _Setting(NamedTuple):
 
 
 def _initial(names: Names, states: int) -> list[int]:
-    """Return the places of the initial states among the local parameters."""
+    """Return the indices of the initial states among the local parameters."""
     return [j for j, name in enumerate(names.local) if name.endswith("_initial")][:states]
 
 
@@ -155,22 +156,22 @@ class _Step(NamedTuple):
     """A step of all parameters."""
 
     shared: FloatArray
-    """(s + k,) derivatives, then nuisance parameters."""
+    """Shape (s + k,): steps of the derivatives, then of the nuisance parameters."""
     local: FloatArray
-    """(m, l)."""
+    """Shape (m, l): steps of the local parameters."""
     promise: float
-    """Decrease of -2 log of the posterior that the quadratic model promises."""
+    """Decrease of -2 log posterior density that the quadratic model promises."""
 
 
 class _System(NamedTuple):
     """The normal equations of all parameters; derivatives and nuisance parameters are shared."""
 
     information: FloatArray
-    """(m, n, n)."""
+    """Shape (m, n, n): information matrix of each manoeuvre."""
     gradient: FloatArray
-    """(m, n)."""
+    """Shape (m, n): gradient of each manoeuvre."""
     free: Index
-    """(n,) places of the parameters among s + k shared and l local ones."""
+    """Shape (n,): indices of the free parameters among s + k shared and l local parameters."""
     shared: int
     """s."""
     own: int
@@ -204,7 +205,8 @@ class _System(NamedTuple):
         return cls(information, gradient, free, s, optimum.local.shape[1], k)
 
     def solved(self, damping: float, held: Mapping[int, float]) -> _Step | None:
-        """Return the step with the nuisance parameters ``held`` moved by given amounts, or None."""
+        """Return the step with the nuisance parameters in ``held`` moved by given amounts; None if
+        undetermined."""
         total = self.shared + self.nuisances
         fixed = np.isin(self.free, [self.shared + j for j in held])
         amount = np.array([held[int(j) - self.shared] for j in self.free[fixed]])
@@ -230,21 +232,21 @@ def descended(
     begin: tuple[FloatArray, FloatArray],
     most: int = MOST_ITERATIONS,
 ) -> Fit | NoEstimate:
-    """Return the fit with the least -2 log of the posterior near a start. The fit's status says how the
-    search ended.
+    """Return the fit with the least -2 log posterior density near a start. The status of the fit states how
+    the search ended.
 
     Parameters
     ----------
     problem
         Records, with servos and clocks at the start of the search.
     nuisances
-        Servos and clocks that move with the derivatives.
+        Servos and clocks that are estimated with the derivatives.
     prior
         Priors of the derivatives.
     begin
         Derivatives (s,) and local parameters (m, l).
     most
-        Largest number of trials.
+        Largest number of trial steps.
     """
     setting = _Setting(motion, nuisances, prior)
     best = setting.at(problem, motion.laid(problem), *begin)

@@ -1,4 +1,4 @@
-"""Compiled estimates of single manoeuvres that share grid and input."""
+"""Compiled estimates of single manoeuvres that share the time grid and the input."""
 
 import numpy as np
 
@@ -28,9 +28,9 @@ def solve_each(
     Parameters
     ----------
     z
-        Shape (n, N), the measurements, one manoeuvre a row.
+        Shape (n, N): measurements, one manoeuvre per row.
     position
-        Shape (8,), index of each reported parameter among shared and local ones.
+        Shape (8,): index of each reported parameter among shared and local parameters.
     """
     rows = len(z)
     found = np.full((rows, 8), np.nan)

@@ -1,9 +1,9 @@
-"""The time of a command's step, which lies somewhere between two stamps.
+"""Time of a command's step, which lies between two stamps.
 
-A step between two stamps is drawn as a ramp over the interval, as if it had happened in the middle. The true
-time of a step lies anywhere in the interval, and at the later stamp for a held digital command. Half an
-interval is a false delay, of many standard deviations in a joint estimate. Each large step therefore gets
-its own time, estimated together with all other parameters, where the data require it.
+A step between two stamps is drawn as a ramp over the interval, equivalent to a step in its middle. The true
+time of a step lies anywhere in the interval, and at the later stamp for a held digital command. An error of
+half an interval is a false delay of many standard deviations in a joint estimate. Each large step therefore
+gets its own time, estimated with all other parameters, if the data require it.
 """
 
 from collections.abc import Sequence
@@ -24,18 +24,17 @@ from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.weighing import Weighing
 
 LARGE = 0.25
-"""Least share of the command's range that a step covers within one interval."""
+"""Least share of the command's range that a large step covers within one interval."""
 ISOLATED = 0.3
-"""Largest change in the intervals before and after a step, as a share of the step, for a step that stands
-alone."""
+"""Largest change in the neighbouring intervals, as a share of the step, for an isolated step."""
 WIDTH_S = 1e-4
 """Duration of a sharpened step, s."""
 ROUNDS = 2
 CHANCE = 1e-3
-"""Largest probability of the gain by chance for which steps are sharpened, compared with arbitrary times."""
+"""Largest probability of a likelihood gain by chance with which steps are sharpened."""
 GAIN_UPRIGHT = 3.0
-"""Least gain in twice the log likelihood of all steps upright in the middle of their intervals, where no time
-is fitted. A ramp and a step in its middle look alike and differ in M_δe."""
+"""Least gain in twice the log likelihood of vertical steps in the middle of their intervals. A ramp and a
+step in its middle look alike but give different M_δe."""
 MOST_MANEUVERS = 20
 CLOSE_ENOUGH = 1e-9
 """Promised change of log J per sample at which an intermediate search ends."""
@@ -43,18 +42,18 @@ CLOSE_ENOUGH = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Edges:
-    """Large steps of one record, and their times."""
+    """Large steps of one record's command, and their times."""
 
     interval: tuple[int, ...]
     """Index of the stamp before each step."""
     stamps: FloatArray
-    """(2, k) stamps before and after each step, s."""
+    """Shape (2, k): stamps before and after each step, s."""
     time: FloatArray
-    """(k,) time of each step, between its stamps, s."""
+    """Shape (k,): time of each step, between its stamps, s."""
 
 
 def large_steps(command: Signal) -> Edges:
-    """Return the steps that stand alone between two stamps, placed in the middle."""
+    """Return the isolated large steps of a command, each placed in the middle between two stamps."""
     change = np.abs(np.diff(command.y))
     next_to_it = np.maximum(np.append(change[1:], 0.0), np.append(0.0, change[:-1]))
     span = float(np.ptp(command.y))
@@ -66,7 +65,7 @@ def large_steps(command: Signal) -> Edges:
 
 
 def sharpened(command: Signal, edges: Edges) -> Signal:
-    """Return the command with its large steps upright at the given times."""
+    """Return the command with vertical large steps at the given times."""
     t, y = list(command.t), list(command.y)
     for i, when in sorted(zip(edges.interval, edges.time, strict=True), reverse=True):
         t[i + 1 : i + 1] = [when - WIDTH_S / 2.0, when + WIDTH_S / 2.0]
@@ -75,10 +74,10 @@ def sharpened(command: Signal, edges: Edges) -> Signal:
 
 
 def with_edges(plain: Solution) -> Solution:
-    """Return the solution with every large step at its own time; ``plain`` where that gains too little.
+    """Return the solution with a time for every large step; ``plain`` if the gain is too small.
 
-    The additional parameters of ``plain`` keep their values and their errors, and the times come after them.
-    A step is equally likely everywhere between its two stamps."""
+    The additional parameters of ``plain`` keep their values and errors, and the step times follow them. A
+    step is equally likely everywhere between its two stamps."""
     records = plain.problem.records
     edges = [large_steps(record.elevator) for record in records]
     count = sum(len(e.interval) for e in edges)
@@ -127,7 +126,7 @@ def _edged(
 
 
 def _within_intervals(edges: Sequence[Edges], columns: FloatArray) -> Extra:
-    """Return the times of all edges as parameters, with the prior of a time anywhere in its interval."""
+    """Return the step times as parameters, with a uniform prior over their intervals."""
     first, last = np.concatenate([e.stamps for e in edges], axis=1)
     time = np.concatenate([e.time for e in edges])
     priors = [Prior((a + b) / 2.0, (b - a) / np.sqrt(12.0)) for a, b in zip(first, last, strict=True)]
@@ -135,7 +134,7 @@ def _within_intervals(edges: Sequence[Edges], columns: FloatArray) -> Extra:
 
 
 def _moved(edges: Sequence[Edges], steps: FloatArray) -> list[Edges]:
-    """Return the edges displaced, each within its interval."""
+    """Return the steps with moved times, each within its interval."""
     ends = np.cumsum([len(e.interval) for e in edges])
     return [
         replace(e, time=np.clip(e.time + by, e.stamps[0] + WIDTH_S, e.stamps[1] - WIDTH_S))
@@ -146,9 +145,9 @@ def _moved(edges: Sequence[Edges], steps: FloatArray) -> list[Edges]:
 def _by_edges(
     problem: OutputErrorProblem, assembly: Assembly, optimum: Optimum, edges: Sequence[Edges]
 ) -> FloatArray:
-    """Return the derivatives of the outputs by the times of all edges, shape (N, k), manoeuvre by manoeuvre.
+    """Return the derivatives of the outputs by the step times, shape (N, k), manoeuvre by manoeuvre.
 
-    The j-th edges of all manoeuvres are moved at once, because each affects its own manoeuvre only.
+    The j-th steps of all manoeuvres are moved together, because each affects its own manoeuvre only.
     """
     counts = [len(e.interval) for e in edges]
     most = max(counts)

@@ -1,16 +1,16 @@
-"""The efficient estimate with coloured noise: one whitened Gauss-Newton step from the optimum.
+"""Efficient estimate with coloured noise: one whitened Gauss-Newton step from the optimum.
 
-Output error weighs every sample alike. With coloured noise generalised least squares has the smaller error:
-residuals and sensitivities pass through the filter that whitens the noise. From an estimate as good as output
-error's, one step reaches the Cramér-Rao bound for known noise. The source is Lehmann & Casella, *Theory of
-Point Estimation*, theorem 6.4.3. The lowest J of Eq. (7) and the smallest error are then at different points.
+Output error gives all samples equal weight. With coloured noise generalised least squares has a smaller
+error, because a filter whitens residuals and sensitivities. From an output-error estimate, one step reaches
+the Cramér-Rao bound for known noise. The source is Lehmann & Casella, *Theory of Point Estimation*, theorem
+6.4.3. The least cost J of Eq. (7) and the smallest error then lie at different parameter values.
 
-A slow residual is not always noise. A servo's lag, a late angle of attack and moving air are slow too. An
-estimator that discounts the slow part relies on the fast part, where timing errors matter. The step is
-therefore taken only where it gains something and the residual is coloured noise:
+A slow residual is not always noise. A servo lag, a late angle of attack and moving air also cause slow
+residuals. An estimator that discounts slow residuals relies on fast ones, where timing errors matter. The
+step is therefore taken only if it reduces a variance and the residual is coloured noise:
 
-- whitened, no output's residual remembers anything (Ljung & Box, *Biometrika* 65, 1978);
-- the step is no longer than right models let it be (Hausman, *Econometrica* 46, 1978).
+- after whitening, no output's residual is correlated (Ljung & Box, *Biometrika* 65, 1978);
+- the step is no longer than a right model allows (Hausman, *Econometrica* 46, 1978).
 """
 
 from dataclasses import dataclass, replace
@@ -30,31 +30,32 @@ N = len(PARAMETERS)
 LAGS = 20
 """Number of lags over which a whitened residual must be uncorrelated."""
 CHANCE = 0.01
-"""Probability of refusing the step by chance, over all tests."""
+"""Probability that a valid step is refused by chance, over all tests."""
 GAIN = 0.02
-"""Least relative decrease of some parameter's variance for a step."""
+"""Least relative decrease of a parameter's variance for which the step is taken."""
 LEAST_SHARE = 0.01
-"""Least variance of the step, as a share of the estimate's, for its test. Round-off decides below it."""
+"""Least variance of the step, as a share of the estimate's variance, for a test of the step. Below this share
+rounding errors dominate."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A step from the lowest cost to the smallest error."""
+    """Step from the optimum of output error to the efficient estimate."""
 
     change: FloatArray
-    """(8,) change of the eight parameters by the efficient fit."""
+    """Shape (8,): change of the eight parameters by the step."""
     covariance: FloatArray
-    """(8, 8) covariance of the parameters after the step, widened for the uncertainty of the noise model."""
+    """Shape (8, 8): covariance after the step, including the noise model's uncertainty."""
     systematic: FloatArray
-    """(8, 8) covariance of the parameters after the step by dynamics that the model lacks."""
+    """Shape (8, 8): covariance after the step from dynamics that the model lacks."""
     gain: float
     """Largest relative decrease of a parameter's variance."""
     chances: FloatArray
-    """Probabilities, under this model, of each output's whitened autocorrelation and the step's length."""
+    """Chance probabilities of each output's whitened autocorrelation and of the step's length."""
 
 
 def efficient(solution: Solution) -> Solution:
-    """Return the solution with the efficient values and errors of the eight parameters, or unchanged.
+    """Return the solution with the efficient values and errors of the eight parameters, if the step is valid.
 
     Cost and fit stay those of output error.
     """
@@ -70,7 +71,7 @@ def efficient(solution: Solution) -> Solution:
 
 
 def efficient_step(solution: Solution) -> Step | None:
-    """Return the step with the probabilities of its tests; None where it overflows."""
+    """Return the efficient step with the probabilities of its tests; None on numerical overflow."""
     colours, assembly = solution.noise.colours, solution.assembly
     weighing = Weighing.by(solution.noise, assembly)
     found = weighing.influence(solution.sensitivities, solution.extra)
@@ -100,9 +101,9 @@ def efficient_step(solution: Solution) -> Step | None:
 
 
 def _unsure(solution: Solution, change: FloatArray) -> FloatArray:
-    """Return the covariance of the step for the uncertainty of the noise model, shape (8, 8).
+    """Return the step's covariance due to the noise model's uncertainty, shape (8, 8).
 
-    The covariance of the estimate is larger by it than with a known noise model. The usual formula with an
+    The estimate's covariance is larger by this term than with a known noise model. The usual formula with an
     estimated model is smaller, so the term counts twice (Kenward & Roger, *Biometrics* 53, 1997).
     """
     total = np.zeros((N, N))
@@ -122,14 +123,14 @@ def _unsure(solution: Solution, change: FloatArray) -> FloatArray:
 
 
 def _chance(change: FloatArray, covariance: FloatArray, unit: FloatArray) -> float:
-    """Return the probability of a change at least this long under its covariance, in ``unit`` (8,)."""
+    """Return the probability of a step at least this long under its covariance, in ``unit`` (8,)."""
     values, vectors = np.linalg.eigh(covariance / np.outer(unit, unit))
     along = vectors.T @ (change / unit)
     return float(chdtrc(len(change), np.sum(along**2 / np.maximum(values, LEAST_SHARE))))
 
 
 def _remembering(solution: Solution, weighing: Weighing) -> list[float]:
-    """Return for each output the probability that white noise has such a whitened autocorrelation.
+    """Return the probability that white noise has an equal whitened autocorrelation, for each output.
 
     An output with few samples is not tested.
     """

@@ -1,4 +1,4 @@
-"""From manoeuvres to estimates: the functions that the rest of the program calls."""
+"""Estimation of parameters from manoeuvres, as called by other packages."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -28,26 +28,28 @@ from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
 COLOURED = 0.5
-"""Least lag-1 correlation of the pitch rate's residual for moving air. Below it the air is still."""
+"""Least lag-1 correlation of the pitch rate's residual that suggests moving air. Below this correlation the
+air is still."""
 UNEXPLAINED = 0.004
-"""Least unexplained share of the pitch rate's variance for moving air."""
+"""Least unexplained share of the pitch rate's variance that suggests moving air."""
 CLEARLY = 10.0
-"""Least gain in twice the log likelihood by which another reading of the record must beat the usual one."""
+"""Least gain in twice the log likelihood by which an alternative model of the record is preferred."""
 
 
 def estimate(maneuver: Maneuver, aircraft: Aircraft) -> Estimate | NoEstimate:
-    """Return all eight parameters from one manoeuvre, or why there is no estimate."""
+    """Return all eight parameters from one manoeuvre, or the reason for a missing estimate."""
     return estimate_jointly([maneuver], aircraft)
 
 
 def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estimate | NoEstimate:
-    """Return one estimate over several manoeuvres, with shared derivatives and own nuisance parameters."""
+    """Return one estimate over several manoeuvres, with shared derivatives and separate nuisance
+    parameters."""
     fit = fit_jointly(maneuvers, aircraft)
     return fit if isinstance(fit, NoEstimate) else fit.estimate()
 
 
 def fit_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> "Fit | NoEstimate":
-    """Return the fit from which the estimate over several manoeuvres follows."""
+    """Return the fit on which the estimate over several manoeuvres is based."""
     if not maneuvers:
         return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")
     begun = _begun(maneuvers, aircraft)
@@ -59,7 +61,7 @@ def fit_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> "Fit | NoE
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """Output error with the instruments of the log, before times of steps and moving air are allowed for."""
+    """Output-error fit with the log's instruments, before corrections for step times and moving air."""
 
     maneuvers: Sequence[Maneuver]
     aircraft: Aircraft
@@ -70,11 +72,11 @@ class Fit:
 
     @property
     def tells_lag(self) -> bool:
-        """Whether the manoeuvres tell the servo's lag well enough for every other estimate."""
+        """Whether the manoeuvres determine the servo's lag well enough for all other estimates."""
         return any(knows_the_lag(x.found) for x in self.fitted.identified)
 
     def estimate(self) -> Estimate:
-        """Return the estimate with the times of steps, and by filter error where the air moves."""
+        """Return the estimate with step times, and by filter error in moving air."""
         solution = with_edges(self.fitted.solution)
         identified = refreshed(self.fitted.identified, solution)
         air = _air(solution, self.maneuvers, self.prepared)
@@ -91,7 +93,7 @@ class Fit:
 
 
 def _begun(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> tuple[Prepared, Solution] | NoEstimate:
-    """Return the prepared manoeuvres with the solution without instrument parameters."""
+    """Return the prepared manoeuvres, and the solution without instrument parameters."""
     prepared = prepare(maneuvers, aircraft)
     if isinstance(prepared, NoEstimate):
         return prepared
@@ -100,10 +102,10 @@ def _begun(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> tuple[Prepared,
 
 
 def _with_instruments(plain: Solution, aircraft: Aircraft) -> InstrumentFit:
-    """Return the fit with the instruments, and with the likelier reading of the command.
+    """Return the fit with the instruments, and with the likelier motion of the command.
 
-    A smooth command may be held instead of linear between its stamps, which is half an interval later. Large
-    steps get their own times (``edges``).
+    A smooth command may be held between its stamps instead of linear, which delays it by half an interval.
+    Large steps of the command get their own times (``edges``).
     """
     linear = fit_instruments(plain, unknown_instruments(plain.problem, aircraft))
     records = plain.problem.records
@@ -120,9 +122,9 @@ def _with_instruments(plain: Solution, aircraft: Aircraft) -> InstrumentFit:
 
 
 def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) -> Turbulence | None:
-    """Return moving air and noise of the instruments where output error is not valid, else None.
+    """Return moving air and instrument noise if output error is not valid, else None.
 
-    Without an angle of attack the specific force carries every gust, so its noise is always modelled.
+    Without an angle of attack the specific force shows every gust, so its noise is always modelled.
     """
     if prepared.alpha_left_out:
         found = moving_air(solution, seen_by_alpha=False)
@@ -135,22 +137,22 @@ def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) 
 
 
 def _derives_alpha(maneuvers: Sequence[Maneuver]) -> bool:
-    """Return whether the angle of attack comes from inertial sensors, instead of from a vane."""
+    """Return whether the angle of attack comes from inertial sensors instead of a vane."""
     return any("alpha" in m.channels and m.channels["alpha"].provenance == "derived" for m in maneuvers)
 
 
 def lag_is_unknown(aircraft: Aircraft) -> bool:
-    """Return whether neither the crew nor an earlier manoeuvre gives the servo's lag."""
+    """Return whether the servo's lag comes neither from the crew nor from an earlier manoeuvre."""
     found = found_of(aircraft)
     told = found is not None and "servo_lag_s" in found.names
     return aircraft.elevator.lag_s is None and not told
 
 
 def _solved(problem: OutputErrorProblem) -> Solution | NoEstimate:
-    """Return the solution with the reading of the record that the data clearly prefer.
+    """Return the solution with the gravity model that the data clearly prefer.
 
-    Eqs. (1)-(2) take the flight path as constant. Gravity's part in α̇ as the path turns is about 1e-4 rad/s,
-    and is left out where the data do not follow it.
+    Eqs. (1)-(2) take the flight path as constant. Gravity's part in α̇ for a turning path is about 1e-4
+    rad/s, and is left out if the data contradict it.
     """
     best = solve(problem)
     if any(record.normal_gravity is not None and record.airspeed is not None for record in problem.records):
@@ -160,10 +162,10 @@ def _solved(problem: OutputErrorProblem) -> Solution | NoEstimate:
 
 
 def _clearer(best: Solution | NoEstimate, other: OutputErrorProblem) -> Solution | NoEstimate:
-    """Return ``best``, unless the other reading of the same data explains them clearly better.
+    """Return ``best``, or the solution of ``other`` if that explains the data clearly better.
 
-    The other reading must be better by output error's weights and by those of coloured noise. Where the model
-    does not hold, as with an unknown servo, the two may contradict each other.
+    The other solution must be better under white noise and under coloured noise. If the model is wrong, as
+    with an unknown servo, both criteria may contradict each other.
     """
     if isinstance(best, NoEstimate):
         return best
@@ -189,7 +191,7 @@ def report(
     filtered: Solution | None = None,
     quick: bool = False,
 ) -> Estimate:
-    """Return a solution as an estimate for the rest of the program.
+    """Return a solution as a reported estimate.
 
     Parameters
     ----------
@@ -237,14 +239,14 @@ def report(
 
 
 def _given(found: FoundInstruments | None) -> Iterator[InstrumentEstimate]:
-    """Yield the instruments that other manoeuvres have told, for the rest of the program."""
+    """Yield the instruments that other manoeuvres have determined."""
     for name, value, std in zip(found.names, found.values, found.std, strict=True) if found else ():
         if name != "steady_moment_rad":
             yield InstrumentEstimate(name, float(value), float(std))
 
 
 def channel_fits(assembly: Laid, optimum: Optimum) -> tuple[dict[str, ChannelFit], ...]:
-    """Return measured and fitted values for every manoeuvre and output."""
+    """Return measured and fitted values of every manoeuvre and output."""
     outputs = assembly.names.outputs
     return tuple(
         {

@@ -1,4 +1,4 @@
-"""The evaluation of an optimum: influence of every measurement, colour of the noise, and errors."""
+"""Evaluation of an optimum: influence of the measurements, colour of the noise, and errors."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -16,45 +16,46 @@ from advisor.oem.scatter_between import widened_by_scatter
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evaluated:
-    """An optimum with all quantities computed from it. p parameters are reported, k are extra ones."""
+    """An optimum with all derived quantities, for p reported and k extra parameters."""
 
     optimum: Optimum
     influence: Influence
     theta: FloatArray
-    """(p,) reported parameters; those of one manoeuvre are means over the manoeuvres."""
+    """Shape (p,): reported parameters; a manoeuvre's own parameters are averaged over the manoeuvres."""
     covariance_cr: FloatArray
-    """(p + k, p + k) Cramér-Rao bound of the reported and of the extra parameters."""
+    """Shape (p + k, p + k): Cramér-Rao bound of the reported and of the extra parameters."""
     covariance: FloatArray
-    """(p + k, p + k) covariance by the noise within the manoeuvres, corrected for coloured residuals."""
+    """Shape (p + k, p + k): covariance from the noise within the manoeuvres, for coloured residuals."""
     noise: Coloured
     """Colour of each output's noise."""
     contributions: FloatArray
-    """(m, p + k) contribution of each manoeuvre's residuals to each parameter; they sum to zero."""
+    """Shape (m, p + k): contribution of each manoeuvre's residuals to each parameter, with zero sum."""
     systematic: FloatArray
-    """(p + k, p + k) covariance by dynamics that the model lacks, alike in all manoeuvres."""
+    """Shape (p + k, p + k): covariance from dynamics that the model lacks, equal in all manoeuvres."""
     modes: FloatArray | None = None
-    """(p + k, p + k) second moment of another mode of the posterior about this one, by its probability."""
+    """Shape (p + k, p + k): second moment of another posterior mode about this one, times its probability."""
     extra: Extra | None = None
-    """Additional parameters, such as the times of edges: e of them, at least k."""
+    """Additional parameters, such as step times; the number e is at least k."""
 
     @property
     def fitted(self) -> FloatArray:
-        """(N,) model outputs, in the rows of the measurements."""
+        """Shape (N,): model outputs, in the rows of the measurements."""
         return self.optimum.fitted
 
     @property
     def sensitivities(self) -> FloatArray:
-        """(N, s + l) derivatives of the outputs by the parameters of the row's manoeuvre."""
+        """Shape (N, s + l): derivatives of the outputs by the parameters of the row's manoeuvre."""
         return self.optimum.sensitivities
 
     @property
     def scattered(self) -> FloatArray:
-        """(p + k, p + k) covariance that contains the scatter between the manoeuvres."""
+        """Shape (p + k, p + k): covariance that includes the scatter between the manoeuvres."""
         return widened_by_scatter(self.covariance, self.contributions[:, : len(self.covariance)])
 
     @property
     def widened(self) -> FloatArray:
-        """(p + k, p + k) covariance that also has another mode, and errors that all manoeuvres have alike."""
+        """Shape (p + k, p + k): covariance that also includes another mode and errors common to all
+        manoeuvres."""
         size = len(self.covariance)
         total = self.scattered + self.systematic[:size, :size]
         return np.asarray(total if self.modes is None else total + self.modes[:size, :size])
@@ -73,27 +74,28 @@ def errors_of(
     noise: Coloured | None = None,
     kept: int | None = None,
 ) -> dict[str, Any] | None:
-    """Return the fields of ``Evaluated`` that hold errors; None where numbers overflow.
+    """Return the fields of ``Evaluated`` that hold errors; None on numerical overflow.
 
     Parameters
     ----------
     residual
-        (N,) measured minus fitted outputs.
+        Shape (N,): measured minus fitted outputs.
     g
-        (N, s + l) derivatives of the outputs.
+        Shape (N, s + l): derivatives of the outputs.
     weights
-        (outputs,) standard deviation of each output by which the fit weighs it.
+        Shape (outputs,): standard deviation with which the fit weights each output.
     extra, prior
         Arguments of ``covariance.influence``.
     fitted
-        (N,) outputs of the model. None: rows are innovations, in which common dynamics do not stand out.
+        Shape (N,): outputs of the model. None if the rows are innovations, in which common dynamics do not
+        stand out.
     prior_share
-        Share by which white noise weighs ``prior``, as in ``extra.Prior``, where its error is part of the
-        covariance. None: the prior has no error.
+        Factor on the standard deviation of ``prior`` in a white-noise fit, as in ``extra.Prior``. None if the
+        prior has no error.
     noise
         Noise model that is used instead of a new fit.
     kept
-        Number of extra parameters, the first ones, with errors of their own; by default all.
+        Number of the first extra parameters that get errors; by default all.
     """
     effect = influence(assembly, g, weights, extra, prior)
     if effect is None:

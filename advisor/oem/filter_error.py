@@ -1,10 +1,10 @@
-"""Filter error: the estimate in moving air.
+"""Filter error: parameter estimation in moving air.
 
-Output error takes every deviation for measurement noise. Moving air drives the aircraft, and the motion
-remembers each gust. A Kalman filter of air and instruments (``innovations``) follows both. Filter and model
-are linear about the fitted motion, so the filter whitens residuals and sensitivities alike. The estimate is
-least squares of the whitened ones (Maine & Iliff, NASA RP-1168; Jategaonkar, *Flight Vehicle System
-Identification*, chapter 5).
+Output error treats every deviation as measurement noise. Moving air drives the aircraft, so the motion after
+a gust depends on the gust. A Kalman filter models moving air and coloured instruments (``innovations``).
+Filter and model are linear about the fitted motion, so the filter whitens residuals and sensitivities. The
+estimate is least squares of the whitened residuals (Maine & Iliff, NASA RP-1168; Jategaonkar, *Flight Vehicle
+System Identification*, chapter 5).
 """
 
 from collections.abc import Sequence
@@ -36,19 +36,20 @@ ROUNDS = 6
 SETTLED = 0.1
 """Largest pending step of a converged estimate, in standard deviations."""
 UNSETTLED = 3.0
-"""Pending step, in standard deviations, above which the search has diverged: no model fits the record."""
+"""Pending step, in standard deviations, above which the search counts as diverged."""
 MOST_MANEUVERS = 7
-"""Number of the newest manoeuvres from which the noise is estimated. More would change its values little."""
+"""Number of the newest manoeuvres for the noise estimate. More manoeuvres would change the noise estimate
+little."""
 _UNIT = np.ones(len(OUTPUTS))
 
 
 def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
-    """Return the moving air and the noise that fit the residuals of a solution best; None without moving air.
+    """Return the moving air and the noise that fit a solution's residuals best; None for still air.
 
     Parameters
     ----------
     seen_by_alpha
-        Whether the angle of attack reads the air, like a vane, instead of coming from inertial sensors.
+        Whether a vane measures the angle of attack, instead of inertial sensors.
     """
     rows = _rows(solution)[-MOST_MANEUVERS:]
     white = np.array([_white(rows, c) for c in range(len(OUTPUTS))])
@@ -57,7 +58,7 @@ def moving_air(solution: Solution, seen_by_alpha: bool) -> Turbulence:
 
 
 def _white(rows: Sequence[Rows], channel: int) -> float:
-    """Return the standard deviation of the white part of an output's residual, from its differences."""
+    """Return the standard deviation of the residual's white part in one output, from its differences."""
     steps = np.concatenate([np.diff(r.residual[r.channel == channel]) for r in rows])
     return robust_std(steps) / float(np.sqrt(2.0)) if len(steps) else 1.0
 
@@ -81,15 +82,15 @@ def filter_error(solution: Solution, air: AirModel, instruments: Sequence[Instru
     solution
         Output error solution from which the search starts.
     air
-        Noise of the instruments and motion of the air.
+        Noise of the instruments, and motion of the air.
     instruments
-        Instrument parameters that are estimated too.
+        Instrument parameters that are also estimated.
 
     Returns
     -------
     Solution or None
-        ``theta``, ``covariance_cr`` and ``covariance`` are filter error's. Residuals and cost are those of
-        output error at the new point.
+        ``theta``, ``covariance_cr`` and ``covariance`` come from filter error. Residuals and cost are those
+        of output error at the new parameter values.
     """
     optimum = solution.optimum
     here = at(solution.problem, optimum.shared, optimum.local, instruments)
@@ -109,9 +110,9 @@ def filter_error(solution: Solution, air: AirModel, instruments: Sequence[Instru
 def _better(
     here: Linearization, seen: Whitened, air: AirModel, instruments: Sequence[Instrument]
 ) -> tuple[Linearization | None, Whitened | None]:
-    """Return the likeliest point along the step; None where the likelihood falls all the way.
+    """Return the likeliest point along the step; None if the likelihood decreases along the whole step.
 
-    A whole step ignores that the filter's gains change with the parameters, and overshoots in curved valleys.
+    A full step ignores that the filter gains change with the parameters, and overshoots in curved valleys.
     """
     best: tuple[Linearization | None, Whitened | None] = (None, None)
     lowest = seen.cost
@@ -128,7 +129,7 @@ def _better(
 def _moved(
     here: Linearization, seen: Whitened, scale: float, instruments: Sequence[Instrument]
 ) -> Linearization | None:
-    """Return the point after a share of the step; None where the model overflows there."""
+    """Return the point after a share of the step; None on numerical overflow of the model."""
     common, own = here.assembly.common, here.assembly.own
     shared, local = here.shared.copy(), here.local.copy()
     shared[common] += scale * seen.step[: len(common)]
@@ -139,7 +140,7 @@ def _moved(
 
 
 def _solution(start: Solution, place: Linearization, air: AirModel) -> Solution | None:
-    """Return the solution at the point, with Cramér-Rao errors and with errors for coloured innovations."""
+    """Return the solution at the point, with Cramér-Rao errors and errors for coloured innovations."""
     assembly = place.assembly
     white = np.empty((len(place.residual), 1 + N_PARAMETERS + len(place.extra)))
     columns = np.column_stack([place.residual, place.sensitivities, place.extra.columns])

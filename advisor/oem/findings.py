@@ -1,8 +1,8 @@
-"""Instruments of an estimate as findings: what the fit tells of each, next to what is stated.
+"""Findings about instruments: estimated values compared with stated values.
 
-The findings hold for the estimate that they come from. A contradiction refuses nothing where the estimate
-uses the value of the data. The sign of the elevator cannot be used, for the fit does not know which of two
-signs is wrong.
+The findings hold for the estimate they come from. A contradiction refuses no estimate that uses the value
+from the data. A contradicted sign of the elevator prevents use, because the fit does not show which sign is
+wrong.
 """
 
 import numpy as np
@@ -23,18 +23,19 @@ _PLACES: dict[str, tuple[str, Quantity, str]] = {
     "alpha_delay_s": ("alpha", "delay_s", ""),
     "accelerometer_arm_m": ("a_z", "arm_m", "accelerometer: {{arm_m: {:.2f}}}"),
 }
-"""Instrument parameter to its channel, its quantity, and the line for the aircraft file."""
+"""Channel, quantity and aircraft-file line of each instrument parameter, by its name."""
 
 
 def findings_of(estimate: Estimate, aircraft: Aircraft) -> tuple[InstrumentFinding, ...]:
-    """Return what an estimate tells of the instruments, also where it agrees with the aircraft file.
+    """Return the findings of an estimate about the instruments, including those that agree with the aircraft
+    file.
 
     Parameters
     ----------
     estimate
-        Estimate from one manoeuvre or from several together.
+        Estimate from one manoeuvre or from several manoeuvres together.
     aircraft
-        Aircraft file, with which the estimate was made.
+        Aircraft file that was used for the estimate.
     """
     return (*(_finding(x, aircraft) for x in estimate.instruments), *_sign(estimate))
 
@@ -95,12 +96,12 @@ def value_in_words(name: InstrumentName, value: float, std: float) -> str:
 
 
 def line_of(name: InstrumentName, value: float) -> str:
-    """Return the line for the aircraft file; empty where the file has no such value."""
+    """Return the line for the aircraft file; empty if the file has no key for the instrument."""
     return _PLACES[name][2].format(value) if name in _PLACES else ""
 
 
 def _sign(estimate: Estimate) -> tuple[InstrumentFinding, ...]:
-    """Return the finding of an elevator whose stated sign turns the aircraft the wrong way, if so.
+    """Return a finding if the elevator's stated sign turns the aircraft the wrong way; else none.
 
     The elevator is positive trailing edge down, so that M_δe is negative on every aircraft.
     """

@@ -36,8 +36,8 @@ UNITS: Mapping[str, str] = {
 _OF_THE_CHART = ("natural_frequency", "n_alpha")
 """The two axes of Figures 1 to 3 of MIL-F-8785C."""
 _STEP = 1e-30
-"""Step of the complex-step derivative. The derivative has no cancellation, so any step that does not
-underflow will do."""
+"""Imaginary step of the complex-step derivative. The complex-step derivative has no cancellation, so any step
+without underflow is exact."""
 
 _Function = Callable[[NDArray[np.complex128]], np.complex128]
 
@@ -62,16 +62,16 @@ class FlyingQualities:
     qualities: Mapping[str, Quality]
     """Qualities by the names of ``UNITS``, as far as estimate and reference data allow."""
     levels: tuple[LevelFound, ...]
-    """Levels of MIL-F-8785C by category; empty where a required parameter is missing."""
+    """Levels of MIL-F-8785C by category; empty if a required parameter is missing."""
     air: AirData
     airspeed_m_s: float | None
-    """Logged air speed at which the derivatives are given, m/s."""
+    """Logged air speed of the derivatives, m/s."""
     true_airspeed_m_s: float | None
     """True air speed in n/α, CAP and the coefficients, m/s."""
     left_out: Mapping[str, str] = field(default_factory=dict)
-    """By name, why a parameter of ``UNITS`` is missing."""
+    """Reason for each missing parameter of ``UNITS``, by its name."""
     correlation: float | None = None
-    """Correlation of the errors of natural frequency and n/α; None where one of the two is missing."""
+    """Correlation of the errors of natural frequency and n/α; None if either is missing."""
 
 
 def flying_qualities(estimate: Estimate, air: AirData, reference: Reference) -> FlyingQualities:
@@ -82,7 +82,7 @@ def flying_qualities(estimate: Estimate, air: AirData, reference: Reference) -> 
     estimate
         Derivatives with the covariance that is corrected for coloured residuals.
     air
-        Atmosphere, which turns the logged air speed into the true one.
+        Atmosphere, which converts the logged air speed to the true air speed.
     reference
         Mass, chord, pitching inertia and centre of gravity, for static margin and neutral point.
     """
@@ -103,7 +103,7 @@ def flying_qualities(estimate: Estimate, air: AirData, reference: Reference) -> 
 
 
 def _correlation(functions: Sequence[_Function | str], estimate: Estimate) -> float | None:
-    """Return the correlation of the errors of two qualities; None where one is missing or has no error."""
+    """Return the correlation of the errors of two qualities; None if either is missing or has no error."""
     gradients = [_gradient(function, estimate) for function in functions if not isinstance(function, str)]
     if len(gradients) < len(_OF_THE_CHART):
         return None
@@ -121,7 +121,7 @@ def _levels(found: Mapping[str, Quality]) -> tuple[LevelFound, ...]:
 
 
 def _functions(speed: float | None, reference: Reference) -> dict[str, _Function | str]:
-    """Return each quality as a function of the eight parameters, or why there is none."""
+    """Return each quality as a function of the eight parameters, or the reason why it is missing."""
     without_speed = "no air speed is known"
     functions: dict[str, _Function | str] = {
         "natural_frequency": _frequency,
@@ -145,7 +145,7 @@ def _functions(speed: float | None, reference: Reference) -> dict[str, _Function
 
 
 def _margin(speed: float | None, reference: Reference) -> _Function | str:
-    """Return the static margin in percent of the chord."""
+    """Return the static margin as a function, in percent of the chord."""
     mass, chord, inertia = reference.mass_kg, reference.chord_m, reference.iyy_kg_m2
     known = {"mass_kg": mass, "chord_m": chord, "iyy_kg_m2": inertia}
     missing = [f"reference.{name}" for name, value in known.items() if value is None]
@@ -162,7 +162,7 @@ def _stiffness(t: NDArray[np.complex128]) -> np.complex128:
 
 
 def _frequency(t: NDArray[np.complex128]) -> np.complex128:
-    """Return ω_n; NaN where the aircraft is statically unstable."""
+    """Return the natural frequency ω_n; NaN for a statically unstable aircraft."""
     stiffness = _stiffness(t)
     return np.complex128(np.sqrt(stiffness) if stiffness.real > 0.0 else np.nan)
 
@@ -173,7 +173,7 @@ def _turn_per_alpha(t: NDArray[np.complex128]) -> np.complex128:
 
 
 def _with_error(function: _Function, estimate: Estimate) -> Quality | str:
-    """Return the value and standard deviation by the delta method, or why there is none."""
+    """Return the value and standard deviation by the delta method, or the reason why both are missing."""
     gradient = _gradient(function, estimate)
     with np.errstate(divide="ignore", invalid="ignore"):
         value = float(function(estimate.theta.astype(np.complex128)).real)

@@ -1,9 +1,9 @@
-"""The estimate of a manoeuvre in flight, refreshed at every sample.
+"""Estimate of a manoeuvre in flight, refreshed at every sample.
 
 Each refresh of the estimate uses all data so far, fits all parameters and corrects the errors. Most
 refreshes update the last solution with the newest samples (``carried``). Twice per second the model is
 solved anew over all data, from the last optimum. The noise model, and the use of the angle of attack, are
-checked every two seconds. Servo lag and delay of the command are allowed for by one more step (``Doubt``).
+checked every two seconds. One more step allows for the servo's lag and the command's delay (``Doubt``).
 """
 
 import math
@@ -31,22 +31,22 @@ N = len(PARAMETERS)
 
 @dataclass(frozen=True, slots=True)
 class Doubt:
-    """Doubt that unknown instruments of the command add to an estimate that takes them as known.
+    """Additional uncertainty of an estimate because instruments of the command are unknown.
 
-    The servo's lag and delay have priors, and the samples tell how far both may be off. One joint
-    Gauss-Newton step of derivatives and instruments moves the estimate. The joint covariance widens it.
+    The servo's lag and delay have priors, and the samples limit their errors. One joint Gauss-Newton step of
+    derivatives and instruments moves the estimate. The joint covariance widens the estimate's errors.
     """
 
     step: FloatArray
-    """(8,) step of the derivatives."""
+    """Shape (8,): step of the derivatives by the unknown instruments."""
     covariance: FloatArray
-    """(8, 8) addition to the covariance."""
+    """Shape (8, 8): addition to the derivatives' covariance."""
     covariance_cr: FloatArray
-    """(8, 8) addition to the Cramér-Rao bound."""
+    """Shape (8, 8): addition to the derivatives' Cramér-Rao bound."""
 
     @classmethod
     def about(cls, solution: Solution, aircraft: Aircraft) -> "Doubt":
-        """Return the doubt about a solution; none where the samples do not bear the instruments."""
+        """Return the instruments' uncertainty for a solution; none if the samples do not determine a step."""
         share = share_of(solution)
         names = [weighed(x, share) for x in _with_priors(solution, aircraft)]
         optimum = solution.optimum
@@ -59,7 +59,7 @@ class Doubt:
         return cls(step, wider, joint.covariance_cr[:N, :N] - solution.covariance_cr[:N, :N])
 
     def on(self, estimate: Estimate) -> Estimate:
-        """Return an estimate with the doubt, of the solution or of one that follows it closely."""
+        """Return the solution's estimate, or a later one, with the instruments' uncertainty."""
         moved = replace(
             estimate,
             theta=estimate.theta + self.step,
@@ -71,7 +71,7 @@ class Doubt:
 
 
 def _with_priors(solution: Solution, aircraft: Aircraft) -> Iterator[Instrument]:
-    """Yield the instruments of the command that have a prior or a statement with a width."""
+    """Yield the instruments of the command that have a prior or a stated tolerance."""
     for x in unknown_instruments(solution.problem, aircraft):
         width = x.known_to * abs(x.stated or 0.0)
         if x.name not in OF_ALPHA and (x.prior is not None or width > 0.0):
@@ -79,8 +79,8 @@ def _with_priors(solution: Solution, aircraft: Aircraft) -> Iterator[Instrument]
 
 
 CARRY_S = 0.5
-"""Time in s after which the model is solved anew. The air speed, taken as constant, changes by up to 4 % in
-it (``logs/arduplane-calm.tlog``)."""
+"""Time in s after which the model is solved again over all samples. The air speed, taken as constant, changes
+by up to 4 % within this time (``logs/arduplane-calm.tlog``)."""
 COLOUR_EVERY_S = 2.0
 """Time in s between two fits of the noise model, and between two checks of the angle of attack."""
 
@@ -89,7 +89,8 @@ CLOSE_ENOUGH = 1e-4
 
 
 class Follower:
-    """An estimator that follows one manoeuvre after another, and restarts when its number changes."""
+    """Estimator that follows one manoeuvre after another, and restarts when the manoeuvre's number
+    changes."""
 
     def __init__(self, aircraft: Aircraft) -> None:
         self._aircraft = aircraft
@@ -101,7 +102,7 @@ class Follower:
         self._solved_s = self._coloured_s = -math.inf
 
     def refresh(self, maneuver: Maneuver) -> Estimate | NoEstimate:
-        """Estimate from the manoeuvre as far as it has been flown."""
+        """Return the estimate from the part of the manoeuvre flown so far."""
         if maneuver.number != self._number:
             self._number, self._last, self._carried, self._coloured_s = maneuver.number, None, None, -math.inf
         now_s = float(maneuver.channels["q"].t[-1]) if maneuver.channels["q"] else -math.inf

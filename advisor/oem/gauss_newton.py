@@ -1,11 +1,11 @@
-"""Minimisation of J = det R, Eq. (7), by Gauss-Newton with R re-estimated at every step.
+"""Minimisation of J = det R, Eq. (7), by Gauss-Newton steps with R re-estimated at every step.
 
 R = diag(σ_c²) at its own maximum-likelihood value makes minimising Σ n_c·log σ_c² equal to minimising det R.
-The gradient is that of the weighted sum of squares at the present R, hence Gauss-Newton with weights 1/σ_c².
-The source is Maine & Iliff, *Formulation and implementation of a practical algorithm for parameter estimation
-with process and measurement noise*, 1981. Levenberg's damping enters only when a step is rejected, and begins
-far below the usual sizes. The record of a diverging aircraft has directions 1e-9 as well determined as
-others, and a larger damping would stop the search.
+The gradient equals that of the weighted sum of squares at the present R, so the weights are 1/σ_c². The
+source is Maine & Iliff, *Formulation and implementation of a practical algorithm for parameter estimation
+with process and measurement noise*, 1981. Levenberg's damping is used only after a rejected step, and begins
+far below the usual size. A diverging aircraft's record has directions with 1e-9 of the information of others,
+which larger damping would freeze.
 """
 
 from typing import NamedTuple
@@ -21,7 +21,7 @@ FLAT = 1e-11
 """Promised change of log J below which a step ends the search; the remaining change is far smaller."""
 MOST_ITERATIONS = 120
 FIRST_DAMPING = 1e-8
-"""First damping relative to the diagonal. A damping of this size hides no step that still promises a
+"""First damping relative to the diagonal. Damping of this size does not hide a step that promises a
 decrease."""
 LEAST_DAMPING = 1e-12
 DAMPING_FACTOR = 10.0
@@ -29,29 +29,29 @@ LEAST_NOISE = 1e-10
 """Least σ relative to the spread of the channel, for data without noise."""
 
 WITHOUT_NOISE = 1e4
-"""Factor on that floor below which residuals are round-off of data without noise."""
+"""Factor on the least noise below which residuals are rounding errors of noise-free data."""
 
 CONVERGED, EXHAUSTED, OVERFLOW, SINGULAR = 0, 1, 2, 3
 
 
 class Optimum(NamedTuple):
-    """The end of a search."""
+    """Result of a search for the least cost."""
 
     status: int
     """``CONVERGED``, ``EXHAUSTED`` (too many iterations), ``OVERFLOW`` or ``SINGULAR``."""
     shared: FloatArray
-    """(s,) parameters that all manoeuvres share."""
+    """Shape (s,): parameters that all manoeuvres share."""
     local: FloatArray
-    """(m, l) parameters that each manoeuvre has for itself."""
+    """Shape (m, l): local parameters of each manoeuvre."""
     noise: FloatArray
-    """(outputs,) σ of each output; 0 where an output is not measured."""
+    """Shape (outputs,): noise σ of each output; 0 for an unmeasured output."""
     log_likelihood_cost: float
-    """Σ n_c·log σ_c²."""
+    """Cost Σ n_c·log σ_c² at the optimum."""
     iterations: int
     fitted: FloatArray
-    """(N,) outputs of the model at the optimum."""
+    """Shape (N,): outputs of the model at the optimum."""
     sensitivities: FloatArray
-    """(N, s + l) derivatives of the outputs by the parameters of the row's manoeuvre."""
+    """Shape (N, s + l): derivatives of the outputs by the parameters of the row's manoeuvre."""
 
 
 @kernel()
@@ -85,9 +85,9 @@ def descend(
     local: FloatArray,
     flat: float = FLAT,
 ) -> Optimum:
-    """Minimise Σ n_c·log σ_c² from a start. Shapes as in ``Laid``; ``floor`` (outputs,) of σ.
+    """Minimise Σ n_c·log σ_c² from a start. Shapes are as in ``Laid``; ``floor`` (outputs,) is the least σ.
 
-    ``prior`` (s,) holds inverse prior variances of the shared parameters about zero, which the cost includes.
+    ``prior`` (s,) holds the inverse prior variances of the shared parameters about zero.
     """
     shared, local = shared.copy(), local.copy()
     maneuvers, parameters = len(local), len(shared) + local.shape[1]

@@ -1,11 +1,12 @@
-"""Identifiability: the parameters that an input determines. A good fit proves none of them.
+"""Identifiability: which parameters an input determines. A good fit does not prove that a parameter is
+determined.
 
-A parameter is lost in three ways, each with its own sentence:
+A parameter can be undetermined in three ways, each with its own sentence:
 
-- The data say nothing about the parameter at all (a singular direction of the information matrix).
+- The data do not contain the parameter (a singular direction of the information matrix).
 - The elevator followed angle of attack and pitch rate in a closed loop: δe = k₀ + k₁·α + k₂·q satisfies
-  (1)-(2) for a whole plane of derivatives. The command between its stamps then decides which of them fits
-  best.
+  (1)-(2) for a whole plane of derivatives. The command's motion between its stamps then decides which
+  derivatives fit best.
 - The corrected error is as large as the typical size of such a derivative on this aircraft.
 """
 
@@ -22,17 +23,17 @@ from advisor.oem.solution import Solution
 from advisor.words.quantiles import NORMAL_95
 
 LARGEST_ERROR = 0.5
-"""Largest corrected standard deviation over the natural size of the parameter."""
+"""Largest corrected standard deviation over the parameter's natural size, for a usable value."""
 LEAST_OWN_MOTION = 0.02
-"""Least motion of the elevator that no feedback explains, RMS, as a share of the whole motion."""
+"""Least RMS elevator motion that no feedback explains, as a share of the whole motion."""
 LEVEL_UNKNOWN = "not identifiable without a measured angle of attack, whose level it goes with"
 
 
 def natural_size(theta: FloatArray) -> Mapping[str, float]:
-    """Return the typical size of each derivative on an aircraft with these poles and this control power.
+    """Return the typical size of each derivative for an aircraft with these poles and this control power.
 
-    Rates ω = max(√|det A|, |tr A|/2) set Z_α and M_q, and their square sets M_α. M_δe measures control. The
-    lift Z_δe is measured by the one that turns the path as fast as M_δe does within 1/ω.
+    Rates ω = max(√|det A|, |tr A|/2) give the size of Z_α and M_q, and ω² gives that of M_α. The size of M_δe
+    is the control power. The size of Z_δe is the lift that turns the path as fast as M_δe does within 1/ω.
     """
     a = ShortPeriod(theta).a
     rate = max(math.sqrt(abs(float(np.linalg.det(a)))), abs(float(np.trace(a))) / 2.0)
@@ -48,7 +49,7 @@ def natural_size(theta: FloatArray) -> Mapping[str, float]:
 
 
 def not_identifiable(solution: Solution) -> dict[str, str]:
-    """Return by parameter name the reason why the parameter has no usable value."""
+    """Return the reason why a parameter has no usable value, by the parameter's name."""
     reasons = dict.fromkeys(
         solution.influence.unresolved, "not identifiable from this input: the record does not depend on it"
     )
@@ -65,7 +66,8 @@ def not_identifiable(solution: Solution) -> dict[str, str]:
 
 
 def too_wide(theta: FloatArray, std: FloatArray) -> dict[str, str]:
-    """Return by name why a parameter of ``theta`` (8,) with an error ``std`` (8,) has no usable value."""
+    """Return the reason why a parameter of ``theta`` (8,) with error ``std`` (8,) has no usable value, by
+    name."""
     reasons = {}
     for name, size in natural_size(theta).items():
         error = float(std[PARAMETERS.index(name)])

@@ -1,13 +1,13 @@
-"""Innovations of residuals: a Kalman filter of moving air and coloured instruments.
+"""Innovations of residuals: a Kalman filter for moving air and coloured instruments.
 
-About a simulated flight the model is linear:
+Near a simulated flight the model is linear:
 
     δα̇ = Z_α (δα + η) + (1 + Z_q) δq,   δq̇ = M_α (δα + η) + M_q δq,   δθ̇ = δq,   η̇ = −η/T_g + white
 
 where η is the gust angle w/V. Each sensor has first-order noise in addition to its white noise (Jategaonkar,
-*Flight Vehicle System Identification*, chapter 5). The gains depend on times and noise only, so they are
-computed once. Residuals and sensitivities then pass the same filter, and least squares of the innovations is
-the best estimate with such noise.
+*Flight Vehicle System Identification*, chapter 5). The gains depend only on times and noise, so they are
+computed once. Residuals and sensitivities pass one filter, and least squares of the innovations is then the
+best estimate.
 """
 
 from dataclasses import dataclass
@@ -35,11 +35,11 @@ class AirModel:
     """Standard deviation of the gust angle w/V, rad; 0 for still air."""
     gust_memory_s: float
     seen_by_alpha: float = 1.0
-    """1 where the α channel reads the air (a vane), 0 where it comes from inertial sensors."""
+    """1 if a vane measures α, and 0 if α comes from inertial sensors."""
 
     @classmethod
     def still(cls, white: FloatArray, seen_by_alpha: float = 1.0) -> "AirModel":
-        """Return a model with white noise of the instruments, shape (4,), in still air."""
+        """Return a model of white instrument noise, shape (4,), in still air."""
         return cls(white, np.full(len(OUTPUTS), 1e-12), 0.3, 0.0, 1.0, seen_by_alpha)
 
 
@@ -52,18 +52,18 @@ def gains_of(
     extra: FloatArray | float = 0.0,
     arms_m: tuple[float, float] = (0.0, 0.0),
 ) -> Gains:
-    """Return the gains for rows at ascending times ``t`` of channels ``channel``, both of shape (n,).
+    """Return the Kalman gains for rows at ascending times ``t`` of outputs ``channel``, both of shape (n,).
 
     Parameters
     ----------
     system
-        Z_α, Z_q, M_α, M_q, V.
+        Derivatives Z_α, Z_q, M_α, M_q, and the air speed V.
     start_variance
-        Variance of α, q and θ at the start; 0 where the fit has its own initial states.
+        Variance of the initial α, q and θ; 0 if the fit estimates the initial states.
     extra
-        Shape (n,): variance of each row beyond its channel's noise, such as that of an uncertain stamp.
+        Shape (n,): additional variance of each row, such as that of an uncertain stamp.
     arms_m
-        Arms of the vane and of the accelerometer, ahead of the centre of gravity.
+        Distances of the vane and of the accelerometer ahead of the centre of gravity, m.
     """
     white = np.asarray(air.white[channel] ** 2 + extra)
     observed = observed_by(system, air.seen_by_alpha, *arms_m)
@@ -83,7 +83,8 @@ def cost_of(
 ) -> float:
     """Return -2 log likelihood of a residual, shape (n,), up to a constant and without diffuse rows.
 
-    Arguments: see ``gains_of``. A search for noise calls this a few hundred times, so nothing is kept.
+    The arguments are those of ``gains_of``. A noise search calls this function a few hundred times, so the
+    function stores nothing.
     """
     observed = observed_by(system, air.seen_by_alpha, 0.0, 0.0)
     nothing = np.empty(0)
@@ -93,5 +94,5 @@ def cost_of(
 
 
 def _memory(air: AirModel) -> FloatArray:
-    """Return coloured noise by channel with correlation time, the gust with its own, shape (7,)."""
+    """Return the coloured noise of each channel with its correlation time, then the gust's, shape (7,)."""
     return np.array([*air.coloured, air.memory_s, air.gust, air.gust_memory_s])

@@ -1,7 +1,7 @@
-"""Derivatives of the outputs of a fit by instruments and by the times of the command's steps.
+"""Derivatives of a fit's outputs by instrument parameters and by the times of the command's steps.
 
-Instruments of the outputs read the motion, and instruments of the command change the surface. One pass over
-the motion of a fit gives all of them (``model.input_response``).
+Instruments of the outputs act on the motion, and instruments of the command change the surface. One pass over
+the motion of a fit gives all derivatives (``model.input_response``).
 """
 
 from collections.abc import Callable, Sequence
@@ -22,9 +22,9 @@ from advisor.oem.problem import Assembly, OutputErrorProblem, Record, steady_sha
 from advisor.oem.rows import padded
 
 READING = {"vane_arm_m": BY_VANE, "accelerometer_arm_m": BY_ACCELEROMETER, "alpha_delay_s": BY_ALPHA_DELAY}
-"""Column of each instrument of an output."""
+"""Column index of each instrument of an output."""
 OF_COMMAND = ("command_delay_s", "servo_lag_s", "steady_moment_rad")
-"""Instruments that change the motion of the surface, or act as if they did."""
+"""Instruments that change the motion of the surface, or have the effect of such a change."""
 
 
 def instrument_columns(
@@ -34,12 +34,12 @@ def instrument_columns(
     local: FloatArray,
     names: Sequence[InstrumentName],
 ) -> FloatArray:
-    """Return the derivatives of the outputs by instruments, shape (N, k), with everything else fixed.
+    """Return the derivatives of the outputs by instruments, shape (N, k), with all other parameters fixed.
 
     Parameters
     ----------
     assembly
-        Layout of ``problem``.
+        Rows of ``problem``, laid out for the kernel.
     shared, local
         Shapes (7,) and (m, 7).
     """
@@ -60,12 +60,12 @@ def input_columns(
     local: FloatArray,
     change: Callable[[int, Record, FloatArray], InputChange],
 ) -> FloatArray:
-    """Return the derivatives by the three instruments that read the motion, and by changes of the surface.
+    """Return the derivatives by the three output instruments, and by changes of the surface.
 
     Parameters
     ----------
     change
-        Returns the changes of one record: its number, the record, and the stamps of its events.
+        Function that returns the changes of one record from its number, the record and its event stamps.
 
     Returns
     -------

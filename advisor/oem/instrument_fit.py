@@ -1,16 +1,15 @@
 """Estimation of instrument parameters together with the derivatives.
 
-One search moves instruments and derivatives together (``descent``). Three kinds of parameter differ by what
-is known before the flight:
+One search estimates instruments and derivatives together (``descent``). Three kinds of parameters differ in
+the knowledge before the flight:
 
-- *The delays of the command and of the angle of attack* are nuisances of every log. A prior holds each, and
-  every interval contains both. A late angle of attack and a vane's arm look nearly alike, and are off by
-  Z_α² times the delay in Z_α. The fit therefore has a delay and an arm.
-- *An open parameter*, such as a servo's lag, has the prior of instruments that nobody has measured. On a
-  well damped aircraft a lag is correlated with M_q and M_δe over a long range, and every interval contains
-  that.
-- *A stated parameter* is estimated next to the statement. Where both agree, the statement is a prior with a
-  width. Where they exclude each other, the data decide alone, and the contradiction is told.
+- *The delays of the command and of the angle of attack* are nuisance parameters of every log. Each delay has
+  a prior, and every interval includes the errors of both delays. A delay of α and a vane's arm look nearly
+  alike, but differ in Z_α by Z_α² times the delay. The fit therefore has a delay and an arm.
+- *An open parameter*, such as a servo's lag, has the prior of an unmeasured instrument. On a well damped
+  aircraft a lag is correlated with M_q and M_δe over a long range, and every interval includes that error.
+- *A stated parameter* is also estimated without the statement. If data and statement agree, the statement is
+  a prior with a width. If they exclude each other, the data decide alone, and the contradiction is reported.
 """
 
 from collections.abc import Sequence
@@ -36,16 +35,16 @@ from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
 ROUGHLY = 1e-4
-"""Promised change of log J per sample at which a search ends whose end is only a start of the next one. The
-starts of a lag differ by hundreds of times as much."""
+"""Promised change of log J per sample at which an intermediate search ends. The starting values of a lag
+differ by hundreds of times as much."""
 MODEL_ERROR = 1e-3
-"""Numerical: error of the model's outputs over their spread. A surface behind a lag is linear between the
-stamps of the grid (``surface``)."""
+"""Numerical: error of the model's outputs, relative to their spread. A surface with a lag is taken as linear
+between the grid's stamps (``surface``)."""
 LEAST_SHARE = 0.01
-"""Least share by which white noise weighs a prior; data without noise have no colour."""
+"""Least factor on a prior's standard deviation in a white-noise fit; data without noise have no colour."""
 CONTRADICTS = 3.0
-"""Distance of a stated value from the value that the data tell, in standard deviations of both, beyond which
-they exclude each other."""
+"""Distance of a stated value from the data's value, in combined standard deviations, that is a
+contradiction."""
 
 
 class Identified(NamedTuple):
@@ -56,7 +55,7 @@ class Identified(NamedTuple):
 
     @property
     def reported(self) -> InstrumentEstimate | None:
-        """The parameter for the rest of the program; None for a moment of the aircraft."""
+        """Instrument parameter as reported; None for a moment of the aircraft."""
         return None if self.instrument.name == "steady_moment_rad" else self.found
 
 
@@ -69,21 +68,21 @@ class InstrumentFit:
     identified: tuple[Identified, ...] = ()
 
     def misfit(self, weighing: Weighing) -> float:
-        """Return -2 log of the posterior up to a constant, under one noise model."""
+        """Return -2 log posterior density of the solution, up to a constant, under one noise model."""
         found = self.solution
         prior = penalty(found.problem, [x.instrument for x in self.identified])
         return weighing.misfit(found.residual, found.sensitivities) + prior
 
 
 class _Pitch:
-    """Response of the short period, with the derivatives by all parameters."""
+    """Simulated response of the short period, with the derivatives by all parameters."""
 
     names = NAMES
     laid = staticmethod(assemble)
 
     @staticmethod
     def floor(laid: Assembly, /) -> FloatArray:
-        """Return a thousandth of each output's spread, SI: between stamps the surface is linear."""
+        """Return a thousandth of each output's spread as least noise, SI."""
         return MODEL_ERROR * spread_of(laid)
 
     @staticmethod
@@ -100,7 +99,7 @@ class _Pitch:
         names: Sequence[Instrument],
         /,
     ) -> Response | None:
-        """Return the response; None where the model runs away."""
+        """Return the response of the model; None where the simulation diverges."""
         y, g = np.empty(len(laid.z)), np.empty((len(laid.z), N_PARAMETERS))
         if not respond(laid.grid, shared, local, y, g):
             return None
@@ -112,12 +111,12 @@ _PITCH = _Pitch()
 
 
 def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> InstrumentFit:
-    """Estimate the instrument parameters; ``plain`` is the solution without any.
+    """Return the solution with estimated instrument parameters; ``plain`` is the solution without them.
 
     Parameters
     ----------
     unknown
-        Parameters with a prior, open ones, and stated ones.
+        Instruments with a prior, open instruments, and stated instruments.
     """
     if not unknown:
         return InstrumentFit(plain)
@@ -134,16 +133,17 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
 
 
 def _place(solution: Solution) -> tuple[FloatArray, FloatArray]:
-    """Return the derivatives and the local parameters of a solution, from which another search begins."""
+    """Return the derivatives and local parameters of a solution, as the start of another search."""
     return solution.optimum.shared, solution.optimum.local
 
 
 def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
-    """Return the likelier of two modes, with the second moment of the other one by its probability.
+    """Return the likelier of two posterior modes, with the other mode's second moment times its probability.
 
-    A servo's lag and the delay of its command act alike. The posterior of a lag may have a second peak at a
-    third of the lag, with other derivatives. Coloured noise tells the two apart less than white noise does.
-    One manoeuvre takes its lag from all together, and looks for no second peak.
+    A servo's lag and the delay of its command have similar effects. The posterior of a lag may have a second
+    peak at a third of the lag, with other derivatives. Coloured noise distinguishes both peaks less than
+    white noise does. A single manoeuvre takes its lag from all manoeuvres, so it has no search for a second
+    peak.
     """
     lag = next((x for x in names if x.name == SERVO_LAG.name and x.prior is not None), None)
     if lag is None or len(best.problem.records) == 1 or lag.read(best.problem) < lag.resolution:
@@ -167,9 +167,9 @@ def _fitted(
     names: Sequence[Instrument],
     share: float,
 ) -> Solution | None:
-    """Return the solution with instruments from a start; None where the search finds none.
+    """Return the solution with instruments from a start; None if the search fails.
 
-    ``share`` is that by which white noise weighs the priors of the derivatives.
+    ``share`` is the factor on the derivative priors' standard deviations in a white-noise fit.
     """
     prior = replace(about_zero(precision(problem, place[0])), share=share)
     fit = descended(_PITCH, problem, names, prior, place)
@@ -180,18 +180,18 @@ def _fitted(
 
 
 def share_of(plain: Solution) -> float:
-    """Return the errors by white noise over those by the residuals' colour, the median of the parameters."""
+    """Return the median ratio of the parameters' errors under white noise to those under coloured noise."""
     ratio = np.sqrt(np.diag(plain.covariance_cr)[:N] / np.diag(plain.covariance)[:N])
     return float(np.clip(np.nanmedian(ratio), LEAST_SHARE, 1.0))
 
 
 def weighed(x: Instrument, share: float) -> Instrument:
-    """Return the instrument with the share by which white noise weighs its prior."""
+    """Return the instrument with ``share`` as the factor on its prior's standard deviation."""
     return x if x.prior is None else replace(x, prior=replace(x.prior, share=share))
 
 
 def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: Solution) -> InstrumentFit:
-    """Return the fit in which every stated value that the data do not exclude is a prior."""
+    """Return the fit in which a stated value is a prior unless the data exclude it."""
     alone = identified_at(solution, names)
     white = np.sqrt(np.diag(solution.covariance_cr)[N:])
     if all(x.instrument.stated is None or x.found.contradicts for x in alone):
@@ -215,8 +215,8 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
 
 
 def refreshed(identified: Sequence[Identified], solution: Solution) -> tuple[Identified, ...]:
-    """Return the instruments with the values and errors of another solution. Findings about stated values
-    stay."""
+    """Return the instruments with the values and errors of another solution. Findings about stated values are
+    unchanged."""
     now = identified_at(solution, [x.instrument for x in identified])
     return tuple(
         there
@@ -229,10 +229,10 @@ def refreshed(identified: Sequence[Identified], solution: Solution) -> tuple[Ide
 def _looked_about(
     plain: Solution, names: Sequence[Instrument]
 ) -> tuple[OutputErrorProblem, tuple[FloatArray, FloatArray]]:
-    """Return the best of the starts of each instrument, one instrument after the other, with the derivatives.
+    """Return the best starting value of each instrument, one after another, with the derivatives.
 
-    The posterior of a lag may have a second, lower peak at a third of the lag. A measured surface, whose
-    stated lag is zero, has none.
+    The posterior of a lag may have a second, lower peak at a third of the lag. A measured surface has a
+    stated lag of zero, and no second peak.
     """
     optimum, problem = plain.optimum, plain.problem
     place, lowest = (optimum.shared, optimum.local), optimum.log_likelihood_cost + penalty(problem, names)
@@ -250,7 +250,7 @@ def _looked_about(
 
 
 def identified_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Identified, ...]:
-    """Return values and errors of instruments in a solution whose first extra columns are theirs."""
+    """Return values and errors of the instruments that are a solution's first extra parameters."""
     std = np.sqrt(np.diag(solution.widened)[N : N + len(names)])
     return tuple(_identified(x, solution.problem, float(s)) for x, s in zip(names, std, strict=True))
 

@@ -1,16 +1,16 @@
-"""Instruments of a log as parameters: servo lag, delay of the command, arm or delay of the vane.
+"""Instruments of a log as parameters: servo lag, command delay, and arm or delay of the vane.
 
 A log holds the command, not the surface. An ignored servo lag of 0.14 s halves M_α and M_δe of a small
 aircraft, while the fit still explains 95 % of the motion. A command that acts 10 ms after its stamps changes
 M_q and M_δe by 7 to 19 %. A vane ahead of the centre of gravity reads α - (x/V)·q, and an autopilot's own
-angle of attack is late. A delay of α and an arm change Z_α, Z_q, Z_δe and M_q while α and q fit as well as
-before. With a_z and air speed the kinematics distinguish instrument and aircraft.
+angle of attack is late. A delay of α and an arm change Z_α, Z_q, Z_δe and M_q without a worse fit of α and q.
+With a_z and air speed the kinematics distinguish instrument and aircraft.
 
-Not an instrument, but a nuisance of the same kind, is the moment that does not scale with V². Where the air
-speed changes, a thrust that passes the centre of gravity would bias M_α, M_q and M_δe. The simulator of an
-autopilot has such a moment as well.
+A moment that does not scale with V² is treated as one more nuisance parameter. If the air speed changes,
+thrust with an arm about the centre of gravity would bias M_α, M_q and M_δe. The simulator of an autopilot has
+such a moment as well.
 
-Each unknown quantity of an instrument is one more shared parameter of the fit (``instrument_fit``).
+Each unknown instrument quantity is an additional shared parameter of the fit (``instrument_fit``).
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -30,42 +30,42 @@ from advisor.oem.problem import Assembly, OutputErrorProblem
 from advisor.words.quantiles import NORMAL_95
 
 KNOWN_TO = 0.1
-"""Standard deviation over the value for which the value represents the aircraft, and that of a servo's lag in
-an aircraft file. An error of a tenth of a usual servo lag moves M_δe by some 5 %, the default tolerance of a
-campaign."""
+"""Relative standard deviation at which a value is known, and of a servo's lag in an aircraft file. An error
+of a tenth of a usual servo lag moves M_δe by some 5 %, the default tolerance of a campaign."""
 USUAL_LAG = Prior(0.05, 0.05)
-"""Lag of a servo that the aircraft file leaves open, s. Servos of small aircraft have 0.03 to 0.15 s, and a
-measured surface has none."""
+"""Prior of a servo's lag that the aircraft file does not state, s. Servos of small aircraft have 0.03 to 0.15
+s, and a measured surface has no lag."""
 STEADY_MOMENT_RAD = 0.02
 """Standard deviation of the elevator deflection that balances the moments which do not scale with V², rad. A
-change of power asks for a degree or so of trim. From 0.005 to 0.08 rad no derivative of a business
-jet's held step moves by a fiftieth of its interval. No derivative of the autopilots' tests leaves it."""
+change of power needs about one degree of trim. Between 0.005 and 0.08 rad no derivative of a business jet's
+held step moves by a fiftieth of its interval. No derivative of the autopilots' tests leaves its interval."""
 PLACE_S = 0.1
-"""Standard deviation of an unknown arm of a vane or an accelerometer, as the time in which the aircraft flies
-that distance, s. Vanes on record have 0.01 to 0.11; the longest is a nose boom of 13 m at 130 m/s."""
+"""Standard deviation of an unknown vane or accelerometer arm, over the air speed, s. Recorded vanes have 0.01
+to 0.11 s; the longest is a nose boom of 13 m at 130 m/s."""
 
 
 @dataclass(frozen=True, slots=True)
 class Instrument:
-    """One instrument parameter, and its place in a problem."""
+    """One instrument parameter of a problem."""
 
     name: InstrumentName
     resolution: float
-    """Distance from an end of the range below which the search has reached it, in the parameter's unit."""
+    """Distance from a range's end at which the search has reached the end, in the parameter's unit."""
     lowest: float
     highest: float
     usual: Callable[[OutputErrorProblem], Prior]
-    """Knowledge of the parameter where nobody has stated it."""
+    """Prior of the parameter if nobody has stated its value."""
     starts: tuple[float, ...] = ()
-    """Values at which the search starts, in addition to the present one."""
+    """Additional starting values of the search."""
     known_to: float = 0.0
-    """Standard deviation of a stated value over the value."""
+    """Relative standard deviation of a stated value."""
     prior: Prior | None = None
     stated: float | None = None
-    """Value in the aircraft file, in the parameter's unit. None: the file leaves the value open."""
+    """Value in the aircraft file, in the parameter's unit. None if the file does not state the value."""
 
     def read(self, problem: OutputErrorProblem) -> float:
-        """Return the value in a problem. A delay of the command counts from its linear reading."""
+        """Return the parameter's value in a problem. A delay of the command is relative to its linear motion
+        between stamps."""
         match self.name:
             case "servo_lag_s":
                 return problem.servo.lag_s
@@ -75,7 +75,7 @@ class Instrument:
                 return float(getattr(problem, name))
 
     def write(self, problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
-        """Return the problem with another value."""
+        """Return the problem with another value of the parameter."""
         changed: dict[str, Any] = {self.name: value}
         if self.name == "servo_lag_s":
             changed = {"servo": replace(problem.servo, lag_s=value)}
@@ -84,7 +84,7 @@ class Instrument:
         return replace(problem, **changed)
 
     def moved(self, problem: OutputErrorProblem, change: float) -> OutputErrorProblem:
-        """Return the problem with another value of the instrument, kept within its range."""
+        """Return the problem with the parameter changed, within its range."""
         return self.write(problem, float(np.clip(self.read(problem) + change, self.lowest, self.highest)))
 
     def open(self, problem: OutputErrorProblem) -> "Instrument":
@@ -92,7 +92,7 @@ class Instrument:
         return replace(self, prior=self.usual(problem))
 
     def at_end(self, problem: OutputErrorProblem, std: float) -> bool:
-        """Return whether the value, with its standard deviation, reaches an end of the range of the search.
+        """Return whether the value is within its standard deviation of an end of the range.
 
         A value at the end of its range is no estimate.
         """
@@ -108,7 +108,7 @@ def _held_for(problem: OutputErrorProblem) -> float:
 
 
 def _speed(problem: OutputErrorProblem) -> float:
-    """Return the mean air speed in m/s; 0 where none is measured."""
+    """Return the mean air speed in m/s; 0 without a measured air speed."""
     speeds = [float(np.mean(r.airspeed.y)) for r in problem.records if r.airspeed is not None]
     return float(np.mean(speeds)) if speeds else 0.0
 
@@ -144,7 +144,7 @@ BY_NAME: Mapping[InstrumentName, Instrument] = {
 
 
 def knows_the_lag(lag: InstrumentEstimate | None) -> bool:
-    """Return whether an estimate of the servo's lag represents the aircraft."""
+    """Return whether a servo's lag is estimated accurately enough for the aircraft."""
     return lag is not None and lag.name == SERVO_LAG.name and lag.std < KNOWN_TO * lag.value
 
 
@@ -166,8 +166,8 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
     """Return the instrument parameters that are estimated together with the derivatives.
 
     A vane and an accelerometer at one place describe the motion of that place. Instruments at the centre of
-    gravity describe the aircraft's equally well. One of the two places must be known to determine the other.
-    Without a specific force the priors alone tell where and when the angle of attack is measured.
+    gravity would describe the aircraft's motion equally well. One place must be known to determine the other
+    place. Without a specific force only the priors determine the vane's place and delay.
     """
     found = found_of(aircraft)
     command = COMMAND_DELAY.open(problem)
@@ -194,7 +194,7 @@ def _stated_or_open(x: Instrument, stated: float | None, problem: OutputErrorPro
 
 
 def as_found(problem: OutputErrorProblem, found: FoundInstruments | None) -> OutputErrorProblem:
-    """Return the problem with the instruments that manoeuvres have told together."""
+    """Return the problem with the instruments that several manoeuvres determined together."""
     for name, value in zip(found.names, found.values, strict=True) if found is not None else ():
         problem = BY_NAME[name].write(problem, float(value))
     return problem

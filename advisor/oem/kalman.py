@@ -1,7 +1,7 @@
-"""The compiled Kalman filter of ``innovations``: covariance, gains, and innovations of residuals.
+"""Compiled Kalman filter for ``innovations``: covariance, gains, and innovations of residuals.
 
-The states are α, q, θ and the gust angle, which are coupled, then the coloured noise of each channel. Rows
-come in order of time, so that every update is by a scalar.
+The states are α, q, θ and the gust angle, then the coloured noise of each channel. Rows are in order of time,
+so that every update is scalar.
 """
 
 from typing import NamedTuple
@@ -13,26 +13,26 @@ from advisor.process.compiled import kernel
 
 STATES = 8
 DIFFUSE = 1e3
-"""Variance of an unknown motion at the start of the record, far above any motion in SI units."""
+"""Variance of an unknown initial motion, far above any motion in SI units."""
 
 
 class Gains(NamedTuple):
-    """Gains of the filter for one record."""
+    """Kalman gains for one record."""
 
     step: FloatArray
-    """Shape (n, 4, 4): transition of α, q, θ and the gust up to each row."""
+    """Shape (n, 4, 4): transition of α, q, θ and the gust angle up to each row."""
     keep: FloatArray
     """Shape (n,): factor by which the coloured noise has decayed since the previous row."""
     gain: FloatArray
     """Shape (n, 8): Kalman gain of each row."""
     root: FloatArray
-    """Shape (n,): standard deviation of each innovation."""
+    """Shape (n,): standard deviation of each row's innovation."""
     channel: np.ndarray
     observed: FloatArray
-    """Shape (4, 8): observation of the states by each channel."""
+    """Shape (4, 8): observation matrix of α, q, a_z and θ for the eight states."""
 
     def innovations(self, columns: FloatArray, order: np.ndarray | None = None) -> FloatArray:
-        """Return whitened columns, shape (n, k), in their order of rows; ``order`` gives the rows in order of
+        """Return whitened columns, shape (n, k), in their row order; ``order`` gives the rows in order of
         time."""
         rows = np.arange(len(columns)) if order is None else order
         return np.asarray(pass_through(self, columns, rows))
@@ -57,7 +57,8 @@ def observed_by(system: FloatArray, seen_by_alpha: float, vane_m: float, imu_m: 
 def _begun(
     system: FloatArray, memory: FloatArray, start_variance: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the matrix of α, q, θ and the gust, half its square, and the first covariance, shape (8, 8)."""
+    """Return the matrix of α, q, θ and gust angle, half its square, and the initial covariance, shape (8,
+    8)."""
     z_a, z_q, m_a, m_q = system[0], system[1], system[2], system[3]
     A, P = np.zeros((4, 4)), np.zeros((STATES, STATES))
     A[0, 0], A[0, 1], A[0, 3] = z_a, 1.0 + z_q, z_a
@@ -78,7 +79,7 @@ def _begun(
 def _transition(
     step: FloatArray, A: FloatArray, half_square: FloatArray, dt: float, keep_gust: float
 ) -> None:
-    """Write the transition of α, q, θ and the gust over ``dt`` s: second order, exact for the gust."""
+    """Write the transition of α, q, θ and gust angle over ``dt`` s: second order, exact for the gust."""
     for a in range(4):
         for b in range(4):
             step[a, b] = (A[a, b] + half_square[a, b] * dt) * dt
@@ -154,7 +155,7 @@ def filter_along(
     residual: FloatArray,
     gains: Gains,
 ) -> float:
-    """Run the filter along a record, and return -2 log likelihood of its residual.
+    """Run the filter along a record, and return -2 log likelihood of the residual.
 
     Parameters
     ----------
@@ -170,9 +171,9 @@ def filter_along(
     start_variance
         Variance of α, q and θ at the start.
     residual
-        Shape (n,), or (0,) for none.
+        Shape (n,): residual, or (0,) for none.
     gains
-        Arrays of n rows, which receive the gains; or of none.
+        Arrays of n rows that receive the gains, or of no rows.
 
     Returns
     -------
@@ -223,9 +224,9 @@ def _advance(x: FloatArray, step: FloatArray, keep: float, keep_gust: float) -> 
 
 @kernel(error_model="numpy", fastmath={"contract"})
 def pass_through(gains: Gains, columns: FloatArray, rows: np.ndarray) -> FloatArray:
-    """Return innovations of columns, shape (n, k), in units of each innovation's standard deviation.
+    """Return the innovations of columns, shape (n, k), in units of each innovation's standard deviation.
 
-    ``rows``, shape (n,), has the columns' rows in order of time.
+    ``rows``, shape (n,), holds the columns' row indices in order of time.
     """
     n, k = columns.shape
     out = np.empty((n, k))

@@ -1,10 +1,10 @@
-"""Instruments as several manoeuvres together tell them, for the estimate from each of these manoeuvres.
+"""Instrument values from several manoeuvres together, for the estimate from each single manoeuvre.
 
-One manoeuvre hardly tells a servo's lag from M_q and M_δe. All manoeuvres of a power-on share their
-instruments and tell them well. The joint estimate tells the instruments, and each manoeuvre's estimate takes
-their values as given. The error of an instrument's estimate has two parts. One part is the manoeuvre's own,
-for given instruments. The other part comes from the errors of the instruments, and all manoeuvres have it in
-common. Further manoeuvres average out the first part alone.
+One manoeuvre hardly distinguishes a servo's lag from M_q and M_δe. All manoeuvres of a power-on share their
+instruments and determine them well together. The joint estimate determines the instruments, and each
+manoeuvre's estimate uses these values. The error of such an estimate has two parts. One part is the
+manoeuvre's own error, for given instruments. The other part comes from the instruments' errors and is common
+to all manoeuvres. More manoeuvres average out the first part only.
 """
 
 from dataclasses import dataclass, fields
@@ -29,17 +29,17 @@ _SPEED_POWER = np.array([SPEED_EXPONENTS[name] for name in PARAMETERS], dtype=fl
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FoundInstruments:
-    """Instrument parameters of a fit, with their errors and with those that they cause."""
+    """Instrument parameters of a fit, with their errors and the derivative errors they cause."""
 
     names: tuple[InstrumentName, ...]
     values: FloatArray
-    """(k,) in the units that end the names."""
+    """Shape (k,): values of the instruments, in the units at the end of the names."""
     std: FloatArray
-    """(k,) standard deviations."""
+    """Shape (k,): standard deviations of the instruments."""
     covariance: FloatArray
-    """(8, 8) covariance of the derivatives by the errors of the instruments, at ``airspeed_m_s``."""
+    """Shape (8, 8): covariance of the derivatives due to the instruments' errors, at ``airspeed_m_s``."""
     airspeed_m_s: float | None
-    """Air speed of the derivatives, m/s. None: no air speed was measured."""
+    """Air speed of the derivatives, m/s. None without a measured air speed."""
 
     @classmethod
     def of(
@@ -54,12 +54,12 @@ class FoundInstruments:
         Parameters
         ----------
         names, values
-            The k instruments.
+            Names of the k instruments.
         covariance
-            (8 + k, 8 + k) covariance of the parameters and then of the instruments. The regression of the
-            parameters' errors on those of the instruments gives the part that the instruments cause.
+            Shape (8 + k, 8 + k): covariance of the parameters, then of the instruments. The regression of
+            parameter errors on instrument errors gives the part that the instruments cause.
         airspeed_m_s
-            Air speed of the derivatives.
+            Air speed of the derivatives, m/s.
         """
         n = len(PARAMETERS)
         inside = slice(n, n + len(names))
@@ -73,17 +73,17 @@ class FoundInstruments:
         )
 
     def value(self, name: InstrumentName) -> float | None:
-        """Return one value; None where the fit had no such parameter."""
+        """Return the value of one instrument; None if the fit had no such parameter."""
         return float(self.values[self.names.index(name)]) if name in self.names else None
 
     def without(self, name: InstrumentName) -> "FoundInstruments":
-        """Return all parameters but one."""
+        """Return all instruments but one."""
         kept = [i for i, one in enumerate(self.names) if one != name]
         names = tuple(self.names[i] for i in kept)
         return FoundInstruments(names, self.values[kept], self.std[kept], self.covariance, self.airspeed_m_s)
 
     def covariance_at(self, airspeed_m_s: float | None) -> FloatArray:
-        """Return the (8, 8) covariance by the errors of the instruments at an air speed."""
+        """Return the derivatives' covariance (8, 8) due to the instruments' errors, at an air speed."""
         if not self.airspeed_m_s or not airspeed_m_s:
             return self.covariance
         scale = (airspeed_m_s / self.airspeed_m_s) ** _SPEED_POWER
@@ -92,17 +92,17 @@ class FoundInstruments:
 
 @dataclass(frozen=True)
 class AircraftInFlight(Aircraft):
-    """The crew's aircraft, with the instruments that its manoeuvres have told together."""
+    """The crew's aircraft, with instruments that its manoeuvres determined together."""
 
     found: FoundInstruments | None = None
 
 
 def found_of(aircraft: Aircraft) -> FoundInstruments | None:
-    """Return the instruments that manoeuvres have told together; None before."""
+    """Return the instruments that manoeuvres determined together; None if there are none yet."""
     return aircraft.found if isinstance(aircraft, AircraftInFlight) else None
 
 
 def with_found(aircraft: Aircraft, found: FoundInstruments) -> AircraftInFlight:
-    """Return the crew's aircraft with instruments that its manoeuvres have told."""
+    """Return the crew's aircraft with instruments that its manoeuvres determined."""
     as_stated = {one.name: getattr(aircraft, one.name) for one in fields(Aircraft)}
     return AircraftInFlight(**as_stated, found=found)

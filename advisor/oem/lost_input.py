@@ -1,9 +1,10 @@
-"""Elevator samples that a link lost at a step, estimated from the response of the aircraft.
+"""Elevator samples that a link lost at a step of the command, estimated from the aircraft's response.
 
-A lost measurement costs its own information only. A lost sample of the input costs far more: every later
-output is explained wrongly. Joined by a straight line, the edge of a step lies up to an interval from its
-true place. The outputs determine that place. Samples missing across a change of the command become
-parameters, bounded by their neighbours. Gauss-Newton estimates them together with the aircraft.
+A lost output sample costs only its own information. A lost input sample costs far more, because every later
+output is simulated wrongly. With a straight line across the gap, a step lies up to an interval from its true
+place. The outputs determine the true place of the step. Missing samples across a change of the command become
+parameters, bounded by their neighbours. Gauss-Newton estimates the missing samples together with the
+aircraft.
 """
 
 from dataclasses import replace
@@ -18,18 +19,18 @@ from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve
 
 LOST_INTERVAL = 1.5
-"""Distance of two stamps, in usual intervals, above which a sample between them was lost."""
+"""Interval between two stamps, in usual intervals, above which a sample was lost."""
 LONGEST_GAP_S = 0.25
-"""Longest gap, s, that is restored. A longer gap is an outage, which no step of a stick explains."""
+"""Longest gap, s, that is restored. A longer gap is an outage, which no step of the stick explains."""
 STEP_SHARE = 0.05
 """Least change of the command across the gap, as a share of the input's range."""
 MOST_ROUNDS = 6
 _SETTLED = 1e-3
-"""Numerical: change of the lost samples, as a share of the input's range, at which the search ends."""
+"""Numerical: change of the lost samples, as a share of the input's range, below which the search ends."""
 
 
 def restored(problem: OutputErrorProblem) -> OutputErrorProblem:
-    """Return the problem with the input samples that were lost at steps, restored record by record.
+    """Return the problem with restored input samples at steps, record by record.
 
     A record without lost samples, or whose fit does not converge, stays unchanged.
     """
@@ -60,7 +61,7 @@ def _restored(problem: OutputErrorProblem, record: Record) -> Record:
 
 
 def _lost(elevator: Signal) -> tuple[FloatArray, Index]:
-    """Return stamps of lost samples at steps, and the index of the last sample before each."""
+    """Return the stamps of lost samples at steps, and the index of the last sample before each."""
     intervals = np.diff(elevator.t)
     usual = float(np.median(intervals))
     moved = np.abs(np.diff(elevator.y)) > STEP_SHARE * float(np.ptp(elevator.y))
@@ -75,7 +76,7 @@ def _lost(elevator: Signal) -> tuple[FloatArray, Index]:
 
 
 def _completed(record: Record, stamps: FloatArray) -> tuple[Record, Index]:
-    """Return the record with samples on the straight line at these stamps, and their indices."""
+    """Return the record with samples on a straight line at these stamps, and the samples' indices."""
     t = np.sort(np.concatenate([record.elevator.t, stamps]))
     return replace(record, elevator=Signal(t, record.elevator.at(t))), np.searchsorted(t, stamps)
 
@@ -87,7 +88,8 @@ def _with_values(record: Record, at: Index, values: FloatArray) -> Record:
 
 
 def _correction(solution: Solution, at: Index) -> FloatArray:
-    """Return the change of each lost sample that best explains the residuals with the parameters."""
+    """Return the change of each lost sample that explains the residuals best, together with the
+    parameters."""
     (record,) = solution.problem.records
     step = 0.1 * float(np.ptp(record.elevator.y))
     answers = np.empty((len(solution.fitted), len(at)))

@@ -1,7 +1,7 @@
-"""The value of a_z where it was not measured, as a factor on each parameter's error.
+"""Benefit of an unmeasured a_z, as a factor on each parameter's error.
 
-The channel is imagined at the stamps of the pitch rate, with an equal ratio of noise to motion and with its
-own bias. The sensitivities of the present fit give the Cramér-Rao bound with that channel.
+The channel is assumed at the stamps of the pitch rate, with an equal noise-to-motion ratio and its own bias.
+The sensitivities of the present fit give the Cramér-Rao bound with a_z.
 """
 
 from dataclasses import replace
@@ -18,7 +18,7 @@ from advisor.oem.solution import Solution
 from advisor.words.quantities import symbol
 
 WORTH_NAMING = 1.05
-"""Least factor on an error that is named."""
+"""Least factor on an error for which the report names the parameter."""
 
 
 def price(solution: Solution) -> FloatArray | None:
@@ -28,7 +28,7 @@ def price(solution: Solution) -> FloatArray | None:
     Returns
     -------
     array or None
-        None where the factors are unknown: a_z needs an air speed and an informative input.
+        None if the factors are unknown, because a_z needs an air speed and an informative input.
     """
     records, output = solution.problem.records, "a_z"
     if any(record.airspeed is None for record in records):
@@ -54,7 +54,7 @@ def price(solution: Solution) -> FloatArray | None:
 
 
 def in_words(factors: FloatArray | None) -> str:
-    """Return the sentence for the notes; empty where the factors are unknown."""
+    """Return the sentence about a_z for the notes; empty if the factors are unknown."""
     if factors is None:
         return ""
     named = [
@@ -69,7 +69,7 @@ def in_words(factors: FloatArray | None) -> str:
 
 
 def _spread(assembly: Assembly, y: FloatArray, output: str) -> float:
-    """Return the root mean square motion of an output within the manoeuvres."""
+    """Return the root mean square of an output's simulated motion within the manoeuvres."""
     return float(np.sqrt(np.mean([np.var(y[rows[output]]) for rows in assembly.rows])))
 
 

@@ -1,10 +1,10 @@
-"""Errors by dynamics that the model lacks, alike in all manoeuvres.
+"""Errors from dynamics that the model lacks, equal in all manoeuvres.
 
-A true response differs from the model's by a relative error. An error of the model is equal in each
-manoeuvre, so more manoeuvres do not average the error out. The error is a short filter behind the model's
-own outputs, with Gaussian weights about zero. The variance of the model's errors is the likeliest one for
-the residual. What such a filter moves of the parameters is a part of their covariance. The source is
-Goodwin, Gevers & Ninness, *IEEE Transactions on Automatic Control* 37, 1992 (stochastic embedding).
+A true response differs from the model's by a relative error. A model error is equal in each manoeuvre, so
+more manoeuvres do not average it out. The model error is a short filter on the model's outputs, with Gaussian
+weights about zero. The variance of the weights is the most likely one for the residual. The change of the
+parameters by such a filter is part of their covariance. The source is Goodwin, Gevers & Ninness, *IEEE
+Transactions on Automatic Control* 37, 1992 (stochastic embedding).
 """
 
 from collections.abc import Mapping
@@ -20,15 +20,15 @@ from advisor.oem.scatter_between import CHANCE
 from advisor.oem.whitening import Whitening
 
 WIDTH_S, WEIGHTS = 0.2, 8
-"""Numerical: distance between the filter's weights, s, and their number. The filter is linear between weights
-and holds what a rigid aircraft follows, up to 2.5 Hz. Faster errors are those of stamps and edges. Six
-flights of an autopilot set the distance among 0.1, 0.2, 0.3 and 0.4. Of 26 intervals on four other flights 22
-hold, 18 without such errors."""
+"""Numerical: distance between the filter's weights, s, and their number. The filter is linear between its
+weights, and represents dynamics up to 2.5 Hz. Faster errors come from stamps and edges. Six flights of an
+autopilot determined the distance among 0.1, 0.2, 0.3 and 0.4 s. Of 26 intervals on four other flights 22 hold
+the truth, and 18 without model errors."""
 _WITNESSES = 3
-"""Numerical: least number of manoeuvres that can show an error in common. On an axis with two controls, two
-of three move the same one."""
+"""Numerical: least number of manoeuvres that can show a common error. On an axis with two controls, two of
+three manoeuvres move one control."""
 _SIZES = np.concatenate([[0.0], np.geomspace(1e-5, 1.0, 51)])
-"""Numerical: standard deviations of the weights that are tried."""
+"""Numerical: candidate standard deviations of the filter's weights."""
 
 
 def model_error(
@@ -40,18 +40,18 @@ def model_error(
     colours: Mapping[str, Colour],
     rows: FloatArray,
 ) -> FloatArray:
-    """Return the covariance (p, p) of the parameters by dynamics that the model lacks.
+    """Return the covariance (p, p) of the parameters from dynamics that the model lacks.
 
     Parameters
     ----------
     fitted, residual
-        (N,) outputs of the model, and measured minus fitted outputs.
+        Shape (N,): outputs of the model, and measured minus fitted outputs.
     g, extra
-        (N, s + l) derivatives of the outputs, and parameters that the fit has in addition.
+        Derivatives of the outputs, shape (N, s + l), and the fit's additional parameters.
     colours
-        Noise model by output name.
+        Noise model of each output, by the output's name.
     rows
-        (N, p) influence of the measurements on the parameters.
+        Shape (N, p): influence of the measurements on the parameters.
     """
     total = np.zeros((rows.shape[1], rows.shape[1]))
     if assembly.maneuvers < _WITNESSES:
@@ -65,7 +65,7 @@ def model_error(
     bases = [_directions(own[block]) for block in assembly.blocks]
 
     def without_own(part: FloatArray) -> FloatArray:
-        """Return what the manoeuvres' own parameters do not absorb."""
+        """Return the part of the rows that the manoeuvres' own parameters do not absorb."""
         return np.concatenate(
             [
                 part[block] - mine @ (mine.T @ part[block])
@@ -94,7 +94,7 @@ def _directions(columns: FloatArray) -> FloatArray:
 
 
 def _filtered(assembly: Laid, fitted: FloatArray) -> FloatArray:
-    """Return the outputs' departures from the beginning behind each weight's triangle, (N, weights)."""
+    """Return the change of each output filtered by each weight's triangle, shape (N, weights)."""
     basis = np.zeros((len(fitted), WEIGHTS))
     for named in assembly.rows:
         for rows in named.values():
@@ -125,7 +125,8 @@ def _whitened(assembly: Laid, colours: Mapping[str, Colour], columns: FloatArray
 
 
 def _likeliest(columns: FloatArray, residual: FloatArray) -> float:
-    """Return the likeliest standard deviation of the filter's weights; 0 where chance explains it."""
+    """Return the most likely standard deviation of the filter's weights; 0 if chance explains the
+    residual."""
     powers, vectors = np.linalg.eigh(columns.T @ columns)
     powers = np.maximum(powers, 0.0)
     along = (vectors.T @ (columns.T @ residual)) ** 2

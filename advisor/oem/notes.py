@@ -29,7 +29,7 @@ def notes(
     best: Solution,
     priced: bool,
 ) -> tuple[str, ...]:
-    """Return the sentences.
+    """Return the notes on an estimate, one sentence each.
 
     Parameters
     ----------
@@ -63,7 +63,8 @@ def _outputs(solution: Solution, prepared: Prepared) -> str:
 
 
 def _is_worth_saying(identified: Identified) -> bool:
-    """Return whether the data tell a value that neither the file nor a sound instrument explains."""
+    """Return whether the data give an instrument value that neither the file nor a sound instrument
+    explains."""
     x, found = identified.instrument, identified.found
     if x.stated is not None or x.prior is None:
         return found.contradicts
@@ -72,7 +73,7 @@ def _is_worth_saying(identified: Identified) -> bool:
 
 
 def _instrument(identified: Identified) -> str:
-    """Return a sentence about one instrument, with the line that puts its value into the aircraft file."""
+    """Return a sentence about one instrument, with the aircraft-file line for its value."""
     x = identified.found
     text = value_in_words(x.name, x.value, x.std)
     line = line_of(x.name, x.value) if x.std < KNOWN_TO * abs(x.value) else ""

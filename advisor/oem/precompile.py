@@ -1,7 +1,7 @@
 """Compile the estimator once, so that no pilot waits for it: ``python -m advisor.oem.precompile``.
 
-The compiled code is kept next to the modules (or where ``NUMBA_CACHE_DIR`` says). Every later start loads it
-in a fraction of a second.
+The compiled code is stored next to the modules (or in ``NUMBA_CACHE_DIR``). Every later start loads the
+compiled code in a fraction of a second.
 """
 
 from dataclasses import replace
@@ -20,7 +20,7 @@ from advisor.oem.solution import Solution, solve
 
 
 def warm() -> None:
-    """Estimate a small flight in every way: alone, jointly, with moving air, and while it is flown."""
+    """Estimate a small flight in every way: alone, jointly, with moving air, and during flight."""
     maneuver = _flown()
     prepared = prepare([maneuver], Aircraft())
     solution = solve(prepared.problem) if isinstance(prepared, Prepared) else None
@@ -32,7 +32,7 @@ def warm() -> None:
 
 
 def _rolled(maneuver: Maneuver) -> Maneuver:
-    """Return a doublet of the aileron with arbitrary motion, for which the lateral kernels are compiled."""
+    """Return a manoeuvre with an aileron doublet and arbitrary motion, which compiles the lateral kernels."""
     channels = maneuver.channels
     names = {
         "aileron": "elevator", "p": "q", "r": "q", "bank": "theta", "a_y": "a_z", "beta": "alpha",
@@ -43,7 +43,7 @@ def _rolled(maneuver: Maneuver) -> Maneuver:
 
 
 def _flown() -> Maneuver:
-    """Return four channels of a doublet by an arbitrary aircraft for which there is an estimate."""
+    """Return a four-channel doublet of an arbitrary aircraft, for which an estimate exists."""
     rng = np.random.default_rng(1)
     t = np.arange(0.0, 6.0, 0.05)
     u = np.where((t > 1.0) & (t < 2.0), 0.03, 0.0) - np.where((t > 2.0) & (t < 3.0), 0.03, 0.0)

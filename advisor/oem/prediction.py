@@ -1,8 +1,8 @@
-"""Accuracy of the predicted response to the estimate's own inputs: the 95 % band relative to the peak.
+"""Accuracy of the predicted response: the 95 % band relative to the peak, for the estimate's own inputs.
 
-Sensitivities of the outputs carry the errors of derivatives and estimated instruments to the response (delta
-method). Trim, initial states and biases are refitted in every manoeuvre, so what they absorb is no error of
-the prediction. Correlated errors, as a servo's lag and M_δe have, cancel where they move no response.
+Sensitivities of the outputs transfer the errors of derivatives and instruments to the response (delta
+method). Trim, initial states and biases are refitted in every manoeuvre, so their errors do not count.
+Correlated errors, such as those of a servo's lag and M_δe, cancel if they do not move the response.
 """
 
 from collections.abc import Mapping
@@ -18,14 +18,14 @@ from advisor.words.quantiles import NORMAL_95
 
 
 def prediction_band(assembly: Laid, solution: Evaluated, covariance: FloatArray) -> Mapping[str, float]:
-    """Return the band of a response by output name, as ``widest_bands``.
+    """Return the widest prediction band of each output, by the output's name, as ``widest_bands`` does.
 
     Parameters
     ----------
     solution
-        An optimum on the rows of ``assembly``.
+        Optimum on the rows of ``assembly``.
     covariance
-        (p + k, p + k) covariance of the reported parameters, and of the first k extra ones.
+        Shape (p + k, p + k): covariance of the reported parameters and of the first k extra parameters.
     """
     names = assembly.names
     derivatives = [name for name in names.shared if name in names.reported]
@@ -40,14 +40,15 @@ def prediction_band(assembly: Laid, solution: Evaluated, covariance: FloatArray)
 def widest_bands(
     assembly: Laid, optimum: Optimum, columns: FloatArray, covariance: FloatArray
 ) -> Mapping[str, float]:
-    """Return by output name the largest half-width of the 95 % band over the response's peak in all.
+    """Return the largest half-width of each output's 95 % band over the response's peak, by the output's
+    name.
 
     Parameters
     ----------
     columns
-        (N, k) derivatives of the outputs by the parameters that carry their errors to the response.
+        Shape (N, k): derivatives of the outputs by the parameters with errors.
     covariance
-        (k, k) covariance of these parameters.
+        Shape (k, k): covariance of these parameters.
     """
     weight = 1.0 / optimum.noise[assembly.channel]
     widest: dict[str, float] = {}
@@ -62,14 +63,14 @@ def widest_bands(
 
 
 def half_widths(slopes: FloatArray, covariance: FloatArray) -> FloatArray:
-    """Return half of the 95 % band of a response, shape (n,), by the delta method.
+    """Return the half-width of a response's 95 % band, shape (n,), by the delta method.
 
     Parameters
     ----------
     slopes
-        (n, k) change of each sample with each parameter.
+        Shape (n, k): change of each sample with each parameter.
     covariance
-        (k, k) covariance of the parameters.
+        Shape (k, k): covariance of the parameters.
     """
     variance = np.einsum("ni,ni->n", slopes @ covariance, slopes)
     return np.asarray(NORMAL_95 * np.sqrt(np.maximum(variance, 0.0)))

@@ -1,4 +1,4 @@
-"""From manoeuvres and the aircraft file to the estimation problem."""
+"""Preparation of manoeuvres for the estimation, with the aircraft file."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -27,32 +27,33 @@ from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
 OUTPUTS = ("alpha", "q", "a_z")
-"""Outputs of the fit. The attitude is the integral of the pitch rate, so its residual contains every error of
-model and air. As an output it would outweigh the others and move M_α by 5 to 10 % on real flights."""
+"""Outputs that the fit compares with the measurement. The attitude is the integral of the pitch rate, so its
+residual contains every error of model and air. As an output the attitude would outweigh the others and move
+M_α by 5 to 10 % on real flights."""
 SPEED_CHANGE = 0.03
-"""Relative change of air speed above which derivatives are scaled with a measured air speed."""
+"""Relative change of the air speed above which derivatives scale with a measured air speed."""
 SMOOTH_SPEED_CHANGE = 0.01
-"""Relative change of an air speed shaped by the accelerometers, above which derivatives are scaled with it.
-No noise can pass for such a change."""
+"""Relative change of an air speed from the accelerometers above which derivatives scale with it. Noise cannot
+cause a change of this size."""
 
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """The problem, with facts about its preparation."""
+    """Estimation problem, with facts about its preparation."""
 
     problem: OutputErrorProblem
     renewed_hz: float
-    """Rate of renewal of the angle of attack, Hz, the slowest of the manoeuvres; NaN where none is used."""
+    """Renewal rate of the angle of attack in the slowest manoeuvre, Hz; NaN if no angle is used."""
     alpha_held: bool
-    """Whether the angle of attack repeats old values with new stamps."""
+    """Whether the angle of attack repeats old values at new stamps."""
     alpha_left_out: str
-    """Why no measured angle of attack is used, in words; empty where one is."""
+    """Reason why no measured angle of attack is used, in words; empty if one is used."""
     missing: tuple[str, ...]
-    """Outputs that no manoeuvre has: a_z, theta."""
+    """Outputs that no manoeuvre has, of a_z and theta."""
     airspeed_lag_s: float
-    """Delay of the air speed, s, mean over the manoeuvres."""
+    """Mean delay of the air speed sensor over the manoeuvres, s."""
     airspeed_m_s: float | None
-    """Mean measured air speed, m/s."""
+    """Mean measured air speed over the manoeuvres, m/s."""
 
 
 def prepare(
@@ -61,7 +62,7 @@ def prepare(
     outputs: Sequence[str] = OUTPUTS,
     alpha_left_out: str | None = None,
 ) -> Prepared | NoEstimate:
-    """Return the estimation problem, or why there is none.
+    """Return the estimation problem, or the reason why there is none.
 
     Parameters
     ----------
@@ -98,7 +99,7 @@ def prepare(
 
 
 def _without_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> Prepared:
-    """Return a problem with the angle of attack as an unmeasured state; q and a_z are the outputs."""
+    """Return a problem with the angle of attack as an unmeasured state, and q and a_z as outputs."""
     inferred = [infer(m, aircraft) for m in maneuvers]
     known = [{**m.channels, "alpha": alpha} for m, alpha in zip(maneuvers, inferred, strict=True)]
     return _prepared(
@@ -159,7 +160,7 @@ def _prepared(
 
 
 def _per_coefficient(aircraft: Aircraft, airspeed_m_s: float | None) -> Mapping[str, float]:
-    """Return derivatives of the moment for coefficients of 1, in the air of sea level."""
+    """Return the moment derivatives for coefficients of 1, at sea-level density."""
     air = AirData(SEA_LEVEL_DENSITY_KG_M3, "sea level", "true")
     found = scales(airspeed_m_s, aircraft.reference, air) if airspeed_m_s else {}
     return {name: 1.0 / factor for name, factor in found.values() if name in COEFFICIENT_STD}
@@ -171,9 +172,9 @@ def _is_computed(alpha: Channel) -> bool:
 
 
 def _renewed(signal: Signal) -> tuple[Signal, bool]:
-    """Return the samples that bring a new value, and whether the channel is held between them.
+    """Return the samples with a new value, and whether the channel is held between them.
 
-    Values repeated with new stamps would count several times, and late.
+    Values repeated at new stamps would be used several times, and late.
     """
     t, y = renewed(signal.t, signal.y, FEWEST_SAMPLES)
     return Signal(t, y), len(t) < len(signal.t)
@@ -188,7 +189,7 @@ def _missing(maneuver: Maneuver) -> NoEstimate | None:
 
 
 def too_few(maneuver: Maneuver, spoken: Mapping[str, str]) -> NoEstimate | None:
-    """Return the first channel, by its name in words, that has too few samples; None without one."""
+    """Return the reason with the first channel that has too few samples; None without such a channel."""
     for name, words in spoken.items():
         if not _has(maneuver.channels, name):
             samples = len(maneuver.channels[name]) if name in maneuver.channels else 0
@@ -224,7 +225,7 @@ def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Seq
 
 
 def _level(channels: Mapping[str, Channel]) -> Signal:
-    """Return the pitch angle of level wings: θ minus the integral of (cos φ - 1)·q - r·sin φ."""
+    """Return the pitch angle at level wings: θ minus the integral of (cos φ - 1)·q - r·sin φ."""
     theta = signal_of(channels["theta"])
     if not _has(channels, "bank"):
         return theta
@@ -236,27 +237,27 @@ def _level(channels: Mapping[str, Channel]) -> Signal:
 
 
 def _no_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> NoEstimate:
-    """Return why there is neither an angle of attack nor a replacement for one."""
+    """Return the reason why there is neither an angle of attack nor a replacement."""
     absent = sorted({name for m in maneuvers for name in lacking(m, aircraft)})
     text = f"{why}, and the motion cannot stand in for it: no {', no '.join(absent)} in the record."
     return NoEstimate("no_alpha", text[0].upper() + text[1:])
 
 
 def constant_speed(maneuver: Maneuver, speed: float | None) -> Signal | None:
-    """Return a constant air speed over a manoeuvre; None without one."""
+    """Return a constant air speed over a manoeuvre; None without a speed."""
     if speed is None:
         return None
     return Signal(maneuver.channels["q"].t[[0, -1]], np.array([speed, speed]))
 
 
 def stated_reference(aircraft: Aircraft, maneuvers: Sequence[Maneuver]) -> float | None:
-    """Return the true air speed at the reference speed of the file, which is one as read."""
+    """Return the true air speed at the file's reference speed, which is an air speed as read."""
     read = aircraft.reference_airspeed_m_s
     return None if read is None else read * true_over_read(m.channels for m in maneuvers)
 
 
 def reference_speed(speeds: Sequence[Signal], stated: float | None, smooth: bool) -> float | None:
-    """Return the reference air speed, where the speed changes enough to matter."""
+    """Return the reference air speed; None if the speed hardly changes."""
     together = np.concatenate([speed.y for speed in speeds])
     if np.min(together) <= 0.0:
         return None
@@ -268,6 +269,6 @@ def reference_speed(speeds: Sequence[Signal], stated: float | None, smooth: bool
 
 
 def signal_of(channel: Channel) -> Signal:
-    """Return the finite samples of a channel, each at the time of which it tells."""
+    """Return the finite samples of a channel, each at the time of its measurement."""
     keep = np.isfinite(channel.y)
     return Signal(np.asarray(channel.t[keep], float) - channel.delay_s, np.asarray(channel.y[keep], float))

@@ -1,17 +1,17 @@
-"""Priors of derivatives that a record may leave open.
+"""Priors of derivatives that a record may not determine.
 
-*Short period.* Without a vane, Z_q and Z_δe are correlated with Z_α in pitch rate and specific force of a
-well damped aircraft. Usual sizes hold them:
+*Short period.* Without a vane, Z_q and Z_δe are correlated with Z_α in pitch rate and specific force. Priors
+of usual size bound Z_q, M_α, M_q and Z_δe:
 
-- Z_q = -ρ·S·c·C_Lq/(4·m) is the lift of the pitch rate relative to the turn of the path;
+- Z_q = -ρ·S·c·C_Lq/(4·m) is the lift due to pitch rate, relative to the turn rate of the path;
 - M_α and M_q are those of usual coefficients, where the file states wing, chord and inertia;
-- Z_δe/M_δe = k_y²/(l_t·V): the tail's lift turns the path by its force, the nose by its moment, with k_y the
-  radius of gyration and l_t the tail's lever.
+- Z_δe/M_δe = k_y²/(l_t·V): the tail's lift turns the path by its force and the nose by its moment, with k_y
+  the radius of gyration and l_t the tail's lever.
 
 *Lateral axis.*
 
 - Y_p = ρ·S·b·C_Yp/(4·m), and likewise Y_r, are a few per cent on every aircraft.
-- The derivatives of a control that hardly moves scatter about zero by those of the control that is flown.
+- The derivatives of a control that hardly moves have the size of those of the other control, with mean zero.
 - Without a lateral acceleration and a sideslip, the motion alone determines neither the side force nor the
   sideslip. In level flight Y_β = -(g/V)·|C_Yβ|/C_L, so that gravity and air speed give its size. Strip theory
   gives N_p/L_p = (C_np/C_lp)·(I_xx/I_zz) and L_r/L_p = C_lr/C_lp (Etkin & Reid, *Dynamics of Flight*, Ch. 5).
@@ -29,25 +29,25 @@ from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.problem import OutputErrorProblem
 
 Z_Q_STD = 0.1
-"""Standard deviation of Z_q, 1. C_Lq of 10 gives 0.03 to 0.1 for aircraft of 3 kg to 8 t."""
+"""Prior standard deviation of Z_q, without unit. C_Lq of 10 gives 0.03 to 0.1 for aircraft of 3 kg to 8 t."""
 LIFT_OVER_MOMENT_S = 0.02
-"""Standard deviation of Z_δe/M_δe, s. Published estimates give 0.008 (twin jet) and 0.010 (twin
+"""Prior standard deviation of Z_δe/M_δe, s. Published estimates give 0.008 (twin jet) and 0.010 (twin
 turboprop)."""
 COEFFICIENT_STD = {"M_alpha": 1.5, "M_q": 20.0}
-"""Standard deviation of C_mα and C_mq about zero, 1, where no angle of attack is measured. Published values
+"""Prior standard deviation of C_mα and C_mq about zero if no angle of attack is measured. Published values
 are -0.3 to -1.8 and -10 to -25 for manned aircraft, and -2.7 and -38 for an unmanned one of 13 kg."""
 SIDE_FORCE_STD = 0.05
-"""Standard deviation of Y_p and Y_r about zero, 1. C_Yp and C_Yr of 0.4 give 0.01 for a jet of 15 t and 0.04
-for an aircraft of 3 kg."""
+"""Prior standard deviation of Y_p and Y_r about zero, without unit. C_Yp and C_Yr of 0.4 give 0.01 for a jet
+of 15 t and 0.04 for an aircraft of 3 kg."""
 SIDE_FORCE_OVER_WEIGHT = 2.0
-"""Mean and standard deviation of |C_Yβ|/C_L, 1. Fits give -Y_β·V/g of 0.8 on an indoor aircraft, 1.2 at 3 kg,
-2.7 on a jet and 4.9 on a fighter."""
+"""Prior mean and standard deviation of |C_Yβ|/C_L, without unit. Fits give -Y_β·V/g of 0.8 on an indoor
+aircraft, 1.2 at 3 kg, 2.7 on a jet and 4.9 on a fighter."""
 YAW_BY_ROLLING = 0.2
-"""Standard deviation of N_p over L_p, 1. C_np of C_L/8 with C_lp of -0.45 gives 0.03 to 0.2. Fits give 0.01
-on a fighter, 0.05 on a jet, 0.09 at 3 kg and -0.3 on an indoor aircraft."""
+"""Prior standard deviation of N_p over L_p, without unit. C_np of C_L/8 with C_lp of -0.45 gives 0.03 to 0.2.
+Fits give 0.01 on a fighter, 0.05 on a jet, 0.09 at 3 kg and -0.3 on an indoor aircraft."""
 ROLL_BY_YAWING = 1.0
-"""Standard deviation of L_r over L_p, 1. C_lr of C_L/4 with C_lp of -0.45 gives 0.2 to 0.8. Fits give 0.2 on
-a fighter, 0.3 on a jet and at 3 kg, and 0.7 on an indoor aircraft."""
+"""Prior standard deviation of L_r over L_p, without unit. C_lr of C_L/4 with C_lp of -0.45 gives 0.2 to 0.8.
+Fits give 0.2 on a fighter, 0.3 on a jet and at 3 kg, and 0.7 on an indoor aircraft."""
 
 
 def precision(problem: OutputErrorProblem, shared: FloatArray) -> FloatArray:
@@ -56,12 +56,12 @@ def precision(problem: OutputErrorProblem, shared: FloatArray) -> FloatArray:
     Parameters
     ----------
     shared
-        Shape (7,), in the order of ``SHARED``; M_δe scales the prior of Z_δe.
+        Shape (7,): parameters in the order of ``SHARED``; M_δe scales the prior of Z_δe.
 
     Returns
     -------
     FloatArray
-        Shape (7,). Zero throughout where every record has an angle of attack.
+        Shape (7,): inverse prior variances. All are zero if every record has an angle of attack.
     """
     if all("alpha" in record.outputs for record in problem.records):
         return np.zeros(N_SHARED)
@@ -83,23 +83,23 @@ def precision_without_alpha(shared: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class Priors:
-    """Gaussian knowledge of the derivatives before the flight."""
+    """Gaussian priors of the lateral derivatives."""
 
     mean: FloatArray
     """(15,)."""
     std: FloatArray
-    """(15,) infinite without knowledge."""
+    """Shape (15,): prior standard deviations, infinite without a prior."""
     share: float = 1.0
-    """Standard deviation with which white noise weighs the priors, over ``std``, as in ``extra.Prior``."""
+    """Factor on ``std`` in a white-noise fit, as in ``extra.Prior``."""
 
     @property
     def precision(self) -> FloatArray:
-        """(15,) inverse variances of the priors, in the weights of white noise."""
+        """Shape (15,): inverse variances of the priors in a white-noise fit."""
         return np.asarray((self.std * self.share) ** -2)
 
 
 def about_zero(precision: FloatArray) -> Priors:
-    """Return the priors about zero with these inverse variances (k,)."""
+    """Return priors about zero with the inverse variances ``precision`` (k,)."""
     std = np.full(len(precision), np.inf)
     known = precision > 0.0
     std[known] = precision[known] ** -0.5
@@ -107,13 +107,13 @@ def about_zero(precision: FloatArray) -> Priors:
 
 
 def guessed_y_beta(problem: LateralProblem) -> float:
-    """Return the Y_β of an aircraft that flies as fast as the records, 1/s."""
+    """Return a typical Y_β, 1/s, for the records' air speed."""
     speed = float(np.mean([np.mean(record.airspeed.y) for record in problem.records]))
     return -SIDE_FORCE_OVER_WEIGHT * GRAVITY_M_S2 / speed
 
 
 def priors_of(problem: LateralProblem, start: FloatArray) -> Priors:
-    """Return the priors, for sizes of derivatives as in ``start`` (15,)."""
+    """Return the priors, scaled by the derivatives in ``start`` (15,)."""
     mean = dict.fromkeys(LATERAL.names.shared, 0.0)
     std = dict.fromkeys(LATERAL.names.shared, np.inf)
     std |= {"Y_p": SIDE_FORCE_STD, "Y_r": SIDE_FORCE_STD}

@@ -1,4 +1,4 @@
-"""The estimation problem: data of one or more manoeuvres, each channel at its own stamps."""
+"""Estimation problem of the short period: data of one or more manoeuvres, each channel at its own stamps."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from advisor.oem.rows import Laid, Piece, Signal, events_of, lay_rows, measured_
 from advisor.oem.surface import Servo
 
 STAMP_DIGITS = 12
-"""Decimals to which lengths of steps are distinguished: equal steps share their matrices."""
+"""Decimals to which step lengths are distinguished, because equal steps share their matrices."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,19 +20,20 @@ class Record:
     """Data of one manoeuvre, in SI units."""
 
     elevator: Signal
-    """The command in rad, linear between its stamps; it passes through the servo of the problem."""
+    """Elevator command in rad, linear between its stamps, before the problem's servo."""
     outputs: Mapping[str, Signal]
-    """Measured outputs, with keys of ``OUTPUTS``: q, and alpha or a_z. NaN samples are ignored."""
+    """Measured outputs by the names of ``OUTPUTS``: q, and alpha or a_z. NaN samples are ignored."""
     airspeed: Signal | None = None
-    """V in m/s; None means constant, as in Eqs. (1)-(2)."""
+    """Air speed V in m/s; None for a constant speed, as in Eqs. (1)-(2)."""
     normal_gravity: Signal | None = None
-    """Gravity across the flight path in the plane of symmetry, over g; None means 1, for level flight."""
+    """Gravity normal to the flight path in the plane of symmetry, over g; None for 1, as in level flight."""
     gravity_z: Signal | None = None
-    """g·cos θ·cos φ in m/s², needed by a_z; None means 9.80665."""
+    """Component g·cos θ·cos φ of gravity, m/s², in the equation of a_z; None for 9.80665."""
     held: bool = False
     """Whether the input is held between its stamps instead of linear."""
     inferred_alpha: Signal | None = None
-    """α in rad from the motion, where none is measured. The search starts from it; no residual uses it."""
+    """Angle of attack from the motion, rad, if α is not measured. The search starts from the inferred α, but
+    no residual uses it."""
 
     @property
     def alpha(self) -> Signal:
@@ -41,7 +42,7 @@ class Record:
         Raises
         ------
         ValueError
-            If the record has neither.
+            The record has neither a measured nor an inferred angle of attack.
         """
         signal = self.outputs.get("alpha", self.inferred_alpha)
         if signal is None:
@@ -51,44 +52,43 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class OutputErrorProblem:
-    """Records that share the six derivatives, with the properties of their instruments."""
+    """Records that share the six derivatives, and the properties of their instruments."""
 
     records: tuple[Record, ...]
     reference_airspeed_m_s: float | None = None
-    """Reference speed of the derivatives, m/s; None means that they do not scale with speed."""
+    """Air speed of the derivatives, m/s; None if the derivatives do not scale with speed."""
     servo: Servo = field(default_factory=Servo)
     vane_arm_m: float = 0.0
     accelerometer_arm_m: float = 0.0
     alpha_delay_s: float = 0.0
-    """Delay of the angle of attack, s."""
+    """Delay of the angle of attack's measurement, s."""
     alpha_is_computed: bool = False
-    """Whether the angle of attack comes from inertial sensors, which have no arm, instead of from a vane."""
+    """Whether the angle of attack comes from inertial sensors, which have no arm, and not from a vane."""
     steady_moment_rad: float = 0.0
-    """Moment that does not scale with the square of the air speed, as the deflection that balances it at the
-    reference speed, rad."""
+    """Moment that does not scale with V², as the balancing deflection at the reference speed, rad."""
     per_coefficient: Mapping[str, float] = field(default_factory=dict)
-    """Derivative of the moment to its size for a coefficient of 1; empty for an unknown geometry."""
+    """Moment derivative for a coefficient of 1, by the derivative's name; empty for an unknown geometry."""
     airspeed_may_be_off: bool = True
     """Whether a scale error of the air speed in a_z is estimated. Equivalent, ratiometric or derived speeds
-    are off by some per cent, which would otherwise bias Z_alpha and M_alpha."""
+    are off by some per cent, which would bias Z_alpha and M_alpha."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Assembly(Laid):
-    """A problem of the short period laid out for the kernel."""
+    """Short-period problem laid out for the kernel."""
 
     grid: Grid
     events: FloatArray
-    """(E,) stamps of the events, s."""
+    """Shape (E,): stamps of the events, s."""
 
 
 def assemble(problem: OutputErrorProblem) -> Assembly:
-    """Lay the records on the union of their stamps.
+    """Lay the records out at the union of their stamps.
 
     Raises
     ------
     ValueError
-        A record lacks q, the input, or both alpha and a_z, or has fewer than two stamps of one of them.
+        A record lacks q, the input, or both alpha and a_z, or has fewer than two samples of one of these.
     """
     pieces = [_piece(record, problem) for record in problem.records]
     measured = {name for piece in pieces for name in piece.outputs}
@@ -113,9 +113,10 @@ def assemble(problem: OutputErrorProblem) -> Assembly:
 
 
 def _kinds(steps: FloatArray) -> tuple[FloatArray, Index]:
-    """Return the different steps (U, 2), and the index of each (E, 2) among them. Equal steps share matrices.
+    """Return the distinct steps (U, 2), and the index of each step (E, 2) among them. Equal steps share
+    matrices.
 
-    Where the speed changes, hardly two steps are equal, and none is searched for.
+    If the speed changes, hardly two steps are equal, and no equal steps are sought.
     """
     if np.any(steps[:, 1] != 1.0):
         return steps, np.arange(len(steps), dtype=np.int64)
@@ -124,10 +125,10 @@ def _kinds(steps: FloatArray) -> tuple[FloatArray, Index]:
 
 
 def _free(measured: set[str], scaled: bool) -> Index:
-    """Return which of the 14 parameters the measured outputs determine.
+    """Return the indices of the 14 parameters that the measured outputs determine.
 
-    Without alpha no output determines the level of the angle of attack, and Z_0 and M_0 absorb any. The
-    angle's initial value then stays at the start of the search.
+    Without alpha no output determines the level of the angle of attack, which Z_0 and M_0 absorb. The initial
+    angle of attack then stays at the start of the search.
     """
     local = ["Z_0", "M_0", *(["alpha_initial"] if "alpha" in measured else []), "q_initial"]
     if "theta" in measured:
@@ -141,7 +142,7 @@ def _free(measured: set[str], scaled: bool) -> Index:
 
 
 def _piece(record: Record, problem: OutputErrorProblem) -> Piece:
-    """Return one record on the union of its stamps."""
+    """Return one record at the union of its stamps."""
     outputs = measured_in(record.outputs, OUTPUTS, {"alpha": problem.alpha_delay_s})
     with_samples(
         {**outputs, "the elevator": record.elevator},
@@ -181,7 +182,7 @@ def _piece(record: Record, problem: OutputErrorProblem) -> Piece:
 
 
 def _slope(y: FloatArray, t: FloatArray) -> FloatArray:
-    """Return the slope at each stamp of the parabola through a sample and its neighbours, shape (n,)."""
+    """Return the slope at each stamp of a parabola through the sample and its neighbours, shape (n,)."""
     step = np.diff(t)
     rate = np.diff(y) / step
     inside = (step[1:] * rate[:-1] + step[:-1] * rate[1:]) / (step[:-1] + step[1:])
@@ -190,7 +191,8 @@ def _slope(y: FloatArray, t: FloatArray) -> FloatArray:
 
 
 def steady_share(problem: OutputErrorProblem, airspeed: FloatArray) -> FloatArray:
-    """Return the deflections that act like a steady moment, shape (n,), over that at the reference speed."""
+    """Return the deflections equivalent to a steady moment, shape (n,), over the one at the reference
+    speed."""
     reference = problem.reference_airspeed_m_s
     share: FloatArray = np.zeros(len(airspeed)) if reference is None else (reference / airspeed) ** 2 - 1.0
     return share

@@ -1,4 +1,4 @@
-"""Linear regression of all manoeuvres together, each with constants of its own."""
+"""Linear regression of all manoeuvres together, with constants for each manoeuvre."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -8,26 +8,26 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 
 _INDIFFERENT = 1e-6
-"""Relative singular value below which a direction of the common coefficients is left out. Where the motion
-is excited, the relative singular value is at least 1e-3."""
+"""Relative singular value below which a direction of the common coefficients is ignored. Where the motion is
+excited, the relative singular value is at least 1e-3."""
 
 
 class Equations(NamedTuple):
-    """The equations of one manoeuvre."""
+    """Regression equations of one manoeuvre."""
 
     common: FloatArray
-    """(n, k) columns whose coefficients all manoeuvres share."""
+    """Shape (n, k): columns whose coefficients all manoeuvres share."""
     side: FloatArray
-    """(n,) left side."""
+    """Shape (n,): left side of the equations."""
     own: FloatArray
-    """(n, l) columns whose coefficients are the manoeuvre's own."""
+    """Shape (n, l): columns whose coefficients belong to the manoeuvre."""
 
 
 def regressed(parts: Sequence[Equations]) -> tuple[FloatArray, list[FloatArray]]:
     """Return the common coefficients (k,), and the own coefficients (l,) of each manoeuvre.
 
-    The own columns are removed from both sides by regression, manoeuvre by manoeuvre. The numbers are always
-    finite: without information the solution is that of least norm.
+    The manoeuvre's own columns are removed from both sides by regression. The coefficients are always finite;
+    without information the solution has least norm.
     """
     gains = [np.linalg.pinv(part.own) for part in parts]
     rest = [

@@ -11,7 +11,7 @@ from advisor.process.compiled import kernel
 def restricted(block: FloatArray, memory: float, share: float) -> tuple[float, float]:
     """Return the residual power after whitening and regression, and log det Γ + log det XᵀΓ⁻¹X.
 
-    ``block`` (n, p + 1): regressors and residual; Γ that of unit-variance x.
+    ``block`` (n, p + 1) holds regressors and residual; Γ belongs to an x of unit variance.
     """
     n, width = block.shape
     scale, gain, determinants = schedule(n, memory, share)

@@ -1,4 +1,4 @@
-"""Measurements of all manoeuvres of a problem, laid into rows."""
+"""Measurements of all manoeuvres of a problem, stacked into rows."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from advisor.model.response import Index
 from advisor.model.short_period import NAMES
 
 STAMP_S = 1e-9
-"""Distance of two stamps below which they are one event, s."""
+"""Distance of two stamps below which they are a single event, s."""
 
 
 class Signal(NamedTuple):
@@ -23,27 +23,27 @@ class Signal(NamedTuple):
     y: FloatArray
 
     def at(self, t: FloatArray) -> FloatArray:
-        """Return values at ``t``; the first and last value beyond the ends."""
+        """Return the values at ``t``; beyond the ends, the first or the last value."""
         return np.interp(t, self.t, self.y)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Laid:
-    """Measurements of all manoeuvres as rows, with the parameters that are free."""
+    """Measurements of all manoeuvres as rows, and the free parameters."""
 
     names: Names = NAMES
     z: FloatArray
-    """(N,) measurements, manoeuvre by manoeuvre, within one output by output."""
+    """Shape (N,): measurements, sorted by manoeuvre and then by output."""
     t: FloatArray
-    """(N,) stamps of the measurements."""
+    """Shape (N,): stamps of the measurements, s."""
     rows: tuple[Mapping[str, slice], ...]
-    """For each manoeuvre, output name to its rows."""
+    """Rows of each output, by the output's name, in one mapping per manoeuvre."""
     channel: Index
-    """(N,) index of the output."""
+    """Shape (N,): index of each row's output."""
     owner: Index
-    """(N,) index of the manoeuvre."""
+    """Shape (N,): index of each row's manoeuvre."""
     free: Index
-    """Indices of the estimated parameters among the shared ones, then the local ones, increasing."""
+    """Increasing indices of the estimated parameters among the shared, then the local parameters."""
 
     @property
     def maneuvers(self) -> int:
@@ -52,12 +52,12 @@ class Laid:
 
     @property
     def common(self) -> Index:
-        """Free shared parameters, as indices of all."""
+        """Indices of the free shared parameters among all parameters."""
         return self.free[self.free < len(self.names.shared)]
 
     @property
     def own(self) -> Index:
-        """Free parameters of a manoeuvre, as indices of all."""
+        """Indices of a manoeuvre's free parameters among all parameters."""
         return self.free[self.free >= len(self.names.shared)]
 
     @property
@@ -68,26 +68,26 @@ class Laid:
 
 
 class Piece(NamedTuple):
-    """One record on the union of its stamps."""
+    """One record at the union of its stamps."""
 
     t: FloatArray
-    """(E,) events, s."""
+    """Shape (E,): times of the events, s."""
     outputs: Mapping[str, Signal]
-    """Measured outputs; each of their stamps is one of ``t``."""
+    """Measured outputs, whose stamps are all in ``t``."""
     columns: Mapping[str, FloatArray]
-    """Fields of the kernel's grid by their names, (E, ...) each."""
+    """Fields of the kernel's grid by their names, each of shape (E, ...)."""
 
 
 def measured_in(
     outputs: Mapping[str, Signal], order: Sequence[str], delays_s: Mapping[str, float]
 ) -> dict[str, Signal]:
-    """Return the finite samples of the outputs in this order, each at the time of which it tells."""
+    """Return the finite samples of the outputs in ``order``, each at the time of its measurement."""
     found = {name: finite(outputs[name]) for name in order if name in outputs}
     return {name: Signal(signal.t - delays_s.get(name, 0.0), signal.y) for name, signal in found.items()}
 
 
 def events_of(outputs: Mapping[str, Signal], inputs: Iterable[tuple[FloatArray, float]]) -> FloatArray:
-    """Return the events of a record: the stamps of its outputs, and the corners of its inputs among them.
+    """Return the events of a record: the stamps of its outputs, and the corners of its inputs.
 
     ``inputs`` are the results of ``Servo.grid``.
     """
@@ -100,7 +100,7 @@ def events_of(outputs: Mapping[str, Signal], inputs: Iterable[tuple[FloatArray, 
 
 
 def with_samples(outputs: Mapping[str, Signal], needed: Iterable[str]) -> None:
-    """Raise ValueError where a needed signal has fewer than two samples."""
+    """Raise ValueError if a needed signal has fewer than two samples."""
     for name in needed:
         if name not in outputs or len(outputs[name].t) < 2:
             raise ValueError(f"a record needs at least two samples of {name}")
@@ -114,7 +114,7 @@ def finite(signal: Signal) -> Signal:
 
 
 def merged(stamps: FloatArray, pace: float) -> FloatArray:
-    """Return the distinct stamps in order, with more between them where their distance exceeds ``pace``."""
+    """Return the distinct stamps in order, with additional ones where their distance exceeds ``pace``."""
     ordered = np.sort(stamps)
     t: FloatArray = ordered[np.concatenate([[True], np.diff(ordered) > STAMP_S])]
     if not np.isfinite(pace):
@@ -127,13 +127,13 @@ def merged(stamps: FloatArray, pace: float) -> FloatArray:
 
 
 def padded(rows: FloatArray) -> FloatArray:
-    """Return the rows with the last one repeated, so that there are as many steps as events."""
+    """Return the rows with the last row repeated, for as many steps as events."""
     padded: FloatArray = np.concatenate([rows, rows[-1:]])
     return padded
 
 
 class Measurements(TypedDict):
-    """The fields of ``Laid`` that the measured outputs decide."""
+    """Fields of ``Laid`` that follow from the measured outputs."""
 
     z: FloatArray
     t: FloatArray
@@ -143,28 +143,28 @@ class Measurements(TypedDict):
 
 
 class LaidRows(NamedTuple):
-    """Measurements as rows, and where they stand among the events of all records."""
+    """Measurements as rows, and their places among the events of all records."""
 
     first: Index
-    """(m + 1,) index of the first event of each manoeuvre, and their number."""
+    """Shape (m + 1,): index of the first event of each manoeuvre, then the number of events."""
     row: Index
-    """(C, E) row of the measurement of each output at each event, -1 for none."""
+    """Shape (C, E): row of each output's measurement at each event, -1 for none."""
     measurements: Measurements
     columns: Mapping[str, FloatArray]
     """Columns of all records, one after another."""
 
 
 def nearest_event(events: FloatArray, stamps: FloatArray) -> Index:
-    """Return the index of the nearest event of each stamp; ``events`` (E,) are in order, ``stamps`` (n,).
+    """Return the index of the event nearest to each stamp, for ascending ``events`` (E,) and ``stamps`` (n,).
 
-    An event may differ from its stamp by more than ``STAMP_S``, where stamps follow each other more closely.
+    An event may differ from its stamp by more than ``STAMP_S`` where stamps are closer together.
     """
     index: Index = np.searchsorted((events[1:] + events[:-1]) / 2.0, stamps).astype(np.int64)
     return index
 
 
 def lay_rows(pieces: Sequence[Piece], outputs: Sequence[str]) -> LaidRows:
-    """Lay measurements manoeuvre by manoeuvre, within one output by output; ``outputs`` are the model's."""
+    """Return the measurements sorted by manoeuvre and then by output; ``outputs`` are the model's."""
     first = np.concatenate([[0], np.cumsum([len(piece.t) for piece in pieces])]).astype(np.int64)
     row = np.full((len(outputs), first[-1]), -1, np.int64)
     rows: list[dict[str, slice]] = []

@@ -1,4 +1,4 @@
-"""Compiled sums over the samples of one output (see ``sums``)."""
+"""Compiled sums over the samples of one output (see ``weighted_sums``)."""
 
 from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel

@@ -1,10 +1,10 @@
-"""Errors that contain the scatter between manoeuvres, which no noise model within one manoeuvre knows.
+"""Errors that include the scatter between manoeuvres, which no noise model within one manoeuvre contains.
 
-The influence of the measurements on a joint estimate is a sum of contributions of the manoeuvres. At the
-optimum the contributions sum to zero. Their scatter is a covariance that holds whatever the errors within a
-manoeuvre are, model error included. The manoeuvres are the clusters of Liang & Zeger, *Biometrika* 73, 1986.
-A few manoeuvres determine the scatter badly, so it replaces the stated error only where chance hardly
-explains the difference.
+The influence of the measurements on a joint estimate is the sum of the manoeuvres' contributions. At the
+optimum the contributions sum to zero. The scatter of the contributions is a covariance that is valid for any
+error within a manoeuvre. The manoeuvres are the clusters of Liang & Zeger, *Biometrika* 73, 1986. A few
+manoeuvres determine the scatter badly, so it replaces the stated error only if chance hardly explains the
+difference.
 """
 
 import numpy as np
@@ -13,11 +13,11 @@ from scipy.special import chdtri
 from advisor.flight.signals.messages import FloatArray
 
 CHANCE = 0.05
-"""Probability of widening an error that is stated rightly."""
+"""Probability that a correctly stated error is widened."""
 
 
 def widened_by_scatter(covariance: FloatArray, contributions: FloatArray) -> FloatArray:
-    """Return the covariance, with each error at least as large as the scatter of the manoeuvres requires.
+    """Return the covariance with each error at least as large as the scatter of the manoeuvres requires.
 
     Parameters
     ----------

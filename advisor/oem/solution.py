@@ -1,4 +1,4 @@
-"""The solution of a problem: start, descent, errors, and identifiability."""
+"""Solution of a problem: start, descent, errors, and identifiability."""
 
 from dataclasses import dataclass
 
@@ -21,25 +21,25 @@ RUNS_AWAY = NoEstimate(
     "diverged", "The model runs away from its first guess: the record is too long or too noisy."
 )
 HEALTHY_ITERATIONS = 12
-"""Largest number of iterations of an unsuspicious search. A longer search may creep along the valley of a
-second minimum, and another start is tried."""
+"""Largest number of iterations of a normal search. A longer search may be in the valley of a second minimum,
+so another start is tried."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solution(Evaluated):
-    """The optimum of one problem of the short period, with all quantities computed from it."""
+    """Optimum of one short-period problem, with all derived quantities."""
 
     problem: OutputErrorProblem
     assembly: Assembly
 
     @property
     def residual(self) -> FloatArray:
-        """(N,) ν̂ = z - ŷ, Eq. (9)."""
+        """Shape (N,): residual ν̂ = z - ŷ, Eq. (9)."""
         return self.assembly.z - self.fitted
 
     @property
     def cost(self) -> float:
-        """J = σ_α²·σ_q², Eq. (7); σ_q²·σ_az² without an angle of attack."""
+        """Cost J = σ_α²·σ_q², Eq. (7); σ_q²·σ_az² without an angle of attack."""
         noise = dict(zip(OUTPUTS, self.optimum.noise, strict=True))
         other = "alpha" if noise["alpha"] > 0.0 else "a_z"
         return float((noise["q"] * noise[other]) ** 2)
@@ -52,7 +52,7 @@ def solve(
     noise: Coloured | None = None,
     flat: float = FLAT,
 ) -> Solution | NoEstimate:
-    """Estimate the parameters of a problem.
+    """Estimate the parameters of a short-period problem.
 
     Parameters
     ----------
@@ -66,9 +66,9 @@ def solve(
 
 
 def refused(optimum: Optimum, nothing_to_tell: str) -> NoEstimate | None:
-    """Return why a search found no optimum; None where it found one.
+    """Return the reason why a search found no optimum; None for a successful search.
 
-    ``nothing_to_tell`` is the sentence for inputs that do not excite the motion enough.
+    ``nothing_to_tell`` is the sentence for an input that does not excite the motion enough.
     """
     if optimum.status == OVERFLOW:
         return RUNS_AWAY
@@ -86,7 +86,7 @@ def refused(optimum: Optimum, nothing_to_tell: str) -> NoEstimate | None:
 def search(
     problem: OutputErrorProblem, *, begin: tuple[FloatArray, FloatArray] | None = None, flat: float = FLAT
 ) -> tuple[Assembly, Optimum]:
-    """Return the optimum of a problem, whatever its status; the arguments are those of ``solve``."""
+    """Return the optimum of a problem, whatever its status, for the arguments of ``solve``."""
     assembly = assemble(problem)
     floor = noise_floor(assembly)
     data = (assembly.grid, assembly.z, assembly.channel, assembly.owner, assembly.free, floor)
@@ -135,13 +135,13 @@ def evaluate(
 
 
 def reported(shared: FloatArray, local: FloatArray) -> FloatArray:
-    """Return the eight parameters, in the order of ``PARAMETERS``, from the solver's."""
+    """Return the eight reported parameters, in the order of ``PARAMETERS``, from the solver's parameters."""
     mean = local.mean(axis=0)
     return np.array([shared[i] if is_shared else mean[i] for is_shared, i in REPORTED])
 
 
 def noise_floor(assembly: Laid) -> FloatArray:
-    """Return the smallest σ of each output, shape (outputs,), for data without noise."""
+    """Return the smallest noise σ of each output, shape (outputs,), for noise-free data."""
     return np.maximum(LEAST_NOISE * spread_of(assembly), 1e-300)
 
 

@@ -1,13 +1,13 @@
-"""The start of the search: the integrated equations as a linear regression.
+"""Start of the search: a linear regression of the integrated equations.
 
 Integrated from the first stamp, Eqs. (1)-(2) read
 
     α(t) = α(0) + Z_0·t + Z_α·∫α + (1 + Z_q)·∫q + Z_δe·∫δe
 
-and likewise for q. The integrated equations are linear in the parameters and the initial states, and
+and equally for q. The integrated equations are linear in the parameters and the initial states, and
 integration averages the noise. This is the integral form of the equation-error method (Klein & Morelli, Ch.
 5). Each integrated equation is regressed at the stamps of its left side. The derivatives are common to all
-manoeuvres; constants and initial states belong to one manoeuvre each.
+manoeuvres; constants and initial states belong to single manoeuvres.
 """
 
 import numpy as np
@@ -28,10 +28,10 @@ def start(
     Parameters
     ----------
     lift_from_alpha_only : regress Eq. (1) with Z_q = Z_δe = 0. These two are small and correlated with
-        Z_α. Where the model does not quite hold (a late angle of attack, an unknown servo), the free
-        regression can start in the valley of another minimum.
+        Z_α. If the model is not exact (a late angle of attack, an unknown servo), a free regression can lead
+        to a wrong minimum.
 
-    The numbers are always finite; a record without information yields a least-norm solution.
+    The values are always finite; a record without information has a least-norm solution.
     """
     if any("alpha" not in record.outputs for record in problem.records):
         return _from_force(problem)
@@ -65,9 +65,9 @@ def start(
 def _from_force(problem: OutputErrorProblem) -> tuple[FloatArray, FloatArray]:
     """Return the start without a measured angle of attack, with Z_q = Z_δe = 0.
 
-    Specific force is aerodynamic: n = a_z/V = Z_0 + Z_α·α. In Eq. (2) the specific force n replaces α with
-    the factor M_α/Z_α, because an inferred α does not show moving air. The slope of n over the inferred α is
-    Z_α; a parabola in time removes its drift.
+    Specific force is aerodynamic: n = a_z/V = Z_0 + Z_α·α. In Eq. (2) n replaces α with the factor M_α/Z_α,
+    because an inferred α does not show moving air. The slope of n over the inferred α is Z_α; a parabola in
+    time removes the drift of α.
     """
     shared, local = np.zeros(N_SHARED), np.zeros((len(problem.records), N_LOCAL))
     moments, slopes, forces, levels = [], [], [], []
@@ -101,7 +101,7 @@ def _from_force(problem: OutputErrorProblem) -> tuple[FloatArray, FloatArray]:
 
 
 def _ratio(record: Record, problem: OutputErrorProblem, t: FloatArray) -> Signal:
-    """Return the air speed over the reference; 1 where derivatives do not scale with it."""
+    """Return the air speed over the reference speed; 1 if the derivatives do not scale with speed."""
     if record.airspeed is None or problem.reference_airspeed_m_s is None:
         return Signal(t, np.ones(len(t)))
     return Signal(record.airspeed.t, record.airspeed.y / problem.reference_airspeed_m_s)

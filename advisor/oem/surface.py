@@ -1,10 +1,10 @@
-"""From elevator command to surface: a servo's delay and first-order lag, exact for a linear command.
+"""From elevator command to surface: a servo with delay and first-order lag, exact for a linear command.
 
     τ·δ̇ = u(t - T) - δ
 
 A command that is linear between its stamps gives δ(t + h) = u₁ - τ·u̇ + (δ(t) - u₀ + τ·u̇)·exp(-h/τ), so the
-surface is exact at every stamp of the grid. Between two stamps it is taken as linear. The grid is fine enough
-for an error of about 0.1 % of a step's height at a lag of 0.1 s.
+surface is exact at every stamp of the grid. Between two stamps the surface is taken as linear. The grid is
+fine enough for an error of about 0.1 % of a step's height at a lag of 0.1 s.
 """
 
 from collections.abc import Sequence
@@ -22,19 +22,20 @@ LONGEST_STEP_S = 0.0105
 
 @dataclass(frozen=True, slots=True)
 class Servo:
-    """The servo between command and surface; by default it has neither delay nor lag."""
+    """Servo between command and surface, by default without delay and lag."""
 
     lag_s: float = 0.0
     delay_s: float = 0.0
 
     def grid(self, command_t: FloatArray) -> tuple[FloatArray, float]:
-        """Return the times of corners in the surface's motion, and the longest step that follows it."""
+        """Return the times of corners in the surface's motion, and the longest step that resolves the
+        motion."""
         return command_t + self.delay_s, LONGEST_STEP_S if self.lag_s > 0.0 else np.inf
 
     def move(
         self, command_t: FloatArray, command: FloatArray, t: FloatArray, held: bool = False
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the surface position at the grid ``t`` (E,), which must contain the command's corners.
+        """Return the surface position at the stamps ``t`` (E,), which must contain the command's corners.
 
         Returns
         -------
@@ -48,7 +49,7 @@ class Servo:
         return surface, surface, surface[1:]
 
     def signal(self, command: Signal) -> Signal:
-        """Return the surface behind a linear command, at the corners of its motion."""
+        """Return the surface after a linear command, at the corners of its motion."""
         t, pace = self.grid(command.t)
         if not np.isfinite(pace) or len(t) < 2:
             return Signal(t, command.y)
@@ -58,7 +59,8 @@ class Servo:
     def course(
         self, command_t: FloatArray, command: FloatArray, t: FloatArray, held: bool = False
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the surface at the stamps, just after them, and its rates, each (E,), as for ``move``."""
+        """Return the surface at the stamps and just after them, and its rates, each (E,), as ``move``
+        does."""
         at, start, arrival = self.move(command_t, command, t, held)
         return at, start, padded((arrival - start[:-1]) / np.diff(t))
 
@@ -70,15 +72,15 @@ class Servo:
         held: bool = False,
         intervals: Sequence[int] | None = None,
     ) -> InputChange:
-        """Return the derivatives of the surface by the delay and by the lag, two columns.
+        """Return the derivatives of the surface by the delay and by the lag, as two columns.
 
-        A later command is the command minus its own rate, as the servo passes it. A longer lag takes away the
-        rate of the surface, lagged once more. The other arguments are those of ``move``.
+        The derivative by the delay is minus the command's rate, filtered by the servo. The derivative by the
+        lag is minus the surface's rate, lagged once more. The other arguments are those of ``move``.
 
         Parameters
         ----------
         intervals
-            Only these intervals of the command are late, counted from 0. None: the effects of all parameters.
+            Indices of the command's intervals that are delayed, from 0. None for all parameters.
         """
         run, start, arrival = self._driven(command_t, command, t, held)
         step = np.diff(run)
@@ -100,7 +102,8 @@ class Servo:
     def _driven(
         self, command_t: FloatArray, command: FloatArray, t: FloatArray, held: bool
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return the stamps of the run (n,), and the command just after (n,) and before the next (n - 1,).
+        """Return the stamps of the servo's run (n,), and the command after (n,) and before the next stamp (n
+        - 1,).
 
         A servo with a lag rests at the first known command, where its run starts. The run ends with ``t``.
         """
@@ -119,7 +122,8 @@ class Servo:
 
 
 def _change(start: FloatArray, arrival: FloatArray, step: FloatArray, impulse: FloatArray) -> InputChange:
-    """Return changes from ``start`` to ``arrival`` (n, k) in each of n steps, with impulses (n + 1,)."""
+    """Return changes of the surface from ``start`` to ``arrival`` (n, k) in n steps, with impulses (n +
+    1,)."""
     after, before = np.concatenate([start, arrival[-1:]]), np.concatenate([start[:1], arrival])
     slope = padded((arrival - start) / step[:, None])
     return InputChange(

@@ -1,7 +1,7 @@
-"""Moving air in the residuals of a fit, distinguished from instrument noise by a Kalman filter's likelihood.
+"""Moving air in a fit's residuals, distinguished from instrument noise by a Kalman filter's likelihood.
 
-A gust enters vane, lift and moment together, an instrument's noise only its own channel. The likelihoods of
-the two distinguish them (the filter is in ``innovations``).
+A gust enters vane, lift and moment together; instrument noise enters its own channel only. The likelihoods of
+gusts and of instrument noise distinguish both (the filter is in ``innovations``).
 """
 
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ class Rows:
 
     t: FloatArray
     channel: np.ndarray
-    """Shape (n,), int64: index into ``model.response.OUTPUTS``."""
+    """Shape (n,), int64: index of each row's output in ``model.response.OUTPUTS``."""
     residual: FloatArray
     speed: float
 
@@ -30,7 +30,7 @@ class Rows:
 def cost_of(
     rows: Sequence[Rows], system: FloatArray, air: AirModel, start_variance: float = DIFFUSE
 ) -> float:
-    """Return -2 log likelihood of residuals under a model of the air, summed over the manoeuvres."""
+    """Return -2 log likelihood of residuals under an air model, summed over the manoeuvres."""
     return sum(
         innovations.cost_of(r.t, r.channel, r.residual, np.append(system, r.speed), air, start_variance)
         for r in rows
@@ -38,35 +38,35 @@ def cost_of(
 
 
 LARGEST_GUST_RAD = 0.26
-"""Largest standard deviation of the gust angle, rad. Beyond 15 deg no lift is linear in α."""
+"""Largest standard deviation of the gust angle, rad. Beyond 15 deg lift is not linear in α."""
 _STEPS = (0.7, 0.35, 0.15)
-"""Steps of the search in the logarithms of the noise parameters: from a factor of two to one of 1.16."""
+"""Steps of the search in the logarithms of the noise parameters, from a factor of two to 1.16."""
 _RANGE = (1e-12, 1e3)
 """Range of every noise parameter, SI. Without a lower bound the likelihood of data without noise has no
 maximum."""
 _MEMORY_GAIN = 5.0
-"""Least gain in log likelihood of coloured over white noise for a search for moving air."""
+"""Least log likelihood gain of coloured over white noise that starts a search for moving air."""
 
 
 @dataclass(frozen=True)
 class Turbulence:
-    """Whether the residuals contain moving air, and how much."""
+    """Result of the search for moving air in residuals."""
 
     gain: float
-    """Gain in log likelihood of moving air over coloured instruments."""
+    """Log likelihood gain of moving air over coloured instruments, nats."""
     gust_angle: float
     """Standard deviation of the gust angle w/V, rad."""
     air: AirModel
-    """The likelier model of air and instruments."""
+    """Likelier model of air and instruments."""
 
     @property
     def present(self) -> bool:
-        """Whether moving air exceeds what instrument noise explains, and is large enough (0.1 deg)."""
+        """Whether moving air explains more than instrument noise, and exceeds 0.1 deg."""
         return self.gain > 20.0 and self.gust_angle > 0.0017 and self.is_air
 
     @property
     def is_air(self) -> bool:
-        """Whether the gusts are within a linear model of the aircraft; larger ones are model errors."""
+        """Whether the gusts are small enough for a linear aircraft model; larger gusts are model errors."""
         return self.gust_angle < LARGEST_GUST_RAD
 
 
@@ -77,18 +77,19 @@ def find_turbulence(
     seen_by_alpha: bool,
     start_variance: float = DIFFUSE,
 ) -> Turbulence:
-    """Return the comparison of noise with and without moving air, fitted to residuals.
+    """Return the comparison of noise models with and without moving air, fitted to residuals.
 
     Parameters
     ----------
     rows
-        Residuals of the manoeuvres, offsets removed.
+        Residuals of the manoeuvres without their offsets.
     system
-        Z_α, Z_q, M_α, M_q.
+        Derivatives Z_α, Z_q, M_α, M_q.
     white
         Shape (4,): starting values of the white noise, SI.
     start_variance
-        Variance of α, q and θ at the start of a record; 0 for residuals of a fit with its own initial states.
+        Variance of the initial α, q and θ of a record; 0 for residuals of a fit with estimated initial
+        states.
     """
 
     def descend(start: AirModel, moving: bool, steps: Sequence[float] = _STEPS) -> tuple[AirModel, float]:
@@ -114,7 +115,7 @@ def find_turbulence(
 
 
 def _residual_angle(rows: Sequence[Rows], system: FloatArray, rms: FloatArray) -> float:
-    """Return the root mean square residual of the angle of attack, rad; without it, from the lift."""
+    """Return the root mean square residual of the angle of attack, rad, or of the lift without α."""
     if any(np.any(r.channel == ALPHA) for r in rows):
         return float(rms[ALPHA])
     speed = float(np.mean([r.speed for r in rows]))
@@ -122,7 +123,7 @@ def _residual_angle(rows: Sequence[Rows], system: FloatArray, rms: FloatArray) -
 
 
 def spread_of(rows: Sequence[Rows]) -> FloatArray:
-    """Return the root mean square of each output's residuals, shape (4,); 1 for a missing output."""
+    """Return the root mean square residual of each output, shape (4,); 1 for a missing output."""
     picked = [np.concatenate([r.residual[r.channel == c] for r in rows]) for c in range(len(OUTPUTS))]
     return np.array([max(float(np.sqrt(np.mean(one**2))), 1e-12) if len(one) else 1.0 for one in picked])
 
@@ -135,7 +136,8 @@ def _descend(
     steps: Sequence[float],
     start_variance: float,
 ) -> tuple[AirModel, float]:
-    """Minimise by coordinate search in the logarithms of the noise parameters, with ever smaller steps."""
+    """Return the minimum by a coordinate search in the logarithms of the noise parameters, with decreasing
+    steps."""
     figures = [*start.white, *start.coloured, start.memory_s, start.gust, start.gust_memory_s]
     x = np.log(np.clip(figures, *_RANGE))
     free = [*range(9), 9, 10] if moving else [*range(9)]

@@ -1,8 +1,7 @@
-"""Weights for every measurement by the actual noise: generalised least squares.
+"""Weights for every measurement from its actual noise: generalised least squares.
 
-Let Γ = L·Lᵀ be the autocovariance of the noise. Residuals and sensitivities times L⁻¹ are those of a problem
-with white noise of unit variance, for which every formula of white noise holds. For white noise these are
-output error's own weights, 1/σ².
+Let Γ = L·Lᵀ be the autocovariance of the noise. Residuals and sensitivities times L⁻¹ belong to white noise
+of unit variance. For white noise the weights are those of output error, 1/σ².
 """
 
 from collections.abc import Callable, Mapping
@@ -23,15 +22,15 @@ UNIT = np.ones(len(OUTPUTS))
 
 @dataclass(frozen=True, slots=True)
 class Weighing:
-    """L⁻¹ of all measurements of a problem."""
+    """Factor L⁻¹ for all measurements of a problem."""
 
     assembly: Assembly
     by_maneuver: tuple[Mapping[str, Whitening], ...]
-    """For each manoeuvre, output name to its whitening filter."""
+    """Whitening filter of each output, by the output's name, in one mapping per manoeuvre."""
 
     @classmethod
     def by(cls, noise: Coloured, assembly: Assembly) -> "Weighing":
-        """Return the weighing for a noise model; any problem with the same measurements may use it."""
+        """Return the weighing for a noise model, valid for any problem with these measurements."""
 
         def whitening(output: str, samples: int) -> Whitening:
             colour = noise.colours[output]
@@ -47,23 +46,23 @@ class Weighing:
         )
 
     def forward(self, rows: FloatArray) -> FloatArray:
-        """Return L⁻¹·rows, (N, k)."""
+        """Return L⁻¹·rows, shape (N, k)."""
         return self._each(Whitening.forward, rows)
 
     def backward(self, rows: FloatArray) -> FloatArray:
-        """Return L⁻ᵀ·rows, (N, k)."""
+        """Return L⁻ᵀ·rows, shape (N, k)."""
         return self._each(Whitening.backward, rows)
 
     def influence(self, g: FloatArray, extra: Extra | None) -> Influence | None:
-        """Return the influence of every measurement on the efficient estimate; None where it overflows."""
+        """Return the influence of every measurement on the efficient estimate; None on numerical overflow."""
         seen = None if extra is None else extra.whitened(self.forward(extra.columns))
         weighed = influence(self.assembly, self.forward(g), UNIT, seen)
         return None if weighed is None else replace(weighed, rows=self.backward(weighed.rows))
 
     def misfit(self, residual: FloatArray, g: FloatArray) -> float:
-        """Return the weighted sum of squares, minus the decrease by a last step of all parameters.
+        """Return the weighted sum of squares, minus the decrease by one last step of all parameters.
 
-        The difference between two readings of one record is twice their log likelihood ratio.
+        The difference between two models of one record is twice the log likelihood ratio.
         """
         white = self.forward(residual[:, None])[:, 0]
         a = self.assembly

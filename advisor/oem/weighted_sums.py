@@ -1,4 +1,4 @@
-"""Compiled sums over samples that determine a fit which is linear about one point.
+"""Compiled sums over samples that determine a linear fit about one point.
 
 G has the derivatives of an output, r is its residual. [G r]ᵀ[G r] gives the step, the noise after it and the
 Cramér-Rao bound for any weight of the output. GᵀΓG, with the autocovariance Γ of coloured noise, gives the
@@ -16,25 +16,25 @@ from advisor.process.arrays import FloatArray
 
 @dataclass(slots=True)
 class Sums:
-    """Sums over the samples of one output."""
+    """Sums over the samples of one output for a linear fit."""
 
     colour: Colour
     gram: FloatArray
-    """(n + 1, n + 1) inner products of the derivatives by the n parameters, and of the residual."""
+    """Shape (n + 1, n + 1): inner products of the derivatives by n parameters, and of the residual."""
     coloured: FloatArray
-    """(n, n) GᵀΓG over the variance of the coloured part."""
+    """Shape (n, n): GᵀΓG over the variance of the coloured part."""
     kept: FloatArray
-    """(n,) Σ memoryᵏ·g over the samples so far, with k = 1 for the newest."""
+    """Shape (n,): Σ memoryᵏ·g over the samples so far, with k = 1 for the newest sample."""
     samples: int = 0
 
     @classmethod
     def none(cls, parameters: int, colour: Colour) -> "Sums":
-        """Return the sums over no samples, which are zero."""
+        """Return the sums over no samples, all zero."""
         n = parameters
         return cls(colour, np.zeros((n + 1, n + 1)), np.zeros((n, n)), np.zeros(n))
 
     def add(self, derivatives: FloatArray, residual: FloatArray) -> None:
-        """Add further samples in order of time: derivatives (k, n) and residuals (k,)."""
+        """Add samples in order of time, with derivatives (k, n) and residuals (k,)."""
         memory, white = self.colour.memory, self.colour.white_share
         add_samples(self.gram, self.coloured, self.kept, derivatives, residual, memory, white)
         self.samples += len(residual)

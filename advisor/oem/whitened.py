@@ -1,7 +1,7 @@
-"""A fit about one setting of all parameters, whitened by the filter of moving air and coloured instruments.
+"""A fit at one setting of all parameters, whitened by the filter of moving air and coloured instruments.
 
-The filter whitens residuals and sensitivities alike. The nuisance parameters are eliminated manoeuvre by
-manoeuvre, which gives the likelihood, the next step and its errors.
+The filter whitens residuals and sensitivities. The nuisance parameters are eliminated manoeuvre by manoeuvre,
+which gives the likelihood and the next step.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,8 @@ from advisor.oem.prior import precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 
 ASSUMED_M_S = 20.0
-"""Air speed assumed where none is known, m/s. The gust angle and the weight's part of α̇ depend on it."""
+"""Assumed air speed if none is known, m/s. The gust angle and the weight's part of α̇ depend on the air
+speed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,17 +33,17 @@ class Linearization:
     shared: FloatArray
     local: FloatArray
     residual: FloatArray
-    """(N,) residuals."""
+    """Shape (N,): residuals of the outputs."""
     sensitivities: FloatArray
-    """(N, 14) sensitivities."""
+    """Shape (N, 14): sensitivities of the outputs to the parameters."""
     extra: Extra
-    """Instrument parameters."""
+    """Instrument parameters of the setting."""
 
 
 def at(
     problem: OutputErrorProblem, shared: FloatArray, local: FloatArray, instruments: Sequence[Instrument]
 ) -> Linearization | None:
-    """Return the residuals at ``shared`` (7,) and ``local`` (m, 7) parameters; None if it overflows."""
+    """Return the residuals at ``shared`` (7,) and ``local`` (m, 7) parameters; None on numerical overflow."""
     assembly = assemble(problem)
     y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), N_PARAMETERS))
     if not respond(assembly.grid, shared, local, y, g):
@@ -76,20 +77,20 @@ class Whitened:
     cost: float
     """-2 log likelihood up to a constant, including the prior."""
     step: FloatArray
-    """(n,) step of the free shared and instrument parameters."""
+    """Shape (n,): step of the free shared parameters and of the instruments."""
     own_steps: tuple[FloatArray, ...]
     """Step of each manoeuvre's free nuisance parameters."""
     std: FloatArray
-    """(n,) Cramér-Rao standard deviations."""
+    """Shape (n,): Cramér-Rao standard deviations."""
 
     @property
     def pending(self) -> float:
-        """Largest pending step, in standard deviations."""
+        """Largest pending step of any parameter, in standard deviations."""
         return float(np.max(np.abs(self.step) / self.std))
 
 
 def whitened(place: Linearization, air: AirModel) -> Whitened | None:
-    """Return the whitened fit; None where numbers overflow."""
+    """Return the whitened fit; None on numerical overflow."""
     common, own = place.assembly.common, place.assembly.own
     n = len(common) + len(place.extra)
     prior = precision(place.problem, place.shared)[common]
@@ -121,7 +122,7 @@ def whitened(place: Linearization, air: AirModel) -> Whitened | None:
 
 
 def gains_along(place: Linearization, air: AirModel) -> list[tuple[Index, Gains]]:
-    """Return for each manoeuvre its rows in order of time, and the filter's gains along them."""
+    """Return each manoeuvre's rows in order of time, and the filter gains along them."""
     problem, found = place.problem, []
     for m, speed in enumerate(speeds_of(problem)):
         system = np.append(system_of(place.shared, speed / (problem.reference_airspeed_m_s or speed)), speed)

@@ -1,10 +1,10 @@
-"""The whitening filter of noise that is white plus a first-order autoregression.
+"""Whitening filter for noise that is white plus a first-order autoregression.
 
     ν_k = w_k + x_k,   x_{k+1} = φ·x_k + e_k,   var x = 1,   var w = share
 
-With Γ = L·Lᵀ the autocovariance of ν, the innovations of a scalar Kalman filter over ν, each over its
-standard deviation, are L⁻¹·ν. The source is Harvey, *Forecasting, Structural Time Series Models and the
-Kalman Filter*, section 3.4. The filter starts with the stationary variance of x, and needs no time to settle.
+With Γ = L·Lᵀ the autocovariance of ν, L⁻¹·ν are the scaled innovations of a scalar Kalman filter over ν. The
+source is Harvey, *Forecasting, Structural Time Series Models and the Kalman Filter*, section 3.4. The filter
+starts with the stationary variance of x, so it needs no time to settle.
 """
 
 from dataclasses import dataclass
@@ -17,18 +17,19 @@ from advisor.process.compiled import kernel
 
 @dataclass(frozen=True, slots=True)
 class Whitening:
-    """L⁻¹ for one stretch of samples."""
+    """Factor L⁻¹ for one stretch of successive samples."""
 
     memory: float
-    """φ, the correlation of neighbouring samples of x."""
+    """Correlation φ of successive samples of x."""
     scale: FloatArray
-    """(n,) reciprocal of the standard deviation of each innovation."""
+    """Shape (n,): reciprocal of each innovation's standard deviation."""
     gain: FloatArray
-    """(n,) gain of the state for each innovation."""
+    """Shape (n,): gain of the state for each innovation."""
 
     @classmethod
     def of(cls, samples: int, memory: float, white_share: float, variance: float = 1.0) -> "Whitening":
-        """Return the filter for a stretch of noise whose coloured part has ``variance``."""
+        """Return the whitening filter for ``samples`` samples of noise whose coloured part has
+        ``variance``."""
         scale, gain, _ = schedule(samples, memory, white_share)
         return cls(memory, scale / np.sqrt(variance), gain)
 

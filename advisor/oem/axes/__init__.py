@@ -1,1 +1,1 @@
-"""The estimator's problems by axis."""
+"""Estimation problems of the axes other than pitch."""

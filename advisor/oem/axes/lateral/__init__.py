@@ -1,1 +1,1 @@
-"""Roll and yaw: records, start, motion, instruments and estimate."""
+"""Estimation of roll and yaw: records, start, motion, instruments and estimate."""

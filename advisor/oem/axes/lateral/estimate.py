@@ -1,4 +1,4 @@
-"""The result of a lateral estimation: derivatives and modes."""
+"""Result of a lateral estimation: derivatives and modes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ from advisor.oem.flying_qualities import Quality
 
 @dataclass(frozen=True, slots=True)
 class LateralModes:
-    """Modes of an estimate; an absent one has its reason in ``left_out``."""
+    """Modes of a lateral estimate; the reason for a missing mode is in ``left_out``."""
 
     dutch_roll_omega: Quality | None
     """Undamped natural frequency of the Dutch roll, rad/s."""
@@ -23,21 +23,21 @@ class LateralModes:
     roll_time_constant: Quality | None
     """Time constant of the roll mode, s."""
     spiral_pole: Quality | None
-    """Eigenvalue of the spiral, 1/s; positive where the spiral diverges."""
+    """Eigenvalue of the spiral mode, 1/s; positive for a diverging spiral."""
     left_out: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class LateralEstimate(Estimate):
-    """The lateral derivatives from one manoeuvre, or from several together, with the modes."""
+    """Lateral derivatives and modes from one manoeuvre, or from several manoeuvres together."""
 
     COLOUR_IS_SHARED: ClassVar[bool] = False
 
     common: FloatArray = field(default_factory=lambda: np.zeros((len(SIDE_PARAMETERS),) * 2))
     modes: LateralModes
     nuisances: Mapping[str, tuple[float, float]]
-    """Lag or delay by name, to its value and standard deviation, s."""
+    """Value and standard deviation, s, of each lag or delay, by its name."""
     flown: tuple[str, ...]
-    """Controls of the test: ``aileron``, ``rudder``."""
+    """Controls that the test moves: ``aileron``, ``rudder``."""
     scales_with_speed: bool = False
-    """Whether the derivatives hold at their air speed and grow with the measured one."""
+    """Whether the derivatives belong to a stated air speed and scale with the measured air speed."""

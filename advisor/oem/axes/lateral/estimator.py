@@ -1,4 +1,4 @@
-"""From lateral manoeuvres to derivatives and modes: the function that the rest of the program calls.
+"""Estimation of derivatives and modes from lateral manoeuvres, as called by other packages.
 
 The modes have 95 % intervals by the delta method.
 Let λ be a simple eigenvalue of A with right and left eigenvectors v and w. A change dA of the matrix changes
@@ -30,22 +30,22 @@ _STATES = len(LATERAL.states)
 
 
 class Errors(NamedTuple):
-    """Errors of the derivatives, for the error of a mode."""
+    """Errors of the lateral derivatives, for the error of a mode."""
 
     covariance: FloatArray
-    """(15, 15) from the noise within the manoeuvres."""
+    """Shape (15, 15): covariance from the noise within the manoeuvres."""
     contributions: FloatArray
-    """(m, 15) contribution of each manoeuvre."""
+    """Shape (m, 15): contribution of each manoeuvre to the derivatives."""
     systematic: FloatArray = np.zeros((len(LATERAL.shared), len(LATERAL.shared)))
-    """(15, 15) by dynamics that the model lacks."""
+    """Shape (15, 15): covariance from dynamics that the model lacks."""
 
     def std(self, slope: FloatArray) -> float:
-        """Return the standard deviation of a quantity with derivatives ``slope`` (15,).
+        """Return the standard deviation of a quantity with gradient ``slope`` (15,) over the derivatives.
 
-        The variance holds the scatter of the quantity itself between the manoeuvres. A manoeuvre that alone
-        tells the quantity leaves no such scatter. So the variance grows at least as those of the derivatives
-        do on average (Birge, *Phys. Rev.* 40, 1932). A factor for each derivative would break the
-        correlations that make a mode more certain than its derivatives.
+        The variance includes the scatter of the quantity between the manoeuvres. If one manoeuvre alone
+        determines the quantity, that scatter is zero. The variance therefore grows at least by the mean
+        growth of the derivatives' variances (Birge, *Phys. Rev.* 40, 1932). A factor for each derivative
+        would break the correlations that make a mode more certain than its derivatives.
         """
         within = slope @ self.covariance @ slope
         own = widened_by_scatter(np.array([[within]]), (self.contributions @ slope)[:, None])[0, 0]
@@ -54,7 +54,7 @@ class Errors(NamedTuple):
 
     @property
     def _growth(self) -> float:
-        """Mean factor on the variances of the derivatives by their scatter."""
+        """Mean factor on the derivatives' variances due to the scatter between manoeuvres."""
         stated = np.diag(self.covariance)
         known = stated > 0.0
         widened = np.diag(widened_by_scatter(self.covariance, self.contributions))
@@ -62,7 +62,7 @@ class Errors(NamedTuple):
 
 
 def lateral_modes(theta: FloatArray, errors: Errors, trim: Trim) -> LateralModes:
-    """Return the modes at the trim of ``theta`` (15,), with their errors."""
+    """Return the modes at the trim for derivatives ``theta`` (15,), with their errors."""
     a = state_matrix(theta, trim)
     found = modes_of(a)
     omega = zeta = roll = spiral = None
@@ -86,7 +86,7 @@ def lateral_modes(theta: FloatArray, errors: Errors, trim: Trim) -> LateralModes
 
 
 def _slope(a: FloatArray, value: complex) -> np.ndarray:
-    """Return the derivatives of an eigenvalue of ``a`` by the 15 derivatives."""
+    """Return the gradient of an eigenvalue of ``a`` over the 15 derivatives."""
     values, right = np.linalg.eig(a)
     k = int(np.argmin(np.abs(values - value)))
     left = np.linalg.inv(right)[k]
@@ -102,7 +102,7 @@ def _quality(value: float, slope: FloatArray, errors: Errors) -> Quality:
 
 
 def estimate_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> LateralEstimate | NoEstimate:
-    """Return the lateral derivatives from manoeuvres that share them, or why there is no estimate."""
+    """Return the lateral derivatives of manoeuvres that share them, or the reason for a missing estimate."""
     if not maneuvers:
         return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")
     problem = prepare_lateral(maneuvers, aircraft)
@@ -139,7 +139,8 @@ def _reported(solution: LateralSolution) -> LateralEstimate:
 
 
 def _airspeed(solution: LateralSolution) -> float:
-    """Return the speed of the derivatives, m/s: the reference, or the mean of a nearly constant speed."""
+    """Return the air speed of the derivatives, m/s: the reference speed, or the mean of a nearly constant
+    speed."""
     problem = solution.problem
     return problem.reference_airspeed_m_s or float(np.mean([np.mean(r.airspeed.y) for r in problem.records]))
 

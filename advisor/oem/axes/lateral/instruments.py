@@ -1,11 +1,11 @@
-"""Servos and clocks of a lateral record as nuisance parameters of the fit, each with its prior.
+"""Servos and clocks of a lateral record as nuisance parameters of the fit, each with a prior.
 
-The command acts up to half an interval and a filter's delay earlier or later than its stamps. The attitude
-may be late relative to the rates, and every time is relative to the rates. A servo that the aircraft file
-leaves open lags by an unknown time. An ignored lag of 0.08 s costs a quarter of L_p and L_δa. A sideslip vane
-ahead of the centre of gravity reads β + (x/V)·r. A vane taken as at the centre of gravity shifts N_r by
--N_β·x/V. The true air speed differs from the read one. Each unknown quantity of an instrument is one more
-parameter, whose error is part of every interval.
+The command takes effect up to half an interval and a filter's delay before or after its stamps. The attitude
+may be late relative to the rates, and every delay is relative to the rates. A servo without a stated lag in
+the aircraft file has an unknown lag. An ignored lag of 0.08 s costs a quarter of L_p and L_δa. A sideslip
+vane ahead of the centre of gravity reads β + (x/V)·r. A vane treated as at the centre of gravity shifts N_r
+by -N_β·x/V. The true air speed differs from the air speed that the sensor reads. Each unknown instrument
+quantity is an additional parameter, whose error is part of every interval.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,38 +23,38 @@ from advisor.oem.extra import Prior
 from advisor.oem.instruments import KNOWN_TO, PLACE_S, USUAL_LAG
 
 AIR_SPEED = Prior(0.0, 0.02)
-"""Relative excess of the true over the read air speed. The read speed may be an indicated one, and a static
-port reads a pressure that the wing changes."""
+"""Prior of the relative excess of the true over the read air speed. The read speed may be an indicated one,
+and a static port reads a pressure that the wing changes."""
 LONGEST_LAG_S = 0.4
 FIRST_LAG_S = 0.01
-"""Unknown lag with which the search begins, s."""
+"""Starting value of an unknown lag in the search, s."""
 LARGEST_MOVE_S = 0.03
-"""Largest step of one nuisance parameter, s, within which the fit is nearly linear in it."""
+"""Largest step of one nuisance parameter, s, for which the fit is nearly linear."""
 
 
 @dataclass(frozen=True, slots=True)
 class Nuisance:
-    """One nuisance parameter, in s, or in m for an arm."""
+    """One nuisance parameter of a lateral fit, in s, or in m for an arm."""
 
     kind: Literal["lag", "delay", "command", "arm", "air"]
-    """Lag of a control's servo, delay of an output relative to the rates, delay of all commands, place of the
-    sideslip vane. Last, the relative excess of the true air speed."""
+    """Kind of the parameter: servo lag, delay of one output or of all commands, or place of the sideslip
+    vane. The kind ``air`` is the relative excess of the true air speed."""
     of: str
-    """Control or output; empty for the commands."""
+    """Control or output that the parameter belongs to; empty for the commands."""
     prior: Prior
     per_second: float = 1.0
-    """Change of the parameter that moves the outputs as one second does: the air speed for an arm, m."""
+    """Parameter change that moves the outputs as one second does; for an arm, the air speed, m."""
 
     @property
     def name(self) -> str:
-        """Name of the parameter with its unit."""
+        """Name of the nuisance parameter with its unit."""
         if self.kind == "air":
             return "airspeed_excess"
         what = {"lag": "lag_s", "arm": "arm_m"}.get(self.kind, "delay_s")
         return f"{self.of or 'command'}_{what}"
 
     def read(self, problem: LateralProblem) -> float:
-        """Return the value in a problem, s or m."""
+        """Return the parameter's value in a problem, s or m."""
         if self.kind == "lag":
             return problem.servos[self.of].lag_s
         if self.kind == "arm":
@@ -64,7 +64,7 @@ class Nuisance:
         return problem.delays_s.get(self.of, 0.0) if self.kind == "delay" else problem.command_delay_s
 
     def write(self, problem: LateralProblem, value: float) -> LateralProblem:
-        """Return the problem with another value, s or m; a lag within its range."""
+        """Return the problem with another value of the parameter, s or m; a lag stays within its range."""
         if self.kind == "command":
             return replace(problem, command_delay_s=value)
         if self.kind == "arm":
@@ -77,13 +77,13 @@ class Nuisance:
         return replace(problem, servos={**problem.servos, self.of: servo})
 
     def moved(self, problem: LateralProblem, change: float) -> LateralProblem:
-        """Return the problem with the value changed by no more than ``LARGEST_MOVE_S``."""
+        """Return the problem with the parameter changed by at most ``LARGEST_MOVE_S``."""
         most = LARGEST_MOVE_S * self.per_second
         return self.write(problem, self.read(problem) + float(np.clip(change, -most, most)))
 
 
 def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance, ...]:
-    """Return the nuisance parameters of a problem; a still input has none."""
+    """Return the nuisance parameters of a problem; an input that does not move has none."""
     moving = [name for name in LATERAL.inputs if problem.moves(name)]
     stamps = [record.inputs[name].t for record in problem.records for name in moving if name in record.inputs]
     found = [Nuisance("command", "", Prior(0.0, lateness_std(stamps)))] if stamps else []
@@ -115,9 +115,10 @@ def beta_arm_m(aircraft: Aircraft) -> float | None:
 
 
 def begun(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProblem:
-    """Return the problem at the start of the search: a short unknown lag, all else at its prior's mean.
+    """Return the problem at the start of the search: short unknown lags, other parameters at prior means.
 
-    A lag and the roll mode act alike on the roll rate. A search from a long lag may exchange them.
+    A servo lag and the roll mode have a similar effect on the roll rate. A search that starts from a long lag
+    may exchange the lag and the roll mode.
     """
     for x in nuisances:
         problem = x.write(problem, FIRST_LAG_S if x.prior is USUAL_LAG else x.prior.mean)
@@ -131,16 +132,16 @@ def columns_of(
     nuisances: Sequence[Nuisance],
     by_speed: Callable[[], FloatArray],
 ) -> FloatArray:
-    """Return the derivatives of the outputs by nuisance parameters, shape (N, k).
+    """Return the derivatives of the outputs by the nuisance parameters, shape (N, k).
 
     Parameters
     ----------
     by_speed
-        Returns the derivative (N,) by the relative excess of the air speed.
+        Function that returns the derivative (N,) of the outputs by the relative excess of the air speed.
     by_cause
-        (N, 3) derivatives by ``CAUSES``, which change the motion.
+        Shape (N, 3): derivatives of the outputs by ``CAUSES``, which change the motion.
     motion
-        (E, 2, 4) states and their rates at the events; the instruments of the outputs read them.
+        Shape (E, 2, 4): states and their rates at the events, for the instruments of the outputs.
     """
     columns = np.zeros((len(assembly.z), len(nuisances)))
     for k, x in enumerate(nuisances):

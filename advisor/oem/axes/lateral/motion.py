@@ -1,4 +1,4 @@
-"""The motion of roll and yaw for the search over derivatives, servos and clocks."""
+"""Simulated motion of roll and yaw, for the search over derivatives, servos and clocks."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,31 +14,31 @@ from advisor.oem.descent import Response
 
 LEAST_NOISE = {"p": 5e-4, "r": 5e-4, "bank": 5e-4, "a_y": 0.01, "beta": 5e-4}
 """Least standard deviation of each output, SI. Gyros of 0.007 deg/s/√Hz have 5e-4 rad/s at 20 Hz, and the
-model itself is no truer: α, θ and V are constant between stamps."""
+model's errors are as large."""
 FLOOR = np.array([LEAST_NOISE[name] for name in LATERAL.outputs])
 _SPEED_STEP = 1e-3
-"""Numerical: step of the difference by which the outputs' derivative by the air speed is taken."""
+"""Numerical: step of the air speed for the finite-difference derivative of the outputs."""
 _ALL = len(LATERAL.names.shared) + len(LATERAL.names.local)
 
 
 class LateralMotion:
-    """Response of roll and yaw, with the derivatives by all parameters."""
+    """Simulated response of roll and yaw, with the derivatives by all parameters."""
 
     names = LATERAL.names
 
     @staticmethod
     def laid(problem: LateralProblem, /) -> LateralAssembly:
-        """Return the measurements as rows."""
+        """Return the measurements as stacked rows."""
         return assemble_lateral(problem)
 
     @staticmethod
     def floor(_: LateralAssembly, /) -> FloatArray:
-        """Return the least standard deviation of each output, (5,), SI."""
+        """Return the least standard deviation of each output, shape (5,), SI."""
         return FLOOR
 
     @staticmethod
     def begins(laid: LateralAssembly, /) -> FloatArray:
-        """Return the time of the first event of each record, (m,), s."""
+        """Return the time of the first event of each record, shape (m,), s."""
         return laid.begin
 
     @staticmethod
@@ -50,7 +50,7 @@ class LateralMotion:
         nuisances: Sequence[Nuisance],
         /,
     ) -> Response | None:
-        """Return the response; None where the model runs away."""
+        """Return the response of the model; None where the simulation diverges."""
         y, g = np.empty(len(laid.z)), np.empty((len(laid.z), _ALL + len(CAUSES)))
         motion = np.empty((len(laid.grid.step_s), 2, len(LATERAL.states)))
         if not respond_axis(laid.grid, shared, local, y, g, motion):
@@ -65,7 +65,7 @@ class LateralMotion:
 
 
 def _outputs_at(problem: LateralProblem, shared: FloatArray, local: FloatArray) -> FloatArray:
-    """Return the outputs (N,) of a problem, without their derivatives."""
+    """Return the simulated outputs (N,) of a problem, without their derivatives."""
     assembly = assemble_lateral(problem)
     y = np.empty(len(assembly.z))
     nothing = np.empty((0, _ALL + len(CAUSES)))

@@ -1,4 +1,5 @@
-"""Prediction of a lateral manoeuvre by given derivatives, with its own trims, initial states and biases."""
+"""Prediction of a lateral manoeuvre with given derivatives, and with refitted trims, initial states and
+biases."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -18,20 +19,21 @@ from advisor.oem.axes.lateral.start import lateral_start
 from advisor.oem.estimate import ChannelFit, NoEstimate
 
 ROUNDS = 12
-"""Gauss-Newton steps of the refit. The outputs are nearly linear in trims, initial states and biases."""
+"""Number of Gauss-Newton steps of the refit. The outputs are nearly linear in trims, initial states and
+biases."""
 
 
 def predicted_lateral(
     maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: FloatArray | None = None
 ) -> Mapping[str, ChannelFit] | NoEstimate:
-    """Return measured and predicted values of a manoeuvre by output.
+    """Return measured and predicted values of a manoeuvre, by the output's name.
 
     Parameters
     ----------
     model
-        Estimate from other manoeuvres, with its instruments.
+        Estimate from other manoeuvres, including the instruments.
     theta
-        Derivatives (15,) at the model's speed in place of its own; None: its own.
+        Derivatives (15,) at the model's speed; None for the model's own derivatives.
     """
     prepared = prepare_lateral([maneuver], aircraft)
     if isinstance(prepared, NoEstimate):
@@ -48,7 +50,7 @@ def predicted_lateral(
 
 
 def _as_in(problem: LateralProblem, model: LateralEstimate, aircraft: Aircraft) -> LateralProblem:
-    """Return the problem with the model's speed, outputs and instruments."""
+    """Return the problem with the air speed, outputs and instruments of the model."""
     outputs = model.fits[0]
     (record,) = problem.records
     kept = {name: signal for name, signal in record.outputs.items() if name in outputs}

@@ -1,4 +1,4 @@
-"""From lateral manoeuvres and the aircraft file to the estimation problem."""
+"""Preparation of lateral manoeuvres for the estimation."""
 
 from collections.abc import Sequence
 
@@ -22,7 +22,7 @@ _SPOKEN = {"p": "roll rate", "r": "yaw rate", "bank": "bank angle", "theta": "pi
 
 
 def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> LateralProblem | NoEstimate:
-    """Return the estimation problem of the lateral axis, or why there is none."""
+    """Return the estimation problem of the lateral axis, or the reason why there is none."""
     for maneuver in maneuvers:
         if (few := too_few(maneuver, _SPOKEN)) is not None:
             return few
@@ -70,7 +70,7 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
 
 
 def _plain_speed(maneuver: Maneuver) -> Signal | None:
-    """Return the air speed of the slowest aircraft, whose readings fall below the speed of others."""
+    """Return the measured air speed, at least half the slowest flight speed; None for a standing aircraft."""
     channel = maneuver.channels.get("airspeed")
     if channel is None or len(channel) < 2 or not np.median(channel.y) > SLOWEST_FLIGHT_M_S:
         return None
@@ -78,7 +78,7 @@ def _plain_speed(maneuver: Maneuver) -> Signal | None:
 
 
 def _outputs(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> list[str]:
-    """Return the outputs that every manoeuvre has."""
+    """Return the names of the outputs that every manoeuvre has."""
     names = [*NEEDED]
     names += [name for name in ("a_y", "beta") if all(_moves(m, name) for m in maneuvers)]
     if "beta" in names and not all(_is_measured(m.channels["beta"], aircraft) for m in maneuvers):
@@ -87,9 +87,10 @@ def _outputs(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> list[str]:
 
 
 def _is_measured(beta: Channel, aircraft: Aircraft) -> bool:
-    """Return whether a vane measures the sideslip. An estimate of the autopilot's own is no sideslip.
+    """Return whether a vane measures the sideslip. A sideslip estimated by the autopilot does not count as
+    measured.
 
-    A crew that states the place of the vane of AOA_SSA knows that the message holds vane angles.
+    A stated vane position for AOA_SSA shows that the message holds vane angles.
     """
     if aircraft.beta.source != "auto":
         return aircraft.beta.source != "none"
@@ -103,7 +104,7 @@ def _moves(maneuver: Maneuver, name: str) -> bool:
 
 
 def _alpha(maneuver: Maneuver, aircraft: Aircraft, left_out: str) -> Signal:
-    """Return the angle of attack: measured, by the motion, or that of level flight at the mean attitude."""
+    """Return the angle of attack: measured, from the motion, or that of level flight at the mean attitude."""
     channel: Channel | None = None
     if not left_out and has(maneuver.channels, "alpha"):
         channel = maneuver.channels["alpha"]

@@ -1,4 +1,4 @@
-"""The estimation problem of the lateral axis: data of one or more manoeuvres, each channel at its stamps."""
+"""Estimation problem of the lateral axis: data of one or more manoeuvres, each channel at its stamps."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,12 +15,13 @@ from advisor.oem.surface import Servo
 
 _BETA, _P, _R, _BANK = range(len(LATERAL.states))
 LEAST_PART = 0.2
-"""Least range of an input over that of the larger one, for a test of this input. A rudder of 0.9 deg
-in an aileron test of 12 deg follows the motion. Derivatives of such a rudder would be wrong by half."""
+"""Least range of an input, over the larger input's range, for a test of the input. A rudder of 0.9 deg in an
+aileron test of 12 deg only responds to the motion. Derivatives of a rudder that follows the motion would be
+wrong by half."""
 NEEDED = ("p", "r", "bank")
 """Outputs that every record has."""
 CAUSES = ("command", *LATERAL.inputs)
-"""Causes that change the inputs of a grid: the delay of all commands, and the lag of each servo."""
+"""Causes of changed inputs: the delay of all commands, and the lag of each servo."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,9 +29,9 @@ class LateralRecord:
     """Data of one lateral manoeuvre, in SI units."""
 
     inputs: Mapping[str, Signal]
-    """Commands of aileron and rudder, rad; an input that was not recorded did not move."""
+    """Commands of aileron and rudder, rad; an unrecorded input is taken as constant."""
     outputs: Mapping[str, Signal]
-    """Measured outputs by their names; p, r and bank always."""
+    """Measured outputs by name, which always include p, r and bank."""
     airspeed: Signal
     """True air speed, m/s."""
     alpha: Signal
@@ -43,17 +44,17 @@ class LateralRecord:
 
 @dataclass(frozen=True, slots=True)
 class LateralProblem:
-    """Records that share the lateral derivatives, with the properties of their instruments."""
+    """Records that share the lateral derivatives, and the properties of their instruments."""
 
     records: tuple[LateralRecord, ...]
     reference_airspeed_m_s: float | None = None
-    """Reference speed of the derivatives, m/s; None means that they do not scale with speed."""
+    """Air speed of the derivatives, m/s; None if the derivatives do not scale with speed."""
     servos: Mapping[str, Servo] = field(default_factory=dict)
-    """Servo of each input; an absent one has neither lag nor delay."""
+    """Servo of each input by name; a missing servo has neither lag nor delay."""
     command_delay_s: float = 0.0
-    """Delay of all commands behind their stamps, in addition to the servos', s."""
+    """Delay of all commands behind their stamps, in addition to the servo delays, s."""
     delays_s: Mapping[str, float] = field(default_factory=dict)
-    """Delay of an output relative to the rates, s; an absent one is 0."""
+    """Delay of each output relative to the rates, s; 0 for a missing output."""
     beta_arm_m: float = 0.0
     """Distance of the sideslip vane ahead of the centre of gravity, m."""
     accelerometer_arm_m: float = 0.0
@@ -63,11 +64,11 @@ class LateralProblem:
 
     @property
     def tells_force(self) -> bool:
-        """Whether a record has the lateral acceleration or the sideslip."""
+        """Whether any record has the lateral acceleration or the sideslip."""
         return any({"a_y", "beta"} & record.outputs.keys() for record in self.records)
 
     def servo(self, name: str) -> Servo:
-        """Return the servo of an input, late by the delay of all commands."""
+        """Return the servo of an input, with the delay of all commands added."""
         stated = self.servos.get(name, Servo())
         return Servo(stated.lag_s, stated.delay_s + self.command_delay_s)
 
@@ -86,20 +87,20 @@ class LateralProblem:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LateralAssembly(Laid):
-    """A problem of the lateral axis laid out for the kernel."""
+    """Lateral problem laid out for the kernel."""
 
     grid: AxisGrid
     begin: FloatArray
-    """(m,) time of the first event of each record, s, to which the initial states belong."""
+    """Shape (m,): time of the first event of each record, s, which is the time of the initial states."""
 
 
 def assemble_lateral(problem: LateralProblem, causes: Sequence[str] = CAUSES) -> LateralAssembly:
-    """Lay the records on the union of their stamps, with derivatives by all ``CAUSES`` or by none.
+    """Lay the records out at the union of their stamps, with derivatives by all ``causes``.
 
     Raises
     ------
     ValueError
-        A record lacks p, r or bank, or has fewer than two stamps of one of them.
+        A record lacks p, r or bank, or has fewer than two samples of one of these outputs.
     """
     pieces = [_piece(record, problem, causes) for record in problem.records]
     measured = {name for piece in pieces for name in piece.outputs}
@@ -123,9 +124,9 @@ def assemble_lateral(problem: LateralProblem, causes: Sequence[str] = CAUSES) ->
 
 
 def _free(problem: LateralProblem, measured: set[str]) -> Index:
-    """Return which parameters the moved inputs and the measured outputs determine.
+    """Return the indices of the parameters that the moved inputs and the measured outputs determine.
 
-    Without a vane no output determines the level of the sideslip, and the constants of trim absorb any.
+    Without a vane no output determines the sideslip's level, which the trim constants absorb.
     """
     still = [name for name in LATERAL.inputs if not problem.moves(name)]
     shared = [k for k, term in enumerate(LATERAL.shared) if term.factor not in still]
@@ -140,11 +141,11 @@ def _free(problem: LateralProblem, measured: set[str]) -> Index:
 
 
 _WITHOUT_FORCE = ("Y_beta", *(term.name for term in LATERAL.shared if term.state != "beta"))
-"""Derivatives that are estimated where neither the side force nor the sideslip is measured."""
+"""Derivatives that are estimated without a measured side force or sideslip."""
 
 
 def _piece(record: LateralRecord, problem: LateralProblem, causes: Sequence[str]) -> Piece:
-    """Return one record on the union of its stamps."""
+    """Return one record at the union of its stamps."""
     outputs = measured_in(record.outputs, LATERAL.outputs, problem.delays_s)
     with_samples(outputs, NEEDED)
     t = events_of(outputs, [problem.servo(name).grid(command.t) for name, command in record.inputs.items()])
@@ -182,7 +183,7 @@ def _moved(
 
 
 def _known(record: LateralRecord, middle: FloatArray, speed: FloatArray) -> dict[str, FloatArray]:
-    """Return the known matrix (E, 4, 4), and the factors (E, 4) of sin φ and of r·cos φ."""
+    """Return the known part (E, 4, 4) of the state matrix, and the factors (E, 4) of sin φ and of r·cos φ."""
     alpha, theta, q = (padded(s.at(middle)) for s in (record.alpha, record.theta, record.q))
     linear = np.zeros((len(speed), 4, 4))
     linear[:, _BETA, _P], linear[:, _BETA, _R] = np.sin(alpha), -np.cos(alpha)
@@ -195,7 +196,7 @@ def _known(record: LateralRecord, middle: FloatArray, speed: FloatArray) -> dict
 
 
 def _outputs(speed: FloatArray, problem: LateralProblem) -> dict[str, FloatArray]:
-    """Return the factors (E, outputs, 4) of the states, and of the parameters' part of the rates."""
+    """Return the output factors (E, outputs, 4) of the states and of the rates' parameter-dependent part."""
     seen = np.zeros((len(speed), len(LATERAL.outputs), 4))
     felt = np.zeros_like(seen)
     for name, state in (("p", _P), ("r", _R), ("bank", _BANK), ("beta", _BETA)):

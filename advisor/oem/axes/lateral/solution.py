@@ -1,8 +1,8 @@
-"""Output error on the lateral axis: from records to derivatives, errors and identifiability.
+"""Output-error estimation of the lateral axis: derivatives, errors and identifiability.
 
-The influence of every measurement and the noise model are those of the short period. White noise makes
-coloured residuals look too certain relative to a prior. A first fit gives the colour of the noise. A second
-fit weighs the priors by the colour of the first, and a third fit by the colour of the second.
+The influence of the measurements and the noise model are those of the pitch axis. A white-noise model makes
+coloured residuals look too accurate relative to a prior. A first fit gives the colour of the noise. The
+second and third fit weight the priors by the noise colour of the fit before.
 """
 
 from collections.abc import Mapping, Sequence
@@ -27,11 +27,11 @@ from advisor.words.quantiles import NORMAL_95
 
 N = len(LATERAL.shared)
 FIRST_LOOK = 8
-"""Iterations of the fit whose residuals give the first colour of the noise. With servos and clocks fixed, a
-longer search may leave the physical values. In a rudder doublet L_p of -10 1/s became -220 1/s."""
+"""Iterations of the first fit, whose residuals give the first colour of the noise. With servos and clocks
+fixed, a longer search may leave physical values. In a rudder doublet L_p of -10 1/s became -220 1/s."""
 NOTHING_TO_TELL = "The inputs do not excite roll and yaw enough."
 LEAST_SHARE = 0.01
-"""Least share by which white noise weighs a prior; data without noise have no colour."""
+"""Least factor on a prior's standard deviation in a white-noise fit; data without noise have no colour."""
 WITHOUT_FORCE = (
     "neither a lateral acceleration nor a sideslip was recorded, so that only the modes are told; record a_y"
 )
@@ -41,18 +41,18 @@ _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LateralSolution(Evaluated):
-    """The optimum of one lateral problem, with its errors."""
+    """Optimum of one lateral problem, with its errors."""
 
     problem: LateralProblem
     assembly: LateralAssembly
     extra: Extra
-    """Nuisance parameters at their values."""
+    """Nuisance parameters at their estimated values."""
     nuisances: Mapping[str, tuple[float, float]]
-    """Name of each nuisance parameter to its value and standard deviation, in its unit."""
+    """Value and standard deviation of each nuisance parameter, in its unit, by its name."""
 
     @property
     def cost(self) -> float:
-        """J = σ_p²·σ_r²."""
+        """Cost J = σ_p²·σ_r² of the fit."""
         noise = dict(zip(LATERAL.outputs, self.optimum.noise, strict=True))
         return float((noise["p"] * noise["r"]) ** 2)
 
@@ -90,7 +90,7 @@ def solve_lateral(
 
 
 def _has_diverged(fit: Fit) -> bool:
-    """Return whether a fit explains the outputs worse than a constant value of each output does."""
+    """Return whether a fit explains the outputs worse than a constant does."""
     assembly, noise = fit.assembly, fit.optimum.noise
     gain = 0.0
     for c in np.unique(assembly.channel):
@@ -101,7 +101,7 @@ def _has_diverged(fit: Fit) -> bool:
 
 
 def _share(solution: LateralSolution) -> float:
-    """Return the errors by white noise over those by the residuals' colour, the median of the derivatives."""
+    """Return the median ratio of the derivatives' errors under white noise to those under coloured noise."""
     stated = np.diag(solution.scattered)[:N]
     ratio = np.diag(solution.covariance_cr)[:N] / np.where(stated > 0.0, stated, np.nan)
     return float(np.clip(np.sqrt(np.nanmedian(ratio)), LEAST_SHARE, 1.0))
@@ -138,7 +138,7 @@ def _evaluated(fit: Fit, prior: Priors, nuisances: Sequence[Nuisance]) -> Latera
 
 
 def _at_least(bound: FloatArray, covariance: FloatArray) -> FloatArray:
-    """Return the covariance with no error below that of ``bound``: instruments have ``FLOOR``."""
+    """Return the covariance with no error below that of ``bound``, because instruments have a noise floor."""
     stated = np.diag(covariance)
     ratio = np.divide(np.diag(bound), stated, out=np.ones_like(stated), where=stated > 0.0)
     factor = np.sqrt(np.maximum(ratio, 1.0))
@@ -146,7 +146,7 @@ def _at_least(bound: FloatArray, covariance: FloatArray) -> FloatArray:
 
 
 def lateral_not_identifiable(solution: LateralSolution) -> dict[str, str]:
-    """Return by derivative the reason why it has no usable value, with the input that would tell it."""
+    """Return the reason why a derivative has no usable value, by the derivative's name."""
     if not solution.problem.tells_force:
         return dict.fromkeys(LATERAL.names.reported, WITHOUT_FORCE)
     reasons: dict[str, str] = {}
@@ -175,8 +175,8 @@ def lateral_not_identifiable(solution: LateralSolution) -> dict[str, str]:
 
 
 def _largest_error(name: str) -> float:
-    """Return the largest usable error of a derivative, as a share of its natural size.
+    """Return the largest usable standard deviation of a derivative, as a share of its natural size.
 
-    A derivative with a prior is told by the data only where its error is clearly below that of the prior.
+    The data determine a derivative with a prior only if its error is clearly below the prior's.
     """
     return LARGEST_ERROR * SIDE_FORCE_STD if name in ("Y_p", "Y_r") else LARGEST_ERROR

@@ -1,12 +1,12 @@
-"""The start of the search on the lateral axis: the integrated equations as a linear regression.
+"""Start of the lateral search: a linear regression of the integrated equations.
 
-The kinematics give the sideslip up to its level and drift,
+The kinematics give the sideslip without its level and drift,
 
     β̇ = a_y/V + (g/V)·cos θ·sin φ + sin α·p - cos α·r,
 
-with the specific force a_y, or without one with the weak guess a_y/V = Y_β·β. The integrated equations of
-the rates are linear in the derivatives. This is the integral form of the equation-error method (Klein &
-Morelli, *Aircraft System Identification*, Ch. 5).
+from the specific force a_y, or without a_y from the weak guess a_y/V = Y_β·β. The integrated equations of the
+rates are linear in the derivatives. This is the integral form of the equation-error method (Klein & Morelli,
+*Aircraft System Identification*, Ch. 5).
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ from advisor.oem.regression import Equations, regressed
 def lateral_start(problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
     """Return shared (15,) and local (m, 9) parameters for the start of a search.
 
-    The numbers are always finite; a record without information yields a least-norm solution.
+    The values are always finite; a record without information has a least-norm solution.
     """
     prepared = [_Motion(record, problem) for record in problem.records]
     names = LATERAL.names
@@ -53,7 +53,7 @@ def lateral_start(problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
 
 
 class _Motion:
-    """Signals of one record at the stamps of the roll rate."""
+    """Signals of one lateral record at the stamps of the roll rate."""
 
     def __init__(self, record: LateralRecord, problem: LateralProblem) -> None:
         t = record.outputs["p"].t
@@ -81,7 +81,7 @@ class _Motion:
             self.signals["beta"] = _leaking(t, turn, guessed_y_beta(problem))
 
     def integrals(self, letter: str) -> FloatArray:
-        """Return the integrals (n, 5) that multiply the derivatives of one moment."""
+        """Return the integrals (n, 5) whose coefficients are the derivatives of one moment."""
         return np.column_stack(
             [
                 integrated(self.t, self.ratio**term.power * self.signals[term.factor])
@@ -91,12 +91,13 @@ class _Motion:
         )
 
     def own(self) -> FloatArray:
-        """Return the columns of the manoeuvre itself: constant of trim, initial rate, drift of β."""
+        """Return the manoeuvre's own columns: trim constant, initial rate, drift of β."""
         since = self.t - self.t[0]
         return np.column_stack([integrated(self.t, self.ratio**2), np.ones(len(since)), since**2])
 
     def force(self) -> Equations:
-        """Return the equations of Y: five columns, the force per mass and speed, and the own columns."""
+        """Return the regression equations of Y: five columns, the force per mass and speed, and the
+        manoeuvre's own columns."""
         columns = np.column_stack(
             [
                 self.ratio**term.power * self.signals[term.factor]
