@@ -1,1 +1,1 @@
-"""Flight data: channels with units on the vehicle's clock, and the manoeuvres in them."""
+"""Flight data: channels with units on the vehicle's clock, and the manoeuvres found in them."""

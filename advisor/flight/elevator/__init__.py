@@ -1,1 +1,1 @@
-"""The elevator: its outputs, their mixing, sign and guess."""
+"""The elevator: its servo outputs, their mixing, its sign, and a guess of its output."""

@@ -1,4 +1,4 @@
-"""Deflections of a surface commanded by servo outputs, output by output."""
+"""Deflections of a surface that its servo outputs command, output by output."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from advisor.flight.vehicle.surfaces import Surface, driven
 
 @dataclass(frozen=True, slots=True)
 class Commanded:
-    """Samples of one surface, in order of arrival."""
+    """Samples of one control surface, in order of arrival."""
 
     channel: str
     message: str
@@ -23,19 +23,19 @@ class Commanded:
     """``MESSAGE.field``."""
     surface: Surface
     t: FloatArray
-    """Shape (n,), s since boot."""
+    """Shape (n,): stamps of the samples, s since boot."""
     angles: FloatArray
-    """Shape (n, number of outputs), rad: deflection that each output commands."""
+    """Shape (n, number of outputs): deflection that each output commands, rad."""
     order: IntArray
-    """Shape (n,), place in the order of arrival."""
+    """Shape (n,): index of each sample in the order of arrival."""
 
     def combined(self, turned: Iterable[int] = ()) -> Decoded:
-        """Return the surface's own angle; outputs in ``turned`` count with the opposite sign."""
+        """Return the surface's deflection; outputs in ``turned`` are added with the opposite sign."""
         y = self.surface.combined(self.angles, turned)
         return Decoded(self.channel, self.source, "commanded", self.t, y, self.order)
 
     def rows(self, which: slice | NDArray[Any]) -> "Commanded":
-        """Return some of the samples."""
+        """Return the samples in the given rows."""
         return Commanded(
             self.channel,
             self.message,
@@ -50,17 +50,17 @@ class Commanded:
 def commanded(
     surfaces: Mapping[str, Surface], pulses: Pulses, t: FloatArray, autopilot: str
 ) -> list[Commanded]:
-    """Return the deflection that these pulses command for each surface, where an output of each demand
-    carries a pulse.
+    """Return the deflection that pulses command for each surface, where one output of each demand has a
+    pulse.
 
     Pulses outside a calibration give the deflection at its end.
 
     Parameters
     ----------
     surfaces
-        Surfaces by channel.
+        Control surfaces, by the channel's name.
     pulses
-        Pulses of n messages.
+        Pulse widths of the servo outputs in n messages.
     t
         Shape (n,), vehicle time of the messages, s since boot.
     autopilot
@@ -85,14 +85,14 @@ def commanded(
 
 
 def _alike(alive: NDArray[np.bool_], rows: IntArray) -> list[IntArray]:
-    """Return the rows in stretches within which the same outputs carry a pulse.
+    """Return the rows in stretches within which equal outputs carry a pulse.
 
     Parameters
     ----------
     alive
         Shape (n, number of outputs), whether an output carries a pulse.
     rows
-        Rows of ``alive`` that count, rising.
+        Indices of the rows of ``alive`` to be divided, rising.
     """
     if len(rows) == 0:
         return []
@@ -101,7 +101,7 @@ def _alike(alive: NDArray[np.bool_], rows: IntArray) -> list[IntArray]:
 
 
 def joined(pieces: Sequence[Commanded]) -> Commanded:
-    """Return pieces of one surface, one after the other."""
+    """Return pieces of one surface, joined one after the other."""
     first = pieces[0]
     return Commanded(
         first.channel,

@@ -1,4 +1,4 @@
-"""A guess of the elevator's output where no parameter states it: the one that the pitch rate answers to."""
+"""Guess of the elevator's servo output without a parameter: the output that the pitch rate responds to."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -10,34 +10,37 @@ from advisor.flight.signals.messages import Columns, FloatArray
 from advisor.flight.signals.record import Channel
 
 KEEP_S = 60.0
-"""Stretch from which a guess is made, s: two test inputs with their pauses."""
+"""Length of flight from which a guess of the elevator's output is made, s: two test inputs with their
+pauses."""
 EVERY_S = 10.0
-"""Vehicle time between two guesses, s."""
+"""Vehicle time between two guesses of the elevator's output, s."""
 LATE_S = 1.0
-"""Newest stretch that a guess leaves out, s, because its packets may still be on the way."""
+"""Length of the newest flight that a guess leaves out, s, because its packets may still be on the way."""
 SHORTEST_S = 5.0
-"""Shortest stretch for a guess, s."""
+"""Least length of flight for a guess of the elevator's output, s."""
 LEAST_TRAVEL_US = 10.0
-"""Least travel of an output that exceeds the resolution of a pulse, us."""
+"""Least travel of an output for a guess, us, above the resolution of a pulse."""
 LEAST_SHARE = 0.05
-"""Least share of the pitch rate's one-step prediction error that an output must explain. On the recorded
-flights of this project elevators explain 0.06 (turbulence) to 0.9, all other outputs at most 0.02."""
+"""Least share of the pitch rate's one-step prediction error that the guessed output must explain. On the
+recorded flights of this project elevators explain 0.06 (turbulence) to 0.9, all other outputs at most
+0.02."""
 LEAST_LEAD = 5.0
-"""Least ratio of the best output's share to the next one's. At 4 Hz a wrong output led by 2.7."""
+"""Least ratio of the best output's share to the next output's share. At 4 Hz a wrong output led by 2.7."""
 _OUTPUTS = 16
 _MEMORY = 2
-"""Past samples of pitch rate and output in the prediction, two because a short period is of second order."""
+"""Number of past samples of pitch rate and output in the prediction: two, because a short period is of second
+order."""
 
 
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """Output that may be the elevator."""
+    """Servo output that may be the elevator, with its shares of the pitch rate's error."""
 
     output: int
     share: float
     """Share of the pitch rate's one-step prediction error that the output explains."""
     next_share: float
-    """Largest share of any other output."""
+    """Largest share of that error that any other output explains."""
 
     def __str__(self) -> str:
         return (
@@ -47,14 +50,14 @@ class Guess:
 
 
 class ElevatorGuess:
-    """Keeps the outputs' movements and compares them with the pitch rate."""
+    """Memory of the outputs' movements, for a comparison with the pitch rate."""
 
     def __init__(self) -> None:
         self._t = np.empty(0)
         self._pulses = np.empty((0, _OUTPUTS))
 
     def hear(self, columns: Columns, t: FloatArray) -> None:
-        """Take SERVO_OUTPUT_RAW messages of the first bank at these vehicle times, shape (n,)."""
+        """Take SERVO_OUTPUT_RAW messages of the first bank at their vehicle times, shape (n,)."""
         if columns.name != "SERVO_OUTPUT_RAW":
             return
         idle = np.zeros(len(columns))
@@ -67,7 +70,8 @@ class ElevatorGuess:
             self._t, self._pulses = self._t[kept], self._pulses[kept]
 
     def made(self, q: Channel | None) -> Guess | None:
-        """Return the guess from this stretch of pitch rate and outputs; None where none is good enough."""
+        """Return the guessed output from one stretch of pitch rate and outputs; None if no guess is good
+        enough."""
         if q is None or len(q) < 2:
             return None
         inside = (self._t >= q.t[0]) & (self._t <= q.t[-1])
@@ -88,33 +92,34 @@ class ElevatorGuess:
 
 
 class ElevatorGuesses:
-    """Makes guesses at fixed vehicle times, independent of batches."""
+    """Series of guesses at fixed vehicle times, independent of the batches of messages."""
 
     def __init__(self) -> None:
         self.newest: Guess | None = None
-        """Newest guess. The guess outlives a power-on, because the wiring does."""
+        """Newest guess of the elevator's output. The guess is kept over a power-on, because the wiring does
+        not change."""
         self.begin()
 
     def begin(self) -> None:
-        """Begin another power-on, or another vehicle."""
+        """Begin another power-on, or follow another vehicle."""
         self._outputs = ElevatorGuess()
         self._at_s = -np.inf
 
     def hear(self, columns: Columns, t: FloatArray) -> None:
-        """Take messages of outputs at these vehicle times, shape (n,)."""
+        """Take servo output messages at their vehicle times, shape (n,)."""
         self._outputs.hear(columns, t)
 
     def advance(
         self, first_s: float, now_s: float, cut: Callable[[str, float, float], Channel | None]
     ) -> list[FlightEvent]:
-        """Make every guess that is due, and report a new one.
+        """Make every due guess of the elevator's output, and return an event for a new one.
 
         Parameters
         ----------
         first_s, now_s
             Vehicle times of the first and of the newest message since boot, s.
         cut
-            Gives a stretch of a channel: name, start and end, s.
+            Function that returns a stretch of a channel by name, start and end, s.
         """
         events: list[FlightEvent] = []
         next_s = max(self._at_s + EVERY_S, EVERY_S * np.ceil(first_s / EVERY_S))
@@ -140,7 +145,7 @@ def _past(y: FloatArray) -> list[FloatArray]:
 
 
 def _left(y: FloatArray, regressors: Sequence[FloatArray]) -> float:
-    """Return the residual sum of squares of a linear combination of the regressors and a constant."""
+    """Return the residual sum of squares after a regression on the regressors and a constant."""
     columns = np.column_stack([*regressors, np.ones(len(y))])
     solution, *_ = np.linalg.lstsq(columns, y, rcond=None)
     left: float = float(np.sum((y - columns @ solution) ** 2))

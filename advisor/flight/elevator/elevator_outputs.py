@@ -1,4 +1,4 @@
-"""The elevator: its servo outputs, their mixing, and the sentences for the user on both.
+"""The elevator: its servo outputs, their mixing, and sentences about both for the user.
 
 The rows of ``mixers.py`` give each output's share.
 """
@@ -13,7 +13,7 @@ from advisor.flight.vehicle.wiring import Wiring
 from advisor.words.problems import Problem
 
 _AXES: Mapping[Control, str] = {"aileron": "roll", "rudder": "yaw"}
-"""Other control that a mixed output follows, to the axis in which the members of the pair cancel."""
+"""Axis in which the members of a mixed pair cancel, by the other control that the pair drives."""
 
 _OF_ELEVATOR = "Z_δe and M_δe"
 
@@ -96,7 +96,7 @@ def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
 def _carried_over(
     calibration: Pairs, parts: Sequence[Part], kinds: Sequence[str], wiring: Wiring
 ) -> Surface | Problem:
-    """Return the first output's calibration, carried over to the other outputs found."""
+    """Return the surface with the first output's calibration carried over to its other outputs."""
     first, *others = _numbers(parts)
     if not others:
         return Surface((Part(first, Calibration(calibration)),), True, "")
@@ -137,7 +137,7 @@ def _uncalibrated(part: Part, why: str, wiring: Wiring) -> Surface:
 
 
 def _scaled(parts: tuple[Part, ...], formed: str, wiring: Wiring) -> Surface:
-    """Return the surface of several outputs without a calibration."""
+    """Return the surface of several outputs without a calibration, with a scale from their limits."""
     return without_calibration(parts, f"{formed} No calibration: they are", _OF_ELEVATOR, wiring)
 
 
@@ -158,7 +158,7 @@ def without_calibration(parts: tuple[Part, ...], begin: str, derivatives: str, w
 
 
 def _is_half(n: int, wiring: Wiring) -> bool:
-    """Return whether output ``n`` is known to be one half of a pair that also pitches."""
+    """Return whether output ``n`` is one half of a pair that also pitches the aircraft."""
     return n in wiring.roles and wiring.roles[n].is_mixed and bool(wiring.roles[n].elevator)
 
 

@@ -1,4 +1,4 @@
-"""Sign of an elevator without calibration, from the aircraft's answer."""
+"""Sign of an elevator without calibration, from the aircraft's pitch response."""
 
 from dataclasses import replace
 
@@ -10,9 +10,9 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 
 _SURELY = 10.0
-"""Least absolute value of M_δe, in standard errors under white noise, at which its sign is certain."""
+"""Least absolute value of M_δe, in standard errors under white noise, at which its sign is significant."""
 _EXPLAINED = 0.7
-"""Least share of the pitch rate that the regression must explain, in addition."""
+"""Least share of the pitch rate's power that the regression must also explain."""
 _OTHER: dict[InputKind, InputKind] = {"3-2-1-1": "reverse 3-2-1-1", "reverse 3-2-1-1": "3-2-1-1"}
 
 SAID = (
@@ -22,19 +22,19 @@ SAID = (
 
 
 class ElevatorSign:
-    """Gives an elevator of assumed scale its sign: trailing edge down pitches down.
+    """Sign of an elevator with an assumed scale: trailing edge down pitches down.
 
     An autopilot's parameters give the direction of an output, not of the surface linked to it. The first
-    conclusive manoeuvre decides for all later ones.
+    conclusive manoeuvre determines the sign for all later manoeuvres.
     """
 
     def __init__(self) -> None:
         self._direction: bool | None = None
         self.backwards: bool | None = None
-        """Whether the sign is reversed. None before the first conclusive manoeuvre."""
+        """Whether the elevator's sign is reversed. None before the first conclusive manoeuvre."""
 
     def right(self, maneuver: Maneuver) -> tuple[Maneuver, list[Notice]]:
-        """Return the manoeuvre with the elevator's sign corrected, and a notice of a reversed sign."""
+        """Return the manoeuvre with the right elevator sign, and a notice about a reversed sign."""
         found = []
         stated = maneuver.scale is not None and maneuver.scale.reversed
         if self._direction is not None:
@@ -47,7 +47,7 @@ class ElevatorSign:
 
 
 def turned(maneuver: Maneuver) -> Maneuver:
-    """Return the manoeuvre with the elevator's deflections reversed."""
+    """Return the manoeuvre with the elevator's deflections reversed in sign."""
     elevator = maneuver.channels["elevator"]
     span = replace(
         maneuver.span,
@@ -64,9 +64,9 @@ def turned(maneuver: Maneuver) -> Maneuver:
 
 
 def answers_backwards(maneuver: Maneuver) -> bool | None:
-    """Return whether a trailing edge that goes down lifts the nose, M_δe > 0; None where uncertain.
+    """Return whether a trailing edge that goes down raises the nose, M_δe > 0; None if uncertain.
 
-    Least squares of the pitch rate on the integrals of elevator, pitch rate and angle of attack.
+    The sign comes from least squares of the pitch rate on the integrals of elevator, pitch rate and α.
     """
     channels = maneuver.channels
     if "q" not in channels or len(channels["q"]) < 20:

@@ -1,8 +1,8 @@
-"""Elevator samples in the order of their stamps, watched for manoeuvres.
+"""Elevator samples in the order of their stamps, searched for manoeuvres.
 
-A link may deliver packets out of order. Samples wait a moment of vehicle time before the segmenter takes
-them. A manoeuvre that has ended waits until the other channels have arrived. The elevator's own stamps
-measure both waits, so that live and replay cut at equal samples.
+A link may deliver packets out of order. Samples wait a short vehicle time before the segmenter takes them. A
+manoeuvre that has ended waits until the other channels have arrived. Both waits are measured by the
+elevator's stamps, so that live and replay cut at equal samples.
 """
 
 import heapq
@@ -16,13 +16,13 @@ from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.segmentation import Segmenter
 
 LATE_S = 0.3
-"""Time that samples wait for packets out of order, s."""
+"""Time that elevator samples wait for packets out of order, s."""
 SETTLE_S = 1.1
-"""Time from the end of a manoeuvre to its release, s, in which every channel and a heartbeat arrive."""
+"""Time from the end of a manoeuvre to its release, s, for the arrival of all channels and a heartbeat."""
 
 
 class ElevatorWatch:
-    """Segmenter behind a queue, for one power-on of the vehicle."""
+    """Segmenter with a queue of elevator samples, for one power-on of the vehicle."""
 
     def __init__(self) -> None:
         self._segmenter = Segmenter()
@@ -34,26 +34,27 @@ class ElevatorWatch:
 
     @property
     def onset_s(self) -> float | None:
-        """Beginning of the input being flown, s. None between inputs."""
+        """Begin of the input that is being flown, s. None between two inputs."""
         return self._segmenter.onset_s
 
     @property
     def amplitude(self) -> float:
-        """Largest deviation of the input so far, rad."""
+        """Largest deviation of the present input so far, rad."""
         return self._segmenter.amplitude
 
     @property
     def last_step_s(self) -> float | None:
-        """Last step of the input whose free response is being flown, s. None before the input is over."""
+        """Last step of the input whose free response is being recorded, s. None before the end of the
+        input."""
         recognised = self._segmenter.recognised
         return recognised.last_step_s if recognised else None
 
     def mode_changed(self, t: float, order: int) -> None:
-        """Take a change of the flight mode, at vehicle time ``t`` at the earliest."""
+        """Take a flight mode change that happened at vehicle time ``t`` or later."""
         heapq.heappush(self._waiting, (t, order, None))
 
     def push(self, t: float, order: int, elevator: float) -> Iterator[ManeuverStarted | Span]:
-        """Take a sample in order of arrival; yield recognised inputs and complete movements."""
+        """Take an elevator sample in order of arrival; yield recognised inputs and complete movements."""
         heapq.heappush(self._waiting, (t, order, elevator))
         self.newest_s = max(self.newest_s, t)
         while self._waiting and self._waiting[0][0] <= self.newest_s - LATE_S:
@@ -66,7 +67,7 @@ class ElevatorWatch:
             yield self._ended.pop(0)
 
     def finish(self) -> list[Span]:
-        """Return everything that is complete enough at the end of the samples."""
+        """Return the movements that are complete at the end of the samples."""
         while self._waiting:
             self._release()
         spans = [*self._ended, *self._segmenter.finish()]
@@ -84,7 +85,7 @@ class ElevatorWatch:
 
 
 def _cut(span: Span, t: float) -> Span:
-    """Return a movement that had ended before a change of the mode at ``t`` became known."""
+    """Return a movement that ended before a mode change at ``t`` became known."""
     if span.end_s <= t or span.start_s >= t:
         return span
     return replace(span, end_s=max(t, span.last_step_s), closed_by="mode change")

@@ -1,4 +1,4 @@
-"""Outputs that make a control together, each with its share by the mixer's row."""
+"""Servo outputs that drive a control together, each with its share by the mixer's row."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -9,10 +9,10 @@ from advisor.flight.vehicle.wiring import Wiring
 
 
 def parts_of(control: Control, wiring: Wiring) -> tuple[Part, ...]:
-    """Return the outputs of a control in rising order; empty where nothing makes the whole control.
+    """Return the outputs of a control in rising order; empty if no set of outputs drives the whole control.
 
-    All plain outputs make the control, and so does each pair whose members are complete. The control's
-    deflection is the mean of its parts. Several outputs of one member count as their mean.
+    A control consists of all plain outputs and of each mixed pair with all its members. The control's
+    deflection is the mean of its parts. Several outputs of one member are averaged.
     """
     groups: dict[str, dict[int, Role]] = {}
     for n, role in wiring.roles.items():
@@ -30,5 +30,5 @@ def parts_of(control: Control, wiring: Wiring) -> tuple[Part, ...]:
 
 
 def _is_whole(surface: str, mine: Mapping[int, Role], control: Control) -> bool:
-    """Return whether every member of a pair is among the outputs."""
+    """Return whether every member of a mixed pair is among the outputs."""
     return sides_of(surface, control) <= {role.side for role in mine.values()}

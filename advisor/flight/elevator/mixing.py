@@ -1,8 +1,8 @@
-"""Elevator samples from several outputs, each with the sign of the aircraft's answer.
+"""Elevator samples from several outputs, each output with the sign found from the aircraft's response.
 
-Where neither a calibration nor a parameter gives the sign of an output, adding outputs could cancel them.
-The outputs' samples wait, at most a minute of the vehicle's clock, until the pitch rate has shown the signs.
-All decisions follow the order of arrival, so that live and replay decide at one sample.
+Without a known sign of each output, a sum of the outputs could cancel their motion. The samples wait up to a
+minute of the vehicle's clock for the signs from the pitch rate. All decisions follow the order of arrival, so
+that live and replay decide at one sample.
 """
 
 from collections.abc import Iterator
@@ -18,23 +18,23 @@ from advisor.flight.vehicle.surfaces import Surface, joined_numbers
 from advisor.words.problems import Problem
 
 _WINDOW_S = 15.0
-"""Length of the newest flight in which the answer is sought, s: a test input of a slow aircraft."""
+"""Length of the newest flight that is searched for the outputs' signs, s: a test input of a slow aircraft."""
 _EVERY_S = 1.0
-"""Time between two searches for the answer, s."""
+"""Time between two searches for the outputs' signs, s."""
 _WAIT_S = 60.0
-"""Longest time that samples wait for the answer, s: half of the time that the channels keep."""
+"""Longest time that samples wait for the outputs' signs, s: half of the time that channels are kept."""
 _CHECK_SIGNS = (
     "Check the signs of the calibrations in elevator.outputs: a deflection that lowers the nose is positive."
 )
 
 
 class Mixing:
-    """Forms the elevator's samples.
+    """Elevator samples formed from several servo outputs.
 
     Parameters
     ----------
     tracks
-        Channels of the vehicle.
+        Channels of the vehicle, with the pitch rate.
     """
 
     def __init__(self, tracks: Tracks) -> None:
@@ -42,7 +42,7 @@ class Mixing:
         self._lifts: dict[int, bool] = {}
         self._answered = ""
         self.contradiction: Problem | None = None
-        """Problem where the signs of the aircraft file make the outputs cancel; else None."""
+        """Problem of signs in the aircraft file with which the outputs cancel; else None."""
         self.begin()
 
     def begin(self) -> None:
@@ -53,7 +53,7 @@ class Mixing:
         self._open_since_s = -np.inf
 
     def said(self, surface: Surface) -> str:
-        """Return a sentence on the known signs of several outputs; empty where nothing is in doubt."""
+        """Return a sentence about the known signs of several outputs; empty without a doubt."""
         if self._answered or not surface.unsure:
             return self._answered
         listed = joined_numbers(surface.unsure)
@@ -61,7 +61,7 @@ class Mixing:
         return f"Nothing says which way {moves} the nose; the aircraft's response in MANUAL decides."
 
     def take(self, new: Commanded, loop_is_closed: bool) -> Iterator[Decoded | Notice]:
-        """Yield the elevator's samples with known signs, and notices on the signs.
+        """Yield elevator samples with known signs, and notices about the signs.
 
         Parameters
         ----------
@@ -87,23 +87,23 @@ class Mixing:
                 yield from self._given_up(float(piece.t[-1]) - _WAIT_S)
 
     def finish(self) -> list[Decoded]:
-        """Return all waiting samples, each output with its present sign."""
+        """Return all waiting elevator samples, with each output's present sign."""
         if not self._waiting:
             return []
         waiting, self._waiting = joined(self._waiting), []
         return [waiting.combined(self._turned(waiting.surface))]
 
     def _is_settled(self, surface: Surface) -> bool:
-        """Return whether an answer could neither decide nor contradict the signs any more."""
+        """Return whether no further response could decide or contradict the signs."""
         is_asked = len(surface.parts) > 1 and (surface.calibrated or surface.unsure)
         return not is_asked or all(n in self._lifts for n in surface.outputs)
 
     def _turned(self, surface: Surface) -> list[int]:
-        """Return outputs whose sign is reversed, only where no other source gives the signs of all."""
+        """Return the outputs with a reversed sign, if no other source gives all signs."""
         return [n for n in surface.outputs if self._lifts.get(n, False)] if surface.unsure else []
 
     def _pieces(self, new: Commanded) -> Iterator[tuple[Commanded, bool]]:
-        """Yield the samples up to each time at which the answer is sought, and whether a search is due."""
+        """Yield the samples up to each time of a search for the signs, and whether a search is due."""
         start = 0
         while start < len(new.t):
             late = np.flatnonzero(new.t[start:] >= self._next_s)
@@ -114,14 +114,14 @@ class Mixing:
             start = stop
 
     def _given_up(self, before_s: float) -> list[Decoded]:
-        """Return the samples that have waited too long."""
+        """Return the elevator samples that have waited too long for the signs."""
         waiting = joined(self._waiting)
         old = waiting.t < before_s
         self._waiting = [waiting.rows(~old)]
         return [waiting.rows(old).combined(self._turned(waiting.surface))] if old.any() else []
 
     def _listen(self, surface: Surface, loop_is_closed: bool) -> list[Notice]:
-        """Look for the aircraft's answer to each output in the newest flight."""
+        """Search the newest flight for the aircraft's response to each output, and return notices."""
         window = joined([piece for piece in self._recent if piece.surface == surface])
         now_s = float(window.t[-1])
         if loop_is_closed:

@@ -1,4 +1,4 @@
-"""Signs of several elevator outputs in pitch, from the aircraft's answer to all outputs together."""
+"""Signs of several elevator outputs in pitch, from the aircraft's response to all outputs."""
 
 from collections.abc import Sequence
 from itertools import product
@@ -10,17 +10,17 @@ from advisor.flight.signals.motion import integrated
 from advisor.flight.signals.record import Channel
 
 _SURELY = 9.0
-"""Least value of twice the log-likelihood ratio of both signs at which an output's sign is known: three
-standard errors for one parameter. Samples are counted as independent ones, by the residual's correlation
-between neighbours. On the records of eight aircraft, with elevators wired to two outputs that also roll,
-manoeuvres reach 10 to 120. A wrong sign never exceeded 8."""
+"""Least value of twice the log likelihood ratio of both signs at which an output's sign is known. The number
+of independent samples follows from the correlation of successive residuals. For eight aircraft with two
+outputs that also roll, manoeuvres reach values of 10 to
+120. A wrong sign never exceeded a value of 8."""
 _LEAST_S = 4.0
-"""Shortest flight from which signs are taken, s. In one to three seconds slow movements look alike: there a
-wrong sign reached 22 on these records."""
+"""Shortest flight from which the outputs' signs are determined, s. In one to three seconds slow movements
+look alike, and a wrong sign reached a value of 22."""
 _EXPLAINED = 0.7
-"""Least share of the pitch rate that the regression must explain, as in ``elevator_sign.py``."""
+"""Least share of the pitch rate's power that the regression must explain, as in ``elevator_sign.py``."""
 _MOST = 8
-"""Most outputs whose signs are tried together, in 256 combinations."""
+"""Largest number of outputs whose signs are tried together, in 256 combinations."""
 
 
 def pitch_signs(
@@ -31,25 +31,26 @@ def pitch_signs(
     alpha: Channel | None,
     singly: bool = False,
 ) -> list[bool | None]:
-    """Return whether a positive deflection of each output lifts the nose; None for a resting or unsure one.
+    """Return whether a positive deflection of each output raises the nose; None for a resting or uncertain
+    output.
 
-    Least squares of the pitch rate on the integrals of the elevator, the pitch rate and the angle of attack.
-    The elevator is the sum of all outputs, each with either sign. The right signs let the roll part of
-    elevons cancel and their pitch parts add up, and so explain the pitch rate best.
+    The signs come from least squares of the pitch rate on the integrals of elevator, pitch rate and α. The
+    elevator is the sum of all outputs, each with either sign. With the right signs the roll parts of elevons
+    cancel and the pitch parts add up.
 
     Parameters
     ----------
     t
-        Shape (n,), stamps of the outputs, s.
+        Shape (n,): stamps of the outputs, s.
     angles
-        Shape (n, k), deflection of each output, rad.
+        Shape (n, k): deflection of each output, rad.
     shares
-        k shares of the outputs in the elevator.
+        Shares of the k outputs in the elevator's deflection.
     q, alpha
-        Pitch rate, and angle of attack where there is one, over the same time.
+        Pitch rate, and angle of attack if any, over the time of the outputs.
     singly
-        Whether an output that the sum leaves unsure is regressed alone. Outputs that move in proportion
-        explain the pitch rate with either sign; taken one by one, they add up.
+        Whether an output with an uncertain sign is also regressed alone. Outputs that move in proportion
+        explain the pitch rate with either sign, unless each is regressed alone.
     """
     n, k = len(q), angles.shape[1]
     unknown: list[bool | None] = [None] * k
@@ -82,9 +83,9 @@ def _fitted(signs: FloatArray, free: FloatArray, left: FloatArray) -> tuple[Floa
     Parameters
     ----------
     signs
-        Shape (s, k), combinations tried. A combination counts only with a positive effect of its sum.
+        Shape (s, k): combinations of signs. A combination is used only if its sum has a positive effect.
     free, left
-        Shapes (n, k) and (n,): the integrals of the outputs, and the pitch rate.
+        Shapes (n, k) and (n,): integrals of the outputs, and the pitch rate.
     """
     power = np.maximum(np.einsum("si,ij,sj->s", signs, free.T @ free, signs), 1e-30)
     effect = np.maximum(signs @ (free.T @ left), 0.0) / power

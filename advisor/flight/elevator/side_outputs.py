@@ -1,8 +1,8 @@
 """Aileron and rudder: their servo outputs and mixing.
 
-With ``Scale`` a positive deflection is trailing edge down for a positive pulse in reverse. An aileron is
-positive where the right half goes down, and then rolls the aircraft to the left. A positive rudder yaws to
-the left. The rows of ``mixers.py`` give each output's share.
+With ``Scale`` a positive deflection is trailing edge down for a positive pulse in reverse. Positive aileron
+is the right half's trailing edge down, which rolls the aircraft to the left. A positive rudder yaws to the
+left. The rows of ``mixers.py`` give each output's share.
 """
 
 from dataclasses import replace
@@ -19,12 +19,12 @@ SIDES: tuple[Side, ...] = ("aileron", "rudder")
 
 
 def find_side_control(name: Side, stated: SideControl, wiring: Wiring) -> Surface | None:
-    """Return the outputs of the aileron or the rudder with their scales; None where nothing states them.
+    """Return the servo outputs of the aileron or the rudder with their scales; None if no source states them.
 
     Parameters
     ----------
     stated
-        The control in the aircraft file. A calibration of one output is carried over to the others.
+        Aileron or rudder in the aircraft file. A calibration of one output also applies to the other outputs.
     wiring
         Roles and scales of outputs by the vehicle's parameters; may be empty.
     """
@@ -49,7 +49,7 @@ def _uncalibrated(parts: tuple[Part, ...], name: Side, wiring: Wiring) -> Surfac
 
 
 def _calibrated(part: Part, first: Part, given: Calibration, wiring: Wiring) -> Part:
-    """Return a part with the calibration of the first output, carried over."""
+    """Return a part with the first output's calibration carried over."""
     if part.output == first.output:
         return replace(part, scale=given)
     return replace(part, scale=given.carried_over(wiring.scale(first.output), wiring.scale(part.output)))

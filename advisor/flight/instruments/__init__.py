@@ -1,1 +1,1 @@
-"""Instruments as models: what the motion alone tells about them."""
+"""Instruments as models, and their properties that the motion alone shows."""

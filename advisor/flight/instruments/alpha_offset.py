@@ -11,24 +11,24 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import channel_at, gravity_in_plane
 
 _BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
-"""Length of a record's beginning, s. Largest difference between the offsets of beginning and whole, as a
-share of the offset, in the mean of all manoeuvres. Multiple of the manoeuvres' scatter that a larger
-difference must exceed."""
+"""Length of a record's beginning, s. Largest difference between the offsets of beginning and whole record, as
+a share of the mean offset. A larger difference must also exceed this multiple of the scatter between
+manoeuvres."""
 
 
 @dataclass(frozen=True, slots=True)
 class AlphaOffset:
-    """Mean of α minus (θ − flight-path angle), rad. NaN where unknown."""
+    """Mean of α minus (θ − flight-path angle), rad, over a manoeuvre. The offset is NaN where unknown."""
 
     rad: float = float("nan")
     std_rad: float = float("nan")
     change_rad: float = float("nan")
     """Offset over the record minus the offset in its first second; 0 within three times the scatter of
-    manoeuvres. An instrument's offset is there from the first second, and air that begins to sink is not."""
+    manoeuvres. An instrument's offset is present from the first second; sinking air comes later."""
 
     @property
     def stays(self) -> bool:
-        """Whether the offset may have been there from the beginning."""
+        """Whether the offset may have been present from the record's beginning."""
         return not abs(self.change_rad) >= _STAYS * abs(self.rad)
 
 
@@ -36,14 +36,15 @@ UNKNOWN = AlphaOffset()
 
 
 def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
-    """Return the mean of α − (θ − γ), its error, and its change, from the climb rate. NaN without one.
+    """Return the mean of α − (θ − γ), its error, and its change, with γ from the climb rate. The offset is
+    NaN without a climb rate.
 
     Parameters
     ----------
     maneuver
-        Manoeuvre with channels ``alpha`` and ``theta``. ``bank`` is used where present.
+        Manoeuvre with channels ``alpha`` and ``theta``. A channel ``bank`` is used if present.
     airspeed_m_s
-        Air speed for a log without one.
+        Air speed of a log without an air speed, m/s.
     """
     found = maneuver.channels
     if "climb_rate" not in found or len(found["climb_rate"]) < 4:
@@ -65,7 +66,8 @@ def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
 
 
 def mean_offset(offsets: Sequence[AlphaOffset]) -> AlphaOffset:
-    """Return one offset for the aircraft from those of its manoeuvres. Unknown offsets do not count."""
+    """Return the mean offset for the aircraft from the offsets of its manoeuvres. Unknown offsets are
+    ignored."""
     told = [o for o in offsets if np.isfinite(o.rad)]
     if not told:
         return UNKNOWN
@@ -77,7 +79,7 @@ def mean_offset(offsets: Sequence[AlphaOffset]) -> AlphaOffset:
 
 
 def speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> FloatArray | None:
-    """Return the logged air speed, else the given one, shape (n,); None without either."""
+    """Return the logged air speed at ``t``, else the given one, shape (n,); None without either."""
     logged = maneuver.channels.get("airspeed")
     if logged is not None and len(logged) > 1:
         return np.interp(t, logged.t, logged.y)
@@ -85,7 +87,7 @@ def speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> Floa
 
 
 def weighted(values: Sequence[float], stds: Sequence[float]) -> tuple[float, float]:
-    """Return the mean of values weighted by their errors, and its error, widened for larger scatter."""
+    """Return the weighted mean of values and its error, which a larger scatter widens."""
     y, s = np.array(values), np.maximum(np.array(stds), 1e-12)
     w = 1.0 / s**2
     mean = float(np.sum(w * y) / np.sum(w))

@@ -1,8 +1,8 @@
-"""Air of manoeuvres: density, true air speed and dynamic pressure from the air speed in use.
+"""Air of the manoeuvres: density, true air speed and dynamic pressure.
 
 An autopilot reports the air speed that its pressure sensor would have at sea level (MAVLink, VFR_HUD:
-calibrated or indicated). With the density ρ of the air flown in and ρ_0 = 1.225 kg/m³, the true air speed is
-V·√(ρ_0/ρ). The dynamic pressure of an indicated speed is ½·ρ_0·V² at any height, that of a true one ½·ρ·V².
+calibrated or indicated). With air density ρ and ρ_0 = 1.225 kg/m³, the true air speed is V·√(ρ_0/ρ). The
+dynamic pressure is ½·ρ_0·V² for an indicated air speed, and ½·ρ·V² for a true air speed.
 """
 
 from collections.abc import Sequence
@@ -40,15 +40,16 @@ class AirData:
 
     density_kg_m3: float
     source: DensitySource
-    """Source of the density. Without a temperature the standard atmosphere's is used."""
+    """Source of the air density. Without a temperature the density is that of the standard atmosphere."""
     speed_kind: Literal["indicated", "true"]
-    """Kind of the manoeuvres' air speed. Every air speed is made true as far as the log allows."""
+    """Kind of the manoeuvres' air speed, indicated or true. An indicated air speed is converted to the true
+    one as far as the log allows."""
     speed_said: str = "the air speed is as logged"
-    """Origin of the air speed, in words."""
+    """Origin of the air speed in words."""
     true_over_read: float = 1.0
-    """Factor from the air speed as the aircraft reads it to that of the manoeuvres."""
+    """Factor from the air speed that the aircraft reads to that of the manoeuvres."""
     excess: float = 0.0
-    """Relative excess of the true air speed over that of the manoeuvres, as a fit of the motion found it."""
+    """Relative excess of the true air speed over that of the manoeuvres, from a fit of the motion."""
 
     def true_speed(self, airspeed_m_s: float) -> float:
         """Return the true air speed in m/s for an air speed of the manoeuvres."""
@@ -62,7 +63,7 @@ class AirData:
         return 0.5 * self.density_kg_m3 * self.true_speed(airspeed_m_s) ** 2
 
     def read_speed(self, airspeed_m_s: float) -> float:
-        """Return the air speed as the aircraft reads it, m/s, for one of the manoeuvres."""
+        """Return the air speed that the aircraft reads, m/s, for an air speed of the manoeuvres."""
         return airspeed_m_s / self.true_over_read
 
     @property
@@ -72,14 +73,14 @@ class AirData:
 
     @property
     def speed_note(self) -> str:
-        """Sentence on the ratio of the true air speed to the one that the aircraft reads."""
+        """Sentence about the ratio of the true air speed to the one that the aircraft reads."""
         ratio = self.true_over_read * self.true_speed(1.0)
         shown = f", {100.0 * self.excess:+.1f} % of it by the motion" if self.excess else ""
         return f"True air speed is {ratio:.4f} times the one that the aircraft reads{shown}."
 
     @property
     def sentence(self) -> str:
-        """Sentence on the sources of density and air speed."""
+        """Sentence about the sources of density and air speed."""
         told = {
             "pressure and temperature": "from static pressure and the aircraft file's temperature",
             "height and temperature": "from the height flown and the aircraft file's temperature",
@@ -91,15 +92,16 @@ class AirData:
 
 
 def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None) -> AirData:
-    """Return the mean air of manoeuvres: from static pressure, else from height, else at sea level.
+    """Return the mean air of the manoeuvres, from static pressure, else from height, else at sea level.
 
     Parameters
     ----------
     maneuvers
-        Manoeuvres whose channels ``static_pressure`` (Pa), ``altitude`` (m above mean sea level) and
-        ``airspeed`` are used, where the log has them.
+        Manoeuvres with channels ``static_pressure`` (Pa), ``altitude`` (m above mean sea level) and
+        ``airspeed``, if logged.
     temperature_c
-        Temperature of the air. A barometer's temperature is not used, because the board warms the sensor.
+        Air temperature, deg C; None for the standard atmosphere. A barometer's temperature is not used,
+        because the board warms the sensor.
     """
     measured, altitude = _mean(maneuvers, "static_pressure"), _mean(maneuvers, "altitude")
     speeds = [m.channels["airspeed"] for m in maneuvers if "airspeed" in m.channels]
@@ -118,7 +120,7 @@ def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None)
 
 
 def _speed_said(speeds: Sequence[Channel]) -> str:
-    """Return the origin of the air speed in words, by its first channel."""
+    """Return the origin of the air speed in words, from its first channel."""
     if not speeds:
         return "no air speed is known"
     source = speeds[0].source
@@ -138,7 +140,7 @@ def _speed_said(speeds: Sequence[Channel]) -> str:
 
 
 def _mean(maneuvers: Sequence[Maneuver], name: str) -> float | None:
-    """Return the mean of a channel over the manoeuvres with plausible values; None without any."""
+    """Return the mean of a channel over manoeuvres with plausible values; None without such a manoeuvre."""
     low, high = PLAUSIBLE[name]
     means = [float(np.mean(m.channels[name].y)) for m in maneuvers if name in m.channels]
     real = [mean for mean in means if low <= mean <= high]

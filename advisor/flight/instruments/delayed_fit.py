@@ -1,4 +1,4 @@
-"""Least-squares fit of a signal as a sum of delayed signals, with the errors of coloured residuals."""
+"""Least-squares fit of a signal by delayed signals, with errors for coloured residuals."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 
 LONGEST_DELAY_S = 0.3
-"""Longest delay in the search, s. Telemetry that is later shows as a gap or as a clock of its own."""
+"""Longest delay in the search, s. A longer delay of telemetry shows as a gap or as a separate clock."""
 _STARTS_S = (0.0, 0.12, -0.12)
 """Delays, s, at which the search starts. Every delay in the search is within half a period of the fastest
 short period (3 Hz) of one of these starts."""
 _FIRST_ROUNDS, _ROUNDS = 2, 15
-"""Rounds of the search from each start, and from the best of them."""
+"""Number of rounds of the search from each start, and from the best start."""
 _SETTLED_S = 1e-5
 _LARGEST_STEP_S = 0.05
 _FEWEST_SAMPLES = 20
@@ -25,14 +25,14 @@ DRIFT = 2
 
 @dataclass(frozen=True, slots=True)
 class Summand:
-    """Integral of a rate that enters the sum with an unknown delay."""
+    """Integral of a rate that is added to the sum with an unknown delay."""
 
     t: FloatArray
-    """Shape (n,), s."""
+    """Shape (n,): stamps of the rate, s."""
     rate: FloatArray
-    """Shape (n,). The summand is its integral."""
+    """Shape (n,): rate whose integral is the summand."""
     factor: float | None = None
-    """Known factor. None: the factor is fitted."""
+    """Known factor of the summand. None if the factor is fitted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,17 +40,18 @@ class DelayedFit:
     """Delays and factors of the summands, in their order."""
 
     delays_s: FloatArray
-    """Shape (k,)."""
+    """Shape (k,): delays of the summands, s."""
     delay_covariance: FloatArray
-    """Shape (k, k), s². The residual may be coloured, or belong wholly to the delays."""
+    """Shape (k, k): covariance of the delays, s². The covariance allows for a coloured residual and for a
+    residual that belongs to the delays."""
     factors: FloatArray
-    """Shape (k,)."""
+    """Shape (k,): factors of the summands."""
     factor_stds: FloatArray
-    """Shape (k,), 0 for a known factor."""
+    """Shape (k,): standard deviations of the factors, 0 for a known factor."""
 
 
 class _Point(NamedTuple):
-    """State of the search."""
+    """State of the search for the delays."""
 
     delays: FloatArray
     factors: FloatArray
@@ -71,16 +72,16 @@ def fit_delays(
 ) -> DelayedFit | None:
     """Fit y(t) = Σ f·S(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in the delays τ.
 
-    Returns None where samples are too few, or where nothing moved.
+    None is returned with too few samples, or if nothing moved.
 
     Parameters
     ----------
     t, y
-        Shape (n,): stamps in s, and the signal.
+        Shape (n,): stamps, s, and values of the signal.
     summands
-        One or two summands, all on one grid of stamps.
+        One or two summands, all at the same stamps.
     near_s
-        Shape (k,): delays near the optimum, where they are known.
+        Shape (k,): delays near the optimum, if known.
     drift
         Degree of the polynomial b in time.
     """
@@ -140,24 +141,25 @@ def _descended(
 
 
 def _covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
-    """Return the covariance for coloured residuals, plus that of a residual that belongs to the parameters.
+    """Return the parameters' covariance for coloured residuals, plus that of a residual due to the
+    parameters.
 
-    An error of an instrument may have the shape of the motion, and a parameter then takes all of the
-    residual. A parameter at its bound errs by at most ‖r‖·√((JᵀJ)⁻¹). The error is uniform up to this bound.
+    An instrument error may have the shape of the motion, so that a parameter absorbs all of it. A parameter's
+    error is at most ‖r‖·√((JᵀJ)⁻¹). The error is taken as uniform up to this bound.
     """
     mistaken = float(residual @ residual) / 3.0 * inverse_information(jacobian)
     return np.asarray(coloured_covariance(jacobian, residual) + mistaken)
 
 
 _SMALLEST = 1e-15**0.5
-"""Singular value of a Jacobian, over the largest one, at which round-off decides. JᵀJ then has the
+"""Singular value of a Jacobian, over the largest, below which rounding errors dominate. JᵀJ then has the
 precision of a double."""
 
 
 def inverse_information(jacobian: FloatArray) -> FloatArray:
-    """Return (JᵀJ)⁻¹ of a Jacobian (n, p), without the directions that round-off decides.
+    """Return (JᵀJ)⁻¹ of a Jacobian (n, p), without the directions in which rounding errors dominate.
 
-    The product of a root with itself has no negative variance; the inverse of a nearly singular JᵀJ may.
+    The product of a root with itself has no negative variance, unlike the inverse of a nearly singular JᵀJ.
     """
     root = np.linalg.pinv(jacobian, rcond=_SMALLEST)
     return np.asarray(root @ root.T)
@@ -166,15 +168,15 @@ def inverse_information(jacobian: FloatArray) -> FloatArray:
 def coloured_covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
     """Return the covariance of a least-squares fit with coloured residuals.
 
-    (JᵀJ)⁻¹ (Σ_ij R(i−j) J_iᵀ J_j) (JᵀJ)⁻¹ with the residuals' own autocovariance R (Klein & Morelli, Eq. 6.38
-    f.). R is tapered to zero at a fifth of the record.
+    The covariance is (JᵀJ)⁻¹ (Σ_ij R(i−j) J_iᵀ J_j) (JᵀJ)⁻¹ with the residuals' autocovariance R (Klein &
+    Morelli, Eq. 6.38 f.). R is tapered to zero at a fifth of the record.
 
     Parameters
     ----------
     jacobian
-        Shape (n, p).
+        Shape (n, p): Jacobian of the fit.
     residual
-        Shape (n,), sampled nearly evenly, so that lags mean times.
+        Shape (n,): residuals at nearly equal time steps.
     """
     n = len(residual)
     inverse = inverse_information(jacobian)

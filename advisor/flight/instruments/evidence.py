@@ -1,4 +1,4 @@
-"""Evidence on instruments from the motion of one record, without any aerodynamics.
+"""Evidence about instruments from the motion of one record, without aerodynamics.
 
 The pitch angle's rate is q cos φ − r sin φ. Over any stretch the mean specific force along the vertical is
 1 g, less the change of the climb rate. The angle of attack follows
@@ -22,41 +22,44 @@ from advisor.flight.signals.renewal import renewed
 Channels = Mapping[str, Channel]
 
 MOVED_RAD = radians(2.0)
-"""Least range of the pitch angle, rad, of a record that tells of rates. Every manoeuvre on record moves by
-more, and no parked aircraft does."""
+"""Least range of the pitch angle, rad, for a test of the pitch rate. Every recorded manoeuvre has a larger
+range, and no parked aircraft has."""
 VANE_WIDTH = 0.15
-"""Standard deviation of a vane's scale, as a share: upwash of wing and fuselage, and position. Vanes on
-record read 0.93 to 1.00 of the motion."""
+"""Prior standard deviation of a vane's scale, as a share, due to upwash and position. Recorded vanes read
+0.93 to 1.00 of the angle from the motion."""
 COMPUTED_WIDTH = 0.03
-"""Standard deviation of the scale of an angle of attack that an autopilot computes from attitude and
-velocity, as a share. Wind and magnetic heading err by that much."""
+"""Prior standard deviation of the scale of an autopilot's computed angle of attack, as a share. Wind and
+magnetic heading cause errors of this size."""
 _LATEST_COMPUTED_S = 0.05
-"""Longest delay, s, of an angle of attack that an autopilot computes. Computed angles of attack on record are
-20 to 35 ms late. A later one may be a vane's, ahead of the centre of gravity."""
+"""Longest delay of an autopilot's computed angle of attack, s. Recorded computed angles of attack are 20 to
+35 ms late. A longer delay may be that of a vane ahead of the centre of gravity."""
 _LONGEST_GAP_S = 0.5
-"""Longest gap, s, across which a rate is integrated."""
+"""Longest gap between two samples, s, across which a rate is integrated."""
 _FEWEST_SAMPLES = 20
 _SHORTEST_S = 2.0
-"""Shortest record, s, that tells a mean specific force. Over 2 s, 1 m/s of climb rate is 5 % of 1 g."""
+"""Shortest record, s, with which the mean specific force is compared with gravity. Over 2 s, 1 m/s of climb
+rate is 5 % of 1 g."""
 _CLIMB_M_S = 1.0
 """Error of a change of the climb rate, m/s: lag of its filter in a manoeuvre."""
 _ALIGNMENT = 0.02
-"""Error of the mean vertical force, as a share of 1 g: alignment and attitude of 2 deg each, and bias."""
+"""Prior error of the mean vertical force, as a share of 1 g: alignment and attitude of 2 deg each, and
+bias."""
 _SIDE_FORCE = 0.1
-"""Standard deviation of the specific force along body y, in g: a sideslip of some degrees."""
+"""Prior standard deviation of the specific force along body y, in g: a sideslip of some degrees."""
 _YAW_SHARE = 0.5
-"""Largest share of the yaw rate in the pitch angle's rate, by root mean squares. Above it the yaw rate
-decides the result."""
+"""Largest ratio of the yaw rate's part to the pitch rate's part in the pitch angle's rate, as RMS. Above this
+ratio the yaw rate dominates the result."""
 _LARGEST_ALPHA_RAD = radians(30.0)
-"""Largest angle of attack, rad, at which a short period is flown. Beyond it every wing has stalled."""
+"""Largest angle of attack, rad, of a short-period manoeuvre. Beyond this angle every wing has stalled."""
 _STEP = 0.05
-"""Step of the scale of α by which delays and air speed are differentiated, as a share."""
+"""Finite-difference step of the scale of α for delays and air speed, as a share."""
 
 
 def rate_against_attitude(channels: Channels) -> Evidence:
     """Return ``theta_scale``, the pitch angle's change over the integral of the pitch rate, and ``q_delay``.
 
-    The delay in s is that of the pitch rate relative to the attitude. Empty where the angle hardly moves.
+    The delay in s is that of the pitch rate relative to the attitude. The result is empty if the angle hardly
+    moves.
     """
     if not usable(channels, "q", "theta"):
         return {}
@@ -79,8 +82,8 @@ def rate_against_attitude(channels: Channels) -> Evidence:
 def force_against_climb(channels: Channels) -> Evidence:
     """Return ``a_z_behind_climb``, the delay of the specific force relative to the climb rate, s.
 
-    The climb rate is the integral of the vertical force less gravity. A climb rate may be late and is never
-    early, so that the force is at least this late.
+    The climb rate is the integral of the vertical force less gravity. A climb rate may be late but is never
+    early, so the force is at least this late.
     """
     if not usable(channels, "a_x", "a_z", "theta", "climb_rate"):
         return {}
@@ -95,7 +98,7 @@ def force_against_climb(channels: Channels) -> Evidence:
 
 
 def force_against_gravity(channels: Channels) -> Evidence:
-    """Return ``a_z_scale``, the mean vertical specific force over that of the motion; empty where unknown."""
+    """Return ``a_z_scale``, the mean vertical specific force over that from the motion; empty if unknown."""
     if not usable(channels, "a_z", "theta"):
         return {}
     force, t = channels["a_z"], channels["a_z"].t
@@ -119,7 +122,7 @@ def force_against_gravity(channels: Channels) -> Evidence:
 
 
 def speed_against_force(channels: Channels) -> Evidence:
-    """Return ``speed_scale``, the change of the air speed over that by the accelerometers.
+    """Return ``speed_scale``, the change of the air speed over that from the accelerometers.
 
     V̇ = a_x cos α + a_z sin α − g sin γ holds in steadily moving air. An error of α cancels to first order.
     """
@@ -139,9 +142,9 @@ def speed_against_force(channels: Channels) -> Evidence:
 
 
 def alpha_against_motion(channels: Channels) -> Evidence:
-    """Return ``alpha_scale``, the reading over the angle of attack by the motion.
+    """Return ``alpha_scale``, the measured angle of attack over that from the motion.
 
-    Empty without a measured angle of attack, or where nothing moves.
+    The result is empty without a measured angle of attack, or if nothing moves.
     """
     parts = _parts(channels)
     if parts is None or channels["alpha"].source == DERIVED_ALPHA:
@@ -154,7 +157,7 @@ def alpha_against_motion(channels: Channels) -> Evidence:
 
 
 def rate_moves_alpha(channels: Channels) -> bool | None:
-    """Return whether a positive pitch rate raises a measured angle of attack; None where that is unknown."""
+    """Return whether a positive pitch rate raises a measured angle of attack; None if unknown."""
     parts = _parts(channels)
     if parts is None or channels["alpha"].source == DERIVED_ALPHA:
         return None
@@ -164,14 +167,14 @@ def rate_moves_alpha(channels: Channels) -> bool | None:
 
 
 def stds_of_delays(covariance: FloatArray) -> tuple[float, float] | None:
-    """Return the standard deviations of the difference of two delays and of the second, s.
+    """Return the standard deviations of the second delay and of its difference from the first, s.
 
-    None where round-off decides on a variance, as in a damaged record: it tells no delay.
+    None if rounding errors dominate a variance, as in a damaged record.
 
     Parameters
     ----------
     covariance
-        (2, 2) covariance of the two delays, s².
+        Shape (2, 2): covariance of the two delays, s².
     """
     variances = np.array([covariance[0, 0] + covariance[1, 1] - 2.0 * covariance[0, 1], covariance[1, 1]])
     if not np.all(variances > 0.0):
@@ -181,12 +184,13 @@ def stds_of_delays(covariance: FloatArray) -> tuple[float, float] | None:
 
 
 def force_against_alpha(channels: Channels) -> Evidence:
-    """Return the clock of the specific force and the scale of the air speed, by a sound angle of attack.
+    """Return the delay of the specific force and the scale of the air speed, from a valid angle of attack.
 
     The angle of attack is fitted as α(t) = ∫q(t − τ_q) + f·∫n(t − τ_n), where n is the rate of the path's
     angle. ``airspeed_scale`` is f, the ratio of stated to true air speed. ``a_z_least`` and ``a_z_most``
     bound the delay of a_z relative to the pitch rate, s. A vane ahead of the centre of gravity delays ∫q
-    alone, and a late climb rate delays ∫n alone. Neither makes ∫n early, so −τ_n bounds the delay from below.
+    alone, and a late climb rate delays ∫n alone. Neither delays ∫n negatively, so −τ_n bounds the delay of
+    a_z from below.
     """
     parts = _parts(channels)
     if parts is None:
@@ -222,7 +226,7 @@ def force_against_alpha(channels: Channels) -> Evidence:
 def _parts(
     channels: Channels,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray] | None:
-    """Return stamps, pitch rate and turning rate of the path, then stamps and values of α; or None."""
+    """Return stamps, pitch rate and turn rate of the path, then stamps and values of α; None if missing."""
     if not usable(channels, "q", "theta", "a_z", "alpha", "airspeed"):
         return None
     q, source = channels["q"], channels["alpha"]
@@ -239,7 +243,7 @@ def _parts(
 
 
 def usable(channels: Channels, *names: str) -> bool:
-    """Return whether all these channels hold enough samples without a long gap."""
+    """Return whether all named channels have enough samples without a long gap."""
     return all(
         name in channels
         and len(channels[name]) >= _FEWEST_SAMPLES

@@ -1,6 +1,6 @@
-"""Examination of the instruments of one record: what contradicts, and the channels with known errors removed.
+"""Examination of one record's instruments: contradictions, and channels with known errors removed.
 
-Each check of an instrument relies on the checks before. The order is: attitude and pitch rate, unit of the
+Each check of an instrument builds on the checks before. The order is: attitude and pitch rate, unit of the
 specific force, clocks, angle of attack, air speed.
 """
 
@@ -39,20 +39,21 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 
 _GYRO_WIDTH = 0.05
-"""Standard deviation of the ratio of an angle and its integrated rate, as a share. The manoeuvres on record
-have 0.92 to 1.05 in pitch."""
+"""Prior standard deviation of the ratio of an angle to its integrated rate, as a share. Recorded manoeuvres
+have ratios of 0.92 to 1.05 in pitch."""
 _FORCE_WIDTH = 0.05
-"""Standard deviation of an accelerometer's scale, as a share: calibration of 2 to 3 %, and its mounting."""
+"""Prior standard deviation of an accelerometer's scale, as a share: calibration of 2 to 3 %, and mounting."""
 _AIRSPEED_WIDTH, _AIRSPEED_MEAN = 0.12, 0.95
-"""Ratio of a logged to the true air speed: its standard deviation and mean. An indicated air speed is 1.00 of
-the true one at sea level and 0.86 at 3,000 m; position error is some 5 %."""
+"""Prior standard deviation and mean of the ratio of the logged to the true air speed. An indicated air speed
+is 1.00 of the true one at sea level and 0.86 at 3,000 m; position error is about 5 %."""
 FORCE_UNITS_M_S2 = {
     "m/s^2": 1.0,
     "g": GRAVITY_M_S2,
     "mg": GRAVITY_M_S2 / 1000.0,
     **{f"{n} counts a g": GRAVITY_M_S2 / n for n in (2048, 4096, 8192, 16384)},
 }
-"""Units in which accelerometers are sent, m/s². Counts are of 16-bit sensors of 16, 8, 4 and 2 g."""
+"""Size of each unit in which accelerometers are sent, m/s². Counts are of 16-bit sensors of 16, 8, 4 and 2
+g."""
 _SPEED_UNITS_M_S = {"knots": 0.514444, "km/h": 1.0 / 3.6, "mph": 0.44704, "ft/s": 0.3048}
 
 
@@ -62,9 +63,9 @@ def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) ->
     Parameters
     ----------
     channels
-        Channel name to its samples.
+        Samples of each channel, by the channel's name.
     earlier
-        Pooled evidence of earlier records of the same instruments.
+        Pooled evidence from earlier records of these instruments.
     """
     work = Work(dict(channels), earlier or {})
     if _attitude_and_rate(work) and hold_force_unit(work):
@@ -76,7 +77,7 @@ def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) ->
 
 
 def _attitude_and_rate(work: Work) -> bool:
-    """Hold the pitch rate against the attitude; return whether sense and unit agree."""
+    """Compare the pitch rate with the attitude; return whether sign and unit agree."""
     known = work.learn(rate_against_attitude(work.channels)).get("theta_scale")
     told = hold_rate(work, known, "q", "theta")
     if told and known is not None:
@@ -90,13 +91,12 @@ def _attitude_and_rate(work: Work) -> bool:
 
 
 def hold_rate(work: Work, known: Measured | None, rate: str, angle: str) -> str | None:
-    """Hold a rate against its angle by the ratio of their movements, and name a wrong unit or scale.
+    """Compare a rate with its angle by the ratio of their movements, and report a wrong unit or scale.
 
     Returns
     -------
     str or None
-        None where sense and unit agree; the ratio in words where the sense is reversed, which the caller
-        names; else empty.
+        None if sign and unit agree; the ratio in words for a reversed sign; else an empty string.
     """
     if known is None or not work.has(rate, angle):
         return None
@@ -123,13 +123,13 @@ def hold_rate(work: Work, known: Measured | None, rate: str, angle: str) -> str 
 
 
 def stated_force_unit(source: str) -> str:
-    """Return the unit that the definition of an accelerometer's message states."""
+    """Return the unit that MAVLink defines for the message of an accelerometer channel."""
     return "m/s^2" if source.startswith("HIGHRES_IMU") else "mg"
 
 
 def hold_force_unit(work: Work) -> bool:
-    """Hold the mean vertical force against gravity, and correct a known unit or sense; return whether the
-    force has a known unit."""
+    """Compare the mean vertical force with gravity, correct a known unit or sign, and return whether the unit
+    is known."""
     known = work.learn(force_against_gravity(work.channels)).get("a_z_scale")
     if known is None or not work.has("a_z"):
         return True
@@ -163,7 +163,7 @@ def hold_force_unit(work: Work) -> bool:
 
 
 def _alpha_and_force(work: Work) -> None:
-    """Hold angle of attack, specific force and air speed against each other."""
+    """Compare angle of attack, specific force and air speed with each other."""
     if not work.has("alpha"):
         return
     _unwrap_alpha(work)
@@ -180,7 +180,7 @@ def _alpha_and_force(work: Work) -> None:
 
 
 def _unwrap_alpha(work: Work) -> None:
-    """Turn an angle of attack that is counted from 0 to 360 deg into one about zero."""
+    """Convert an angle of attack between 0 and 360 deg into one about zero."""
     alpha = work.channels["alpha"]
     near_zero = (alpha.y >= 0.0) & (np.abs(alpha.y - pi) > pi / 2.0) & (alpha.y < 2.01 * pi)
     if not np.all(near_zero) or np.max(alpha.y) < pi:
@@ -228,7 +228,7 @@ def _name_alpha(work: Work, weighed: Weighed, known: Measured) -> None:
 
 
 def _clock_of_force(work: Work, told: Mapping[str, Measured]) -> bool:
-    """Hold the clock of the specific force against that of the pitch rate; return whether they differ."""
+    """Compare the clock of the specific force with that of the pitch rate; return whether they differ."""
     least, most = told.get("a_z_least"), told.get("a_z_most")
     range_s = FILTER_S + half_intervals(work, "q", "a_z")
     exact = least is not None and most is not None and most.value - least.value < range_s
@@ -249,7 +249,8 @@ def _clock_of_force(work: Work, told: Mapping[str, Measured]) -> bool:
 
 
 def _force_behind_climb(work: Work) -> None:
-    """Hold the clock of the specific force against that of the climb rate, where nothing else has told it."""
+    """Compare the clock of the specific force with that of the climb rate, if no other check has determined
+    it."""
     if any(f.code == "a_z_delay_s" for f in work.findings):
         return
     least = work.learn(force_against_climb(work.channels)).get("a_z_behind_climb")
@@ -261,7 +262,7 @@ def _force_behind_climb(work: Work) -> None:
 
 
 def _speed_unit(work: Work) -> bool:
-    """Hold the change of the air speed against the accelerometers; return whether its unit is as stated."""
+    """Compare the change of the air speed with the accelerometers; return whether its unit is as stated."""
     known = work.learn(speed_against_force(work.channels)).get("speed_scale")
     if known is None or not work.has("airspeed"):
         return True
@@ -279,7 +280,7 @@ def _weighed_speed(known: Measured) -> Weighed:
 
 
 def _airspeed(work: Work, told: Mapping[str, Measured]) -> bool:
-    """Hold the air speed against the motion; return whether they contradict."""
+    """Compare the air speed with the motion; return whether both contradict each other."""
     known = told.get("airspeed_scale")
     if known is None:
         return False

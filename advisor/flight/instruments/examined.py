@@ -1,4 +1,4 @@
-"""State of an examination of the instruments: channels so far corrected, evidence and findings."""
+"""State of an instrument examination: corrected channels, evidence and findings."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,17 +12,17 @@ from advisor.words.quantiles import NORMAL_95
 
 REVERSED = "reversed"
 FILTER_S = 0.015
-"""Longest delay, s, that an autopilot's filters give a gyro or an accelerometer: 11 ms for ArduPlane's 20 Hz,
-15 ms for 15 Hz."""
+"""Longest delay, s, of a gyro or an accelerometer by an autopilot's filters: 11 ms at 20 Hz, 15 ms at 15
+Hz."""
 SIGMAS = 3.0
-"""Distance from the innocent range, in standard deviations, of a delay that contradicts."""
+"""Distance of a delay from its normal range, in standard deviations, that counts as a contradiction."""
 ALLOWED = "; estimates use the shifted stamps"
 PLAIN = {
     "q": "the pitch rate", "theta": "the pitch angle", "a_z": "the specific force", "alpha": "alpha",
     "p": "the roll rate", "bank": "the bank angle", "r": "the yaw rate", "a_y": "the side force",
     "beta": "the sideslip",
 }  # fmt: skip
-"""Channel to its name in a sentence."""
+"""Name of each channel in a sentence."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,15 +30,15 @@ class Examined:
     """Result of an examination of one record's instruments."""
 
     channels: Mapping[str, Channel]
-    """Channels with the errors removed that are marked as used in ``findings``."""
+    """Channels without the errors that ``findings`` marks as used."""
     evidence: Evidence
     """Evidence of this record alone."""
     findings: tuple[InstrumentFinding, ...]
-    """Contradictions of the instruments, by all evidence."""
+    """Contradictions of the instruments, from this and earlier evidence."""
 
 
 class Work:
-    """Channels so far corrected, with evidence and findings so far."""
+    """Corrected channels, evidence and findings during an examination."""
 
     def __init__(self, channels: dict[str, Channel], earlier: Evidence) -> None:
         self.channels = channels
@@ -51,17 +51,17 @@ class Work:
         return all(name in self.channels and len(self.channels[name]) > 1 for name in names)
 
     def learn(self, new: Evidence) -> Mapping[str, Measured]:
-        """Take evidence; return all evidence, pooled with the earlier."""
+        """Add evidence, and return all evidence pooled with that of earlier records."""
         self.evidence |= new
         return pooled((self._earlier, self.evidence))
 
     def shift(self, name: str, by_s: float) -> None:
-        """Set the stamps of a channel earlier."""
+        """Shift the stamps of a channel to earlier times."""
         if name in self.channels:
             self.channels[name] = replace(self.channels[name], t=self.channels[name].t - by_s)
 
     def divide(self, name: str, by: float) -> None:
-        """Divide a channel's values."""
+        """Divide the values of a channel by a factor."""
         if name in self.channels:
             self.channels[name] = replace(self.channels[name], y=self.channels[name].y / by)
 
@@ -77,7 +77,7 @@ class Work:
         used: bool = False,
         removed_s: float = 0.0,
     ) -> None:
-        """Add a contradiction."""
+        """Add a contradiction to the findings."""
         self.findings.append(
             InstrumentFinding(
                 channel, quantity, stated, found, measured.std, True, text, fix, used, removed_s
@@ -86,7 +86,7 @@ class Work:
 
 
 def hold_clocks(work: Work, rate: str, angle: str) -> None:
-    """Hold the clock of a rate against that of its angle, and set the late one earlier."""
+    """Compare the clock of a rate with that of its angle, and shift the late channel forward."""
     late = work.learn({}).get(f"{rate}_delay")
     if late is None or not work.has(rate, angle):
         return
@@ -112,7 +112,7 @@ def be_late(
     bound: bool = False,
     shifted: tuple[str, ...] = (),
 ) -> None:
-    """Contradict the clock of a channel, and set the stamps of the channels in ``shifted`` earlier."""
+    """Add a finding about the late clock of a channel, and shift the stamps in ``shifted`` forward."""
     name = PLAIN[channel]
     ms = f"{'at least ' if bound else ''}{1e3 * late.value:.0f} ± {1e3 * NORMAL_95 * late.std:.0f} ms"
     work.contradict(
@@ -131,7 +131,7 @@ def half_intervals(work: Work, *names: str) -> float:
 
 
 def with_error(measured: Measured) -> str:
-    """Return the value with half its 95 % interval."""
+    """Return the value with half of its 95 % interval in words."""
     half = NORMAL_95 * measured.std
     digits = max(0, int(np.ceil(-np.log10(max(half, 1e-6))))) if half < 1.0 else 0
     return f"{measured.value:.{digits}f} ± {half:.{digits}f}"

@@ -1,9 +1,9 @@
-"""Check of the angle of attack against the motion, without any aerodynamics.
+"""Check of the angle of attack against the motion, without aerodynamics.
 
 The rate of the angle of attack by accelerometers, pitch rate and attitude is integrated and compared with the
-α channel. No aerodynamic derivative enters, so that any difference is an error of an instrument, not of the
-aircraft. (Klein & Morelli, *Aircraft System Identification*, chapter 10, "data compatibility"; here for the
-longitudinal motion.)
+α channel. No aerodynamic derivative is used, so any difference is an error of an instrument. (Klein &
+Morelli, *Aircraft System Identification*, chapter 10, "data compatibility"; here for the longitudinal
+motion.)
 """
 
 from collections.abc import Sequence
@@ -31,10 +31,10 @@ from advisor.words.quantities import symbol
 
 NEEDED = ("alpha", "q", "theta", "a_z")
 _FOLLOW_S = np.array([0.08, 0.2, 0.5, 1.2])
-"""Lags, s, that span the responses of aircraft, from the fastest short period to the slowest."""
+"""Time constants, s, that cover the responses of aircraft, from the fastest short period to the slowest."""
 CORRUPTED_BY_LAG = ("Z_delta_e", "Z_q", "Z_alpha", "M_q")
-"""Parameters that a late α corrupts. M_alpha and M_delta_e keep their values, because the lag only mixes α
-with its own rate. The rate of α enters the moment equation as a change of M_q."""
+"""Parameters that a late α biases. M_alpha and M_delta_e are not biased, because the lag only mixes α with
+its own rate. The rate of α enters the moment equation as a change of M_q."""
 SMALLEST_LAG_S = 0.004
 SMALLEST_SCALE = 0.01
 
@@ -43,20 +43,20 @@ Finding = Literal["consistent", "late", "early", "scaled", "inconsistent", "not 
 
 @dataclass(frozen=True, slots=True)
 class KinematicCheck:
-    """Result of the check of the α channel. NaN where unknown."""
+    """Result of the check of the α channel against the motion. Values are NaN where unknown."""
 
     finding: Finding
     sentence: str
     missing: tuple[str, ...] = ()
-    """Channels whose absence prevents the check."""
+    """Missing channels that prevent the check."""
     lag_s: float = float("nan")
-    """Lag of α, s (negative: early)."""
+    """Lag of the α channel, s; negative if early."""
     lag_std_s: float = float("nan")
     scale: float = float("nan")
-    """Scale error k: the channel reads (1 + k)·α."""
+    """Scale error k of the α channel, which reads (1 + k)·α."""
     scale_std: float = float("nan")
     offset: AlphaOffset = UNKNOWN
-    """Mean offset of α."""
+    """Mean offset of the α channel."""
     drift_rad_s: float = float("nan")
     """Rate at which reconstruction and α diverge, rad/s: bias of pitch rate and accelerometers together."""
     rms_rad: float = float("nan")
@@ -66,7 +66,7 @@ class KinematicCheck:
 
     @property
     def possible(self) -> bool:
-        """Whether the channels sufficed for the check."""
+        """Whether the channels suffice for the check."""
         return self.finding != "not possible"
 
 
@@ -82,12 +82,12 @@ def check_alpha(
     ----------
     maneuver
         Manoeuvre with channels ``alpha``, ``q``, ``theta``, ``a_z``, and ``airspeed`` unless one is given.
-        ``a_x`` and ``climb_rate`` are used where present.
+        Channels ``a_x`` and ``climb_rate`` are used if present.
     airspeed_m_s
-        Air speed for a log without one.
+        Air speed of a log without an air speed, m/s.
     accelerometer_arm_m, vane_arm_m
-        Distances of the accelerometer and the vane ahead of the centre of gravity, removed when known.
-        An unknown arm of the accelerometer appears as a small negative lag, one of the vane as a lag.
+        Distances of accelerometer and vane ahead of the centre of gravity, which are corrected if known. An
+        unknown accelerometer arm appears as a small negative lag, and a vane arm as a lag.
     """
     found = maneuver.channels
     missing = [name for name in NEEDED if name not in found or len(found[name]) < 20]
@@ -115,7 +115,8 @@ def check_alpha(
 
 
 def _followers(t: FloatArray, command: FloatArray) -> FloatArray:
-    """Return the command after two equal lags, for several lags, shape (n, k), which span the response."""
+    """Return the command after two equal lags, for several lags, shape (n, k), as approximations of the
+    response."""
     moved = command - command[0]
     first = np.zeros(len(_FOLLOW_S))
     found = np.zeros((len(t), len(_FOLLOW_S)))
@@ -137,9 +138,9 @@ def _compare(
 ) -> KinematicCheck:
     """Fit α(t) = (1 + k)·α_k(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in τ, k and the b.
 
-    A gust moves the vane at once and the aircraft later, which looks like a lag and a scale. A gust is
-    independent of the command. The lagged commands are the instrumental variables of the fit (two-stage
-    least squares).
+    A gust moves the vane at once and the aircraft later, which looks like a lag and a scale error. A gust is
+    independent of the command. The lagged commands are the instrumental variables of the fit (two-stage least
+    squares).
     """
     inside = (t_alpha >= t[0] + 0.3) & (t_alpha <= t[-1] - 0.3)
     tm, y = t_alpha[inside], alpha[inside]
@@ -179,7 +180,7 @@ def _compare(
 
 
 def _orthogonal(columns: FloatArray) -> FloatArray:
-    """Return orthonormal columns with an equal span, without nearly vanishing directions."""
+    """Return orthonormal columns of equal span, without nearly vanishing directions."""
     left, size, _ = np.linalg.svd(
         columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), full_matrices=False
     )
@@ -187,7 +188,7 @@ def _orthogonal(columns: FloatArray) -> FloatArray:
 
 
 def _told_by(instruments: FloatArray | None, columns: FloatArray) -> FloatArray:
-    """Return the projection of the columns on the instruments' span; without instruments the columns."""
+    """Return the projection of the columns on the instruments' span, or the columns without instruments."""
     return columns if instruments is None else np.asarray(instruments @ (instruments.T @ columns))
 
 
@@ -220,7 +221,7 @@ def _judge(
 
 
 def combine(checks: Sequence[KinematicCheck]) -> KinematicCheck:
-    """Return one check for the aircraft from those of its manoeuvres, by means weighted with their errors.
+    """Return one check for the aircraft from the checks of its manoeuvres, as weighted means.
 
     Scatter between manoeuvres that exceeds their stated errors widens the error.
     """

@@ -1,9 +1,9 @@
-"""A measured value with its error, the mean of several, and hypotheses on the scale of an instrument.
+"""A measured value with its error, the mean of several, and hypotheses about an instrument's scale.
 
 A reading is the true value times a factor: 1 as stated, −1 for a reversed sense, 57.3 for degrees that are
-read as radians. Around each factor the scale of an instrument of this kind scatters by a known share. Every
-hypothesis has equal prior probability, and the posterior follows from the likelihoods. One further hypothesis
-allows any scale, so that the nearest factor need not be true.
+read as radians. Around each factor the scale of an instrument scatters by a known share. All hypotheses have
+equal prior probability, and the posterior follows from the likelihoods. One further hypothesis allows any
+scale, so that the nearest factor may also be wrong.
 """
 
 from collections.abc import Iterable, Mapping
@@ -17,18 +17,18 @@ from advisor.flight.instruments.alpha_offset import weighted
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """A value and its standard deviation."""
+    """A measured value and its standard deviation."""
 
     value: float
     std: float
 
 
 Evidence = Mapping[str, Measured]
-"""Name of a quantity to its measured value."""
+"""Measured value of each quantity, by the quantity's name."""
 
 
 def pooled(several: Iterable[Evidence]) -> dict[str, Measured]:
-    """Return the weighted mean of every quantity over the records that tell it.
+    """Return the weighted mean of every quantity over the records that contain it.
 
     Scatter between records that exceeds their stated errors widens the error.
     """
@@ -46,13 +46,13 @@ def pooled(several: Iterable[Evidence]) -> dict[str, Measured]:
 AS_STATED = "as stated"
 ANY = "any other scale"
 _DECADES = 4.0
-"""Decades of scale, from 0.01 to 100 on both sides of zero, over which "any other scale" is spread evenly.
-The ratio of any two units in use lies within."""
+"""Decades of scale, from 0.01 to 100 with either sign, over which "any other scale" is uniform. The ratio of
+any two units in use lies within this range."""
 EXCLUDED = 0.01
 """Largest posterior probability of an excluded hypothesis: the usual level of 99 %."""
 _RESOLVED_SIGMAS = 3.0
-"""Least distance of a measured scale from zero, in standard deviations. A smaller scale may be noise, which
-any unit of small readings explains."""
+"""Least distance of a measured scale from zero, in standard deviations, for a significant scale. A smaller
+scale may be noise, which any unit of small readings explains."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,15 +60,15 @@ class Weighed:
     """Posterior over the hypotheses on one scale."""
 
     best: str
-    """Likeliest hypothesis."""
+    """Name of the likeliest hypothesis."""
     factor: float
-    """Factor of the likeliest hypothesis; the measured scale for ``ANY``."""
+    """Factor of the likeliest hypothesis, or the measured scale for ``ANY``."""
     probability: float
-    """Posterior probability of ``best``."""
+    """Posterior probability of the likeliest hypothesis, ``best``."""
     stated_probability: float
-    """Posterior probability of ``AS_STATED``."""
+    """Posterior probability that the instrument reads as stated (``AS_STATED``)."""
     resolved: bool
-    """Whether the reading follows the motion at all, beyond its errors."""
+    """Whether the reading follows the motion beyond its errors."""
 
     @property
     def contradicts(self) -> bool:
@@ -77,14 +77,14 @@ class Weighed:
 
 
 def weigh(measured: Measured, factors: Mapping[str, float], width: float, stated: float = 1.0) -> Weighed:
-    """Return the posterior over hypotheses on a scale.
+    """Return the posterior probabilities of the hypotheses about a scale.
 
     Parameters
     ----------
     measured
-        Scale of the reading relative to the motion.
+        Measured scale of the reading relative to the motion.
     factors
-        Hypothesis to the factor of its readings, relative to the stated reading; without ``AS_STATED``.
+        Factor of each hypothesis relative to the stated reading, without ``AS_STATED``.
     width
         Standard deviation of an instrument's scale, as a share.
     stated

@@ -1,11 +1,11 @@
-"""Examination of the instruments of roll and yaw of one record.
+"""Examination of the roll and yaw instruments of one record.
 
 The order is: roll rate and bank, unit of the specific force, clock of the roll rate, sideslip, side force.
 
-The bank's rate is p + tan θ·(q·sin φ + r·cos φ). The sideslip's rate is β̇ = a_y/V + b + c. The part of the
-weight is b = (g/V)·cos θ·sin φ, and that of turning is c = sin α·p - cos α·r. On every aircraft the side
-force opposes the sideslip, a_y/V = Y_β·β with Y_β < 0 and a small part of the rudder's. The sign of each
-part in a measured sideslip, and in a side force, is known without any aerodynamics.
+The bank's rate is p + tan θ·(q·sin φ + r·cos φ). The sideslip's rate is β̇ = a_y/V + b + c. The weight's part
+is b = (g/V)·cos θ·sin φ, and the turn rate's part is c = sin α·p - cos α·r. On every aircraft the side force
+opposes the sideslip: a_y/V = Y_β·β with Y_β < 0. The sign of each part in a measured sideslip and in a side
+force is therefore known.
 """
 
 from collections.abc import Mapping
@@ -30,13 +30,15 @@ from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
 
 _TURNED_RAD = 0.75 * np.pi
-"""Largest bank, rad, of a record that tells of the roll rate. Beyond half a turn the bank jumps."""
+"""Largest bank, rad, of a record with which the roll rate is tested. Beyond half a turn the bank angle
+jumps."""
 
 
 def rate_against_bank(channels: Channels) -> Evidence:
     """Return ``bank_scale``, the bank's change over the integral of its rate, and ``p_delay``, s.
 
-    The delay is that of the roll rate relative to the bank. Empty where the bank hardly moves, or turns over.
+    The delay is that of the roll rate relative to the bank. The result is empty if the bank hardly moves, or
+    turns over.
     """
     if not usable(channels, "p", "bank", "theta"):
         return {}
@@ -55,9 +57,9 @@ def rate_against_bank(channels: Channels) -> Evidence:
 
 
 def sideslip_against_motion(channels: Channels) -> Evidence:
-    """Return the factors of the parts of β̇ in a measured sideslip; empty where nothing moves.
+    """Return the factors of the parts of β̇ in a measured sideslip; empty if nothing moves.
 
-    ``beta_by_weight``, ``beta_by_turn`` and ``beta_by_motion``, that of both together, are near 1.
+    ``beta_by_weight``, ``beta_by_turn`` and their common factor ``beta_by_motion`` are near 1.
     ``beta_by_force``, also near 1, is the side force over its reading.
     """
     parts = _parts(channels, "beta")
@@ -79,9 +81,9 @@ def sideslip_against_motion(channels: Channels) -> Evidence:
 
 
 def force_against_motion(channels: Channels) -> Evidence:
-    """Return the factors of the parts of β̇ in the side force over the speed, 1/s; empty where nothing moves.
+    """Return the factors of the parts of β̇ in the side force over the speed, 1/s; empty if nothing moves.
 
-    ``a_y_by_weight``, ``a_y_by_turn`` and ``a_y_by_motion``, that of both together, are Y_β. ``a_y_in_g`` is
+    ``a_y_by_weight``, ``a_y_by_turn`` and their common factor ``a_y_by_motion`` are Y_β. ``a_y_in_g`` is
     V·Y_β/g = C_Yβ/C_L, the side force of one radian over the weight.
     """
     parts = _parts(channels, "a_y")
@@ -100,7 +102,7 @@ def force_against_motion(channels: Channels) -> Evidence:
 
 
 def _factors(name: str, apart: DelayedFit, together: DelayedFit) -> dict[str, Measured]:
-    """Return the factors of weight and turning apart, and of both together."""
+    """Return the separate factors of weight and turn rate, and their common factor."""
     values = (*apart.factors, *together.factors), (*apart.factor_stds, *together.factor_stds)
     parts = ("weight", "turn", "motion")
     return {
@@ -109,7 +111,7 @@ def _factors(name: str, apart: DelayedFit, together: DelayedFit) -> dict[str, Me
 
 
 def _parts(channels: Channels, name: str) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Return stamps, and the parts of β̇ by weight and by turning, rad/s; None without a moving channel."""
+    """Return stamps, and the parts of β̇ by weight and by turn rate, rad/s; None without a moving channel."""
     if not usable(channels, "r", "p", "bank", "theta", "airspeed", name):
         return None
     t = channels["r"].t
@@ -124,27 +126,27 @@ def _parts(channels: Channels, name: str) -> tuple[FloatArray, FloatArray, Float
 
 
 _FORCE_WIDTH = 0.3
-"""Standard deviation of the side force's scale by a measured sideslip, as a share. The side force is a small
-part of the sideslip's rate, so that a vane's own scale counts several times."""
+"""Prior standard deviation of the side force's scale from a measured sideslip, as a share. The side force is
+a small part of the sideslip's rate, so a vane's scale error is amplified."""
 _USUAL_IN_G, _SPREAD = 2.0, 0.8
-"""Side force of one radian of sideslip over the weight, |C_Yβ|/C_L: its usual value, and the standard
-deviation of its logarithm. Four aircraft on record have 0.7 to 4.9."""
+"""Prior mean, and standard deviation of the logarithm, of the side force per sideslip over the weight,
+|C_Yβ|/C_L. Four recorded aircraft have values of 0.7 to 4.9."""
 _DIRECTION = {
     "p": "the right wing goes down", "bank": "the right wing is down", "r": "the nose goes right",
     "a_y": "the force points right", "beta": "the wind comes from the right",
 }  # fmt: skip
-"""Channel to its positive direction."""
+"""Positive direction of each channel in words."""
 
 
 def examine_side(channels: Mapping[str, Channel], earlier: Evidence | None = None) -> Examined:
-    """Examine the instruments of roll and yaw.
+    """Examine the roll and yaw instruments of a record.
 
     Parameters
     ----------
     channels
-        Channel name to its samples.
+        Samples of each channel, by the channel's name.
     earlier
-        Pooled evidence of earlier records of the same instruments.
+        Pooled evidence from earlier records of these instruments.
     """
     work = Work(dict(channels), earlier or {})
     if _bank_and_rate(work) and hold_force_unit(work):
@@ -158,7 +160,7 @@ def examine_side(channels: Mapping[str, Channel], earlier: Evidence | None = Non
 
 
 def _bank_and_rate(work: Work) -> bool:
-    """Hold the roll rate against the bank; return whether sense and unit agree."""
+    """Compare the roll rate with the bank; return whether sign and unit agree."""
     known = work.learn(rate_against_bank(work.channels)).get("bank_scale")
     told = hold_rate(work, known, "p", "bank")
     if told and known is not None:
@@ -167,9 +169,10 @@ def _bank_and_rate(work: Work) -> bool:
 
 
 def _signs(work: Work, name: str, told: Evidence, sense: float) -> bool:
-    """Hold the signs of both parts of the sideslip in a channel against ``sense``; return whether they agree.
+    """Compare the signs of both parts of the sideslip with ``sense``; return whether they agree.
 
-    A channel that is reversed turns both. A yaw rate or a bank that is reversed turns its own part.
+    A reversed channel changes the sign of both parts. A reversed yaw rate or bank changes the sign of its own
+    part only.
     """
     parts = [told.get(f"{name}_by_{part}") for part in ("weight", "turn")]
     both = told.get(f"{name}_by_motion")
@@ -206,7 +209,7 @@ def _turned(work: Work, channel: str, measured: Measured, told: str) -> None:
 
 
 def _side_force_unit(work: Work, told: Evidence) -> None:
-    """Hold the unit of the side force against a measured sideslip, or against the usual side force."""
+    """Compare the unit of the side force with a measured sideslip, or with the usual side force."""
     if not work.has("a_y"):
         return
     source = work.channels["a_y"].source
@@ -227,7 +230,7 @@ def _side_force_unit(work: Work, told: Evidence) -> None:
 
 
 def _likelihood(in_g: float) -> float:
-    """Return the density of a side force of one radian of sideslip, over the weight, up to a constant."""
+    """Return the prior density of the side force per sideslip over the weight, up to a constant."""
     return exp(-0.5 * (log(in_g / _USUAL_IN_G) / _SPREAD) ** 2)
 
 

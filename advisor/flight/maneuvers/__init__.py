@@ -1,1 +1,1 @@
-"""Manoeuvres: their finding in the elevator's samples, their marks, and the events that tell of them."""
+"""Manoeuvres: their detection in elevator samples, marks by the crew, and the events about them."""

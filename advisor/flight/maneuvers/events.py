@@ -1,4 +1,4 @@
-"""Events that the stream of messages gives to the flight test, in the order in which they became known."""
+"""Events of the message stream for the flight test, in the order in which they became known."""
 
 from dataclasses import dataclass, replace
 from math import nan
@@ -10,34 +10,35 @@ from advisor.words.printable import printable
 from advisor.words.problems import Problem
 
 _SOON_S = 30.0
-"""Largest time between similar movements that are listed as one, s. A crew reads no list of corrections."""
+"""Largest time between similar movements that are listed as one entry, s. Crews do not read a list of single
+corrections."""
 
 
 READER_NOTICE = "log_reader"
-"""Code of a notice with a log reader's sentence, or with the treatment of a parameter heard in flight."""
+"""Code of a notice with a log reader's sentence, or about a parameter received in flight."""
 
 
 @dataclass(frozen=True, slots=True)
 class VehicleFound:
-    """The vehicle to be followed has sent its first heartbeat."""
+    """The followed vehicle has sent its first heartbeat."""
 
     vehicle: Vehicle
 
 
 @dataclass(frozen=True, slots=True)
 class Rebooted:
-    """The vehicle's clock has restarted, which begins another power-on."""
+    """The vehicle's clock has restarted, so another power-on begins."""
 
     boot: int
 
 
 @dataclass(frozen=True, slots=True)
 class ModeChanged:
-    """The autopilot is in another flight mode."""
+    """The autopilot has changed its flight mode."""
 
     mode: str
     at_s: float
-    """Vehicle time, s. NaN before the first stamped message."""
+    """Vehicle time of the mode change, s. NaN before the first stamped message."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,12 +66,12 @@ class SideManeuverFlown:
 
 @dataclass(frozen=True, slots=True)
 class ManeuverAgain:
-    """A known manoeuvre came again, in another log or power-on. A manoeuvre counts once."""
+    """A known manoeuvre was recorded again, in another log or power-on. Each manoeuvre is used once."""
 
     maneuver: Maneuver
-    """New record, numbered as the known one."""
+    """New record of the manoeuvre, with the known number."""
     takes_place: bool
-    """Whether the new record holds more samples than the known one, and replaces it."""
+    """Whether the new record has more samples than the known one, and replaces it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +85,7 @@ class FlightBegan:
 
 @dataclass(frozen=True, slots=True)
 class Activity:
-    """A movement of the elevator that was no test input."""
+    """A movement of the elevator that is no test input."""
 
     start_s: float
     """Begin of the movement, s since boot."""
@@ -93,16 +94,16 @@ class Activity:
     """``autopilot``, ``elsewhere``, ``feedback``, ``ground``, ``hover``, ``no_information``, ``small`` or
     ``unsettled``."""
     text: str
-    """Sentence for people."""
+    """Sentence about the movement, for people."""
     stay_s: float
-    """Begin of the vehicle's present flight mode, s since boot, which distinguishes stays in it."""
+    """Begin of the vehicle's present stay in its flight mode, s since boot."""
     boot: int = 0
     """Number of the vehicle's power-on."""
     flight: int = 0
     """Number of the campaign's log or link, 0 for the first."""
 
     def joined(self, earlier: "Activity") -> "Activity | None":
-        """Return one activity for this and the earlier one; None where reason, boot or mode differ."""
+        """Return one activity for this and the earlier one; None if reason, boot or mode differ."""
         stay = (self.reason, self.flight, self.boot, self.stay_s)
         if stay != (earlier.reason, earlier.flight, earlier.boot, earlier.stay_s):
             return None
@@ -115,7 +116,7 @@ class Activity:
 
 @dataclass(frozen=True, slots=True)
 class Notice:
-    """A sentence for the event log."""
+    """Sentence for the event log."""
 
     code: str
     text: str
@@ -127,22 +128,22 @@ class Notice:
 
 @dataclass(frozen=True, slots=True)
 class ElevatorRescaled:
-    """A parameter of the elevator is heard late, for which another value was assumed."""
+    """A parameter of the elevator's scale is received late, after another value was assumed."""
 
     before: Surface
     after: Surface
     heard: str
-    """Name and value of the parameter, with the time of its arrival."""
+    """Name and value of the received parameter, with the time of its arrival."""
     flight: int = 0
     """Number of the campaign's log or link, 0 for the first."""
 
 
 @dataclass(frozen=True, slots=True)
 class VehicleSaid:
-    """A vehicle, or another sender on the link, said something in words (STATUSTEXT)."""
+    """A vehicle, or another sender on the link, has sent a text (STATUSTEXT)."""
 
     text: str
-    """Printable, on one line, of bounded length."""
+    """Printable text on one line, of bounded length."""
     severity: str
     """Name of MAV_SEVERITY; empty where a log does not keep the severity."""
     system: int
@@ -153,20 +154,20 @@ class VehicleSaid:
 
 @dataclass(frozen=True, slots=True)
 class NoData:
-    """The present data cannot serve."""
+    """The present data cannot be used for an estimate."""
 
     problems: tuple[Problem, ...]
-    """At least one problem: missing or slow messages, the most fundamental first."""
+    """At least one problem, such as a missing or slow message, most fundamental first."""
     at_s: float = nan
     """Vehicle time, s since boot; NaN before the first stamped message."""
 
 
 @dataclass(frozen=True, slots=True)
 class DataAgain:
-    """The present data can serve again."""
+    """The present data can be used again."""
 
     at_s: float = nan
-    """Vehicle time, s since boot."""
+    """Vehicle time, s since boot; NaN before the first stamped message."""
 
 
 FlightEvent = (

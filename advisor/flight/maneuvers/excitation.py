@@ -1,15 +1,15 @@
 """Information of an elevator movement about the short period, from the pitch rate alone.
 
-A pilot or an autopilot that steadies the aircraft moves the elevator with its motion. Let e be the part of
-the elevator that no linear feedback of pitch rate q, pitch angle θ and its integral explains. Only e
-separates cause from effect: e is the external input of closed-loop identification (Ljung, System
-Identification, 1999, ch. 13). The short period makes a linear recursion of second order of q and e,
+A pilot or an autopilot that stabilises the aircraft moves the elevator in response to its motion. Let e be
+the part of the elevator that no linear feedback of q, θ and the integral of θ explains. Only e separates
+cause from effect: e is the external input of closed-loop identification (Ljung, System Identification, 1999,
+ch. 13). The short period gives a linear recursion of second order for q and e,
 
     q[k] = a1·q[k−1] + a2·q[k−2] + b0·e[k] + b1·e[k−1] + b2·e[k−2] + c + d·k + ε[k],
 
-on means over intervals of equal length. A servo's lag spreads over b0, b1, b2. The statistic F tests whether
-b0, b1 and b2 explain more than chance (Draper & Smith, Applied Regression Analysis, 1998, ch. 6). Angle of
-attack and acceleration are not needed.
+with means over intervals of equal length. A servo's lag distributes the effect over b0, b1 and b2. The
+statistic F tests whether b0, b1 and b2 explain more than chance (Draper & Smith, Applied Regression Analysis,
+1998, ch. 6). Angle of attack and acceleration are not needed.
 """
 
 from dataclasses import dataclass
@@ -26,47 +26,46 @@ from advisor.flight.signals.motion import integrated
 _INPUTS = 3
 """Number of the elevator's terms in the recursion."""
 _FEWEST = 14
-"""Fewest intervals for the recursion with its seven terms, which leaves five degrees of freedom."""
+"""Least number of intervals for the recursion with seven terms, which leaves five degrees of freedom."""
 _LONGEST_S = 0.3
 """Longest interval, s: a fifth of the natural period of a slow aircraft at 0.5 Hz."""
 _PER_STEP = 4.0
-"""Number of intervals in the shortest step. A step is matched to the short period."""
+"""Number of intervals in the shortest step of the input. The shortest step of an input is matched to the
+short period."""
 _MANY = 40.0
-"""Number of intervals in a record, where its sampling allows so many."""
+"""Largest number of intervals in a record, if its sampling rate allows."""
 
 
 @dataclass(frozen=True, slots=True)
 class Excitation:
-    """Effect of a control on the rate that answers."""
+    """Effect of a control on the angular rate that responds."""
 
     rate: float
-    """Half of the range of the rate, rad/s."""
+    """Half of the range of the angular rate, rad/s."""
     relative_error: float
-    """Relative standard error of the elevator's effect: 1/√(3·F). The relative error is infinite without an
-    effect."""
+    """Relative standard error of the control's effect: 1/√(3·F). The error is infinite without an effect."""
     external_error: float
-    """Relative standard error for the external input alone, as in a closed loop."""
+    """Relative standard error for the external input alone, for a closed loop."""
     effect: float
-    """Elevator's effect on the pitch rate, b0 + b1 + b2. The effect has the sign of the control; 0 where the
-    effect is not estimated."""
+    """Effect of the elevator on the pitch rate, b0 + b1 + b2. The sign of the effect is that of the control;
+    0 if the effect is not estimated."""
 
 
 def excitation(maneuver: Maneuver, loop: Loop = PITCH) -> Excitation | None:
-    """Measure the information of a movement about the short period.
+    """Return the information of a movement about the short period.
 
     Parameters
     ----------
     maneuver
-        Record with the channels of the control and the rate. Without the angle, the integral of the rate
-        takes its place.
+        Record with the channels of the control and of the rate. Without the angle channel, the integral of
+        the rate is used.
     loop
-        Control, and the rate that answers.
+        Control, and the rate that responds.
 
     Returns
     -------
     Excitation or None
-        None where the rate is missing or never changes. The error is infinite for too
-        few samples.
+        None if the rate is missing or never changes. The error is infinite for too few samples.
     """
     elevator, q = maneuver.channels.get(loop.control), maneuver.channels.get(loop.rate)
     if elevator is None or q is None or len(elevator) < 3 or len(q) < 3 or np.ptp(q.y) == 0.0:
@@ -86,7 +85,8 @@ def excitation(maneuver: Maneuver, loop: Loop = PITCH) -> Excitation | None:
 
 
 def _external(maneuver: Maneuver, loop: Loop) -> FloatArray:
-    """Return the part of the elevator that no linear feedback of the motion explains, at its stamps."""
+    """Return the part of the elevator that no linear feedback of the motion explains, at the elevator's
+    stamps."""
     elevator, q = maneuver.channels[loop.control], maneuver.channels[loop.rate]
     rate = np.interp(elevator.t, q.t, q.y)
     theta = maneuver.channels.get(loop.angle)
@@ -107,8 +107,8 @@ def _means(edges: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
 
 
 def _effect(q: FloatArray, elevator: FloatArray) -> tuple[float, float]:
-    """Return the relative standard error of the elevator's effect, from F of the elevator's three terms, and
-    the sum of their coefficients."""
+    """Return the relative standard error of the elevator's effect, and the effect: the sum of its three
+    coefficients."""
     n = len(q) - 2
     own = np.column_stack([q[1:-1], q[:-2], np.ones(n), np.linspace(-1.0, 1.0, n)])
     full = np.column_stack([own, elevator[2:], elevator[1:-1], elevator[:-2]])
@@ -120,12 +120,12 @@ def _effect(q: FloatArray, elevator: FloatArray) -> tuple[float, float]:
 
 
 def _left(terms: FloatArray, y: FloatArray) -> FloatArray:
-    """Return the residual of a signal after least squares on these terms."""
+    """Return the residual of a signal after least squares on the given terms."""
     return y - terms @ _fitted(terms, y)
 
 
 def _fitted(terms: FloatArray, y: FloatArray) -> FloatArray:
-    """Return the least-squares coefficients of these terms."""
+    """Return the least-squares coefficients of the given terms."""
     size = np.maximum(np.abs(terms).max(axis=0), 1e-12)
     coefficients: FloatArray = np.linalg.lstsq(terms / size, y, rcond=None)[0] / size
     return coefficients

@@ -1,15 +1,14 @@
 """Share of an elevator movement that feedback of the motion explains.
 
-A pilot who brings the aircraft back to steady flight answers what the aircraft did before. The movement obeys
+A pilot who brings the aircraft back to steady flight responds to its earlier motion. Such a movement obeys
 
     δe(t) = δ0 + s·[Kq·q(t − τ) + Kθ·θ(t − τ)],   Kq ≥ 0, Kθ ≥ 0,
 
-with s the sign of the steadying side, and with a delay τ of the hand. Such a movement begins where the
-attitude is off, and ends where the attitude is back. A test input begins in steady flight, and moves the
-aircraft away. An unstable aircraft is always fed back, also within a test input, so that the share alone
-refuses no movement. The coefficients are a non-negative least-squares fit (Lawson & Hanson, Solving Least
-Squares Problems, 1974, ch. 23). The fit begins at the onset, because hands that were still before begin to
-act there.
+with s the sign of the stabilising side, and with a delay τ of the hand. A feedback movement begins with a
+disturbed attitude and ends with the attitude restored. A test input begins in steady flight and moves the
+aircraft away from it. An unstable aircraft always needs feedback, so the share alone refuses no movement. The
+coefficients are a non-negative least-squares fit (Lawson & Hanson, Solving Least Squares Problems, 1974, ch.
+23). The fit begins at the onset of the movement.
 """
 
 from collections.abc import Mapping
@@ -22,14 +21,14 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 
 DELAYS_S = (0.1, 0.2, 0.3)
-"""Delays of a hand between the motion and the answer, s. Pilots have 0.1 to 0.3 (McRuer & Krendel 1974)."""
+"""Delays between the motion and the hand's response, s. Pilots have 0.1 to 0.3 (McRuer & Krendel 1974)."""
 HISTORY_S = 15.0
-"""Time before a movement over which the median pitch angle is the angle that the pilot keeps, s. The history
-holds one test input with its free response, and a longer stretch of steady flight."""
+"""Length of flight before a movement whose median pitch angle is the pilot's target, s. This length contains
+one test input with its free response, and some steady flight."""
 _FEWEST = 8
-"""Fewest samples of the elevator, for the law with its four unknowns."""
+"""Least number of elevator samples for the feedback law with four unknowns."""
 _AT_S = 0.2
-"""Time over which the pitch angle at the onset and at the end is averaged, s: one delay of a hand."""
+"""Length over which the pitch angle at onset and end is averaged, s: one delay of a hand."""
 
 
 def explained_by_feedback(
@@ -42,19 +41,19 @@ def explained_by_feedback(
     span
         Extent of the movement.
     elevator
-        Elevator, rad.
+        Elevator channel, rad.
     motion
-        Channels ``q`` and ``theta`` from ``HISTORY_S`` before the movement to its end. Where a channel is
+        Channels ``q`` and ``theta`` from ``HISTORY_S`` before the movement to its end. If a channel is
         missing, the share is 0.
     effect
-        Elevator's effect on the pitch rate. Only the sign counts; 0: unknown.
+        Elevator's effect on the pitch rate. Only the sign is used; 0 means unknown.
     loop
-        Another control, whose rate and angle stand for q and θ.
+        Another control, whose rate and angle replace q and θ.
 
     Returns
     -------
     float
-        0 where the movement does not bring the pitch angle back to the angle kept before.
+        The share is 0 if the movement does not bring the pitch angle back to its earlier median.
     """
     moved = elevator.cut(span.start_s, span.end_s)
     if not {loop.rate, loop.angle} <= motion.keys() or effect == 0.0 or len(moved) < _FEWEST:
@@ -68,7 +67,7 @@ def explained_by_feedback(
 
 
 def _comes_back(theta: Channel, span: Span) -> bool:
-    """Return whether the pitch angle is nearer to the angle kept before at the end than at the onset."""
+    """Return whether the pitch angle is nearer to its earlier median at the end than at the onset."""
     kept = theta.cut(-np.inf, span.start_s).y
     first, last = (theta.cut(at_s - _AT_S, at_s).y for at_s in (span.start_s, span.end_s))
     if not (len(kept) and len(first) and len(last)):
@@ -78,7 +77,7 @@ def _comes_back(theta: Channel, span: Span) -> bool:
 
 
 def _left(q: Channel, theta: Channel, t: FloatArray, u: FloatArray) -> float:
-    """Return the sum of squares of a movement that the law with these stamps of the motion leaves."""
+    """Return the residual sum of squares of a movement after the fit of the feedback law."""
     rate, pitch = np.interp(t, q.t, q.y), np.interp(t, theta.t, theta.y)
     level = np.ones(len(t))
     terms = np.column_stack([rate, pitch - np.mean(pitch), level, -level])

@@ -1,4 +1,4 @@
-"""The free response after a movement of the elevator: its length, and the event that ends it."""
+"""Free response after a movement of the elevator: its length, and the event that ends it."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -8,47 +8,48 @@ from advisor.flight.maneuvers.movement import Movement, is_still
 from advisor.flight.signals.samples import Samples
 
 FREE_S = (3.0, 8.0)
-"""Least and greatest length of the free response, s. Between them it is as long as the input."""
+"""Least and greatest length of the free response, s. Between these limits the free response is as long as the
+input."""
 _PARTING_S = (0.5, 0.6)
-"""Least and greatest length of a rest that separates two movements, s. Between them the length is three
-quarters of the longest step. The next input may come one second later."""
+"""Least and greatest length of a rest that separates two movements, s. Between these limits the length is
+three quarters of the longest step. The next input may come one second later."""
 _SURELY_S = 2.5
-"""Length of a rest that separates two movements however much the elevator wavers, s."""
+"""Length of a rest that always separates two movements, s."""
 _BACK = 0.2
-"""Largest distance of a shorter rest from the level before, as a share of the amplitude, after which the next
-input may come."""
+"""Largest distance of a short rest from the earlier level, as a share of the amplitude, after which an input
+may follow."""
 _WAVERING = 0.2
-"""Largest wavering of a shorter rest after a movement without levels, as a share of its amplitude. A
-multisine has gentle parts of its own."""
+"""Largest spread of a short rest after a movement without levels, as a share of its amplitude. A multisine
+itself has slow parts."""
 _LEAVES = (0.2, 0.35)
-"""Least and greatest departure of the elevator that ends a free response, as shares of the amplitude. Between
-the two limits the departure is five standard deviations of the elevator at rest."""
+"""Least and greatest deviation of the elevator that ends a free response, as shares of the amplitude. Between
+these limits the deviation is five standard deviations of the elevator at rest."""
 _LEAVING_S = (1.0, 0.15)
-"""Part of a rest that is tested for stillness, s before the elevator leaves. The last moment may belong to
-the next movement."""
+"""Part of a rest that is tested for stillness, in s before the elevator moves. The last moment of the rest
+may belong to the next movement."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """The event that ended a free response."""
+    """Event that ended a free response."""
 
     why: Literal["quiet", "next input", "same input"]
-    """The response has lasted long enough, another movement begins, or the earlier movement goes on."""
+    """Reason: the response lasted long enough, another movement begins, or the earlier movement continues."""
     at_s: float
-    """Stamp of the end, s."""
+    """Vehicle time of the end, s."""
 
 
 class FreeResponse:
-    """Waits for the end of the free response of one movement.
+    """State of one movement's free response until its end.
 
     Parameters
     ----------
     movement
-        Movement of the elevator that has come to rest.
+        Movement of the elevator that has ended.
     before
         Level of the elevator before the movement, rad.
     samples
-        Samples of the elevator. The caller adds the newest sample first.
+        Elevator samples, including the newest one. The caller adds the newest sample before each call.
     """
 
     def __init__(self, movement: Movement, before: float, samples: Samples) -> None:
@@ -60,7 +61,8 @@ class FreeResponse:
         self._end_s = movement.last_step_s + min(max(duration_s, FREE_S[0]), FREE_S[1])
 
     def take(self, t: float, u: float) -> Ended | None:
-        """Take the stamp (s) and elevator (rad) of the newest sample; return None during the response."""
+        """Take the stamp (s) and elevator (rad) of the newest sample; return None while the response
+        continues."""
         least, most = (share * self.movement.amplitude for share in _LEAVES)
         if abs(u - self.movement.trim) <= min(max(5.0 * self.movement.quiet, least), most):
             self._away_s = []
@@ -72,7 +74,7 @@ class FreeResponse:
         return Ended("next input" if self._parts(left_s) else "same input", left_s)
 
     def _parts(self, left_s: float) -> bool:
-        """Return whether the rest up to ``left_s`` separates the following movement from this one."""
+        """Return whether the rest up to ``left_s`` separates the next movement from this one."""
         movement = self.movement
         rested_s = left_s - movement.over_s
         if rested_s < _parting_s(movement):
@@ -87,7 +89,7 @@ class FreeResponse:
 
 
 def _parting_s(movement: Movement) -> float:
-    """Return the length of a rest that separates the following movement from this one, s."""
+    """Return the length of a rest that separates the next movement from this one, s."""
     onsets = [onset for onset, _ in movement.steps]
     longest_s = max((b - a for a, b in pairwise(onsets)), default=0.0)
     return min(max(_PARTING_S[0], 0.75 * longest_s), _PARTING_S[1])

@@ -1,9 +1,9 @@
-"""Whether the aircraft flew during an elevator movement, by all its telemetry.
+"""Evidence whether the aircraft flew during an elevator movement, from all its telemetry.
 
 An elevator movement in the preflight check, in the take-off run or after a crash is no test input. An
-estimate from such a movement would be nonsense. The autopilot's own statement counts first
-(EXTENDED_SYS_STATE). The next signs are the armed flag with the speed over ground, speed and height
-together, and an air speed near zero.
+estimate from a movement on the ground would be wrong. The autopilot's statement EXTENDED_SYS_STATE has
+priority. The other evidence is the armed flag with ground speed, speed and height together, and air speed
+near zero.
 """
 
 from collections.abc import Callable
@@ -19,31 +19,34 @@ from advisor.flight.signals.record import Channel
 # MAV_LANDED_STATE, MAVLink common.xml.
 _ON_GROUND, _TAKING_OFF = 1, 3
 _FRESH_S = 5.0
-"""Time for which a statement of the autopilot holds, s. Statements come about once a second."""
+"""Time for which a landed state of the autopilot is valid, s. Landed states arrive about once a second."""
 STANDING_M_S = 3.0
-"""Least speed over ground of a moving aircraft, m/s. A receiver at rest shows less than 1."""
+"""Least ground speed of a moving aircraft, m/s. A receiver at rest shows less than 1 m/s."""
 WINDY_M_S = 12.0
-"""Largest air speed that wind alone may cause on a parked aircraft, m/s. Faster air counts as flight."""
+"""Largest air speed that wind alone may cause at a parked aircraft, m/s. A higher air speed counts as
+flight."""
 NEAR_GROUND_M = 3.0
-"""Height over the place of take-off at which a standing aircraft counts as landed, m."""
+"""Height above the take-off place below which a standing aircraft counts as landed, m."""
 _STILL_RAD_S = radians(1.0)
-"""Least pitch rate of an aircraft whose elevator moves in flight, rad/s."""
+"""Least pitch rate of an aircraft in flight whose elevator moves, rad/s."""
 
 Cut = Callable[[str, float, float], Channel | None]
-"""Function that cuts a stretch of a channel by name, start and end, s since boot."""
+"""Function that returns a stretch of a channel by name, start and end, s since boot."""
 
 
 def why_on_ground(span: Span, cut: Cut, limits: Limits) -> str | None:
-    """Return in words the evidence that the aircraft did not fly; None where it flew, or without evidence.
+    """Return the evidence in words that the aircraft did not fly; None if it flew or without evidence.
 
     Parameters
     ----------
     span
         The movement of the elevator.
     cut
-        Gives ``landed_state``, ``armed``, ``groundspeed``, ``airspeed``, ``height`` and ``q`` where received.
+        Function that returns ``landed_state``, ``armed``, ``groundspeed``, ``airspeed``, ``height`` and ``q``
+        if received.
     limits
-        Limits of the model. An air speed within its limit of change is one of flight, however slow.
+        Limits of the model in the aircraft file. An air speed within its limit of change belongs to flight,
+        however slow it is.
     """
     said = _lately("landed_state", span, cut)
     if _ON_GROUND in said:
@@ -65,7 +68,8 @@ def why_on_ground(span: Span, cut: Cut, limits: Limits) -> str | None:
 
 
 def _stands(span: Span, cut: Cut) -> bool:
-    """Return whether neither speed shows motion. Exactly zero over ground also comes without any receiver."""
+    """Return whether neither ground speed nor air speed shows motion. A ground speed of exactly zero may also
+    mean that there is no receiver."""
     over_ground = _median("groundspeed", span, cut)
     through_air = _median("airspeed", span, cut)
     if over_ground is None or over_ground >= STANDING_M_S or (through_air or 0.0) > WINDY_M_S:
@@ -76,7 +80,7 @@ def _stands(span: Span, cut: Cut) -> bool:
 
 
 def _lately(name: str, span: Span, cut: Cut) -> list[float]:
-    """Return the value at the beginning of the movement, and all later ones."""
+    """Return a channel's value at the beginning of the movement, and all later values."""
     words = cut(name, span.start_s - _FRESH_S, span.end_s)
     if words is None:
         return []
@@ -86,7 +90,7 @@ def _lately(name: str, span: Span, cut: Cut) -> list[float]:
 
 
 def _median(name: str, span: Span, cut: Cut, at_s: float | None = None) -> float | None:
-    """Return the median over the movement, or over the second around a time."""
+    """Return the median of a channel over the movement, or over one second around a time."""
     start_s, end_s = (span.start_s, span.end_s) if at_s is None else (at_s - 0.5, at_s + 0.5)
     channel = cut(name, start_s, end_s)
     return float(np.median(channel.y)) if channel is not None and len(channel) else None

@@ -1,7 +1,7 @@
-"""Movements of the elevator in the course of other flying: climbs, turns, changes of speed.
+"""Movements of the elevator during other flying: climbs, turns, changes of speed.
 
-A test input begins abruptly, so that a bad one is refused with its remedy. A slow movement outside of the
-model's limits is no test: the pilot flew the aircraft elsewhere.
+A test input begins abruptly, and a bad one is refused with its remedy. A slow movement outside the model's
+limits is no test, but other flying.
 """
 
 from collections.abc import Iterator
@@ -15,43 +15,44 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.words.digits import distinct_texts
 
 OTHER_CONTROLS_DEG = 5.0
-"""Largest motion of aileron and rudder during a test, half of the range, deg."""
+"""Largest motion of aileron and rudder during a pitch test, half of the range, deg."""
 THROTTLE_PERCENT = 15.0
-"""Largest motion of the throttle during a test, % of its range."""
+"""Largest motion of the throttle during a pitch test, % of its range."""
 EDGE_S = 0.2
-"""Time over which the motion of the elevator is measured, s: half of the slowest hand-flown edge."""
+"""Length over which the elevator's motion is measured, s: half of the slowest hand-flown edge."""
 _ABRUPT = 0.5
-"""Least motion over ``EDGE_S`` in an abrupt movement, as a share of its amplitude. Hand-flown steps on record
+"""Least motion over ``EDGE_S`` of an abrupt movement, as a share of its amplitude. Recorded hand-flown steps
 have at least 0.95, and a jet's step at 10 Hz has 0.37."""
 _SLOWEST = 1.1
-"""Largest ratio of two sampling intervals to ``EDGE_S`` at which an abrupt step shows. Jitter takes 10 %."""
+"""Largest ratio of two sampling intervals to ``EDGE_S`` at which an abrupt step is visible. The ratio
+includes 10 % for jitter."""
 _THROUGHOUT = 0.75
-"""Share of a movement outside of a limit that counts as throughout. The aircraft enters a turn from level
-flight during the movement of the control."""
+"""Share of a movement outside a limit that counts as the whole movement. The aircraft enters a turn from
+level flight while the control moves."""
 
 
 def flown_elsewhere(maneuver: Maneuver, limits: Limits) -> str | None:
-    """Return in words how a slow movement was outside the model's limits; None for an abrupt one or within.
+    """Return in words how a slow movement was outside the model's limits; None for any other movement.
 
     Parameters
     ----------
     maneuver
         Record of the movement.
     limits
-        The aircraft file's limits of bank and air speed.
+        Limits of bank and air speed in the aircraft file.
     """
     return None if _is_abrupt(maneuver) else next(_outside(maneuver, limits), None)
 
 
 def motion_of(maneuver: Maneuver, from_s: float, to_s: float, control: str = "elevator") -> FloatArray:
-    """Return the control's motion over ``EDGE_S``, rad, at each of its stamps within a time."""
+    """Return the control's motion over ``EDGE_S``, rad, at each of its stamps between two times."""
     elevator = maneuver.channels[control]
     moved = np.abs(elevator.y - np.interp(elevator.t - EDGE_S, elevator.t, elevator.y))
     return moved[(elevator.t >= from_s) & (elevator.t <= to_s)]
 
 
 def _is_abrupt(maneuver: Maneuver) -> bool:
-    """Return whether the elevator moves abruptly, or comes too rarely to show this."""
+    """Return whether the elevator moves abruptly, or has too few samples to show this."""
     span, elevator = maneuver.span, maneuver.channels["elevator"]
     if len(elevator) < 2 or 2.0 * float(np.median(np.diff(elevator.t))) > _SLOWEST * EDGE_S:
         return True
@@ -61,7 +62,7 @@ def _is_abrupt(maneuver: Maneuver) -> bool:
 
 
 def _outside(maneuver: Maneuver, limits: Limits) -> Iterator[str]:
-    """Yield each limit that the movement is outside of, with its number."""
+    """Yield each limit that the movement exceeds, with its number."""
     bank = np.degrees(np.abs(_within(maneuver, "bank")))
     if len(bank) and np.mean(bank > limits.bank_deg) > _THROUGHOUT:
         shown, most = distinct_texts(float(np.median(bank)), limits.bank_deg)
@@ -85,6 +86,6 @@ def _outside(maneuver: Maneuver, limits: Limits) -> Iterator[str]:
 
 
 def _within(maneuver: Maneuver, name: str) -> FloatArray:
-    """Return the values of a channel during the movement; empty where not received."""
+    """Return the values of a channel during the movement; empty for a missing channel."""
     channel = maneuver.channels.get(name)
     return np.empty(0) if channel is None else channel.cut(maneuver.span.start_s, maneuver.span.last_step_s).y

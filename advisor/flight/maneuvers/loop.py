@@ -1,18 +1,18 @@
-"""The control that a pilot moves, and the motion by which the aircraft answers."""
+"""A control that a pilot moves, and the motion with which the aircraft responds."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class Loop:
-    """Channels of one control and of its answer, with their names in sentences."""
+    """Channels of one control and of its response, with their names in sentences."""
 
     control: str
     """Channel of the deflection."""
     rate: str
-    """Channel of the angular rate that answers."""
+    """Channel of the angular rate that responds."""
     angle: str
-    """Channel of the angle that the rate turns; empty where none is measured."""
+    """Channel of the integrated angle; empty if no angle is measured."""
     rate_said: str
 
 

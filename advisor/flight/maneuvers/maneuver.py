@@ -1,7 +1,7 @@
-"""A manoeuvre: the stretch of flight behind one estimate, and whether two records are one manoeuvre.
+"""A manoeuvre: the stretch of flight for one estimate, and the comparison of two records.
 
-Two records hold one manoeuvre where both show the same pitch angle at the same vehicle time. Two flights of
-one schedule, even simulated ones, differ by more than a log's resolution.
+Two records contain one manoeuvre if both show equal pitch angles at equal vehicle times. Even two simulated
+flights of one schedule differ by more than a log's resolution.
 """
 
 from collections.abc import Mapping
@@ -30,15 +30,15 @@ InputKind = Literal[
     "rudder 3-2-1-1",
     "dutch roll release",
 ]
-"""Names of inputs, of the elevator and then of aileron and rudder."""
+"""Names of inputs: those of the elevator, then those of aileron and rudder."""
 
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Extent of a manoeuvre in the stream of elevator samples, as the segmenter found it."""
+    """Extent of a manoeuvre in the elevator samples, as found by the segmenter."""
 
     record_from_s: float
-    """First stamp of the record, s. The record begins with a lead-in before the first step, for the fit."""
+    """First stamp of the record, s. The record begins with a lead-in before the first step."""
     start_s: float
     """Onset of the first elevator step, s."""
     last_step_s: float
@@ -49,9 +49,9 @@ class Span:
     steps: tuple[tuple[float, float], ...]
     """Steps of the input: (onset in s, level in rad from trim) for each."""
     closed_by: str
-    """Reason of the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``, ``air speed``,
-    ``no rest``. A marked stretch has ``marked by hand``, ``marked by a switch``, ``marked by a text of
-    the vehicle`` or ``marked by SystemID``. A movement that is being flown has ``still flying``."""
+    """Reason for the end: ``quiet``, ``mode change``, ``next input``, ``gap``, ``end of log``, ``air speed``,
+    ``no rest``. The reason of a marked stretch begins with ``marked``, such as ``marked by hand`` or ``marked
+    by SystemID``. The reason of a movement that is being flown is ``still flying``."""
 
     @property
     def input_is_over(self) -> bool:
@@ -61,7 +61,8 @@ class Span:
 
 @dataclass(frozen=True, slots=True)
 class Maneuver:
-    """A span with its data. ``channels`` holds at least ``elevator``, and each channel has its own stamps."""
+    """A manoeuvre's extent with its data. ``channels`` contains at least ``elevator``, and each channel has
+    its own stamps."""
 
     number: int
     boot: int
@@ -71,29 +72,29 @@ class Maneuver:
     mode: str = ""
     """Flight mode of the manoeuvre, by the autopilot's name or number."""
     distrusts: tuple[Distrust, ...] = ()
-    """Channels that cannot be right. A frozen specific force or α is left out of ``channels``."""
+    """Channels with impossible values. A frozen specific force or α is not in ``channels``."""
     findings: tuple[InstrumentFinding, ...] = ()
-    """Contradictions of the instruments, by all records of this power-on so far. ``channels`` are corrected
-    for the findings that are used."""
+    """Contradictions of the instruments, from all records of this power-on so far. ``channels`` are corrected
+    by the findings that are marked as used."""
     flight: int = 0
     """Number of the campaign's log or link, 0 for the first."""
     data_notes: tuple[str, ...] = ()
-    """Sentences on samples that no aircraft can have flown, and on an air speed that no sensor measured."""
+    """Sentences about samples that no aircraft can have flown, and about an air speed without a sensor."""
     missed_s: float = 0.0
     """Time within the record, or at its end, in which the advisor was down, s."""
     leapt_s: float = 0.0
-    """Leap of the vehicle's stamps within the record, or at its begin or end, s."""
+    """Jump of the vehicle's stamps within the record or at its ends, s."""
     scale: Scale | None = None
-    """Scale of the elevator's pulses, in the direction that was found. None for a calibration, and for
-    several outputs."""
+    """Scale of the elevator's pulses, with the direction that was found. None for a calibrated elevator and
+    for several outputs."""
 
     @property
     def power_on(self) -> tuple[int, int]:
-        """Flight and power-on in which the manoeuvre was recorded."""
+        """Numbers of the flight and of the power-on that contain the manoeuvre."""
         return self.flight, self.boot
 
     def later(self, by_s: float) -> "Maneuver":
-        """Return the manoeuvre with all times ``by_s`` later."""
+        """Return the manoeuvre with all times later by ``by_s``."""
         span = replace(
             self.span,
             record_from_s=self.span.record_from_s + by_s,
@@ -106,8 +107,8 @@ class Maneuver:
         return replace(self, span=span, channels=channels)
 
     def rescaled(self, scale: Scale) -> "Maneuver":
-        """Return the manoeuvre with the elevator's pulses counted by another scale, in the direction that was
-        found. The manoeuvre has a scale."""
+        """Return the manoeuvre with the elevator's pulses converted by another scale, in the direction found.
+        The manoeuvre must have a scale."""
         assert self.scale is not None
         before, after = self.scale, replace(scale, reversed=self.scale.reversed)
         elevator = self.channels.get("elevator")
@@ -128,18 +129,19 @@ class Maneuver:
 
 
 _AGREE_RAD = 3e-4
-"""Largest median difference of pitch angle, rad, between two records of one motion. A log in steps of 0.01
-deg is 1e-4 rad off. Two simulated flights of one schedule with 1 % of noise differ by 1.4e-3 rad."""
+"""Largest median difference of pitch angle, rad, between two records of one manoeuvre. A log with a
+resolution of 0.01 deg has differences of 1e-4 rad. Two simulated flights of one schedule with 1 % of noise
+differ by 1.4e-3 rad."""
 _SKEW_S = 0.01
-"""Largest difference between the stamps of one attitude in two logs, s: of computing, sending or writing."""
+"""Largest difference between the stamps of one attitude in two logs, s, due to sending or writing."""
 _COMMON = 0.5
-"""Least shared time of two records of one manoeuvre, as a share of the shorter record."""
+"""Least common time of two records of one manoeuvre, as a share of the shorter record."""
 _FEWEST = 10
-"""Fewest samples that are compared."""
+"""Least number of samples for a comparison of two records."""
 
 
 def are_one(a: Maneuver, b: Maneuver) -> bool:
-    """Return whether two records from different power-ons show one manoeuvre."""
+    """Return whether two records from different power-ons contain one manoeuvre."""
     from_s = max(a.span.start_s, b.span.start_s)
     to_s = min(a.span.end_s, b.span.end_s)
     shorter_s = min(m.span.end_s - m.span.start_s for m in (a, b))
@@ -159,7 +161,8 @@ def are_one(a: Maneuver, b: Maneuver) -> bool:
 
 
 def is_fuller(a: Maneuver, b: Maneuver) -> bool:
-    """Return whether ``a`` is the better record of one manoeuvre: marked, or with more of elevator and q."""
+    """Return whether ``a`` is the better record of a manoeuvre: marked, or with more samples of elevator and
+    q."""
     return _fullness(a) > _fullness(b)
 
 

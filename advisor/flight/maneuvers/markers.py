@@ -1,4 +1,4 @@
-"""Markers of manoeuvres in flight, a switch or texts, and the input within a marked stretch."""
+"""Markers of manoeuvres in flight, by a switch or by texts, and the input within a marked stretch."""
 
 from collections.abc import Iterator
 
@@ -20,15 +20,15 @@ from advisor.flight.signals.messages import Columns, FloatArray
 from advisor.flight.signals.record import Channel
 
 HEARD = ("RC_CHANNELS", "STATUSTEXT")
-"""Messages that may hold a mark."""
+"""Messages that may contain a mark."""
 SYSTEM_ID_BEGINS, SYSTEM_ID_ENDS = b"SystemID Starting", b"SystemID stopped"
 """Texts that ArduPlane sends when its system identification begins and ends (``AP_SystemID``)."""
 _NO_PULSE_US = (0, 65535)
-"""Values of a channel that the receiver does not have (RC_CHANNELS, MAVLink common.xml)."""
+"""Values of RC_CHANNELS for a channel that the receiver does not have (MAVLink common.xml)."""
 
 
 class MarkerWatch:
-    """Finds the beginnings and ends of marks by a switch or by texts, message by message."""
+    """Detection of the beginnings and ends of marks by a switch or by texts."""
 
     def __init__(self, markers: Markers) -> None:
         self._markers = markers
@@ -39,7 +39,7 @@ class MarkerWatch:
         self._is_on = False
 
     def start_boot(self) -> None:
-        """Begin another power-on. The switch counts as off until it is heard."""
+        """Begin another power-on. The switch is taken as off until its first message."""
         self._is_on = False
 
     def heard(self, columns: Columns, t: FloatArray) -> Iterator[Switched]:
@@ -50,7 +50,7 @@ class MarkerWatch:
         columns
             Messages of a type in ``HEARD``, in order of arrival.
         t
-            Shape (n,), vehicle time of each message, s since boot. NaN where unknown.
+            Shape (n,), vehicle time of each message, s since boot. A time is NaN if unknown.
         """
         if columns.name == "STATUSTEXT":
             yield from self._texts_heard(columns, t)
@@ -79,35 +79,36 @@ class MarkerWatch:
 
 
 SWEPT = "marked by SystemID"
-"""Reason of the end of a stretch in which the autopilot itself moved a control, for any of its axes."""
+"""Reason of the end of a stretch in which the autopilot itself moved a control."""
 MARKED = {
     "hand": "marked by hand",
     "switch": "marked by a switch",
     "text": "marked by a text of the vehicle",
     "system id": SWEPT,
 }
-"""Kind of marker to the reason of the end of a marked stretch."""
+"""Reason of the end of a marked stretch, by the kind of marker."""
 _RESTING_S = 0.5
-"""Time before the end of a mark that counts as rest, s."""
+"""Length before the end of a mark that is taken as rest, s."""
 _BEFORE_S = 0.3
-"""Time before a mark that gives the level before the input, s."""
+"""Length before a mark that gives the level before the input, s."""
 
 
 def marked_span(mark: Mark, elevator: Channel | None) -> Span:
-    """Return the span of a marked stretch.
+    """Return the extent of the manoeuvre in a marked stretch.
 
     Parameters
     ----------
     mark
         Marked stretch, in seconds since boot.
     elevator
-        Elevator from one lead-in before the mark to its end, rad. None where the channel was not received.
+        Elevator from one lead-in before the mark to the mark's end, rad. None if the channel was not
+        received.
 
     Returns
     -------
     Span
-        Span whose record begins up to one lead-in before the mark. A still elevator has no step, so that
-        such a mark lacks an input and not a free response.
+        Span whose record begins up to one lead-in before the mark. A constant elevator has no step, so its
+        mark has no input.
     """
     if elevator is None:
         return Span(mark.start_s, mark.start_s, mark.end_s, mark.end_s, "other", (), MARKED[mark.by])
@@ -127,7 +128,7 @@ def marked_span(mark: Mark, elevator: Channel | None) -> Span:
 
 
 def _input(mark: Mark, elevator: Channel) -> Movement | None:
-    """Return the movement of the elevator within the mark; None for a still elevator."""
+    """Return the movement of the elevator within the mark; None for a constant elevator."""
     within = elevator.cut(mark.start_s, mark.end_s)
     if len(within) < 3:
         return None

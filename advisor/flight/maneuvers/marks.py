@@ -1,7 +1,7 @@
 """Stretches of flight marked as manoeuvres: by hand, by a switch, by a text, or by the autopilot's SystemID.
 
-A mark replaces every input that the finder finds in its stretch. A mark set while the stream runs gives the
-manoeuvre that results when the mark is known before the stream begins.
+A mark replaces every input that the segmenter finds in the marked stretch. A mark during the stream gives the
+same manoeuvre as a mark known before the stream.
 """
 
 from collections.abc import Iterable, Sequence
@@ -23,7 +23,8 @@ LONGEST_S = 100.0
 MARK_NOTICES = frozenset({"mark_length", "marked_already", "mark_dropped"})
 """Codes of the notices on marks that cannot be used."""
 EDGE_S = 2.0
-"""Largest distance by which a mark may exceed the log, s. A power cut loses a recording's last second."""
+"""Largest distance by which a mark may exceed the end of the log, s. A power cut loses the last second of a
+recording."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +36,12 @@ class Mark:
     end_s: float
     """End of the stretch, s since boot."""
     boot: int | None = None
-    """Number of the power-on, 0 for the first in the log. None: the first power-on that holds the stretch."""
+    """Number of the power-on, 0 for the first in the log. None for the first power-on that contains the
+    stretch."""
     from_log_start: bool = False
-    """Whether the times count from the first sample of the log, not from the boot."""
+    """Whether the times are relative to the log's first sample instead of the boot."""
     by: Marker = "hand"
-    """Source of the mark."""
+    """Source of the mark: a hand, a switch, a text or SystemID."""
     name: str = "A mark"
     """Beginning of a sentence about the mark."""
     flight: int = 0
@@ -47,25 +49,25 @@ class Mark:
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Begin and end of the record, s since boot: the stretch, with a lead-in."""
+        """Begin and end of the record, s since boot: the marked stretch with its lead-in."""
         return self.start_s - LEAD_IN_S, self.end_s
 
     def overlaps(self, start_s: float, end_s: float) -> bool:
-        """Return whether the mark shares time with a stretch of its power-on."""
+        """Return whether the mark overlaps a stretch of its power-on."""
         return self.start_s < end_s and start_s < self.end_s
 
 
 @dataclass(frozen=True, slots=True)
 class Switched:
-    """A switch or a text of the vehicle that begins or ends a mark."""
+    """Switch movement or text of the vehicle that begins or ends a mark."""
 
     order: int
-    """Order of arrival among all messages."""
+    """Index of the message in the order of arrival."""
     at_s: float
-    """Vehicle time, s since boot."""
+    """Vehicle time of the message, s since boot."""
     by: Marker
     on: bool
-    """Whether the switch begins a mark. False: a mark ends."""
+    """Whether the message begins a mark. False if the message ends a mark."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,15 +75,16 @@ class Due:
     """Marks, spans and notices that have become final."""
 
     marks: tuple[Mark, ...] = ()
-    """Complete marks in seconds since boot, the one that ended first before the others."""
+    """Complete marks in order of their ends, in seconds since boot."""
     spans: tuple[tuple[Span, int | None], ...] = ()
-    """Spans of the finder that an open mark held back and no mark replaced, each with its arrival's order."""
+    """Spans of the segmenter that no mark replaced, after an open mark delayed them, each with its arrival
+    order."""
     notices: tuple[Notice, ...] = ()
-    """Sentences on marks that cannot be used."""
+    """Notices about marks that cannot be used."""
 
 
 class Marks:
-    """The marks of one stream: the complete ones, and the spans of the finder that they replace.
+    """Marks of one stream, and the segmenter's spans that they may replace.
 
     Parameters
     ----------
@@ -106,7 +109,7 @@ class Marks:
         self._notices: list[Notice] = []
 
     def start_clock(self, first_s: float) -> None:
-        """Take the first reading of this power-on's clock, ``first_s`` since boot."""
+        """Take the first clock reading of this power-on, ``first_s`` since boot."""
         self._first_s = first_s
         for mark in tuple(self._given):
             by_s = first_s - self._earlier_s if mark.from_log_start else 0.0
@@ -122,7 +125,7 @@ class Marks:
                 self._waiting[here] = mark
 
     def hear(self, switched: Iterable[Switched]) -> None:
-        """Take switches or texts of one message type, in order of arrival."""
+        """Take switch movements or texts of one message type, in order of arrival."""
         self._switched = sorted([*self._switched, *switched], key=lambda one: one.order)
 
     def begin_by_hand(self, at_s: float) -> None:
@@ -141,16 +144,16 @@ class Marks:
 
     @property
     def by_hand_since_s(self) -> float | None:
-        """Begin of the open mark by hand, s since boot. None without one."""
+        """Begin of the open mark by hand, s since boot. None without an open mark."""
         return self._open.get("hand")
 
     def since_s(self, now_s: float) -> float | None:
-        """Return the begin of the mark that is open at ``now_s``, s since boot; None between marks."""
+        """Return the begin of the mark that is open at ``now_s``, s since boot; None without an open mark."""
         begun = [m.start_s for m in self._waiting if m.start_s <= now_s <= m.end_s]
         return min([*begun, *self._open.values()], default=None)
 
     def advance(self, order: int) -> None:
-        """Note that everything that arrived before ``order`` has been heard."""
+        """Note that all messages before ``order`` have been processed."""
         while self._switched and self._switched[0].order <= order:
             switched = self._switched.pop(0)
             if switched.on:
@@ -159,9 +162,9 @@ class Marks:
                 self._close(switched.by, switched.at_s)
 
     def hides(self, span: Span, order: int | None) -> bool:
-        """Return whether a mark replaces a span of the finder, or an open mark may still do so.
+        """Return whether a mark replaces a span of the segmenter, or an open mark may still replace it.
 
-        A mark replaces the inputs that it touches, but not an input whose free response it ends.
+        A mark replaces an input that it overlaps, but not an input whose free response it ends.
         """
         if self.holds(span):
             return True
@@ -171,25 +174,26 @@ class Marks:
         return waits
 
     def holds(self, span: Span) -> bool:
-        """Return whether a mark that has ended touches the input of a span."""
+        """Return whether a closed mark overlaps the input of a span."""
         return any(m.overlaps(span.start_s, span.last_step_s) for m in (*self._waiting, *self._closed))
 
     def before(self, span: Span) -> Span:
-        """Return the span of an input outside of all marks, with its response ended where a mark begins."""
+        """Return the span of an input outside all marks, with a free response that ends where a mark
+        begins."""
         begin_s = [m.start_s for m in (*self._waiting, *self._closed)]
         within = [at_s for at_s in begin_s if span.last_step_s <= at_s < span.end_s]
         return replace(span, end_s=min(within), closed_by="next input") if within else span
 
     def due(self, arrived_s: float) -> Due:
-        """Return the final marks and spans once every channel has arrived up to ``arrived_s``, since boot."""
+        """Return the final marks and spans when all channels have arrived up to ``arrived_s`` since boot."""
         ready = [m for m in self._waiting if m.end_s <= arrived_s]
         return self._due(ready) if ready or self._held or self._notices else Due()
 
     def finish(self, last_s: float) -> Due:
         """Return the final marks and spans at the end of the power-on at ``last_s``, s since boot. A switch
-        that is on ends its mark there.
+        that is still on ends its mark at ``last_s``.
 
-        A mark by hand that has not ended is dropped.
+        A mark by hand without an end is dropped.
         """
         self.advance(self._switched[-1].order if self._switched else 0)
         begun_s = self._open.pop("hand", None)
@@ -223,7 +227,7 @@ class Marks:
             self._notices.append(refused)
 
     def _refused(self, mark: Mark) -> Notice | None:
-        """Return the reason for which a mark that has just ended cannot be used; None for a usable mark."""
+        """Return the reason why a closed mark cannot be used; None for a usable mark."""
         length_s = mark.end_s - mark.start_s
         where = f"The mark from {stretch(mark.start_s, mark.end_s)}"
         if not 0.0 < length_s <= LONGEST_S:
@@ -239,7 +243,7 @@ class Marks:
         return None
 
     def problems(self) -> list[Problem]:
-        """Return a problem for each mark that no power-on of the whole stream holds."""
+        """Return a problem for each mark that lies in no power-on of the stream."""
         heard = " and ".join(f"{a:.1f} to {b:.1f} s" for a, b in self._heard if np.isfinite(a))
         return [
             Problem(

@@ -1,9 +1,10 @@
 """Description of an elevator movement: its begin and end, its levels, and a name for the input.
 
-The name is a label. A movement's acceptance as a test input does not depend on the name.
+The name of an input is only a label. A movement's acceptance as a test input does not depend on the name.
 
-A stick is never perfectly still, so that rest is a question of scale. A hand that shakes by a tenth of a
-large input is at rest after that input. The shaking would be no rest after a smaller input.
+A stick is never perfectly still, so rest is relative to the size of the movement. After a large input, a hand
+that shakes by a tenth of it counts as at rest. After a smaller input, the same shaking would not count as
+rest.
 """
 
 from dataclasses import dataclass
@@ -15,22 +16,22 @@ from advisor.flight.maneuvers.maneuver import InputKind
 from advisor.flight.signals.messages import FloatArray
 
 SMALLEST_RAD = float(np.radians(0.15))
-"""Least amplitude of a movement, rad: somewhat over two steps of 1 us at 0.06 deg a microsecond."""
+"""Least amplitude of a movement, rad: somewhat more than two steps of 1 us at 0.06 deg per microsecond."""
 STILL_SPREAD = 0.15
-"""Largest standard deviation of a rest, as a share of the movement's amplitude. A shaking stick has 0.1; a
-sine with that amplitude has 0.7."""
+"""Largest standard deviation of the elevator at rest, as a share of the movement's amplitude. A shaking stick
+has 0.1 of its amplitude, and a sine has 0.7."""
 _STILL_SHIFT = 0.12
 """Largest difference between the means over the thirds of a rest, as a share of the amplitude."""
 
 
 def median(x: FloatArray) -> float:
-    """Return the median, faster than NumPy's on few numbers, without a test for NaN."""
+    """Return the median without a test for NaN, faster than NumPy for few numbers."""
     middle = np.sort(x)[(len(x) - 1) // 2 : len(x) // 2 + 1]
     return float(middle.sum() / len(middle))
 
 
 def is_still(u: FloatArray, amplitude: float) -> bool:
-    """Return whether the elevator rests over a window, relative to a movement of this amplitude.
+    """Return whether the elevator is at rest in a window, relative to a movement of this amplitude.
 
     Parameters
     ----------
@@ -42,8 +43,8 @@ def is_still(u: FloatArray, amplitude: float) -> bool:
     Returns
     -------
     bool
-        True where both the spread and the drift of the window are small. White noise may have a
-        spread of ``STILL_SPREAD``. The means over thirds show a drift in one direction.
+        True if spread and drift of the elevator in the window are small. White noise may have a spread up to
+        ``STILL_SPREAD``. The means over thirds show a drift in one direction.
     """
     if len(u) < 3 or float(u.std()) > STILL_SPREAD * amplitude:
         return False
@@ -56,7 +57,7 @@ def is_still(u: FloatArray, amplitude: float) -> bool:
 
 
 def without_spikes(u: FloatArray) -> FloatArray:
-    """Return the median of three neighbours, because a single sample is no movement."""
+    """Return the running median of three samples, which removes single outliers."""
     if len(u) < 3:
         return u
     low, high = np.minimum(u[:-2], u[1:-1]), np.maximum(u[:-2], u[1:-1])
@@ -64,23 +65,24 @@ def without_spikes(u: FloatArray) -> FloatArray:
 
 
 BAND = 0.3
-"""Distance from trim, as a share of the amplitude, within which a movement counts as at trim."""
+"""Distance from trim, as a share of the amplitude, within which the elevator counts as at trim."""
 _RETURNED = 0.45
-"""Largest distance between the rest after and the rest before, as a share of the amplitude, that counts as a
-return to trim. A rest farther from trim is a step."""
+"""Largest difference between the rests before and after, as a share of the amplitude, for a return to trim. A
+rest farther from trim is a step."""
 _LEAVING = 0.1
-"""Departure from trim, as a share of the amplitude, with which a movement begins."""
+"""Deviation from trim, as a share of the amplitude, at which a movement begins."""
 _EDGE_S = 0.6
-"""Longest edge of a step, s. Hand-flown edges take 0.2 to 0.4."""
+"""Longest duration of a step's edge, s. Hand-flown edges take 0.2 to 0.4 s."""
 _LEAST_LEVEL = 0.4
-"""Least lobe of a pattern of steps, as a share of its largest lobe."""
+"""Least amplitude of a lobe in a pattern of steps, as a share of the largest lobe."""
 _TIMING = 0.45
-"""Tolerance of the durations of a 3-2-1-1, in units of time. Steps flown by hand differ by a third."""
+"""Tolerance of the durations of a 3-2-1-1, in units of its time unit. Hand-flown step durations differ by a
+third."""
 _ON_LEVEL = 0.4
-"""Least share of its time that an input of steps spends on its levels. Steps whose edges take half of their
-time spend half on levels, multisines a third."""
+"""Least share of its duration that a stepped input spends on its levels. Steps with edges of half their
+duration spend half on levels; multisines spend a third."""
 _SWEPT_LOBES = 5
-"""Fewest lobes of a movement without levels that is called a multisine."""
+"""Least number of lobes of a movement without levels that is named a multisine."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,23 +93,23 @@ class Movement:
     start_s: float
     """Time at which the elevator leaves trim, s."""
     last_step_s: float
-    """Onset of the last step, s: back to trim, or to the level of the following rest."""
+    """Onset of the last step, s, which leads to trim or to the level of the following rest."""
     over_s: float
     """Time at which the elevator comes to rest after the movement, s."""
     trim: float
-    """Level of the elevator's rest after the movement, rad."""
+    """Elevator level in the rest after the movement, rad."""
     amplitude: float
-    """Largest deviation from the levels before and after, rad."""
+    """Largest deviation from the levels before and after the movement, rad."""
     quiet: float
-    """Standard deviation in the rest after the movement, rad; 0 where no rest followed."""
+    """Standard deviation in the rest after the movement, rad; 0 without a following rest."""
     steps: tuple[tuple[float, float], ...]
-    """Steps as (onset in s, level in rad from trim). The last one is back at trim."""
+    """Steps of the movement as (onset in s, level in rad from trim). The last step is the return to trim."""
     is_stepped: bool
-    """Whether the elevator spends a good part of the movement on levels."""
+    """Whether the elevator spends enough of the movement on constant levels."""
 
 
 def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | None) -> Movement | None:
-    """Describe the movement in a stretch that begins at rest.
+    """Return a description of the movement in a stretch that begins at rest.
 
     Parameters
     ----------
@@ -116,12 +118,12 @@ def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | Non
     before
         Level of the earlier rest, rad.
     rest
-        Newest samples of ``u`` that are at rest. None where the movement was cut off.
+        Newest samples of ``u``, at which the elevator is at rest. None if the movement was cut off.
 
     Returns
     -------
     Movement or None
-        None where the elevator did not move.
+        None if the elevator did not move.
     """
     after = before if rest is None else median(rest)
     quiet = 0.0 if rest is None else float(np.std(rest))
@@ -149,16 +151,16 @@ def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | Non
 def _steps(
     t: FloatArray, d: FloatArray, extent: tuple[int, int], amplitude: float, level: float, arrival_s: float
 ) -> tuple[tuple[float, float], ...]:
-    """Return the lobes on either side of trim as steps, with onset at half way, and the median as level.
+    """Return the lobes on either side of trim as steps, with the onset at half amplitude.
 
     Parameters
     ----------
     t, d
         Shape (n,): stamps (s) and deviation from trim (rad).
     extent
-        First and last sample away from trim.
+        Indices of the first and the last sample away from trim.
     amplitude
-        Largest deviation, rad.
+        Largest deviation from trim, rad.
     level
         Level of the rest at the end, rad from trim; 0 after a return.
     arrival_s
@@ -188,7 +190,7 @@ def _steps(
 
 
 def _name(t: FloatArray, steps: tuple[tuple[float, float], ...], is_stepped: bool) -> InputKind:
-    """Return the pilots' name of the input."""
+    """Return the name of the input that pilots use."""
     levels = np.array([level for _, level in steps[:-1]])
     lasting = np.diff([onset for onset, _ in steps])
     share = np.abs(levels) / max(float(np.max(np.abs(levels))), 1e-12)
@@ -208,7 +210,7 @@ def _name(t: FloatArray, steps: tuple[tuple[float, float], ...], is_stepped: boo
 
 
 def _is_stepped(t: FloatArray, d: FloatArray, steps: tuple[tuple[float, float], ...]) -> bool:
-    """Return whether the elevator stays on levels between the steps, or passes through them."""
+    """Return whether the elevator stays on levels between its steps."""
     edges = np.searchsorted(t, [onset for onset, _ in steps])
     on = sum(
         int(np.count_nonzero(np.abs(d[i:j] - level) <= 0.12 * abs(level)))

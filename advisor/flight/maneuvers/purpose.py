@@ -1,7 +1,7 @@
-"""Classification of an elevator movement: an identifiable input, or an activity with a reason.
+"""Classification of an elevator movement: an identifiable input, or another activity with a reason.
 
-The shape does not matter. The criteria are whether the aircraft flew, who moved the elevator, and how well
-the pitch rate shows the elevator's effect.
+The shape of the movement does not matter. The criteria are whether the aircraft flew, who moved the elevator,
+and how well the pitch rate shows the elevator's effect.
 """
 
 from collections.abc import Mapping
@@ -25,35 +25,36 @@ from advisor.flight.vehicle.modes import closes_pitch_loop, has_an_errand, hover
 from advisor.words.digits import distinct_texts
 
 LEAST_PITCH_RATE_DEG_S = 1.0
-"""Least answer of the pitch rate to a test input, deg/s. Smaller pitch rates drown in light turbulence. The
-gentlest test input on record has 1.3 (a jet); a correction between inputs of another jet has 0.7."""
+"""Least pitch rate response to a test input, deg/s. Light turbulence hides smaller pitch rates. The gentlest
+recorded test input has 1.3 deg/s (a jet), and a correction of another jet has 0.7 deg/s."""
 LARGEST_ERROR = 0.3
 """Largest relative standard error of the elevator's effect on the pitch rate; 0.3 is significant at 2 %.
-Recorded test inputs have an error of 0.01 to 0.12 in calm air, and of 0.16 in gusts of 0.5 m/s. Where only
-the external input counts they have up to 0.21, and an attitude hold in such gusts has 0.3 to 2."""
+Recorded test inputs have an error of 0.01 to 0.12 in calm air, and of 0.16 in gusts of 0.5 m/s. For the
+external input alone they have up to 0.21, and an attitude hold in gusts has 0.3 to 2."""
 _MOSTLY = 0.5
-"""Share of a movement's variation that feedback of the motion may explain. Beyond one half the movement is
-mostly an answer. Recoveries of an attitude by hand on record have 0.63 to 0.94. Test inputs that bring the
-attitude back have at most 0.35."""
+"""Share of a movement that feedback of the motion may explain in a test input. Above one half the movement is
+mostly a response to the motion. Recorded recoveries of an attitude by hand have 0.63 to 0.94. Test inputs
+that restore the attitude have at most 0.35."""
 _OF_ANSWERS = 0.25
-"""Largest relative standard error of the effect by the external input alone, over the share that feedback
-leaves, where feedback explains most of the movement. Recoveries by hand have 0.29 to 9. A record of an
-unstable aircraft, which is always fed back, has 0.09, and simulated ones have 0.1 to 1.2."""
+"""Largest relative error for the external input alone, over the share not explained by feedback. Recoveries
+by hand have values of 0.29 to 9. A recorded unstable aircraft, which always needs feedback, has 0.09, and
+simulated ones have 0.1 to 1.2."""
 _STANDS_OUT = 4.0
-"""Least ratio of a movement's fastest motion to the root mean square of the motion before. Chance exceeds
-four standard deviations in 2 % of movements of 300 samples. Hands that keep an attitude have 0.3 to 3.6,
-test inputs on record at least 10."""
+"""Least ratio of a movement's fastest motion to the root mean square of the earlier motion. By chance 2 % of
+movements of 300 samples exceed four standard deviations. Hands that hold an attitude have ratios of 0.3 to
+3.6, and recorded test inputs at least 10."""
 _FEWEST_BEFORE = 5
-"""Fewest samples of the motion before, for its root mean square."""
+"""Least number of samples before the movement for the root mean square."""
 _SHARP_S = 0.06
-"""Half of the time within which a step of an external input happens, s. Feedback of the aircraft's motion
-takes longer."""
+"""Half of the largest duration of an external input's step, s. Feedback of the aircraft's motion is
+slower."""
 _SLOWEST_S = 0.15
-"""Largest interval of elevator samples, s, at which the sharpness of a step is still visible."""
+"""Largest sampling interval of the elevator, s, at which a sharp step is visible."""
 _SHARP = 0.5
-"""Least share of a sharp step that happens within twice ``_SHARP_S``."""
+"""Least share of a sharp step within twice ``_SHARP_S``."""
 _FEWEST_SHARP = 3
-"""Least number of sharp steps. The loop makes one when switched on, and one when its demand jumps."""
+"""Least number of sharp steps for an external input. A control loop makes one sharp step when it is switched
+on, and one when its demand jumps."""
 
 _WHAT = {
     "ground": "movements without flight",
@@ -67,13 +68,13 @@ _WHAT = {
 
 @dataclass(frozen=True, slots=True)
 class Because:
-    """Reason for which a movement is no test input."""
+    """Reason why a movement is no test input."""
 
     reason: str
     """``autopilot``, ``elsewhere``, ``feedback``, ``ground``, ``hover``, ``no_information``, ``small`` or
     ``unsettled``."""
     text: str
-    """Sentence on the reason, with its number and limit."""
+    """Sentence about the reason, with its number and limit."""
 
     @property
     def what(self) -> str:
@@ -88,21 +89,22 @@ def not_an_input(
     limits: Limits | None = None,
     loop: Loop = PITCH,
 ) -> Because | None:
-    """Return the reason for which an elevator movement is no test input; None where it may be one.
+    """Return the reason why an elevator movement is no test input; None if it may be one.
 
     Parameters
     ----------
     maneuver
-        Record of the movement. Channels ``q`` and ``airspeed`` are used where present.
+        Record of the movement. Channels ``q`` and ``airspeed`` are used if present.
     on_ground
-        Other evidence in words that the aircraft did not fly. None: the record gives no such evidence.
+        Other evidence that the aircraft did not fly, in words. None without such evidence.
     motion
-        Channels ``q`` and ``theta`` from a time before the movement, for `explained_by_feedback`. None: the
-        channels of the record.
+        Channels ``q`` and ``theta`` from a time before the movement, for `explained_by_feedback`. None for
+        the channels of the record.
     limits
-        Limits of bank and air speed. None: the usual limits.
+        Limits of bank and air speed in the aircraft file. None for the usual limits.
     loop
-        Control that moved, and the motion that answers. Slow flying elsewhere concerns the elevator alone.
+        Control that moved, and the motion that responds. Slow movements outside the limits are sought for the
+        elevator alone.
     """
     control = loop.control
     if on_ground is not None:
@@ -125,7 +127,7 @@ def not_an_input(
 
 
 def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None, control: str) -> str:
-    """Return in words what a movement in a closed loop lacks for a test input; empty for a test input."""
+    """Return in words what a movement in a closed loop lacks as a test input; empty if it lacks nothing."""
     if has_an_errand(maneuver.mode):
         return " by the autopilot's own task"
     if not _is_swept(maneuver) and not _is_external(maneuver, control):
@@ -134,7 +136,7 @@ def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None, control: str) 
 
 
 def _tells_nothing(maneuver: Maneuver, motion: Mapping[str, Channel], loop: Loop) -> Because | None:
-    """Return the reason for which the rate cannot show the control's effect; None if it can, or lacks."""
+    """Return the reason why the rate cannot show the control's effect; None if it can, or is missing."""
     control = loop.control
     if maneuver.span.closed_by == "no rest":
         return Because("unsettled", f"the {control} never came to rest; not a test input")
@@ -172,12 +174,13 @@ def _tells_nothing(maneuver: Maneuver, motion: Mapping[str, Channel], loop: Loop
 
 
 def _is_swept(maneuver: Maneuver) -> bool:
-    """Return whether the autopilot said that its SystemID moved a control."""
+    """Return whether the autopilot reported that its SystemID moved a control."""
     return maneuver.span.closed_by == SWEPT
 
 
 def _stands_out(maneuver: Maneuver, control: str) -> bool:
-    """Return whether the control moves faster than before the movement. Hands that fly on do not."""
+    """Return whether the control moves faster than before the movement. Hands that continue other flying do
+    not move faster."""
     span = maneuver.span
     before = motion_of(maneuver, span.record_from_s + EDGE_S, span.start_s, control)[:-1]
     within = motion_of(maneuver, span.start_s, span.last_step_s + EDGE_S, control)
@@ -199,9 +202,9 @@ def _is_on_ground(maneuver: Maneuver) -> bool:
 
 
 def _is_external(maneuver: Maneuver, control: str) -> bool:
-    """Return whether the control moves in sharp steps, which no feedback of the aircraft's motion makes.
+    """Return whether the control moves in sharp steps, which no feedback of the motion makes.
 
-    A step of less than two of the smallest movements is sharp only by the resolution of the output.
+    A step of less than two output increments is sharp only because of the output's resolution.
     """
     elevator = maneuver.channels[control]
     interval_s = float(np.median(np.diff(elevator.t))) if len(elevator) > 1 else np.inf

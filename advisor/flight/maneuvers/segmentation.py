@@ -1,10 +1,11 @@
-"""The segmenter: finds every movement of the elevator in the stream of its samples, as the movement ends.
+"""The segmenter: detection of elevator movements in a stream of samples, as each movement ends.
 
-A movement begins where the elevator leaves its rest. A movement ends where the elevator rests again: at the
-earlier level, or for long at another level. The limit of rest is a share of the movement (`rest`). One rule
-serves steps, slewed edges, pulses and multisines, of fast aircraft and slow ones. The free response follows
-until it has lasted long enough or an event ends it. The movement is classified where the other channels are
-at hand (`purpose`). The work per sample is bounded. A result depends on the samples, not on their delivery.
+A movement begins where the elevator leaves its rest. A movement ends where the elevator rests again, at the
+earlier level, or longer at another level. The limit for rest is a share of the movement's amplitude
+(`movement.is_still`). One rule applies to steps, slewed edges, pulses and multisines, of fast and slow
+aircraft. The free response follows until it is long enough or an event ends it. Movements are classified
+later, with the other channels (`purpose`). The work per sample is bounded. The result depends on the samples
+only, not on their batches.
 """
 
 from collections import deque
@@ -27,47 +28,48 @@ from advisor.flight.signals.samples import Samples
 LEAD_IN_S = 1.0
 """Length of flight before the first step that belongs to the record, s."""
 _REACH_S = 60.0
-"""Longest movement, s. A longer one is reported in pieces."""
+"""Longest movement of the elevator, s. A longer movement is reported in pieces."""
 _OVERLAP_S = 10.0
-"""Age of a piece's end at its report, s. An input that has begun since is whole in the next piece."""
+"""Age of a piece's end when the piece is reported, s. An input that has begun since then is complete in the
+next piece."""
 _CHECK_S = 0.1
 """Time between two tests for rest, s."""
 _RESTING_S = 0.5
-"""Time for which the elevator must rest at the end of a movement, s."""
+"""Time for which the elevator must be at rest at the end of a movement, s."""
 _FIRST_LEVEL_S = 0.1
-"""Time over which a stream that has just begun counts as at rest, s."""
+"""Time at the beginning of a stream in which the elevator is taken as at rest, s."""
 _NEAR = 0.4
-"""Largest distance of a rest from the earlier level, as a share of the amplitude, that counts as a return."""
+"""Largest distance of a rest from the earlier level, as a share of the amplitude, for a return."""
 _HOLD_S = (8.0, 20.0)
-"""Length of a rest at another level that ends a movement, s. The second value is for a single step, so that a
-long pulse is one input."""
+"""Least length of a rest at another level that ends a movement, s. The second value applies to a single step,
+so that a long pulse is one input."""
 _LONGER = 1.2
-"""Factor on the longest earlier rest at another level, beyond which a rest ends a movement. A slow input has
-long steps."""
+"""Factor on the longest earlier rest at another level, above which a rest ends a movement. A slow input has
+long steps at its levels."""
 _FAR = 0.3
 """Distance from the earlier level, as a share of the amplitude, at which a movement has begun. The first step
 of a 3-2-1-1 with balanced areas has half of the amplitude."""
 _LEAST_REST_S = 0.3
-"""Least length of a rest before the movement, s, where an earlier movement exists."""
+"""Least length of a rest before the movement, s, if an earlier movement exists."""
 _EDGE_S = 0.2
-"""Time over which the speed of the elevator is measured, s: half of the slowest hand-flown edge."""
+"""Length over which the elevator's speed is measured, s: half of the slowest hand-flown edge."""
 _ABRUPT = 0.3
-"""Largest motion over ``_EDGE_S`` in a slow movement, as a share of an abrupt step that follows. The first
-edge of an input with half a first step is a third of the second edge. Hands that fly in gusts of 0.7 m/s have
-up to 0.3 of the first edge of a test."""
+"""Largest motion over ``_EDGE_S`` in a slow movement, as a share of an abrupt step that follows. If the first
+step is half as large, the first edge is a third of the second edge. In gusts of 0.7 m/s, hand flying has up
+to 0.3 of the first edge of a test."""
 _KEEP_S = _REACH_S + 30.0
 """Time for which samples are kept, s: a movement and its free response."""
 GAP_S = 1.0
-"""Least gap, s, that ends a free response, where ``MANY_INTERVALS`` samples are missing."""
+"""Least gap in the samples, s, that ends a free response, if ``MANY_INTERVALS`` samples are missing."""
 MANY_INTERVALS = 5.0
 """Least gap, in intervals of the samples, that ends a free response."""
 _LONGEST_GAP_S = 3.0
-"""Longest gap, s, within a movement. After a shorter gap the input is recognised and refused for the gap; a
-longer gap drops the movement."""
+"""Longest gap in the samples, s, within a movement. A movement with a longer gap is dropped."""
 
 
 class Segmenter:
-    """Takes elevator samples in the order of their stamps, and gives spans as they end."""
+    """Detector of movements: takes elevator samples in the order of their stamps, and returns spans as they
+    end."""
 
     def __init__(self) -> None:
         self._samples = Samples(_KEEP_S)
@@ -75,7 +77,7 @@ class Segmenter:
         self._begin_anew(-np.inf)
 
     def _begin_anew(self, from_s: float) -> None:
-        """Forget the elevator's rest before ``from_s``."""
+        """Forget all rests of the elevator before ``from_s``."""
         self._new_from_s = from_s
         self._base: float | None = None
         self._leaving = 0.5 * SMALLEST_RAD
@@ -84,7 +86,7 @@ class Segmenter:
         self._next_check_s = -np.inf
 
     def _set_out(self, from_s: float | None, amplitude: float) -> None:
-        """Set the state: at rest, or moving since the sample at ``from_s``."""
+        """Set the segmenter's state: at rest, or moving since the sample at ``from_s``."""
         self._moved_from_s, self._amplitude = from_s, amplitude
         self._held_since_s: float | None = None
         self._held_rad = 0.0
@@ -94,23 +96,24 @@ class Segmenter:
 
     @property
     def onset_s(self) -> float | None:
-        """Begin of the movement, or of the manoeuvre in its free response, s. None at rest."""
+        """Begin of the movement, or of the manoeuvre in its free response, s. None while the elevator is at
+        rest."""
         if self._pending:
             return self._pending.movement.start_s
         return self._moved_from_s if self._amplitude >= SMALLEST_RAD else None
 
     @property
     def amplitude(self) -> float:
-        """Largest deviation of the movement so far, rad."""
+        """Largest deviation of the present movement so far, rad."""
         return self._pending.movement.amplitude if self._pending else self._amplitude
 
     @property
     def recognised(self) -> Movement | None:
-        """Movement whose free response is awaited."""
+        """Movement whose free response is being recorded; None without one."""
         return self._pending.movement if self._pending else None
 
     def push(self, t: float, u: float) -> list[Span]:
-        """Take one sample, stamp (s, rising) and elevator (rad); return the spans that end with it."""
+        """Take one elevator sample, stamp (s, rising) and value (rad); return the spans that end there."""
         if self._samples.size:
             last = float(self._samples.t[-1])
             if t <= last:
@@ -122,7 +125,7 @@ class Segmenter:
         return self._drain()
 
     def mode_changed(self, t: float) -> list[Span]:
-        """Take a change of the flight mode, at ``t`` at the earliest; return the spans that end there."""
+        """Take a mode change that happened at ``t`` or later; return the spans that end there."""
         if self._pending is not None:
             pending = self._pending.movement
             if pending.start_s >= t:
@@ -135,7 +138,7 @@ class Segmenter:
         return self._drain()
 
     def finish(self) -> list[Span]:
-        """Return the spans that end with the samples."""
+        """Return the spans that end at the end of the samples."""
         if self._samples.size:
             last = float(self._samples.t[-1])
             if self._pending is not None:
@@ -150,13 +153,13 @@ class Segmenter:
         return ended
 
     def _restart(self, from_s: float) -> None:
-        """Follow the stored samples since ``from_s`` once more, as if the stream began there."""
+        """Process the stored samples since ``from_s`` again, as if the stream began there."""
         self._begin_anew(from_s)
         for i in range(self._samples.index(from_s), self._samples.size):
             self._advance(i)
 
     def _interrupt(self, last_s: float, whole: bool) -> None:
-        """Take a silence of the link after ``last_s``: long, or very long where ``whole`` is set."""
+        """Handle a silence of the link after ``last_s``; a very long one has ``whole`` set."""
         if self._pending is not None:
             self._end(self._pending.movement, "gap", last_s)
             self._begin_anew(last_s)
@@ -166,7 +169,7 @@ class Segmenter:
             self._forget_all()
 
     def _advance(self, i: int) -> None:
-        """Take the stored sample ``i`` into account."""
+        """Process the stored sample ``i``."""
         samples = self._samples
         t, u = float(samples.t[i]), float(samples.y[i])
         if self._base is None:
@@ -193,7 +196,8 @@ class Segmenter:
                 self._look(i, t, self._moved_from_s, self._base)
 
     def _watch_edges(self, i: int, t: float, from_s: float) -> None:
-        """Follow the speed of a movement, and separate an abrupt step from a slow movement before it."""
+        """Follow the speed of a movement, and separate an abrupt step from a slow movement before the
+        step."""
         samples = self._samples
         before = max(0, min(samples.index(t - _EDGE_S), i - 3))
         level = float(samples.y[before])
@@ -216,15 +220,14 @@ class Segmenter:
         self._set_out(onset_s, edge)
 
     def _watch_rest(self, i: int, t: float) -> None:
-        """Follow the slow motion of the rest's level and the elevator's movements at rest."""
+        """Follow the slow drift of the rest level, and the elevator's movements at rest."""
         recent = self._samples.since(max(t - LEAD_IN_S, self._new_from_s), i + 1)
         if len(recent) > 2:
             self._base = median(recent)
             self._leaving = min(max(4.0 * float(recent.std()), 0.5 * SMALLEST_RAD), 2.0 * SMALLEST_RAD)
 
     def _look(self, i: int, t: float, from_s: float, base: float) -> None:
-        """Test whether the moving elevator has come to rest, at the earlier level or for long at another
-        level."""
+        """Test whether the moving elevator is at rest, at the earlier level or for long at another level."""
         if t - from_s > _REACH_S:
             self._cut_off("no rest", t - _OVERLAP_S)
             self._restart(t - _OVERLAP_S)
@@ -266,7 +269,7 @@ class Segmenter:
         return _HOLD_S[1] if single else max(_HOLD_S[0], _LONGER * self._longest_hold_s)
 
     def _follow(self, response: FreeResponse, t: float, u: float) -> None:
-        """Take a sample of a free response into account."""
+        """Process a sample of a free response."""
         ended = response.take(t, u)
         if ended is None:
             return
@@ -283,7 +286,7 @@ class Segmenter:
             self._set_out(float(self._samples.t[before]), abs(u - movement.trim))
 
     def _cut_off(self, why: str, at_s: float) -> None:
-        """End a movement before the elevator has come to rest, for a given reason."""
+        """End a movement for a given reason before the elevator is at rest."""
         if self._moved_from_s is None or self._base is None:
             return
         until = self._samples.index(float(np.nextafter(at_s, np.inf)))
@@ -293,7 +296,7 @@ class Segmenter:
             self._end(movement, why, max(at_s, movement.last_step_s))
 
     def _described(self, until: int, rest: FloatArray | None) -> Movement | None:
-        """Return the movement up to the sample ``until``; None where it is smaller than any input."""
+        """Return the movement up to the sample ``until``; None if smaller than any input."""
         begin, base = self._rest_before(until)
         if until - begin < 3:
             return None
@@ -302,7 +305,7 @@ class Segmenter:
         return movement if movement is not None and movement.amplitude >= SMALLEST_RAD else None
 
     def _rest_before(self, until: int) -> tuple[int, float]:
-        """Return the position of the elevator's last rest before it went far, and the level of that rest."""
+        """Return the index and the level of the elevator's last rest before the movement."""
         samples, base = self._samples, self._base or 0.0
         begin = samples.index(self._moved_from_s or 0.0)
         far = np.flatnonzero(np.abs(samples.y[begin:until] - base) > _FAR * self._amplitude)

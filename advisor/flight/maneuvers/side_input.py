@@ -1,4 +1,4 @@
-"""Inputs of aileron and rudder: which movements belong together, their name, and the length of their tail."""
+"""Inputs of aileron and rudder: combination of movements, name, and length of the free response."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -11,25 +11,26 @@ from advisor.flight.maneuvers.maneuver import InputKind, Span
 from advisor.flight.signals.record import Channel
 
 TOGETHER_S = 1.5
-"""Longest rest between two movements that count as one input, s. No Dutch roll is free for a period by then,
-so that the first movement alone would have no response of its own."""
+"""Longest rest between two movements that form one input, s. A Dutch roll has not been free for a period by
+then, so the first movement alone would have no response."""
 BESIDE = 0.25
-"""Least amplitude of a movement next to another one, over the larger amplitude, for a part of the input.
-Hands that hold the wings level next to a rudder doublet of 3 to 6 deg move the aileron by at most 0.4 deg."""
+"""Least amplitude of a part of an input, over the largest movement's amplitude. Hands that hold the wings
+level during a rudder doublet of 3 to 6 deg move the aileron by at most 0.4 deg."""
 _NEXT = 0.5
-"""Least amplitude of a movement that ends the free response, over that of the input. The model knows every
-movement of both controls, so that a smaller one does no harm."""
+"""Least amplitude of a movement that ends the free response, over that of the input. The model includes every
+movement of both controls, so that a smaller movement does no harm."""
 TAIL_S = (3.0, 12.0)
-"""Least and greatest length of the free response, s. Three periods of a slow Dutch roll take 12 s."""
+"""Least and greatest length of the free response, s. Three periods of a slow Dutch roll last 12 s."""
 PERIODS = 3.0
-"""Length of the free response in periods of the Dutch roll. A damping of 0.08 leaves a fifth by then."""
+"""Length of the free response in periods of the Dutch roll. With a damping of 0.08 a fifth of the amplitude
+remains by then."""
 _SEEN = 0.1
-"""Least size of a half period of the yaw rate, over the largest, that counts as an oscillation."""
+"""Least amplitude of a half period of the yaw rate, over the largest, for an oscillation."""
 _BANKING_S = 0.75
-"""Least unit of a 1-2-1 that is flown from bank to bank, s. A 1-2-1 on record has 0.55 s, those from bank to
-bank have 0.88 s (autopilot) and 1.2 s (jet)."""
+"""Least unit of a 1-2-1 that is flown from bank to bank, s. A recorded 1-2-1 has 0.55 s, and inputs from bank
+to bank have 0.88 s (autopilot) and 1.2 s (jet)."""
 _LONGER = (1.5, 3.5)
-"""Duration of the middle step of a 1-2-1 over the mean of its neighbours."""
+"""Duration of the middle step of a 1-2-1, over the mean of the other two."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,20 +42,20 @@ class SideMovement:
 
     @property
     def amplitude(self) -> float:
-        """Largest level, rad from trim."""
+        """Largest level of the movement, rad from trim."""
         return max((abs(level) for _, level in self.span.steps), default=0.0)
 
 
 @dataclass(frozen=True, slots=True)
 class SideInput:
-    """Movements that make one lateral manoeuvre."""
+    """Movements of aileron and rudder that form one lateral manoeuvre."""
 
     movements: tuple[SideMovement, ...]
-    """At least one movement; the largest comes first."""
+    """At least one movement, the largest first."""
 
     @property
     def main(self) -> SideMovement:
-        """Largest movement."""
+        """Movement with the largest amplitude."""
         return self.movements[0]
 
     @property
@@ -69,12 +70,12 @@ class SideInput:
 
 
 def first_input(pending: Sequence[SideMovement]) -> tuple[SideInput, list[SideMovement]]:
-    """Return the first input of the movements, and the movements that remain.
+    """Return the first input among the movements, and the remaining movements.
 
     Parameters
     ----------
     pending
-        At least one movement, in the order of their onset. Small movements next to a larger one are dropped.
+        At least one movement, in order of onset. Small movements during a larger one are dropped.
     """
     first, *others = pending
     group = [first]
@@ -85,7 +86,7 @@ def first_input(pending: Sequence[SideMovement]) -> tuple[SideInput, list[SideMo
 
 
 def part_of_input(group: Sequence[SideMovement]) -> tuple[SideMovement, ...]:
-    """Return the movements that are part of an input, the largest first; small ones next to it are none."""
+    """Return the movements that form an input, the largest first, without small ones."""
     largest = max((one.amplitude for one in group), default=0.0)
     return tuple(
         sorted((m for m in group if 0.0 < m.amplitude >= BESIDE * largest), key=lambda m: -m.amplitude)
@@ -95,16 +96,16 @@ def part_of_input(group: Sequence[SideMovement]) -> tuple[SideMovement, ...]:
 def input_span(
     found: SideInput, following: Sequence[SideMovement], newest_s: float, yaw_rate: Channel | None
 ) -> Span:
-    """Return the span of an input with its free response.
+    """Return the extent of an input with its free response.
 
     Parameters
     ----------
     following
-        Later movements; the first one of some size ends the free response.
+        Later movements; the first one that is large enough ends the free response.
     newest_s
         Vehicle time of the newest sample, s.
     yaw_rate
-        Yaw rate over the input and the time after. None where not received.
+        Yaw rate during and after the input. None if not received.
     """
     main, last_s = found.main.span, found.last_step_s
     end_s, closed_by = min(last_s + TAIL_S[1], newest_s), "quiet"
@@ -129,7 +130,7 @@ def input_span(
 
 
 def _free_s(yaw_rate: Channel | None, from_s: float, to_s: float) -> float:
-    """Return the length of the free response: three periods of the Dutch roll, or as far as one is seen."""
+    """Return the length of the free response, s: three periods of the Dutch roll, or as far as visible."""
     tail = None if yaw_rate is None else yaw_rate.cut(from_s, to_s)
     if tail is None or len(tail) < 8:
         return TAIL_S[0]
@@ -147,7 +148,7 @@ def _free_s(yaw_rate: Channel | None, from_s: float, to_s: float) -> float:
 
 
 def named(found: SideInput) -> InputKind:
-    """Return the pilots' name of an input."""
+    """Return the name of an input that pilots use."""
     span = found.main.span
     if len(found.movements) > 1 and len({one.loop for one in found.movements}) > 1:
         return "other"

@@ -1,7 +1,7 @@
-"""End of a manoeuvre where the air speed leaves the model.
+"""End of a manoeuvre where the air speed leaves the model's range.
 
-The model holds at one air speed. A step that is held slows the aircraft for many seconds after the short
-period has died down. The part of the record at nearly constant speed is kept.
+The model is valid at one air speed. A held step slows the aircraft for many seconds after the short period
+has decayed. Only the part of the record at nearly constant speed is used.
 """
 
 from dataclasses import replace
@@ -13,13 +13,13 @@ from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.signals.record import Channel
 
 FOLLOWED_PERCENT = 15.0
-"""Change of the air speed that the model follows, %, however much the user allows.
+"""Largest change of the air speed that the model follows, %, whatever the user allows.
 
-The dynamic pressure falls by 28 %. The held step of a business jet has M_δe -7.5 ± 0.4 at 90 m/s. Every end
-from 8 to 30 % gives -8.0 to -6.9, with an interval that holds -7.5. At 40 % it is -6.5 ± 0.5. At 5 % the
-record is too short."""
+At this change the dynamic pressure is 28 % lower. At 90 m/s the held step of a business jet has M_δe -7.5 ±
+0.4. A limit of 8 to 30 % gives -8.0 to -6.9, with an interval that contains -7.5. A limit of 40 % gives -6.5
+± 0.5. A limit of 5 % leaves too short a record."""
 LEFT = "air speed"
-"""Reason of the end of a span where the air speed left the model."""
+"""Reason for the end of a span where the air speed left the model's range."""
 
 
 def speed_before(airspeed: Channel, span: Span) -> float:
@@ -34,18 +34,18 @@ def at_steady_speed(span: Span, airspeed: Channel | None, change_percent: float)
     Parameters
     ----------
     span
-        Extent of the movement and its free response.
+        Extent of the movement with its free response.
     airspeed
-        Air speed over the record, m/s. None where no air speed was received.
+        Air speed during the record, m/s. None without a received air speed.
     change_percent
         Largest change of the air speed that the user allows, % of its value before the first step. The span
-        ends at ``FOLLOWED_PERCENT`` at the latest.
+        ends at a change of ``FOLLOWED_PERCENT`` at the latest.
 
     Returns
     -------
     Span
-        The unchanged span where the speed leaves its limits during the input. A step that is held for the
-        least free response counts as an input with its response.
+        The span is unchanged if the speed leaves its limits during the input. A step held for the least free
+        response counts as an input with its response.
     """
     if airspeed is None or len(airspeed) < 2 or not (trim := speed_before(airspeed, span)) > 0.0:
         return span

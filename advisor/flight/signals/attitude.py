@@ -11,18 +11,18 @@ _QUATERNION = ("q1", "q2", "q3", "q4")
 
 
 class Attitudes:
-    """Converts quaternions to ATTITUDE for each component that sends no ATTITUDE.
+    """Conversion of quaternions to ATTITUDE for each component without ATTITUDE messages.
 
-    For a component that sends both messages, the quaternions count until its first ATTITUDE. The order of
-    arrival decides, so that batches of any size give equal results.
+    If a component sends both messages, its quaternions are used until its first ATTITUDE. The order of
+    arrival decides, so batches of any size give equal results.
     """
 
     def __init__(self) -> None:
         self._senders: set[tuple[int, int]] = set()
-        """Systems and components that have sent an ATTITUDE."""
+        """System and component ids that have sent an ATTITUDE."""
 
     def of(self, columns: Sequence[Columns]) -> Sequence[Columns]:
-        """Return the columns, with an ATTITUDE for every quaternion that arrived before any ATTITUDE."""
+        """Return the columns with an ATTITUDE in place of every quaternion before the first ATTITUDE."""
         sent = {_sender(c): c for c in columns if c.name == "ATTITUDE" and len(c)}
         stand_ins: dict[tuple[int, int], Columns] = {}
         for c in columns:
@@ -41,12 +41,12 @@ class Attitudes:
 
 
 def euler_angles(q: FloatArray) -> dict[str, FloatArray]:
-    """Return the roll, pitch and yaw of attitude quaternions, rad, each of shape (n,).
+    """Return roll, pitch and yaw of attitude quaternions, rad, each of shape (n,).
 
     Parameters
     ----------
     q
-        Shape (4, n): w, x, y, z of the rotation from north-east-down into body axes.
+        Shape (4, n): components w, x, y, z of the rotation from north-east-down into body axes.
     """
     w, x, y, z = q
     return {
@@ -71,7 +71,7 @@ def _as_attitude(c: Columns, rows: int) -> Columns:
 
 
 def _joined(first: Columns, then: Columns) -> Columns:
-    """Return two batches of one type, one after the other."""
+    """Return two batches of one message type, one after the other."""
     return replace(
         then,
         order=np.concatenate([first.order, then.order]),

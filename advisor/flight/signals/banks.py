@@ -1,4 +1,4 @@
-"""Servo outputs from several banks, completed to one sample.
+"""Servo outputs from several banks, combined into one sample.
 
 SERVO_OUTPUT_RAW carries sixteen outputs, and its ``port`` names the bank. A surface whose outputs lie in two
 banks needs two messages for one sample.
@@ -17,20 +17,20 @@ _OUTPUTS = 16
 
 @dataclass(frozen=True, slots=True)
 class Pulses:
-    """Pulses of the servo outputs, grouped by the messages that brought them."""
+    """Pulse widths of the servo outputs, with the messages that contained them."""
 
     columns: Columns
-    """The messages, n of them."""
+    """The n messages of the batch."""
     ports: IntArray
-    """Shape (m + n,), bank of each message. The first m messages came before ``columns``."""
+    """Shape (m + n,): bank of each message, where the first m are earlier messages."""
     raw: FloatArray
-    """Shape (m + n, outputs of a bank), pulse widths, us."""
+    """Shape (m + n, outputs of a bank): pulse widths, us."""
 
     def of(self, outputs: Sequence[int]) -> FloatArray:
-        """Return the pulses of the given outputs, shape (n, number of outputs), us.
+        """Return the pulse widths of the given outputs, shape (n, number of outputs), us.
 
-        A message of the last bank makes a sample, with the newest pulses of the other banks. NaN marks a
-        message of another bank. NaN also marks a sample since whose forerunner another bank was silent.
+        Each message of the last bank gives a sample, with the newest pulses of the other banks. NaN marks a
+        message of another bank. NaN also marks a sample if another bank sent nothing since the sample before.
         """
         size = self.raw.shape[1]
         banks = [(n - 1) // size for n in outputs]
@@ -59,7 +59,7 @@ class Pulses:
 
 
 def merged(part: Sequence[Columns]) -> list[Columns]:
-    """Return the columns with the SERVO_OUTPUT_RAW of one sender merged, which some logs separate by bank."""
+    """Return the columns with one sender's SERVO_OUTPUT_RAW merged, which some logs separate by bank."""
     senders: dict[int, list[Columns]] = {}
     for c in part:
         if c.name == "SERVO_OUTPUT_RAW":
@@ -81,15 +81,14 @@ def _in_order(banks: Sequence[Columns]) -> Columns:
 
 
 class Banks:
-    """Keeps the last message of every bank."""
+    """Memory of the last message of every bank."""
 
     def __init__(self) -> None:
         self._ports: IntArray = np.empty(0, dtype=np.int64)
         self._raw: FloatArray = np.empty((0, _OUTPUTS))
 
     def together(self, columns: Columns) -> Pulses:
-        """Return the pulses of SERVO_OUTPUT_RAW or ACTUATOR_OUTPUT_STATUS messages, completed by earlier
-        messages."""
+        """Return the pulses of servo output messages, completed by earlier messages."""
         if columns.name == "ACTUATOR_OUTPUT_STATUS":
             every = np.asarray(columns.fields["actuator"], dtype=np.float64)
             return Pulses(columns, np.zeros(len(every), dtype=np.int64), every)

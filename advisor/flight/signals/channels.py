@@ -1,4 +1,4 @@
-"""From messages to physical quantities: units, signs and sources, each sample at its own stamp."""
+"""Conversion of messages to physical quantities: units, signs and sources, each sample at its own stamp."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -22,13 +22,13 @@ _USEC = ("time_usec", 1e-6)
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """One physical quantity in one message."""
+    """One physical quantity from one message."""
 
     channel: str
     message: str
     field: str
     value: Callable[..., FloatArray]
-    """Conversion of the raw values of ``field``, and of ``second`` where that is named, to SI."""
+    """Function that converts ``field``, and ``second`` if given, to SI units."""
     provenance: str = "measured"
     second: str = ""
 
@@ -43,12 +43,12 @@ def _scaled(factor: float) -> Callable[[NDArray[Any]], FloatArray]:
 
 
 def _towards(part: Callable[[FloatArray], FloatArray]) -> Callable[..., FloatArray]:
-    """Return a component of the air's velocity from the wind's speed and the direction it blows from."""
+    """Return a function for a wind component from the wind's speed and the direction it blows from."""
     return lambda speed, from_deg: -np.asarray(speed, dtype=np.float64) * part(np.radians(from_deg))
 
 
 _FORCES = (("a_x", "xacc"), ("a_y", "yacc"), ("a_z", "zacc"))
-"""Components of the specific force, and their fields."""
+"""Components of the specific force with their message fields."""
 
 READINGS = (
     Reading("q", "ATTITUDE", "pitchspeed", _scaled(1.0)),
@@ -89,12 +89,12 @@ READINGS = (
     Reading("landed_state", "EXTENDED_SYS_STATE", "landed_state", _scaled(1.0)),
     Reading("armed", "HEARTBEAT", "base_mode", lambda raw: (np.asarray(raw) & ARMED > 0).astype(np.float64)),
 )
-"""Sources of each channel, the best first where several messages carry the channel."""
+"""Sources of each channel, the best source first."""
 
 COMPANIONS = ("NAMED_VALUE_FLOAT", "AOA_SSA")
-"""Messages that another component of the vehicle may send, such as an onboard computer with a vane."""
+"""Messages that another component may send, such as an onboard computer with a vane."""
 COMPANION_ALPHA = "AOA_SSA.AOA of an onboard computer"
-"""Source of an angle of attack from another component than the autopilot."""
+"""Source name of an angle of attack from an onboard computer."""
 
 _STAMPS = {
     "ATTITUDE": _BOOT_MS,
@@ -115,15 +115,16 @@ _STAMPS = {
     "WIND": _USEC,
     "WIND_COV": _USEC,
 }
-"""Message to its stamp's field. VFR_HUD and WIND of a link have no stamp and take that of the last ATTITUDE.
-Autopilots' own logs stamp both."""
+"""Stamp field of each message, by the message's name. On a link VFR_HUD and WIND have no stamp, and take that
+of the last ATTITUDE. Logs of autopilots stamp both messages."""
 
 GIVEN_AIRSPEED = "airspeed_m_s of the aircraft file"
-"""Source of an air speed of the aircraft file."""
+"""Source name of an air speed from the aircraft file."""
 GIVEN_HEIGHT = "reference.height_m of the aircraft file"
-"""Source of a pressure altitude of the aircraft file."""
+"""Source name of a pressure altitude from the aircraft file."""
 TRUE_AIRSPEED = "VFR_HUD.true_airspeed"
-"""Source of a true air speed that the autopilot has logged next to the calibrated one. Links carry none."""
+"""Source name of a true air speed that the autopilot logged in addition to the calibrated one. Links do not
+carry a true air speed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +147,7 @@ def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
     columns
         Messages of one type.
     master_s
-        Shape (n,), master clock at the arrival of each message.
+        Shape (n,): master clock at the arrival of each message, s since boot.
     """
     field, tick_s = _STAMPS.get(columns.name, ("", 0.0))
     if field not in columns.fields:
@@ -155,7 +156,7 @@ def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
 
 
 def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
-    """Yield every quantity of ``READINGS`` that these messages carry."""
+    """Yield every quantity of ``READINGS`` that a message type contains."""
     for reading in READINGS:
         if reading.message == columns.name and reading.field in columns.fields:
             fields = filter(None, (reading.field, reading.second))
@@ -164,13 +165,13 @@ def quantities(columns: Columns, t: FloatArray) -> Iterator[Decoded]:
 
 
 def of_companion(decoded: Decoded) -> Decoded:
-    """Return a quantity under the name of another component than the autopilot. Nobody knows how the
-    component finds it."""
+    """Return a quantity with the source name of another component than the autopilot. The component's method
+    of measurement is unknown."""
     return replace(decoded, source=f"{decoded.source} of an onboard computer", provenance="unknown")
 
 
 def named_value(columns: Columns, t: FloatArray, channel: str, name: str) -> Decoded:
-    """Return a vane's channel from NAMED_VALUE_FLOAT messages with this name, in the sender's unit."""
+    """Return a vane's channel from NAMED_VALUE_FLOAT messages with a given name, in the sender's unit."""
     mine = np.array(
         [raw.rstrip(b"\0") == name.encode() for raw in columns.fields["name"].tolist()], dtype=bool
     )

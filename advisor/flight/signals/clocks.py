@@ -2,9 +2,9 @@
 
 ``ATTITUDE.time_boot_ms`` is the master clock. Every other stamp is placed on the master clock. A 32-bit
 counter of microseconds is the true time less a multiple of 71.6 minutes, and the master gives the multiple.
-SERVO_OUTPUT_RAW has such a counter, and AOA_SSA as ArduPilot fills it. No state is kept for a message, so
-that silences, duplicates and late packets do no harm. A clock that goes back by less than `_OLD_MS` is no
-reboot, because nobody tests in the first seconds after one.
+SERVO_OUTPUT_RAW has a 32-bit counter, and so has AOA_SSA from ArduPilot. The conversion keeps no state for a
+message, so silences, duplicates and late packets do no harm. A clock that goes back by less than `_OLD_MS` is
+no reboot.
 """
 
 from dataclasses import dataclass
@@ -16,32 +16,32 @@ from advisor.flight.signals.messages import FloatArray, IntArray
 _MS = 1e-3
 _WRAP_MS = 2**32
 _LATE_MS = 2000
-"""Age relative to the newest master stamp, ms, below which a stamp is a late packet in its right place."""
+"""Age relative to the newest master stamp, ms, below which a stamp belongs to a late packet."""
 _OLD_MS = 20_000
 """Age relative to the newest master stamp, ms, below which a stamp came by a second path and is dropped.
-Radios hold packets up to 15 s."""
+Radios delay packets by up to 15 s."""
 _SILENCE_MS = 10_000
-"""Advance of a master stamp beyond the last one, ms, above which the stamp waits for confirmation."""
+"""Advance of a master stamp beyond the last one, ms, above which the stamp needs confirmation."""
 _CONFIRM = 3
 """Number of consecutive stamps that confirm a jump: backwards a reboot, forwards a silence."""
 _TIME_OF_DAY_S = 1e9
-"""Least stamp, s, that counts from 1970. No counter since boot comes so far."""
+"""Least stamp, s, that is relative to 1970. No counter since boot reaches this value."""
 _NEAR_S = 5.0
 """Largest distance of a stamp from the master clock at the arrival of its message, s."""
 
 
 @dataclass(frozen=True, slots=True)
 class MasterStamps:
-    """Master clock from a row of ``time_boot_ms``."""
+    """Vehicle time from a series of ``time_boot_ms``."""
 
     t: FloatArray
-    """Shape (n,), seconds since boot. NaN for a stamp that is not confirmed."""
+    """Shape (n,), seconds since boot. An unconfirmed stamp is NaN."""
     boot: IntArray
-    """Shape (n,), number of the boot, rising."""
+    """Shape (n,): number of the boot of each stamp, rising."""
 
 
 class BootClock:
-    """Unwraps ``time_boot_ms`` and notices reboots.
+    """Unwrapping of ``time_boot_ms`` and detection of reboots.
 
     Parameters
     ----------
@@ -51,22 +51,22 @@ class BootClock:
 
     def __init__(self, boot: int = 0) -> None:
         self.boot = boot
-        """Number of the boot, 0 for the first."""
+        """Number of the present boot, 0 for the first."""
         self._newest_ms: int | None = None
         self._doubt: list[int] = []
 
     @property
     def newest_s(self) -> float:
-        """Newest confirmed stamp, s since boot. NaN before the first stamp."""
+        """Newest confirmed stamp, s since boot. NaN before the first confirmed stamp."""
         return float("nan") if self._newest_ms is None else self._newest_ms * _MS
 
     def advance(self, time_boot_ms: IntArray) -> MasterStamps:
-        """Take stamps in order of arrival.
+        """Take stamps in order of arrival, and return the vehicle times.
 
         Parameters
         ----------
         time_boot_ms
-            Shape (n,), as received.
+            Shape (n,): stamps as received, ms.
         """
         newest_ms = time_boot_ms[:1] if self._newest_ms is None else self._newest_ms
         ahead_ms = np.diff(time_boot_ms, prepend=newest_ms)
@@ -85,7 +85,7 @@ class BootClock:
         return MasterStamps(t, boot)
 
     def _believe(self, raw: int) -> int | None:
-        """Return the unwrapped milliseconds of this stamp; None while the stamp is unconfirmed."""
+        """Return the unwrapped stamp in milliseconds; None while the stamp is unconfirmed."""
         if self._newest_ms is None:
             self._newest_ms = raw
             return raw
@@ -115,23 +115,22 @@ class BootClock:
 
 
 def place(ticks: IntArray, tick_s: float, master_s: FloatArray) -> FloatArray:
-    """Put stamps of any counter of 32 bits or more on the master clock.
+    """Return stamps of any counter of at least 32 bits on the master clock.
 
     Parameters
     ----------
     ticks
-        Shape (n,), stamps as received: since boot, possibly wrapped at 2**32 ticks.
+        Shape (n,): stamps as received, since boot, possibly wrapped at 2**32 ticks.
     tick_s
         Length of a tick, s.
     master_s
-        Shape (n,), master clock when each message arrived, s since boot.
+        Shape (n,): master clock at the arrival of each message, s since boot.
 
     Returns
     -------
     FloatArray
-        Shape (n,), s since boot. NaN where no number of wraps brings the stamp near the master clock
-        (another clock, or a message of an earlier boot). The master clock replaces a stamp that is
-        zero or a time of day.
+        Shape (n,): vehicle times, s since boot. NaN if no number of wraps brings the stamp near the master
+        clock, as for another clock. The master clock replaces a stamp that is zero or a time of day.
     """
     wrap_s = 2.0**32 * tick_s
     raw_s = ticks.astype(np.float64) * tick_s
@@ -141,5 +140,5 @@ def place(ticks: IntArray, tick_s: float, master_s: FloatArray) -> FloatArray:
 
 
 def _signed(difference_ms: int) -> int:
-    """Return the difference of two 32-bit stamps, the shorter way round."""
+    """Return the shorter difference of two 32-bit stamps, with its sign."""
     return (difference_ms + _WRAP_MS // 2) % _WRAP_MS - _WRAP_MS // 2

@@ -1,8 +1,7 @@
 """The angle of attack in still air, derived from attitude, climb rate and air speed at equal times.
 
-Pitch angle, climb rate and air speed arrive at stamps of their own. Attitude and air speed are interpolated
-at the stamps of the climb rate. Neither the order of messages nor their delay enters the derived angle of
-attack.
+Pitch angle, climb rate and air speed have separate stamps. Attitude and air speed are interpolated at the
+stamps of the climb rate. The derived angle of attack is independent of the messages' order and delay.
 """
 
 from collections.abc import Callable
@@ -18,23 +17,23 @@ from advisor.flight.signals.track import ChannelStatus, Track
 
 DERIVED_ALPHA = "theta - asin(VFR_HUD.climb / airspeed)"
 SLOWEST_FLIGHT_M_S = 4.0
-"""Air speed, m/s, below which nothing flies, so that no angle of attack can be derived."""
+"""Air speed, m/s, below which no aircraft flies, so that no angle of attack can be derived."""
 _AROUND_S = 2.0
-"""Margin around a stretch within which its neighbouring samples lie, s. Air speed may come once a second
-(PX4's airspeed_validated)."""
+"""Margin around a stretch that contains the neighbouring samples, s. Air speed may come once a second (PX4's
+airspeed_validated)."""
 
 
 class DerivedAlpha:
-    """Angle of attack in the form of a track.
+    """Derived angle of attack, with the interface of a track.
 
     Parameters
     ----------
     track
-        Gives the track of a channel's best source; None for a channel without samples.
+        Function that returns the track of a channel's best source; None without samples.
     speed
-        Gives the true air speed from a time to a time, of messages up to an order; None without samples.
+        Function that returns the true air speed between two times, from messages up to an order.
     airspeed_m_s
-        Air speed where none is measured, m/s. None: unknown.
+        Air speed if none is measured, m/s. None if unknown.
     """
 
     def __init__(
@@ -58,12 +57,12 @@ class DerivedAlpha:
 
     @property
     def newest_s(self) -> float:
-        """Older one of the newest stamps of climb rate and pitch angle, s since boot."""
+        """Older of the newest stamps of climb rate and pitch angle, s since boot."""
         return min(track.newest_s for track in (self._track("climb_rate"), self._track("theta")) if track)
 
     @property
     def status(self) -> ChannelStatus:
-        """Arrival of the angle, which follows the climb rate."""
+        """Arrival status of the derived angle, equal to that of the climb rate."""
         climb = self._track("climb_rate")
         assert climb is not None
         return replace(
@@ -94,13 +93,13 @@ class DerivedAlpha:
 def derived_alpha(
     climb_m_s: FloatArray, airspeed_m_s: FloatArray, theta: FloatArray, bank: FloatArray
 ) -> FloatArray:
-    """Return θ − γ with sin γ = climb rate / air speed, in rad; banked, the α that gives γ. NaN where the
-    air speed is too low.
+    """Return θ − γ with sin γ = climb rate / air speed, rad; in a bank, the α that gives γ. The angle is NaN
+    at too low an air speed.
 
     Parameters
     ----------
     climb_m_s, airspeed_m_s, theta, bank
-        Shape (n,), each at the same n times; angles in rad.
+        Shape (n,) each, at equal times; angles in rad.
     """
     flying = airspeed_m_s > SLOWEST_FLIGHT_M_S
     sine = np.divide(climb_m_s, airspeed_m_s, out=np.zeros_like(airspeed_m_s), where=flying)
@@ -110,17 +109,16 @@ def derived_alpha(
 
 
 def promised(hud: Columns, airspeed_m_s: float | None) -> IntArray:
-    """Return the orders of the VFR_HUD messages that give an angle of attack, or will give one once the
-    aircraft flies.
+    """Return the orders of the VFR_HUD messages that give an angle of attack, now or in flight.
 
-    While the aircraft stands, no angle of attack can be derived, which is no fault of the stream.
+    A standing aircraft has no derived angle of attack, which is no fault of the stream.
 
     Parameters
     ----------
     hud
-        Messages VFR_HUD. Messages of an autopilot's own log may hold the climb rate alone.
+        Messages of type VFR_HUD. Messages from an autopilot's log may contain the climb rate alone.
     airspeed_m_s
-        Air speed where none is measured, m/s; None: not known.
+        Air speed if none is measured, m/s; None if unknown.
     """
     if "climb" not in hud.fields:
         return hud.order[:0]
@@ -134,7 +132,7 @@ def promised(hud: Columns, airspeed_m_s: float | None) -> IntArray:
 def _angles(
     climb: Channel, around: dict[str, Channel], airspeed_m_s: float | None
 ) -> tuple[FloatArray, FloatArray]:
-    """Return stamps and angles where the attitude is known before and after."""
+    """Return stamps and angles at which the attitude is known before and after."""
     theta, bank, speed = around.get("theta"), around.get("bank"), around.get("airspeed")
     if theta is None or len(theta) == 0:
         return np.empty(0), np.empty(0)

@@ -5,7 +5,7 @@ Pitch rate, specific force, attitude and air speed give the rate of the angle of
     α̇ = q + (a_z·cos α − a_x·sin α + g·cos γ)/V
 
 (Klein & Morelli, *Aircraft System Identification*, chapter 10). The integral has the shape of the angle of
-attack, and biases of the instruments make it drift. A climb rate, if there is one, corrects level and drift.
+attack, but drifts because of instrument biases. A climb rate, if available, corrects level and drift.
 """
 
 from collections.abc import Mapping
@@ -20,22 +20,22 @@ from advisor.flight.signals.record import Channel
 NEEDED = ("q", "theta", "a_z")
 _PASSES = 2
 _DRIFT = 2
-"""Degree of the polynomial in time with which biases of rate and force, and their attitude's, enter α."""
+"""Degree of the polynomial in time for the effect of biases on the integrated α."""
 
 
 def alpha_rate(
     t: FloatArray, alpha: FloatArray, speed: FloatArray, channels: Mapping[str, Channel], arm_m: float = 0.0
 ) -> FloatArray:
-    """Return the rate of the angle of attack by the motion, rad/s, at times ``t`` of the pitch rate.
+    """Return the rate of the angle of attack from the motion, rad/s, at times ``t`` of the pitch rate.
 
     Parameters
     ----------
     t, alpha, speed
-        Shape (n,): stamps of the channel ``q`` (s), with angle of attack (rad) and air speed (m/s) there.
+        Shape (n,): stamps of channel ``q`` (s), angle of attack (rad) and air speed (m/s) at these stamps.
     channels
-        ``q``, ``theta`` and ``a_z``; ``a_x`` and ``bank`` are used when present.
+        Channels ``q``, ``theta`` and ``a_z``; ``a_x`` and ``bank`` are used if present.
     arm_m
-        Distance of the accelerometer ahead of the centre of gravity.
+        Distance of the accelerometer ahead of the centre of gravity, m.
     """
 
     def at(name: str) -> FloatArray:
@@ -50,14 +50,15 @@ def alpha_rate(
 
 
 def inferred_alpha(channels: Mapping[str, Channel], speed: FloatArray) -> Channel | None:
-    """Return the angle of attack by the motion; None where pitch rate, attitude or a_z is missing.
+    """Return the angle of attack from the motion; None without pitch rate, attitude or a_z.
 
     Parameters
     ----------
     channels
-        Channels of a manoeuvre. An ``alpha`` among them, as from climb rate, corrects level and drift.
+        Channels of a manoeuvre. An ``alpha`` among them, such as from the climb rate, corrects level and
+        drift.
     speed
-        Shape (n,), air speed at the stamps of the channel ``q``, m/s.
+        Shape (n,): air speed at the stamps of channel ``q``, m/s.
     """
     if any(name not in channels or len(channels[name]) < 2 for name in NEEDED) or np.min(speed) <= 0.0:
         return None

@@ -1,4 +1,4 @@
-"""Decoded MAVLink messages as columns, the input of the core."""
+"""Decoded MAVLink messages as columns, the input of all analysis."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ from advisor.words.mends import Carrier
 class Columns:
     """Messages of one type from one system, in their order of arrival.
 
-    A log and a live link both end in columns, so that no consumer can distinguish replay from live.
+    A log and a live link both become columns, so that replay and live are processed equally.
     """
 
     name: str
@@ -26,24 +26,26 @@ class Columns:
     component: int
     """Component id of the sender."""
     order: IntArray
-    """Shape (n,). Arrival index in the whole stream: strictly increasing over all types."""
+    """Shape (n,): arrival index in the whole stream, strictly increasing over all types."""
     arrival_s: FloatArray
-    """Shape (n,). Host time of arrival, seconds since 1970. Arrival gives an order and never enters
-    dynamics."""
+    """Shape (n,): host time of arrival, seconds since 1970. The arrival time gives an order and is not used
+    in dynamics."""
     fields: Mapping[str, NDArray[Any]]
-    """Field name to raw values, shape (n,) or (n, k), in the units of the message definition.
-    Text fields are arrays of ``bytes`` (NumPy kind ``S``)."""
+    """Raw values of each field, shape (n,) or (n, k), in the units of the message definition. Text fields are
+    arrays of ``bytes`` (NumPy kind ``S``)."""
     carrier: Carrier = "telemetry"
-    """Source of the messages. Only the sentences about the vehicle depend on the source."""
+    """Kind of source from which the messages come. Only the sentences about the vehicle depend on the
+    source."""
     flight: int = 0
-    """Number of the campaign's log or link, 0 for the first. ``order`` rises within it."""
+    """Number of the campaign's log or link, 0 for the first. The arrival index ``order`` rises within one
+    flight."""
 
     def __len__(self) -> int:
         return len(self.order)
 
 
 def arrivals(columns: Columns, order: IntArray) -> FloatArray:
-    """Return the host times of arrival for these arrival indices, in the shape of ``order``."""
+    """Return the host times of arrival of messages, in the shape of their indices ``order``."""
     times: FloatArray = columns.arrival_s[np.searchsorted(columns.order, order)]
     return times
 

@@ -1,4 +1,4 @@
-"""Motion of any aircraft, whatever its aerodynamics: gravity, and the rate of the speed."""
+"""Kinematics of any aircraft without aerodynamics: gravity, and the rate of the speed."""
 
 from collections.abc import Mapping
 
@@ -10,7 +10,7 @@ from advisor.flight.signals.record import Channel
 
 
 def channel_at(name: str, t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
-    """Return a channel at times ``t`` in s, shape (n,); zero where the log has none."""
+    """Return a channel at times ``t`` in s, shape (n,); zero if the log has no such channel."""
     channel = channels.get(name)
     return np.zeros(len(t)) if channel is None or len(channel) == 0 else np.interp(t, channel.t, channel.y)
 
@@ -18,20 +18,20 @@ def channel_at(name: str, t: FloatArray, channels: Mapping[str, Channel]) -> Flo
 def gravity_in_plane(theta: FloatArray, bank: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return gravity in the aircraft's plane of symmetry: the direction of up, and the size.
 
-    In a bank gravity also pulls sideways. Along the path gravity is −size · sin(up − α), across it
-    size · cos(up − α). With level wings ``up`` is the pitch angle.
+    In a bank a part of gravity acts sideways. Along the path gravity is −size · sin(up − α), across it size ·
+    cos(up − α). With level wings ``up`` is the pitch angle.
 
     Parameters
     ----------
     theta, bank
-        Attitude in rad, shape (n,).
+        Shape (n,): pitch angle and bank, rad.
 
     Returns
     -------
     up
-        Shape (n,), rad from the body's x axis.
+        Shape (n,): direction of up, rad from the body's x axis.
     size
-        Shape (n,), m/s².
+        Shape (n,): size of gravity in the plane of symmetry, m/s².
     """
     along, down = np.sin(theta), np.cos(theta) * np.cos(bank)
     return np.arctan2(along, down), GRAVITY_M_S2 * np.hypot(along, down)
@@ -40,7 +40,8 @@ def gravity_in_plane(theta: FloatArray, bank: FloatArray) -> tuple[FloatArray, F
 def path_turning(
     a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray, bank: FloatArray
 ) -> FloatArray:
-    """Return specific force and gravity across the path, down, m/s². Divided by the speed, the sum is α̇ − q.
+    """Return specific force plus gravity normal to the path, positive down, m/s². This sum divided by the
+    speed is α̇ − q.
 
     a_z cos α − a_x sin α + g cos γ; specific force in m/s², angles in rad, all of shape (n,).
     """
@@ -51,7 +52,7 @@ def path_turning(
 def speed_rate(
     a_x: FloatArray, a_z: FloatArray, theta: FloatArray, alpha: FloatArray, bank: FloatArray
 ) -> FloatArray:
-    """Return the rate of the speed by the accelerometers, m/s², valid in steadily moving air.
+    """Return the rate of the speed from the accelerometers, m/s², valid in steadily moving air.
 
     V̇ = a_x cos α + a_z sin α − g sin γ; specific force in m/s², angles in rad, all of shape (n,).
     """
@@ -65,9 +66,9 @@ def speed_rate_at(t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:
     Parameters
     ----------
     t
-        Shape (n,), s.
+        Shape (n,): times, s.
     channels
-        Channels by name. All but the bank are needed.
+        Channels by name; only the bank may be missing.
     """
     a_x, a_z, theta, alpha = (
         np.interp(t, channels[name].t, channels[name].y) for name in ("a_x", "a_z", "theta", "alpha")

@@ -1,4 +1,4 @@
-"""A power-on of the vehicle as a whole: every channel from its first stamp to its last, in bounded memory."""
+"""A whole power-on of the vehicle: every channel from its first stamp to its last, in bounded memory."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,25 +9,26 @@ from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.flight.signals.record import Channel
 
 MOST = 600
-"""Most stretches, about as many as a terminal has dots across. With more, two neighbours are joined."""
+"""Largest number of stretches, about the number of dots across a terminal. With more stretches, neighbours
+are joined."""
 _FIRST_S = 0.25
-"""Length of a stretch at the begin, s: half a step of the quickest input that a crew flies."""
+"""Initial length of a stretch, s: half a step of the quickest input."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Course:
-    """A channel over time, as its extremes in stretches of equal length."""
+    """A channel over time, as its smallest and largest values in stretches of equal length."""
 
     t: FloatArray
-    """Shape (n,), middle of each stretch with samples, s since boot."""
+    """Shape (n,): middle of each stretch with samples, s since boot."""
     low: FloatArray
-    """Shape (n,), SI."""
+    """Shape (n,): smallest value in each stretch, SI."""
     high: FloatArray
-    """Shape (n,), SI."""
+    """Shape (n,): largest value in each stretch, SI."""
 
 
 class Extremes:
-    """Collects the samples of one channel, in any batches."""
+    """Smallest and largest values of one channel, collected from batches of any size."""
 
     def __init__(self) -> None:
         self._begin_s = np.nan
@@ -36,7 +37,8 @@ class Extremes:
         self._high = np.full(MOST, -np.inf)
 
     def add(self, t: FloatArray, y: FloatArray) -> None:
-        """Take samples: stamps and values, shape (n,) each. A sample before the first one is dropped."""
+        """Take stamps and values of samples, shape (n,) each. Samples before the first stretch are
+        dropped."""
         if np.isnan(self._begin_s):
             self._begin_s = float(t[0])
         late = t >= self._begin_s
@@ -52,13 +54,13 @@ class Extremes:
 
     @property
     def course(self) -> Course:
-        """The channel so far."""
+        """Smallest and largest values of the channel so far."""
         known = np.flatnonzero(self._high >= self._low)
         t = np.asarray(self._begin_s + (known + 0.5) * self._length_s, dtype=np.float64)
         return Course(t, self._low[known], self._high[known])
 
     def _halve(self) -> None:
-        """Join neighbours, so that the stretches reach twice as far."""
+        """Join neighbouring stretches, so that each is twice as long."""
         half = MOST // 2
         low, high = self._low.reshape(half, 2).min(axis=1), self._high.reshape(half, 2).max(axis=1)
         self._low, self._high = np.full(MOST, np.inf), np.full(MOST, -np.inf)
@@ -70,20 +72,20 @@ class Extremes:
 class PowerOn:
     """All channels that one vehicle sent from one power-on to the next.
 
-    A stream keeps power-ons on request only, because their memory grows with the length of the flight.
+    A stream keeps power-ons only on request, because their memory grows with the flight.
     """
 
     boot: int
     """Number of the power-on in its log, 0 for the first."""
     channels: Mapping[str, Channel]
-    """Channel name to its samples from its best source, SI, each at its own stamps."""
+    """Samples of each channel from its best source, SI, by the channel's name."""
     clock_order: IntArray
-    """Shape (n,), rising: arrival index of each message that stamps the vehicle's clock."""
+    """Shape (n,), rising: arrival index of each message with a stamp of the vehicle's clock."""
     clock_s: FloatArray
-    """Shape (n,), never falling: the vehicle's clock at each arrival in ``clock_order``, s since boot."""
+    """Shape (n,), never falling: vehicle's clock at each arrival in ``clock_order``, s since boot."""
     modes: tuple[tuple[float, str], ...] = ()
-    """Vehicle time at which each flight mode was first heard, s since boot (NaN: before the clock), and its
-    name."""
+    """Vehicle time of each flight mode change, s since boot (NaN before the first clock stamp), and the
+    mode's name."""
 
     def arrivals(self, start_s: float, end_s: float) -> tuple[int, int]:
         """Return the arrival indices of the clock's first and last stamp with ``start_s <= t <= end_s``.
@@ -91,7 +93,7 @@ class PowerOn:
         Raises
         ------
         ValueError
-            The clock shows no time of this stretch.
+            The clock has no stamp within this stretch.
         """
         i, j = np.searchsorted(self.clock_s, [start_s, np.nextafter(end_s, np.inf)])
         if i == j:

@@ -1,4 +1,4 @@
-"""Channels: physical quantities with units, each at its own time stamps on the vehicle's clock."""
+"""Channels: physical quantities with units, each with separate stamps on the vehicle's clock."""
 
 from dataclasses import dataclass, replace
 
@@ -29,45 +29,46 @@ UNITS = {
     "height": "m",
 }
 AIR_UNITS = {"altitude": "m", "static_pressure": "Pa"}
-"""Channels that give only the density of the air. The altitude is above mean sea level."""
+"""Units of the channels that are used only for the air density. The altitude is above mean sea level."""
 WIND_UNITS = {"wind_along": "m/s", "wind_right": "m/s"}
-"""Horizontal velocity of the air along the aircraft's heading and to the right of the heading."""
+"""Units of the wind along the aircraft's heading and to its right."""
 ALL_UNITS = UNITS | AIR_UNITS | WIND_UNITS
-"""Every channel that a manoeuvre or a whole flight may hold."""
+"""Unit of every channel in a manoeuvre or a whole flight, by the channel's name."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Channel:
-    """One quantity over time. A gap is a longer interval between stamps, because nothing is resampled."""
+    """One physical quantity over time. A gap is a longer interval between stamps, because samples are never
+    resampled."""
 
     name: str
     t: FloatArray
-    """Shape (n,), strictly increasing seconds since boot."""
+    """Shape (n,): strictly increasing stamps, s since boot."""
     y: FloatArray
-    """Shape (n,), SI."""
+    """Shape (n,): values, SI."""
     source: str = ""
     """Message and field of the channel, e.g. ``AOA_SSA.AOA``."""
     provenance: str = "unknown"
-    """``vane``, ``derived``, ``simulated``, ``measured``, ``commanded`` or ``unknown``."""
+    """Kind of origin: ``vane``, ``derived``, ``simulated``, ``measured``, ``commanded`` or ``unknown``."""
     delay_s: float = 0.0
     """Known delay of the values relative to their stamps, s, such as that of an autopilot's filter."""
     gain: float = 1.0
-    """Mean factor from the values as logged to these, such as from the indicated to the true air speed."""
+    """Mean factor from the logged values to these values, such as from indicated to true air speed."""
 
     def __len__(self) -> int:
         return len(self.t)
 
     def cut(self, start_s: float, end_s: float) -> "Channel":
-        """Return the stretch with ``start_s <= t <= end_s``."""
+        """Return the samples with ``start_s <= t <= end_s``."""
         i, j = np.searchsorted(self.t, [start_s, np.nextafter(end_s, np.inf)])
         return replace(self, t=self.t[i:j], y=self.y[i:j])
 
     @property
     def rate_hz(self) -> float:
-        """Median sampling rate, NaN with fewer than two samples."""
+        """Median sampling rate, Hz; NaN with fewer than two samples."""
         return float(1.0 / np.median(np.diff(self.t))) if len(self.t) > 1 else float("nan")
 
     @property
     def largest_gap_s(self) -> float:
-        """Longest time between two stamps, infinite with fewer than two samples."""
+        """Longest time between two stamps, s; infinite with fewer than two samples."""
         return float(np.max(np.diff(self.t))) if len(self.t) > 1 else float("inf")

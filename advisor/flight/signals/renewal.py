@@ -1,4 +1,4 @@
-"""Detection of new values among old ones that are sent again under new stamps."""
+"""Detection of new values among repeated values with new stamps."""
 
 from dataclasses import replace
 
@@ -9,23 +9,23 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 
 _MOSTLY_NEW = 0.7
-"""Least share of new values at which no value counts as repeated."""
+"""Least share of new values above which no value counts as repeated."""
 _FEW_LEVELS = 16
-"""Most different values of a channel that counts as coarse. An estimate that is sent several times takes
-another value at each renewal."""
+"""Largest number of different values in a channel of coarse resolution. An estimate that is sent several
+times changes at each renewal."""
 
 _MOST_COPIES = 4
-"""Most times that a sender is supposed to send one message. A test input has steps of at least as many
-samples, whose times could pass for a pattern of more copies."""
+"""Largest number of copies that a sender may send of one message. A test input has steps of at least as many
+samples, which could look like more copies."""
 _BY_CHANCE = 1e-3
-"""Largest probability that changes of independent samples fall into one pattern of copies."""
+"""Largest probability by chance that changes of independent samples form a pattern of copies."""
 
 
 def renewed(t: FloatArray, y: FloatArray, fewest: int = 1) -> tuple[FloatArray, FloatArray]:
-    """Return only samples with a new value where a channel repeats values; ``t`` and ``y`` of shape (n,).
+    """Return only the samples with a new value, if a channel repeats values; ``t`` and ``y`` of shape (n,).
 
-    A channel with fewer than ``fewest`` new samples is stuck, and stays as it is. A channel with few
-    different values is coarse, and stays as it is.
+    A channel with fewer than ``fewest`` new samples is stuck, and is returned unchanged. A channel with few
+    different values is coarse, and is returned unchanged.
     """
     new = np.concatenate(([True], np.diff(y) != 0.0))
     if np.mean(new) >= _MOSTLY_NEW or np.count_nonzero(new) < fewest:
@@ -39,8 +39,8 @@ def renewed(t: FloatArray, y: FloatArray, fewest: int = 1) -> tuple[FloatArray, 
 def counted_once(channel: Channel) -> Channel:
     """Return a channel without the copies of a sender that sends each value several times.
 
-    A fit would count the noise of k copies k times. Of k copies only every k-th sample can change. A value
-    that is held, as the elevator's at trim, keeps its samples, because the pattern decides.
+    A fit would weight the noise of k copies k times. With k copies only every k-th sample can change. A
+    constant value, such as the elevator's at trim, keeps its samples, because the pattern decides.
     """
     rows = _originals(channel.y)
     return channel if rows is None else replace(channel, t=channel.t[rows], y=channel.y[rows])

@@ -1,7 +1,7 @@
-"""Samples of a manoeuvre that no aircraft can have flown: left out or put right, and said.
+"""Removal or correction of samples that no aircraft can have flown, with a sentence on each repair.
 
-A single sample may leave the motion by more than the whole range of the other samples. Such a value is a
-fault of a memory card, a radio or a driver. An angle counted from 0 to 360 deg is put right.
+A single sample may deviate from the motion by more than the range of all other samples. Such an outlier is a
+fault of a memory card, a radio or a driver. An angle between 0 and 360 deg is converted to one about zero.
 """
 
 from dataclasses import dataclass, replace
@@ -28,16 +28,16 @@ _WATCHED = {
     "airspeed": "air speed",
     "climb_rate": "climb rate",
 }
-"""Channels of a motion that is continuous, and their names for people."""
+"""Channels of continuous motion, with their names for people."""
 _NOISE = 10.0
-"""Least departure of a wild sample from its neighbours, in standard deviations of all such departures."""
+"""Least deviation of an outlier from its neighbours, in standard deviations of all such deviations."""
 _OTHERS = (2.0, 98.0)
-"""Percentiles between which lies the range of the other samples."""
+"""Percentiles that bound the range of the other samples."""
 _MOST = 0.02
-"""Largest share of wild samples that is a fault of single samples, not of the channel. With more of them, the
-percentiles above would not be those of the other samples."""
+"""Largest share of outliers that counts as a fault of single samples, not of the channel. With more outliers,
+the percentiles in ``_OTHERS`` would include them."""
 _FEWEST = 20
-"""Fewest samples from which a range is taken."""
+"""Least number of samples from which a range is determined."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +46,11 @@ class Repaired:
 
     channel: Channel
     said: tuple[str, ...] = ()
-    """Sentences on the repair; empty for a channel that stays as it is."""
+    """Sentences about the repair; empty for an unchanged channel."""
 
 
 def repaired(channel: Channel) -> Repaired:
-    """Return a channel of a manoeuvre without samples that no aircraft can have flown."""
+    """Return a manoeuvre's channel with samples removed or corrected that no aircraft can have flown."""
     if channel.name not in _WATCHED or len(channel) < _FEWEST:
         return Repaired(channel)
     found, said = channel, []
@@ -71,7 +71,7 @@ def repaired(channel: Channel) -> Repaired:
 
 
 def _dropped_out(airspeed: Channel) -> NDArray[np.bool_]:
-    """Return whether each air speed is one at which nothing flies, in a manoeuvre that is flown."""
+    """Return whether each air speed is below any flight speed, in a manoeuvre in flight."""
     dead = airspeed.y <= SLOWEST_FLIGHT_M_S
     # The aircraft loses half of its speed at most, so that it would not have stopped in the air.
     flies = float(np.median(airspeed.y)) > 2.0 * SLOWEST_FLIGHT_M_S
@@ -79,7 +79,8 @@ def _dropped_out(airspeed: Channel) -> NDArray[np.bool_]:
 
 
 def _wild(y: FloatArray) -> NDArray[np.bool_]:
-    """Return whether each single sample leaves its neighbours by more than the other samples' range."""
+    """Return whether each single sample deviates from its neighbours by more than the other samples'
+    range."""
     neighbours = 0.5 * (y[:-2] + y[2:])
     away = np.abs(y[1:-1] - neighbours)
     # A neighbour of a wild sample leaves the mean of its own neighbours by half as much.

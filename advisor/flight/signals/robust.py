@@ -5,15 +5,15 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 
 _MEDIAN = 0.6745
-"""Median absolute value of a normal variable with unit variance."""
+"""Median absolute value of a normal variable of unit variance."""
 
 
 def robust_std(departures: FloatArray) -> float:
-    """Return the standard deviation of normal noise from the median absolute departure, robust to outliers.
+    """Return the standard deviation of normal noise from the median absolute deviation, robust to outliers.
 
     Parameters
     ----------
     departures
-        Shape (n,), n > 0: samples less their centre.
+        Shape (n,), n > 0: samples minus their centre.
     """
     return float(np.median(np.abs(departures))) / _MEDIAN

@@ -1,4 +1,4 @@
-"""The newest samples of a signal, with bounded memory."""
+"""Newest samples of a signal, with bounded memory."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from advisor.flight.signals.messages import FloatArray
 
 
 class Samples:
-    """Samples in the order of their stamps. The oldest samples are dropped.
+    """Samples of a signal in the order of their stamps. The oldest samples are dropped.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Samples:
         return len(self._t)
 
     def append(self, t: float, y: float) -> None:
-        """Take a sample. Afterwards its index is ``size − 1``."""
+        """Append a sample. The index of the sample is then ``size − 1``."""
         if self.size == len(self._t):
             self._make_room(t - self._keep_s)
         self._t[self.size], self._y[self.size] = t, y
@@ -51,7 +51,7 @@ class Samples:
         return self.y[self.index(t) : until]
 
     def interval_s(self) -> float:
-        """Return the median interval of the newest twenty samples; infinite with fewer than three."""
+        """Return the median interval of the newest twenty samples, s; infinite with fewer than three."""
         recent = self.t[-20:]
         return float(np.median(np.diff(recent))) if len(recent) > 2 else np.inf
 

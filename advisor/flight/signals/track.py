@@ -1,4 +1,4 @@
-"""A track: the samples of one channel from one source as they arrive, with bounded memory."""
+"""A track: samples of one channel from one source as they arrive, with bounded memory."""
 
 from dataclasses import dataclass, replace
 
@@ -9,16 +9,16 @@ from advisor.flight.signals.power_on import Extremes
 from advisor.flight.signals.record import Channel
 
 _WINDOW_S = 10.0
-"""Stretch of vehicle time over which samples are counted, s: longer than most manoeuvres."""
+"""Length of vehicle time over which samples are counted, s: longer than most manoeuvres."""
 _LEAST_S = 5.0
-"""Least time between the first and the last sample of a stretch that counts, s: half of ``_WINDOW_S``."""
+"""Least time between the first and the last sample for a valid rate, s: half of ``_WINDOW_S``."""
 
 
 class BestRate:
-    """Counts the samples of each ten seconds since boot and keeps the fastest count.
+    """Fastest rate of a channel over all ten-second periods since boot.
 
-    A sample counts when its stamp is newer than all before. A packet that comes twice counts once, and the
-    size of batches makes no difference.
+    A sample is counted if its stamp is newer than all earlier stamps. A packet that arrives twice is counted
+    once, and the size of batches makes no difference.
     """
 
     def __init__(self) -> None:
@@ -28,7 +28,7 @@ class BestRate:
         self._count = 0
 
     def add(self, t: FloatArray) -> None:
-        """Take stamps in s since boot, shape (n,), in order of arrival."""
+        """Take stamps, s since boot, shape (n,), in order of arrival."""
         newest = np.maximum.accumulate(np.concatenate(([self._last_s], t)))
         fresh = t[t > newest[:-1]]
         while len(fresh) > 0:
@@ -43,7 +43,7 @@ class BestRate:
 
     @property
     def rate_hz(self) -> float:
-        """Best rate in samples per second, from the whole time where no stretch is long enough. NaN with one
+        """Best rate, samples per second; from the whole time if no period is long enough. NaN with a single
         sample."""
         span_s = self._last_s - self._first_s
         if not (self._count > 1 and span_s > 0.0):
@@ -56,7 +56,7 @@ class BestRate:
 
 @dataclass(frozen=True, slots=True)
 class ChannelStatus:
-    """Arrival of one channel."""
+    """Arrival status of one channel: rate, gap and range."""
 
     source: str
     provenance: str
@@ -76,7 +76,7 @@ class ChannelStatus:
     """Value of the newest sample, SI."""
 
     def at_best(self, earlier: "ChannelStatus | None" = None) -> "ChannelStatus":
-        """Return the status with the best ten seconds' rate, and the range, of this source over all boots.
+        """Return the status with the best rate and the range of this source over all boots.
 
         Parameters
         ----------
@@ -95,9 +95,10 @@ class ChannelStatus:
 
 
 class Track:
-    """Buffer that grows at its end and drops its beginning.
+    """Buffer of samples that grows at its end and drops its beginning.
 
-    Late packets are kept, and sorted in when a stretch is cut. Samples that came twice are dropped there.
+    Late packets are kept, and are sorted in when a stretch is cut. Duplicate samples are dropped when a
+    stretch is cut.
     """
 
     def __init__(self, name: str, source: str, provenance: str) -> None:
@@ -106,13 +107,13 @@ class Track:
         self.provenance = provenance
         self.newest_s = -np.inf
         self.newest = np.nan
-        """Value at ``newest_s``."""
+        """Value of the sample with the newest stamp, ``newest_s``."""
         self.largest_gap_s = 0.0
         self._best = BestRate()
         self.lowest, self.highest = np.inf, -np.inf
         """Smallest and largest value since boot."""
         self.extremes = Extremes()
-        """The whole power-on in bounded memory."""
+        """Extremes of the whole power-on, in bounded memory."""
         self._t = np.empty(1024)
         self._y = np.empty(1024)
         self._order = np.empty(1024, dtype=np.int64)
@@ -155,7 +156,7 @@ class Track:
 
     @property
     def status(self) -> ChannelStatus:
-        """Arrival of the channel."""
+        """Arrival status of the channel."""
         recent = self.cut(self.newest_s - 10.0, self.newest_s)
         gap = self.largest_gap_s if self._size > 1 else float("inf")
         span = float(recent.t[-1] - recent.t[0]) if len(recent) > 1 else 0.0

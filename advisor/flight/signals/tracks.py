@@ -1,4 +1,4 @@
-"""All tracks of one vehicle, and the choice of each channel's source."""
+"""All tracks of one vehicle, and the selection of each channel's source."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,28 +14,28 @@ from advisor.flight.signals.track import ChannelStatus, Track
 from advisor.flight.signals.true_airspeed import AS_GROUND_SPEED, AS_REPORTED, true_airspeed
 
 _AIR_S = 10.0
-"""Margin around a stretch within which pressure and height tell the density of the air, s. Pressure and
-height may come once in a few seconds."""
+"""Margin around a stretch for the samples of pressure and height, s. Pressure and height may arrive once in a
+few seconds."""
 
 
 class Tracks:
-    """All tracks of one vehicle, and the choice of each channel's source.
+    """All tracks of one vehicle, and the selection of each channel's source.
 
     Parameters
     ----------
     alpha_source
-        Source in the aircraft file: ``auto``, ``aoa_ssa``, ``derived``, ``named_value:NAME`` or ``none``.
-        With ``none`` the channel is kept as with ``auto``, but no estimate uses it.
+        Source of α in the aircraft file: ``auto``, ``aoa_ssa``, ``derived``, ``named_value:NAME`` or
+        ``none``. With ``none`` the channel is kept as with ``auto``, but no estimate uses it.
     airspeed_m_s
-        Air speed of the aircraft file, for a log without air speed.
+        Air speed from the aircraft file, for a log without air speed, m/s.
     temperature_c
-        Temperature of the air by the aircraft file, deg C; None: the standard atmosphere's.
+        Air temperature from the aircraft file, deg C; None for the standard atmosphere.
     height_m
-        Pressure altitude of the aircraft file, m, for a log without pressure and height above sea level.
+        Pressure altitude from the aircraft file, m, for a log without pressure and height.
     logs_true_speed
-        Returns whether the vehicle reports its true air speed in place of the calibrated one.
+        Function that returns whether the vehicle reports its true air speed instead of the calibrated one.
     beta_source
-        Source of the sideslip in the aircraft file: ``named_value:NAME``, or one that AOA_SSA brings.
+        Source of the sideslip in the aircraft file: ``named_value:NAME``, or a source within AOA_SSA.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class Tracks:
             self._sources["beta"] = [f"NAMED_VALUE_FLOAT.{beta_source.removeprefix('named_value:')}"]
 
     def clear(self) -> None:
-        """Drop all samples before another boot."""
+        """Drop all samples before another power-on."""
         self._tracks.clear()
 
     def forget(self, before_s: float) -> None:
@@ -85,7 +85,7 @@ class Tracks:
         self._tracks[key].append(new.t, new.y, new.order)
 
     def serves(self, new: Decoded) -> bool:
-        """Return whether this source may give the channel."""
+        """Return whether a source may give the channel."""
         return new.source in self._sources.get(new.channel, (new.source,))
 
     @property
@@ -94,8 +94,8 @@ class Tracks:
         return DERIVED_ALPHA in self._sources["alpha"]
 
     def cut(self, name: str, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel | None:
-        """Return a stretch of a channel from its best source with samples there; None without one. The air
-        speed is the true one as far as the log allows."""
+        """Return a stretch of a channel from the best source with samples there; None without samples. The
+        air speed is converted to the true one as far as the log allows."""
         found = self._cut(name, start_s, end_s, up_to_order)
         if name != "airspeed" or found is None:
             return found
@@ -126,36 +126,36 @@ class Tracks:
         return spare
 
     def speeds_are_one(self, start_s: float, end_s: float, up_to_order: int | None) -> bool:
-        """Return whether air speed and ground speed change, and are equal in every sample of a stretch."""
+        """Return whether air speed and ground speed change and are equal in every sample of a stretch."""
         air = self._cut("airspeed", start_s, end_s, up_to_order)
         if air is None or float(np.ptp(air.y)) == 0.0 or self._logs_true_speed():
             return False
         return self._speeds_agree(start_s, end_s, up_to_order)
 
     def _speeds_agree(self, start_s: float, end_s: float, up_to_order: int | None) -> bool:
-        """Return whether air speed and ground speed are equal in every sample, as no two instruments are."""
+        """Return whether air speed and ground speed are equal in every sample, unlike two instruments."""
         air, ground = (self._cut(name, start_s, end_s, up_to_order) for name in ("airspeed", "groundspeed"))
         if air is None or ground is None:
             return False
         return np.array_equal(air.t, ground.t) and np.array_equal(air.y, ground.y)
 
     def recent(self, name: str, seconds: float) -> Channel | None:
-        """Return the newest stretch of a channel; None without samples."""
+        """Return the newest stretch of a channel, ``seconds`` long; None without samples."""
         newest = max((track.newest_s for track in self._candidates(name)), default=None)
         return None if newest is None else self.cut(name, newest - seconds, newest)
 
     def statuses(self) -> dict[str, ChannelStatus]:
-        """Return the arrival of every channel, from its best source."""
+        """Return the arrival status of every channel, from its best source."""
         found = {name: next(iter(self._candidates(name)), None) for name in UNITS}
         return {name: track.status for name, track in found.items() if track is not None}
 
     def courses(self) -> dict[str, Course]:
-        """Return each channel over this power-on, from its best source where that is measured."""
+        """Return the extremes of each channel over this power-on, from its best measured source."""
         found = {name: next(iter(self._candidates(name)), None) for name in UNITS}
         return {name: track.extremes.course for name, track in found.items() if isinstance(track, Track)}
 
     def _candidates(self, name: str) -> list[Track | DerivedAlpha]:
-        """Return tracks of a channel, the preferred source first."""
+        """Return the possible tracks of a channel, the preferred source first."""
         preferred = self._sources.get(name)
         if preferred is None:
             return [track for (channel, _), track in self._tracks.items() if channel == name]
@@ -174,12 +174,12 @@ class Tracks:
 
 
 _LARGEST_ALPHA_RAD = 0.7
-"""Largest angle of attack in radians, rad. Nobody flies a short period at 40 degrees, so that a larger named
-value is in degrees."""
+"""Largest plausible angle of attack in a named value, rad. No short period is flown at 40 degrees, so a
+larger named value is in degrees."""
 
 
 def _in_radians(channel: Channel) -> Channel:
-    """Return a vane's channel in radians. A named value has no unit: its size shows it."""
+    """Return a vane's channel in radians. A named value has no stated unit, so its size decides."""
     if not channel.source.startswith("NAMED_VALUE_FLOAT") or np.max(np.abs(channel.y)) <= _LARGEST_ALPHA_RAD:
         return channel
     return replace(channel, y=np.radians(channel.y))

@@ -1,9 +1,9 @@
-"""True air speed: logged, or computed from the logged one and the density of the air.
+"""True air speed: logged, or computed from the logged air speed and the air density.
 
-The equations of motion hold with the true air speed V. An autopilot's pressure sensor gives the speed that
-its pressure would have at sea level: V·√(ρ/ρ_0) with ρ_0 = 1.225 kg/m³. The density ρ comes from the static
+The equations of motion need the true air speed V. An autopilot's pressure sensor gives the speed that its
+pressure would have at sea level: V·√(ρ/ρ_0) with ρ_0 = 1.225 kg/m³. The density ρ comes from the static
 pressure, else from the height above mean sea level. A barometer's temperature is not used, because the board
-warms the sensor. One simulated autopilot reports 30 °C, by which V would be 3.5 % too large.
+warms the sensor. One simulated autopilot reports 30 °C, with which V would be 3.5 % too large.
 
 The standard atmosphere holds below 11 km (ISO 2533).
 """
@@ -28,7 +28,7 @@ _EXPONENT = 4.255876
 _GAS_CONSTANT = 287.05287
 """Gas constant of dry air, J/(kg·K)."""
 PLAUSIBLE = {"static_pressure": (2.2e4, 1.1e5), "altitude": (-500.0, 11_000.0)}
-"""Plausible range of a channel below the tropopause, Pa or m. Zero stands for a missing sensor."""
+"""Plausible range of a channel below the tropopause, Pa or m. A value of zero indicates a missing sensor."""
 
 
 def standard_pressure(height_m: float | FloatArray) -> FloatArray:
@@ -44,31 +44,31 @@ def standard_density(pressure_pa: float | FloatArray) -> FloatArray:
 
 
 def standard_height(density_kg_m3: float | FloatArray) -> FloatArray:
-    """Return the height in m, below 11 km, at which the standard atmosphere has a density in kg/m³."""
+    """Return the height in m, below 11 km, with this density in the standard atmosphere."""
     ratio = np.asarray(density_kg_m3) / SEA_LEVEL_DENSITY_KG_M3
     return np.asarray(_SEA_LEVEL_K / _LAPSE_K_M * (1.0 - ratio ** (1.0 / _EXPONENT)))
 
 
 def density(pressure_pa: float | FloatArray, temperature_c: float | None) -> FloatArray:
-    """Return the density in kg/m³ of dry air; at the standard temperature where none is known."""
+    """Return the density of dry air in kg/m³, at the standard temperature if none is known."""
     if temperature_c is None:
         return standard_density(pressure_pa)
     return np.asarray(pressure_pa / (_GAS_CONSTANT * (temperature_c + _CELSIUS_K)))
 
 
 BY_PRESSURE = ", true by the static pressure"
-"""End of the source of an air speed that the static pressure has made true."""
+"""End of the source name of an air speed corrected to true by the static pressure."""
 AS_REPORTED = ", true as reported"
-"""End of the source of an air speed that a simulator reports as the true one."""
+"""End of the source name of an air speed that a simulator reports as true."""
 AS_GROUND_SPEED = ", equal to the ground speed"
-"""End of the source of an air speed that equals the ground speed in every sample. A speed over the ground
-comes from no pressure, so that no density corrects this speed."""
+"""End of the source name of an air speed that equals the ground speed in every sample. A ground speed is not
+based on pressure, so it needs no density correction."""
 BY_HEIGHT = ", true by the height"
-"""End of the source of an air speed that the height has made true."""
+"""End of the source name of an air speed corrected to true by the height."""
 
 
 def is_true(airspeed: Channel) -> bool:
-    """Return whether an air speed is true. One that stays as logged may be indicated."""
+    """Return whether an air speed is true. An air speed that stays as logged may be indicated."""
     source = airspeed.source
     return source in (GIVEN_AIRSPEED, TRUE_AIRSPEED) or source.endswith(
         (BY_PRESSURE, BY_HEIGHT, AS_REPORTED, AS_GROUND_SPEED)
@@ -78,16 +78,16 @@ def is_true(airspeed: Channel) -> bool:
 def true_airspeed(
     logged: Channel, pressure: Channel | None, altitude: Channel | None, temperature_c: float | None
 ) -> Channel:
-    """Return the true air speed of a logged one; the logged one where nothing gives the density.
+    """Return the true air speed for a logged one; unchanged without a density.
 
     Parameters
     ----------
     logged
-        Air speed, m/s.
+        Logged air speed, m/s.
     pressure, altitude
-        Static pressure in Pa, and height above mean sea level in m, around the same time; None without any.
+        Static pressure in Pa, and height above mean sea level in m, around that time; None if missing.
     temperature_c
-        Temperature of the air by the aircraft file, deg C; None: the standard atmosphere's.
+        Air temperature from the aircraft file, deg C; None for the standard atmosphere.
     """
     if is_true(logged):
         return logged
@@ -104,7 +104,7 @@ def true_airspeed(
 
 
 def true_over_read(records: Iterable[Mapping[str, Channel]]) -> float:
-    """Return the mean factor from the air speed as the aircraft reads it to the true one; 1 without any.
+    """Return the mean factor from the read to the true air speed; 1 without an air speed.
 
     A crew states a reference speed as its instrument reads it.
     """
@@ -113,7 +113,7 @@ def true_over_read(records: Iterable[Mapping[str, Channel]]) -> float:
 
 
 def _plausible(channel: Channel | None) -> Channel | None:
-    """Return the samples within the range of an atmosphere; None without any."""
+    """Return the samples within the plausible range of an atmosphere; None without any."""
     if channel is None:
         return None
     low, high = PLAUSIBLE[channel.name]

@@ -1,7 +1,7 @@
-"""Channels that stand still while the aircraft moves.
+"""Channels that are frozen while the aircraft moves.
 
-A larger input is no remedy. Advice to a crew starts with this check. ``advisor.flight.instruments``
-finds contradictions between channels.
+A larger input does not help with a frozen channel. Advice to a crew therefore begins with this check.
+``advisor.flight.instruments`` finds contradictions between channels.
 """
 
 from collections.abc import Mapping
@@ -15,17 +15,17 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 
 MOVED_RAD = radians(2.0)
-"""Least range of the pitch angle, or of the integrated pitch rate, of an aircraft that has moved, rad. Every
-manoeuvre on record moves by more, and no parked aircraft does."""
+"""Least range of the pitch angle, or of the integrated pitch rate, for an aircraft in motion, rad. Every
+recorded manoeuvre has a larger range, and no parked aircraft has."""
 _LEAST_SAMPLES = 20
-"""Fewest samples that show whether a channel is frozen."""
+"""Least number of samples for a test whether a channel is frozen."""
 _WATCHED = {
     "q": ("pitch rate", "deg/s", degrees(1.0)),
     "a_z": ("normal acceleration", "m/s^2", 1.0),
     "alpha": ("angle of attack", "deg", degrees(1.0)),
     "airspeed": ("air speed", "m/s", 1.0),
 }
-"""Channels that always change in flight: name, unit and factor for people."""
+"""Channels that always change in flight, with name, unit and factor for people."""
 _MENDS = {
     "q": "check the gyro and how its rate is recorded",
     "a_z": "check the accelerometer and how it is recorded",
@@ -36,7 +36,7 @@ _MENDS = {
 
 @dataclass(frozen=True, slots=True)
 class Distrust:
-    """A channel that cannot be right."""
+    """A frozen channel that cannot be right."""
 
     code: str
     """``frozen``."""
@@ -46,7 +46,7 @@ class Distrust:
     fix: str
     """Remedy, without a full stop."""
     value: float
-    """Frozen value, SI."""
+    """Frozen value of the channel, SI."""
 
     @property
     def sentence(self) -> str:
@@ -55,12 +55,13 @@ class Distrust:
 
     @property
     def stops(self) -> bool:
-        """Whether nothing can be estimated. The pitch rate is needed."""
+        """Whether the defect prevents any estimate. Every estimate needs the pitch rate."""
         return self.channel == "q"
 
     @property
     def left_out(self) -> bool:
-        """Whether estimates do without the channel. One of specific force and angle of attack suffices."""
+        """Whether estimates are made without the channel. Either specific force or angle of attack
+        suffices."""
         return self.channel in ("a_z", "alpha")
 
     @property
@@ -80,12 +81,12 @@ class Distrust:
 
 
 def frozen(ranges: Mapping[str, tuple[float, float]]) -> list[Distrust]:
-    """Return channels that are frozen while the pitch angle or the pitch rate shows that the aircraft moves.
+    """Return the channels that are frozen while pitch angle or pitch rate show motion.
 
     Parameters
     ----------
     ranges
-        Channel name to its lowest and highest value in SI, over one flight.
+        Lowest and highest value of each channel over one flight, SI, by the channel's name.
     """
     moves = [ranges[name][1] - ranges[name][0] > MOVED_RAD for name in ("theta", "q") if name in ranges]
     if not any(moves):
@@ -99,7 +100,7 @@ def frozen(ranges: Mapping[str, tuple[float, float]]) -> list[Distrust]:
 
 
 def distrusted(channels: Mapping[str, Channel]) -> list[Distrust]:
-    """Return the channels of one stretch of flight that stand still; empty where all change."""
+    """Return the frozen channels of one stretch of flight; empty if all change."""
     told = {name: c for name, c in channels.items() if len(c) >= _LEAST_SAMPLES}
     return frozen({name: (float(np.min(c.y)), float(np.max(c.y))) for name, c in told.items()})
 

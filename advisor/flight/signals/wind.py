@@ -1,4 +1,4 @@
-"""The wind as the aircraft meets it: along the heading and to the right of the heading."""
+"""Wind along the aircraft's heading and to its right."""
 
 import numpy as np
 

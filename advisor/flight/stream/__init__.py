@@ -1,1 +1,1 @@
-"""The stream of one vehicle: columns of messages in, events of the flight test out."""
+"""Stream of one vehicle: columns of messages as input, events of the flight test as output."""

@@ -1,4 +1,4 @@
-"""Sources of α and β that the aircraft file asks for, until they are heard."""
+"""Sources of α and β that the aircraft file names, until their first value arrives."""
 
 from collections.abc import Iterator
 
@@ -9,11 +9,11 @@ from advisor.flight.signals.messages import Columns
 
 _NAMED = "named_value:"
 _ANY = ("auto", "none", "derived")
-"""Sources that ask for no message."""
+"""Sources that require no message."""
 
 
 class AskedSources:
-    """Says which source that the aircraft file names has brought no value.
+    """Reports which named sources of the aircraft file have sent no value.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class AskedSources:
             self._names |= {name.rstrip(b"\0").decode("ascii", "replace") for name in raw}
 
     def take(self, new: Decoded) -> None:
-        """Take samples of a channel from a source that may give this channel."""
+        """Take samples of a channel from a possible source."""
         if new.channel in self._missing and len(new.t):
             del self._missing[new.channel]
 

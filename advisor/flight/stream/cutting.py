@@ -1,4 +1,4 @@
-"""From elevator movements to manoeuvres with their channels, or to activities with their reasons."""
+"""Conversion of elevator movements to manoeuvres with their channels, or to activities with reasons."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -35,18 +35,18 @@ from advisor.flight.vehicle.modes import closes_pitch_loop
 
 
 class Cutting:
-    """Cuts manoeuvres out of the tracks of one vehicle.
+    """Cutter of manoeuvres from the tracks of one vehicle.
 
     Parameters
     ----------
     tracks, who
         Channels and identity of the vehicle.
     aircraft
-        The aircraft file: the elevator's sign, and the limits of the model.
+        Aircraft file, with the elevator's sign and the limits of the model.
     breaks
-        Breaks in the stamps.
+        Breaks in the vehicle's stamps.
     lateral
-        Whether marks of aileron and rudder count, too.
+        Whether marks also apply to aileron and rudder.
     """
 
     def __init__(
@@ -59,16 +59,16 @@ class Cutting:
         self._evidence: Evidence = {}
         self._side_evidence: Evidence = {}
         self.findings: tuple[InstrumentFinding, ...] = ()
-        """Contradictions of the instruments by all manoeuvres of this power-on."""
+        """Contradictions of the instruments from all manoeuvres of this power-on."""
         self.side_findings: tuple[InstrumentFinding, ...] = ()
-        """Contradictions by all lateral manoeuvres of this power-on."""
+        """Contradictions of the instruments from all lateral manoeuvres of this power-on."""
         self._lateral = lateral
         self.maneuvers = 0
         """Number of manoeuvres found."""
         self.side_maneuvers = 0
         """Number of lateral manoeuvres found."""
         self.activities: Counter[str] = Counter()
-        """Movements that were no test inputs: their description to their number."""
+        """Number of movements that were no test inputs, by their description."""
 
     @property
     def is_backwards(self) -> bool:
@@ -76,7 +76,7 @@ class Cutting:
         return self._sign is not None and bool(self._sign.backwards)
 
     def begin(self, mode: str) -> None:
-        """Begin a power-on in a flight mode, without earlier manoeuvres."""
+        """Begin a power-on in a flight mode, without manoeuvres so far."""
         self._modes = [(-np.inf, mode)]
         self._evidence, self._side_evidence = {}, {}
         self.findings, self.side_findings = (), ()
@@ -86,15 +86,14 @@ class Cutting:
         self._modes.append((since_s, mode))
 
     def so_far(self, span: Span, boot: int) -> Maneuver | None:
-        """Return the manoeuvre that would result if the movement ended here; None where its input is over and
-        was no test input."""
+        """Return the manoeuvre if the movement ended now; None if its finished input is no test input."""
         maneuver, _ = self._cut(span, boot, None)
         if span.input_is_over and self._not_an_input(maneuver, None) is not None:
             return None
         return turned(maneuver) if self.is_backwards else maneuver
 
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
-        """Return the event of a movement that has ended: a manoeuvre, or an activity with its reason."""
+        """Return the event of a finished movement: a manoeuvre, or an activity with its reason."""
         maneuver, evidence = self._cut(span, boot, up_to_order)
         because = self._not_an_input(maneuver, up_to_order)
         if because is not None:
@@ -106,11 +105,11 @@ class Cutting:
         return self._counted(maneuver, evidence)
 
     def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
-        """Return the manoeuvres of a marked stretch, which count without the finder's criteria.
+        """Return the manoeuvres of a marked stretch, without the criteria for unmarked movements.
 
-        The stretch is a manoeuvre of the elevator, of aileron and rudder, or of both, by the controls that
-        moved. A stretch without any movement is one of the elevator. SystemID moves any control, also in
-        hover, so that the visible effect of each decides.
+        The stretch is a manoeuvre of the elevator, of aileron and rudder, or of both, depending on the moved
+        controls. A stretch without any movement counts as one of the elevator. SystemID moves any control,
+        even in hover, so each control's visible effect decides.
         """
         spans = {
             loop: marked_span(mark, self._tracks.cut(loop.control, *mark.reach, up_to_order))
@@ -137,7 +136,7 @@ class Cutting:
         return events
 
     def is_no_side_input(self, maneuver: Maneuver, found: SideInput, up_to_order: int | None) -> bool:
-        """Return whether no movement of an input of aileron and rudder is a test input."""
+        """Return whether no movement in an input of aileron and rudder is a test input."""
         on_ground = self.why_on_ground(maneuver.span, up_to_order)
         for one in found.movements:
             if one.loop.control not in maneuver.channels:
@@ -150,7 +149,7 @@ class Cutting:
         return True
 
     def _activity(self, maneuver: Maneuver, because: Because) -> Activity:
-        """Return the event of a movement that was no test input, and count the movement."""
+        """Return the event of a movement that was no test input, and count it."""
         self.activities[because.what] += 1
         span = maneuver.span
         stay_s, _ = self._stay(_middle_s(span))
@@ -178,19 +177,19 @@ class Cutting:
         )
 
     def _motion(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
-        """Return the pitch rate and angle of a movement and of the time before."""
+        """Return pitch rate and pitch angle during a movement and before it."""
         return self.motion_before(span, ("q", "theta"), up_to_order)
 
     def pilot_flies(self, at_s: float) -> bool:
-        """Return whether the pilot moves the elevator at this time, by the flight mode."""
+        """Return whether the pilot moves the elevator at this time, according to the flight mode."""
         return not closes_pitch_loop(self._stay(at_s)[1])
 
     def _stay(self, at_s: float) -> tuple[float, str]:
-        """Return the flight mode at this time, and the time since which the vehicle was in that mode."""
+        """Return the start of the vehicle's stay in its flight mode at this time, and the mode."""
         return next(stay for stay in reversed(self._modes) if stay[0] <= at_s)
 
     def _cut(self, span: Span, boot: int, up_to_order: int | None) -> tuple[Maneuver, Evidence]:
-        """Return the manoeuvre, with the evidence of its record on the instruments."""
+        """Return the manoeuvre, with its evidence about the instruments."""
         earlier_boot, earlier_s = self._released
         if earlier_boot == boot and earlier_s > span.record_from_s:
             # The lead-in does not reach into the record of another manoeuvre.
@@ -217,7 +216,7 @@ class Cutting:
         return self._who.rescaled(maneuver), examined.evidence
 
     def side(self, span: Span, boot: int, up_to_order: int | None) -> tuple[Maneuver, Evidence]:
-        """Return the record of a lateral manoeuvre, and what it tells of the instruments."""
+        """Return the record of a lateral manoeuvre, with its evidence about the instruments."""
         channels, notes = self._recorded(span, up_to_order)
         examined = examine_side(channels, self._side_evidence)
         channels = {**examined.channels, **self._air(span, up_to_order)}
@@ -234,7 +233,7 @@ class Cutting:
         return maneuver, examined.evidence
 
     def side_counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
-        """Return the event of a lateral manoeuvre, after the news on its instruments."""
+        """Return the event of a lateral manoeuvre, after notices about its instruments."""
         self.side_maneuvers += 1
         self._side_evidence = pooled((self._side_evidence, evidence))
         news = _news(maneuver, self.side_findings)
@@ -242,13 +241,13 @@ class Cutting:
         return [*news, SideManeuverFlown(maneuver)]
 
     def motion_before(self, span: Span, names: Sequence[str], up_to_order: int | None) -> dict[str, Channel]:
-        """Return channels of a movement and of the time before."""
+        """Return channels during a movement and before it."""
         from_s = span.start_s - HISTORY_S
         cut = {name: self._tracks.cut(name, from_s, span.end_s, up_to_order) for name in names}
         return {name: channel for name, channel in cut.items() if channel is not None}
 
     def _recorded(self, span: Span, up_to_order: int | None) -> tuple[dict[str, Channel], list[str]]:
-        """Return the channels of a record, repaired, and sentences on their samples."""
+        """Return the repaired channels of a record, and sentences about the repairs."""
         channels: dict[str, Channel] = {}
         notes = self._airspeed_notes(span, up_to_order)
         for name in UNITS:
@@ -260,7 +259,7 @@ class Cutting:
         return channels, notes
 
     def _air(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
-        """Return the channels of a record that tell the density of the air and the wind."""
+        """Return the channels of a record for the air density and the wind."""
         cut = {name: self._whole(name, span, up_to_order) for name in AIR_UNITS}
         found = {name: air for name, air in cut.items() if air is not None}
         north, east, heading = (
@@ -274,7 +273,7 @@ class Cutting:
         return self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
 
     def _airspeed_notes(self, span: Span, up_to_order: int | None) -> list[str]:
-        """Return sentences on an air speed that no sensor measured."""
+        """Return sentences about an air speed without a sensor."""
         if self._who.airspeed_doubt:
             return [self._who.airspeed_doubt]
         if self._tracks.speeds_are_one(span.record_from_s, span.end_s, up_to_order):
@@ -286,13 +285,13 @@ class Cutting:
 
 
 def _news(maneuver: Maneuver, known: Sequence[InstrumentFinding]) -> list[Notice]:
-    """Return a notice for every contradiction of a manoeuvre's instruments that was not known before."""
+    """Return a notice for every new contradiction of a manoeuvre's instruments."""
     codes = {f.code for f in known}
     return [Notice(f.code, str(f.problem)) for f in maneuver.findings if f.code not in codes]
 
 
 def _trusted(channels: Mapping[str, Channel], distrusts: Sequence[Distrust]) -> dict[str, Channel]:
-    """Return the channels without those that would spoil an estimate which can do without them."""
+    """Return the channels without distrusted ones that an estimate does not need."""
     left_out = {distrust.channel for distrust in distrusts if distrust.left_out}
     kept = {name: channel for name, channel in channels.items() if name not in left_out}
     if "a_z" in left_out and "alpha" in kept and kept["alpha"].provenance == "derived":
@@ -302,5 +301,6 @@ def _trusted(channels: Mapping[str, Channel], distrusts: Sequence[Distrust]) -> 
 
 
 def _middle_s(span: Span) -> float:
-    """Return the middle of the movement. A heartbeat reports a new flight mode up to two seconds late."""
+    """Return the middle time of the movement, s. A heartbeat reports a new flight mode up to two seconds
+    late."""
     return 0.5 * (span.start_s + span.end_s)

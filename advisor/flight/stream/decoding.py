@@ -1,4 +1,4 @@
-"""Quantities in the messages of one vehicle, and everything that was heard in one power-on."""
+"""Quantities in the messages of one vehicle, and all data of one power-on."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -15,7 +15,7 @@ from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.pieces import Master
 
 _NAMED = "named_value:"
-"""Beginning of a vane's ``source`` where a NAMED_VALUE_FLOAT brings its angle."""
+"""Beginning of a vane's ``source`` if a NAMED_VALUE_FLOAT carries its angle."""
 
 
 def decoded(columns: Columns, t: FloatArray, aircraft: Aircraft, companion: bool) -> Iterator[Decoded]:
@@ -24,11 +24,11 @@ def decoded(columns: Columns, t: FloatArray, aircraft: Aircraft, companion: bool
     Parameters
     ----------
     columns
-        The messages.
+        Messages of one type.
     t
-        Shape (n,), vehicle time of each message, s since boot.
+        Shape (n,): vehicle time of each message, s since boot.
     aircraft
-        The aircraft file, for an air speed and vanes that it names.
+        Aircraft file, with its air speed and the names of its vanes.
     companion
         Whether another component than the autopilot sent the messages.
     """
@@ -50,7 +50,7 @@ def power_on(
     clock: Sequence[Master],
     modes: Sequence[tuple[float, str]],
 ) -> PowerOn:
-    """Return everything that was heard since the vehicle's clock began.
+    """Return all data received since the start of the vehicle's clock.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def power_on(
     clock
         Accepted stamps of the vehicle's clock.
     modes
-        Vehicle time at which each flight mode was first heard, s, and the mode's name.
+        Vehicle time of each flight mode change, s, and the mode's name.
     """
     found = {name: tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
     channels = {name: who.identified(c) for name, c in found.items() if c is not None}

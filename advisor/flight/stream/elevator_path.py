@@ -1,4 +1,4 @@
-"""Path of the elevator's samples: from its outputs to the finder, and from movements to events."""
+"""Path of the elevator's samples: from servo outputs to the segmenter, and from movements to events."""
 
 from collections.abc import Sequence
 
@@ -15,18 +15,18 @@ from advisor.flight.stream.cutting import Cutting
 
 
 class ElevatorPath:
-    """Forms the elevator from its outputs, finds its movements, and has each cut.
+    """Elevator samples from servo outputs, the movements in them, and their events.
 
     Parameters
     ----------
     tracks
-        Tracks that keep the elevator's samples.
+        Tracks that store the elevator's samples.
     mixing
-        Forms the elevator from several outputs.
+        Mixer that forms the elevator from several outputs.
     marks
-        Marked stretches. A movement in a marked stretch is not found separately.
+        Marked stretches of the stream. A movement in a marked stretch is not reported separately.
     cutting
-        Turns movements into manoeuvres and activities.
+        Cutter that turns movements into manoeuvres and activities.
     """
 
     def __init__(self, tracks: Tracks, mixing: Mixing, marks: Marks, cutting: Cutting) -> None:
@@ -34,12 +34,12 @@ class ElevatorPath:
         self.begin(0)
 
     def begin(self, boot: int) -> None:
-        """Begin another power-on, or another vehicle."""
+        """Begin another power-on, or follow another vehicle."""
         self._boot = boot
         self._watch = ElevatorWatch()
         self._message: str | None = None
         self.heard: frozenset[int] = frozenset()
-        """Outputs that carried a pulse in the newest sample; empty before the first."""
+        """Outputs with a pulse in the newest sample; empty before the first sample."""
 
     @property
     def newest_s(self) -> float:
@@ -47,7 +47,7 @@ class ElevatorPath:
         return self._watch.newest_s
 
     def mode_changed(self, earliest_s: float, order: int) -> None:
-        """Take a change of the flight mode by the message of this order, not before ``earliest_s``."""
+        """Take a flight mode change by the message of this order, not before ``earliest_s``."""
         self._watch.mode_changed(earliest_s, order)
 
     def so_far(self) -> Maneuver | None:
@@ -67,7 +67,7 @@ class ElevatorPath:
         return self._cutting.so_far(span, self._boot)
 
     def feed(self, moved: Sequence[Commanded], closes_loop: bool) -> list[FlightEvent]:
-        """Form the elevator's samples from its outputs, and follow them.
+        """Form the elevator's samples from its outputs, and process them.
 
         Parameters
         ----------
@@ -89,7 +89,7 @@ class ElevatorPath:
         return events
 
     def finish(self, master_s: float) -> list[FlightEvent]:
-        """Take the end of the samples, and close every open movement.
+        """Handle the end of the samples, and close every open movement.
 
         Parameters
         ----------
@@ -103,7 +103,7 @@ class ElevatorPath:
         return [*events, *self._marked(due, None)]
 
     def _follow(self, decoded: Sequence[Decoded]) -> list[FlightEvent]:
-        """Give the finder its samples in the order of their stamps, and cut movements that have ended."""
+        """Pass samples to the segmenter in the order of their stamps, and cut finished movements."""
         events: list[FlightEvent] = []
         arrived: list[tuple[int, float, float]] = []
         for new in decoded:
@@ -120,7 +120,7 @@ class ElevatorPath:
         return events
 
     def _found(self, span: Span, up_to_order: int | None) -> list[FlightEvent]:
-        """Return the events of a movement that the finder has found, unless it lies in a marked stretch."""
+        """Return the events of a movement found by the segmenter, unless it lies in a marked stretch."""
         return [] if self._marks.hides(span, up_to_order) else self._flown(span, up_to_order)
 
     def _marked(self, due: Due, up_to_order: int | None) -> list[FlightEvent]:

@@ -1,5 +1,5 @@
-"""The flights of a campaign, one log or link after the other. Each manoeuvre of a campaign has a number and
-counts once."""
+"""Flights of a campaign: one log or link after the other. Each manoeuvre of a campaign has a number and is
+used once."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -35,34 +35,34 @@ class FlightHeard:
     flight: int
     """Number of the flight, 0 for the first."""
     name: str
-    """Name of the log or link, as the user knows it."""
+    """Name of the log or link that the user gave."""
     vehicle: Vehicle | None
     duration_s: float
-    """Vehicle time heard, over all power-ons, s."""
+    """Vehicle time received over all power-ons, s."""
     channels: Mapping[str, ChannelStatus]
     again: int = 0
-    """Number of its manoeuvres that another log or power-on also holds."""
+    """Number of its manoeuvres that another log or power-on also contains."""
     problems: tuple[Problem, ...] = ()
-    """Reasons for which the flight does not count, known at its end."""
+    """Reasons why the flight is not used, known at its end."""
     sides_unknown: Problem | None = None
-    """Reason for which aileron or rudder cannot be followed; None where their outputs are known."""
+    """Reason why aileron or rudder cannot be followed; None if their outputs are known."""
 
 
 class Flights:
-    """Follows the vehicle through several logs, and then through a link.
+    """Stream of the vehicle through several logs, and then through a link.
 
-    Each flight is heard as if it were alone, so that a log's manoeuvres do not depend on its neighbours.
+    Each flight is processed as if alone, so that its manoeuvres do not depend on other flights.
 
     Parameters
     ----------
     aircraft, target_system
-        Arguments of `FlightStream`.
+        Arguments of `FlightStream`, such as the aircraft file.
     marks
         Stretches marked as manoeuvres, each on its flight.
     names
         Names of the logs, in their order; empty for a single log.
     lateral
-        Whether to find the manoeuvres of aileron and rudder, too.
+        Whether manoeuvres of aileron and rudder are also found.
     """
 
     def __init__(
@@ -99,12 +99,12 @@ class Flights:
 
     @property
     def duration_s(self) -> float:
-        """Vehicle time heard so far, over all flights, s."""
+        """Vehicle time received so far over all flights, s."""
         return sum(past.duration_s for past in self._past) + self.stream.duration_s
 
     @property
     def elevator_notes(self) -> tuple[str, ...]:
-        """Composition of the elevator, and assumptions about elevator and aircraft, over all flights."""
+        """Sentences about the elevator's outputs and about assumptions, over all flights."""
         return tuple(dict.fromkeys((*self._notes, *self.stream.elevator_notes)))
 
     def heard(self, channels: Mapping[str, ChannelStatus], over: bool = False) -> tuple[FlightHeard, ...]:
@@ -112,12 +112,12 @@ class Flights:
         return (*self._past, self._so_far(channels, over))
 
     def so_far(self) -> Maneuver | None:
-        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        """Return the present manoeuvre, cut at the newest sample; None between manoeuvres."""
         flying = self.stream.so_far() if self._foreign is None else None
         return flying and replace(flying, number=len(self._found) + 1, flight=self.flight)
 
     def problems(self) -> list[Problem]:
-        """Return the reasons for which none of the flights so far can be used; empty when one can."""
+        """Return the reasons why none of the flights so far can be used; empty if one can."""
         now = self._problems()
         if not now or any(not past.problems for past in self._past):
             return []
@@ -127,7 +127,7 @@ class Flights:
         return [*before, *here]
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
-        """Take messages, of one flight after the other; return the events that they cause."""
+        """Take messages, one flight after the other, and return the events that follow from them."""
         events: list[FlightEvent] = []
         filled = sorted((c for c in columns if len(c)), key=lambda c: c.flight)
         for flight, part in groupby(filled, key=lambda c: c.flight):
@@ -142,7 +142,7 @@ class Flights:
         return events
 
     def finish(self) -> list[FlightEvent]:
-        """Take the end of the messages, and close every open movement."""
+        """Handle the end of the messages, and close every open movement."""
         if self._foreign is not None:
             return []
         events = [*self._through(self.stream.finish()), *self._compare_elevators()]
@@ -182,7 +182,7 @@ class Flights:
         return self._name(self.flight)
 
     def _through(self, events: Sequence[FlightEvent]) -> list[FlightEvent]:
-        """Return the events of one flight, renumbered as those of the campaign."""
+        """Return the events of one flight with the manoeuvre numbers of the campaign."""
         through: list[FlightEvent] = []
         for event in events:
             match event:
@@ -201,7 +201,7 @@ class Flights:
         return through
 
     def _once(self, maneuver: Maneuver) -> FlightEvent:
-        """Return the event of a manoeuvre with its number in the campaign, new or known."""
+        """Return the event of a manoeuvre, new or known, with its number in the campaign."""
         for i, known in enumerate(self._found):
             if known.power_on != maneuver.power_on and are_one(maneuver, known):
                 self._again += 1
@@ -222,7 +222,8 @@ class Flights:
         return [SideManeuverFlown(known[-1])]
 
     def _compare_vehicles(self, vehicle: Vehicle) -> Iterator[FlightEvent]:
-        """Yield notices on a vehicle that differs from the first flight's. Another aircraft is refused."""
+        """Yield notices about a vehicle that differs from the first flight's vehicle. Another aircraft is
+        refused."""
         self._foreign = self._one_aircraft.refuse(self.name, vehicle)
         if self._foreign is not None:
             yield Notice(self._foreign.code, f"{self.name}: {self._foreign}")
@@ -231,7 +232,7 @@ class Flights:
             yield Notice("other_system", said)
 
     def _compare_elevators(self) -> Iterator[FlightEvent]:
-        """Yield notices on an elevator that is driven otherwise than in the first flight."""
+        """Yield notices about an elevator that is driven differently from the first flight's."""
         elevator = self.stream.elevator
         if isinstance(elevator, Surface) and (said := self._one_aircraft.doubt_elevator(self.name, elevator)):
             self._notes.append(said)

@@ -1,4 +1,4 @@
-"""Identity of the vehicle by its own messages: autopilot, firmware, mode, and roles of its outputs."""
+"""Identity of the vehicle from its messages: autopilot, firmware, mode, and roles of its outputs."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -23,24 +23,24 @@ _BUNDLED = b"Bundled aircraft"
 """Beginning of the STATUSTEXT with which this project's simulator introduces itself."""
 
 _RELEASES = ((255, ""), (192, "-rc"), (128, "-beta"), (64, "-alpha"), (0, "-dev"))
-"""Least FIRMWARE_VERSION_TYPE (MAVLink common.xml), a version's lowest byte, with its suffix for users."""
+"""Suffix of a version for each least value of FIRMWARE_VERSION_TYPE (MAVLink common.xml)."""
 
 READER = b"Log reader: "
-"""Beginning of a STATUSTEXT with which a reader of logs gives a sentence to the user."""
+"""Beginning of a STATUSTEXT in which a log reader sends a sentence to the user."""
 
 _ON_ROTORS = (1, 2, 3)
-"""MAV_VTOL_STATE: transition to forward flight, transition to hover, hover; 4 is forward flight."""
+"""Values of MAV_VTOL_STATE with rotors in use: transition to forward flight, transition to hover, hover."""
 
 
 class Identity:
-    """Collects the messages that identify the vehicle.
+    """Collection of the messages that identify the vehicle.
 
     Parameters
     ----------
     aircraft
-        The aircraft file, for its elevator, aileron and rudder.
+        Aircraft file, with its elevator, aileron and rudder.
     target_system
-        System id to follow; None: the first vehicle heard.
+        System id to follow; None for the first vehicle that sends.
     """
 
     def __init__(self, aircraft: Aircraft, target_system: int | None) -> None:
@@ -52,25 +52,25 @@ class Identity:
         self._outputs = SurfacesHeard(aircraft, self._parameters, self._finder)
         self._following = Following(self._outputs.serves)
         self.simulated = False
-        """Whether the bundled aircraft has introduced itself, whose vane is simulated."""
+        """Whether the vehicle is the bundled aircraft, whose vane is simulated."""
 
     @property
     def elevator(self) -> Surface | Problem:
-        """Outputs and scale of the elevator by all that was heard, or the reason for their absence."""
+        """Outputs and scale of the elevator from all messages, or the reason why they are unknown."""
         return self._outputs.elevator
 
     @property
     def surfaces(self) -> Mapping[str, Surface]:
-        """Elevator, aileron and rudder as their pulses are counted now, where known."""
+        """Elevator, aileron and rudder with their present pulse scales, if known."""
         return self._outputs.counted
 
     @property
     def sides_unknown(self) -> Problem | None:
-        """Reason for which aileron or rudder cannot be followed; None where their outputs are known."""
+        """Reason why aileron or rudder cannot be followed; None if their outputs are known."""
         return self._outputs.sides_unknown
 
     def rescaled(self, maneuver: Maneuver) -> Maneuver:
-        """Return a manoeuvre whose pulses are counted by all limits heard."""
+        """Return a manoeuvre whose pulses are converted by all received limits."""
         return self._outputs.rescaled(maneuver)
 
     def begin(self) -> None:
@@ -79,7 +79,7 @@ class Identity:
 
     @property
     def vehicle(self) -> Vehicle | None:
-        """Vehicle that is followed. None before its first heartbeat."""
+        """Followed vehicle. None before its first heartbeat."""
         vehicle = self._finder.vehicle
         if vehicle is not None and vehicle.carrier == "ulog":
             profile = self._parameters.stated(speakers(vehicle), vehicle.autopilot).get(LOG_PROFILE)
@@ -90,18 +90,19 @@ class Identity:
 
     @property
     def mode(self) -> str:
-        """Flight mode of the newest heartbeat, with a note where rotors carry a VTOL aircraft."""
+        """Flight mode of the newest heartbeat, with a note if rotors carry a VTOL aircraft."""
         return in_hover(self._mode) if self._hovers and self._mode else self._mode
 
     @property
     def other_systems(self) -> frozenset[int]:
-        """System ids of the other vehicles heard."""
+        """System ids of the other vehicles on the stream."""
         return frozenset(self._finder.others)
 
     def provenance(self, source: str, stated: str) -> str:
-        """Return the provenance of a channel, by the vehicle's identity.
+        """Return the provenance of a channel from its source and the vehicle's identity.
 
-        On ArduPilot, AOA_SSA is derived from inertial speed and estimated wind. Else its origin is unknown.
+        On ArduPilot, AOA_SSA is derived from inertial speed and estimated wind. On other autopilots the
+        origin of AOA_SSA is unknown.
         """
         if source not in ("AOA_SSA.AOA", "AOA_SSA.SSA") or self.vehicle is None:
             return stated
@@ -120,7 +121,7 @@ class Identity:
 
     @property
     def airspeed_doubt(self) -> str:
-        """Sentence on an air speed that no sensor measures, by the parameters; empty without a doubt."""
+        """Sentence about an air speed without a sensor, from the parameters; empty without a doubt."""
         vehicle = self._finder.vehicle
         if vehicle is None:
             return ""
@@ -134,11 +135,12 @@ class Identity:
         )
 
     def distrusts(self, found: Sequence[Distrust]) -> list[Distrust]:
-        """Return the wrong channels among those that cannot be right: the paper's model has one air speed."""
+        """Return the wrong channels among the distrusted ones, except for the bundled aircraft's constant air
+        speed."""
         return [d for d in found if not (self.simulated and d.channel == "airspeed")]
 
     def learn(self, piece: Sequence[Columns], now_s: float = nan, flown: bool = False) -> list[FlightEvent]:
-        """Take messages among which at most the first changes anything.
+        """Take messages of which at most the first changes the identity.
 
         Parameters
         ----------
@@ -147,7 +149,7 @@ class Identity:
         now_s
             Vehicle time of the newest sample, s since boot.
         flown
-            Whether a test input has been flown, after which the elevator's scale stays.
+            Whether a test input has been flown, after which the elevator's scale is fixed.
         """
         events = self._choose(piece)
         for columns in piece:
@@ -169,8 +171,7 @@ class Identity:
         return self._finder.may_choose
 
     def _choose(self, piece: Sequence[Columns]) -> list[FlightEvent]:
-        """Follow another vehicle where the present vehicle's data cannot serve and the other's clearly
-        can."""
+        """Follow another vehicle if the present vehicle's data cannot be used and the other's can."""
         before = self._finder.vehicle
         if before is None or not piece:
             return []
@@ -225,7 +226,7 @@ class Identity:
             self._version_told(columns.system, version)
 
     def _version_told(self, system: int, version: str) -> None:
-        """Keep the fuller spelling: a text says 4.8.0-beta1 where the message says 4.8.0-beta."""
+        """Keep the more detailed version text, such as 4.8.0-beta1 instead of 4.8.0-beta."""
         if not self._firmware.get(system, "").startswith(version):
             self._firmware[system] = version
 

@@ -1,4 +1,4 @@
-"""Examination of the instruments before the first manoeuvre, from whatever the aircraft does."""
+"""Examination of the instruments before the first manoeuvre, from any motion of the aircraft."""
 
 from collections.abc import Callable
 
@@ -11,20 +11,21 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import UNITS, Channel
 
 _EVERY_S = 10.0
-"""Length of a stretch, s: one to two periods of a slow short period, whose motion tells a scale."""
+"""Length of an examined stretch, s: one to two periods of a slow short period."""
 _LATE_S = 1.0
-"""Newest stretch that an examination leaves out, s, because its packets may still be on the way."""
+"""Length of the newest flight that an examination leaves out, s, because packets may still arrive."""
 _ENOUGH = 6
-"""Stretches with motion after which the watch ends. Errors are then well below an instrument's scatter."""
+"""Number of stretches with motion after which the watch ends. Errors are then well below the scatter between
+instruments."""
 
 
 class InstrumentWatch:
-    """Examines stretches at fixed vehicle times, independent of batches.
+    """Examination of stretches at fixed vehicle times, independent of batches.
 
     Parameters
     ----------
     cut
-        Gives a stretch of a channel: name, start and end, s.
+        Function that returns a stretch of a channel by name, start and end, s.
     """
 
     def __init__(self, cut: Callable[[str, float, float], Channel | None]) -> None:
@@ -32,19 +33,19 @@ class InstrumentWatch:
         self.begin()
 
     def begin(self) -> None:
-        """Begin another power-on, or another vehicle."""
+        """Begin another power-on, or follow another vehicle."""
         self.findings: tuple[InstrumentFinding, ...] = ()
-        """Contradictions by all stretches so far. No finding is used, because nothing is estimated from
-        these records."""
+        """Contradictions of the instruments from all stretches so far. No finding is marked as used, because
+        these records give no estimate."""
         self.side_findings: tuple[InstrumentFinding, ...] = ()
-        """Contradictions in roll and yaw, likewise."""
+        """Contradictions of the roll and yaw instruments, of which none is marked as used."""
         self._evidence: Evidence = {}
         self._side_evidence: Evidence = {}
         self._at_s = -np.inf
         self._moving = 0
 
     def advance(self, first_s: float, now_s: float) -> None:
-        """Make every examination that is due; vehicle times of the first and the newest message, s."""
+        """Make every due examination; vehicle times of the first and the newest message, s."""
         while self._moving < _ENOUGH and now_s - _LATE_S >= max(self._at_s, first_s) + _EVERY_S:
             rate = self._cut("q", max(self._at_s, first_s), now_s - _LATE_S)
             if rate is None:
@@ -56,7 +57,7 @@ class InstrumentWatch:
             self._at_s = end_s
 
     def finish(self, first_s: float, now_s: float) -> None:
-        """Examine what is left at the end of the stream."""
+        """Examine the last stretch at the end of the stream."""
         self.advance(first_s, now_s)
         if np.isfinite(first_s) and self._moving < _ENOUGH:
             self._examine(max(self._at_s, first_s), now_s)

@@ -1,9 +1,8 @@
-"""Usability of the stream at this moment: its newest stretch, judged by the times of arrival.
+"""Present usability of the stream: its newest stretch, judged by times of arrival.
 
-A stream that served at the first manoeuvre may become too slow, or lose its elevator, at any time. Times of
-arrival decide, because the vehicle's clock stands still when ATTITUDE stops. Judgements happen at fixed steps
-of arrival, so that a log and a live link agree for any batches. A link that is wholly silent says nothing
-about its channels; the link's own watch reports the silence.
+A stream that was usable at the first manoeuvre may become too slow, or lose its elevator. Times of arrival
+are used, because the vehicle's clock stops when ATTITUDE stops. Judgements happen at fixed steps of arrival,
+so a log and a live link agree for any batches. The link's own watch reports a wholly silent link.
 """
 
 from array import array
@@ -18,27 +17,27 @@ from advisor.flight.signals.track import ChannelStatus
 from advisor.words.problems import Problem
 
 WINDOW_S = 3.0
-"""Stretch over which rates are counted, s: two dozen samples of a channel at the slowest rate allowed."""
+"""Length over which rates are counted, s: two dozen samples at the slowest allowed rate."""
 STEP_S = 0.5
-"""Time between two judgements, s."""
+"""Time of arrival between two judgements, s."""
 LAPSED_AFTER_S = 1.0
-"""Time for which a problem must persist before its report, s. With ``WINDOW_S`` it comes within 5 s."""
+"""Time for which a problem must persist before its report, s. With ``WINDOW_S`` the report comes within 5
+s."""
 SERVED_AFTER_S = 5.0
-"""Time without any problem before its end is reported, s, so that reports do not alternate near a limit."""
+"""Time without any problem before the problem's end is reported, s."""
 PAUSE_S = 2.5
-"""Silence of the vehicle after which counting restarts, s: two intervals of heartbeats, so that one may be
-lost."""
+"""Silence of the vehicle after which counting restarts, s: two heartbeat intervals."""
 
 Judge = Callable[[Mapping[str, ChannelStatus], float], Sequence[Problem]]
 
 
 class Service:
-    """Watches the arriving messages, and reports when they cannot serve and when they can again.
+    """Watch of the arriving messages, which reports when they become unusable and usable again.
 
     Parameters
     ----------
     judge
-        Gives the problems of a stream with these channels, as they arrived lately, at a time of arrival, s.
+        Function that returns the problems of a stream with these recent channels, at a time of arrival, s.
     """
 
     def __init__(self, judge: Judge) -> None:
@@ -50,9 +49,10 @@ class Service:
         self._since_s: float | None = None
         self._standing: frozenset[str] = frozenset()
         self.problems: tuple[Problem, ...] = ()
-        """Reasons for which the stream cannot serve now; empty when it can, or is not yet known."""
+        """Reasons why the stream cannot be used now; empty if it can, or before a judgement."""
         self.serves = False
-        """Whether the newest judgement found no problem, and none is reported. False before any judgement."""
+        """Whether the newest judgement found no problem, and no problem is reported. False before the first
+        judgement."""
 
     def begin(self) -> None:
         """Begin another vehicle or another power-on, and forget the earlier messages."""
@@ -61,11 +61,11 @@ class Service:
         self._newest_s = -np.inf
 
     def end(self) -> None:
-        """End the watch: no further message comes or is wanted."""
+        """End the watch, because no further message comes or is wanted."""
         self.problems = ()
 
     def take(self, channel: str, source: str, arrival_s: FloatArray) -> None:
-        """Take the times at which samples of a channel arrived from one source, shape (n,)."""
+        """Take the times of arrival, shape (n,), of a channel's samples from one source."""
         times = self._arrivals.setdefault((channel, source), array("d"))
         times.frombytes(np.asarray(arrival_s, float).tobytes())
 
@@ -74,7 +74,7 @@ class Service:
         self._clock.extend(zip(arrival_s.tolist(), vehicle_s.tolist(), strict=True))
 
     def advance(self, columns: Sequence[Columns]) -> list[NoData | DataAgain]:
-        """Judge the stream at every moment that these messages have passed."""
+        """Judge the stream at every step of arrival that these messages have passed."""
         if not columns:
             return []
         newest_s = max(float(c.arrival_s[-1]) for c in columns)
@@ -120,11 +120,11 @@ class Service:
         return [] if standing < told else [NoData(found, self._vehicle_s(now_s))]
 
     def _vehicle_s(self, now_s: float) -> float:
-        """Return the vehicle's clock as heard at a time of arrival; NaN before its first reading."""
+        """Return the vehicle's clock at a time of arrival, s; NaN before its first reading."""
         return max((t for arrival_s, t in self._clock if arrival_s <= now_s), default=nan)
 
     def _lately(self, now_s: float) -> dict[str, ChannelStatus]:
-        """Return the arrival of every channel within the window, from its fastest source."""
+        """Return the arrival status of every channel within the window, from its fastest source."""
         found: dict[str, ChannelStatus] = {}
         for (channel, source), times in self._arrivals.items():
             heard = np.array(times)

@@ -1,7 +1,7 @@
-"""Path of the samples of aileron and rudder: from movements to lateral manoeuvres.
+"""Path of the aileron and rudder samples: from movements to lateral manoeuvres.
 
-Aileron and rudder each have a finder of movements. Movements at the same time are one input. An input is cut
-where its free response has lasted long enough, in the vehicle's time, so that a log and a live link agree.
+Aileron and rudder each have a segmenter. Simultaneous movements form one input. An input is cut when its free
+response is long enough, in vehicle time.
 """
 
 from collections.abc import Sequence
@@ -30,16 +30,16 @@ LOOPS: dict[str, Loop] = {"aileron": ROLL, "rudder": YAW}
 
 
 class SidePath:
-    """Finds lateral manoeuvres in the samples of aileron and rudder.
+    """Lateral manoeuvres in the samples of aileron and rudder.
 
     Parameters
     ----------
     tracks
         Channels of the vehicle.
     marks
-        Marked stretches. A movement in a marked stretch is not found separately.
+        Marked stretches. A movement in a marked stretch is not reported separately.
     cutting
-        Gives the record of a manoeuvre.
+        Cutter that returns the record of a manoeuvre.
     """
 
     def __init__(self, tracks: Tracks, marks: Marks, cutting: Cutting) -> None:
@@ -47,19 +47,19 @@ class SidePath:
         self.begin(0)
 
     def begin(self, boot: int) -> None:
-        """Begin another power-on, or another vehicle."""
+        """Begin another power-on, or follow another vehicle."""
         self._boot = boot
         self._watches = {name: ElevatorWatch() for name in LOOPS}
         self._pending: list[SideMovement] = []
         self._messages: dict[str, str] = {}
 
     def mode_changed(self, earliest_s: float, order: int) -> None:
-        """Take a change of the flight mode by the message of this order, not before ``earliest_s``."""
+        """Take a flight mode change by the message of this order, not before ``earliest_s``."""
         for watch in self._watches.values():
             watch.mode_changed(earliest_s, order)
 
     def feed(self, moved: Sequence[Decoded]) -> list[FlightEvent]:
-        """Follow samples of aileron and rudder, in their order of arrival."""
+        """Process samples of aileron and rudder, in order of arrival."""
         events: list[FlightEvent] = []
         arrived = [
             (order, t, new.channel, y)
@@ -76,7 +76,7 @@ class SidePath:
         return events
 
     def finish(self) -> list[FlightEvent]:
-        """Take the end of the samples, and close every open movement."""
+        """Handle the end of the samples, and close every open movement."""
         for name, watch in self._watches.items():
             for span in watch.finish():
                 self._add(SideMovement(LOOPS[name], span))
@@ -87,17 +87,18 @@ class SidePath:
 
     @property
     def _newest_s(self) -> float:
-        """Newest stamp of a control, s."""
+        """Newest stamp of aileron and rudder, s."""
         return max(watch.newest_s for watch in self._watches.values())
 
     def _add(self, movement: SideMovement) -> None:
-        """Keep a movement. One that ends at its trim without a level of its own is part of no input."""
+        """Store a movement of aileron or rudder. A movement that ends at trim without any level belongs to no
+        input."""
         if movement.amplitude == 0.0:
             return
         self._pending = sorted([*self._pending, movement], key=lambda one: one.span.start_s)
 
     def _is_over(self) -> bool:
-        """Return whether nothing can join or shorten the first input any more."""
+        """Return whether no movement can join or shorten the first input any more."""
         found, _ = first_input(self._pending)
         last_s = found.last_step_s
         if self._marks.since_s(self._newest_s) is not None:
@@ -110,7 +111,7 @@ class SidePath:
         return any(one.span.closed_by in ("gap", "mode change") for one in found.movements)
 
     def _released(self, up_to_order: int | None) -> list[FlightEvent]:
-        """Take the first input out, and return its event; empty for no test input."""
+        """Remove the first input, and return its event; empty if it is no test input."""
         found, self._pending = first_input(self._pending)
         last_s = found.last_step_s
         yaw_rate = self._tracks.cut("r", last_s, last_s + TAIL_S[1], up_to_order)
@@ -133,7 +134,7 @@ class SidePath:
 
 
 def _is_hidden(movement: SideMovement, found: SideInput, span: Span) -> bool:
-    """Return whether a movement is a small one within the record of another input."""
+    """Return whether a movement is small and lies within the record of another input."""
     return movement.span.start_s < span.end_s and movement.amplitude < BESIDE * found.main.amplitude
 
 
@@ -142,7 +143,7 @@ def _onset(movement: SideMovement) -> float:
 
 
 def _begun(onset_s: float, amplitude: float, like: SideMovement, loop: Loop) -> SideMovement:
-    """Return a movement that is still being flown, with its amplitude so far, rad."""
+    """Return a movement that is being flown, with its amplitude so far, rad."""
     steps = ((onset_s, amplitude),)
     span = replace(like.span, start_s=onset_s, last_step_s=onset_s, end_s=onset_s, steps=steps)
     return SideMovement(loop, span)

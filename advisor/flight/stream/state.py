@@ -1,4 +1,4 @@
-"""The state of a stream: the vehicle's outputs, channels and problems, and contradicted instruments."""
+"""State of a stream: the vehicle's outputs, channels, problems and contradicted instruments."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -42,7 +42,7 @@ KEEP_S = 120.0
 
 
 class StreamState:
-    """The parts of a stream, and what is known of its vehicle so far: `FlightStream` feeds it."""
+    """Parts of a stream, and the present knowledge of its vehicle; `FlightStream` updates it."""
 
     def __init__(
         self,
@@ -58,7 +58,7 @@ class StreamState:
         self._keep_s = np.inf if keep_all else KEEP_S
         self._clock_heard: list[Master] = []
         self.power_ons: list[PowerOn] = []
-        """Every power-on that is over, whole; empty without ``keep_all``."""
+        """Every finished power-on with all data; empty without ``keep_all``."""
         self._who = Identity(aircraft, target_system)
         self._texts = VehicleTexts()
         self._attitudes = Attitudes()
@@ -81,7 +81,7 @@ class StreamState:
         self._side = SidePath(self._tracks, self.marks, self._cutting) if lateral else None
         self._over = False
         self.boot = 0
-        """Number of the power-on, 0 for the first in the stream."""
+        """Number of the present power-on, 0 for the first in the stream."""
         self._guesses = ElevatorGuesses()
         self._instruments = InstrumentWatch(self._tracks.cut)
         self._start_boot()
@@ -114,12 +114,12 @@ class StreamState:
 
     @property
     def vehicle(self) -> Vehicle | None:
-        """Vehicle that is followed. None before its first heartbeat."""
+        """Followed vehicle. None before its first heartbeat."""
         return self._who.vehicle
 
     @property
     def other_systems(self) -> frozenset[int]:
-        """System ids of the other vehicles heard."""
+        """System ids of the other vehicles on the stream."""
         return self._who.other_systems
 
     @property
@@ -142,8 +142,7 @@ class StreamState:
 
     @property
     def elevator_notes(self) -> tuple[str, ...]:
-        """Composition of the elevator and assumptions about its scale and sign, as sentences; those about
-        aileron and rudder follow a lateral manoeuvre."""
+        """Sentences about the elevator's outputs, assumed scale and sign, then about aileron and rudder."""
         sentences = [SAID] if self._cutting.is_backwards else []
         if isinstance(self.elevator, Surface):
             sentences = [self.elevator.said, self._mixing.said(self.elevator), *sentences]
@@ -153,7 +152,7 @@ class StreamState:
 
     @property
     def sides_unknown(self) -> Problem | None:
-        """Reason for which aileron or rudder cannot be followed; None where their outputs are known."""
+        """Reason why aileron or rudder cannot be followed; None if their outputs are known."""
         return self._who.sides_unknown
 
     @property
@@ -163,12 +162,12 @@ class StreamState:
 
     @property
     def duration_s(self) -> float:
-        """Vehicle time heard so far, over all boots, s."""
+        """Vehicle time received so far over all boots, s."""
         return self._earlier_s + (self._master_s - self._first_s if np.isfinite(self._master_s) else 0.0)
 
     @property
     def channels(self) -> Mapping[str, ChannelStatus]:
-        """Arrival of every channel from its present source; at the end of the stream, its best arrival."""
+        """Arrival status of every channel; at the end of the stream, the best status."""
         arriving = self._past if self._over else {**self._past, **self._tracks.statuses()}
         return {
             name: replace(status, provenance=self._who.provenance(status.source, status.provenance))
@@ -176,7 +175,7 @@ class StreamState:
         }
 
     def problems(self) -> list[Problem]:
-        """Return the reasons for which the stream so far cannot be used; empty for a usable stream."""
+        """Return the reasons why the stream so far cannot be used; empty for a usable stream."""
         flown = self._cutting
         found = problems(
             self.vehicle,
@@ -200,25 +199,25 @@ class StreamState:
 
     @property
     def guess(self) -> Guess | None:
-        """Guess of the elevator's output, while no parameter states the output."""
+        """Guess of the elevator's output, while no parameter states it."""
         return None if self.vehicle is not None and self.vehicle.is_multicopter else self._guesses.newest
 
     @property
     def no_data(self) -> tuple[Problem, ...]:
-        """Reasons for which the present data cannot serve; empty while they can."""
+        """Reasons why the present data cannot be used; empty if they can."""
         return self._service.problems
 
     def courses(self) -> dict[str, Course]:
-        """Return the channels that are shown whole, over this power-on."""
+        """Return the extremes of the displayed channels over this power-on."""
         return self._tracks.courses()
 
     @property
     def serves(self) -> bool:
-        """Whether the present data are known to serve."""
+        """Whether the present data are known to be usable."""
         return self._service.serves
 
     def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
-        """Return the problems of a stream with these channels, whatever was flown on it."""
+        """Return the problems of a stream with these channels, whatever manoeuvres were flown."""
         wrong = self._mixing.contradiction if not self._cutting.maneuvers else None
         two = self._senders.problem(self._system, now_s) if self._system is not None else None
         # Problems of the vehicle followed come first. The screens offer the other vehicles themselves.
@@ -228,18 +227,18 @@ class StreamState:
 
     @property
     def two_senders(self) -> Problem | None:
-        """Problem of two senders under the vehicle's id, once they were detected."""
+        """Problem of two senders under the vehicle's id; None unless detected."""
         return self._senders.seen
 
     @property
     def frozen(self) -> list[Distrust]:
-        """Channels that have stood still in flight."""
+        """Channels that were frozen in flight."""
         ranges = {name: (status.lowest, status.highest) for name, status in self._at_best().items()}
         return self._who.distrusts(frozen(ranges))
 
     @property
     def instruments(self) -> tuple[InstrumentFinding, ...]:
-        """Contradictions of the instruments: by the manoeuvres, and before the first by any motion."""
+        """Contradictions of the instruments from the manoeuvres, or before the first one from any motion."""
         pitch = self._cutting.findings or (
             self._instruments.findings if self._cutting.maneuvers == self._flown_before else ()
         )
@@ -250,14 +249,14 @@ class StreamState:
         return (*pitch, *(f for f in sideways if f.code not in known))
 
     def recent(self, name: str, seconds: float) -> Channel | None:
-        """Return the newest stretch of a channel; None without samples."""
+        """Return the newest stretch of a channel, ``seconds`` long; None without samples."""
         return self._tracks.recent(name, seconds)
 
     def so_far(self) -> Maneuver | None:
-        """Return the manoeuvre being flown, cut at the newest sample; None between manoeuvres."""
+        """Return the present manoeuvre, cut at the newest sample; None between manoeuvres."""
         return self._path.so_far()
 
     def _at_best(self) -> dict[str, ChannelStatus]:
-        """Return the arrival of each channel at its fastest, over all power-ons."""
+        """Return the best arrival status of each channel over all power-ons."""
         now = {name: status.at_best(self._past.get(name)) for name, status in self._tracks.statuses().items()}
         return {**self._past, **now}

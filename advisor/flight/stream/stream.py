@@ -1,7 +1,7 @@
-"""The stream of one vehicle: columns of messages in, channels and manoeuvres out.
+"""Stream of one vehicle: columns of messages as input, channels and manoeuvres as output.
 
-Every decision follows the order of arrival and the vehicle's clock, never the batches. A live link, message
-by message, and a whole log end in equal events. Memory is bounded by two minutes of channels.
+Every decision depends on the order of arrival and the vehicle's clock, never on batches. A live link, message
+by message, and a whole log give equal events. Memory is bounded by two minutes of channels.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ from advisor.words.vehicle_time import clock
 
 _OUTPUTS = ("SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS")
 _HEARTBEAT_S = 2.2
-"""Longest time since the last heartbeat within which a mode has changed, s. One heartbeat may be lost."""
+"""Longest time since the last heartbeat in which the mode may have changed, s. One heartbeat may be lost."""
 
 
 class FlightStream(StreamState):
@@ -36,19 +36,20 @@ class FlightStream(StreamState):
     Parameters
     ----------
     aircraft
-        The aircraft file: elevator output and calibration, source of the angle of attack.
+        Aircraft file, with the elevator's output and calibration, and the source of the angle of attack.
     target_system
-        System id to follow; None: the first vehicle heard.
+        System id to follow; None for the first vehicle that sends.
     marks
         Stretches marked as manoeuvres before the stream begins.
     keep_all
-        Whether to keep every sample, for ``power_ons``. Memory then grows with the length of the flight.
+        Whether every sample is kept, for ``power_ons``. With all samples, the memory grows with the length of
+        the flight.
     lateral
-        Whether to find the manoeuvres of aileron and rudder, too.
+        Whether manoeuvres of aileron and rudder are also found.
     """
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
-        """Take messages; return the events that they cause, in order."""
+        """Take messages, and return the events that follow from them, in order."""
         events: list[FlightEvent] = []
         several = self._who.may_choose or len({c.system for c in columns if c.name == "HEARTBEAT"}) > 1
         for piece in pieces(self._attitudes.of(columns), by_second=several):
@@ -56,7 +57,7 @@ class FlightStream(StreamState):
         return events
 
     def finish(self) -> list[FlightEvent]:
-        """Take the end of the messages, and close every open movement."""
+        """Handle the end of the messages, and close every open movement."""
         if self._cutting.maneuvers == self._flown_before:
             self._instruments.finish(self._first_s, self._master_s)
         events = [*self._finish_boot(), *self._asked.finish()]
@@ -82,7 +83,7 @@ class FlightStream(StreamState):
         return events
 
     def _feed_piece(self, piece: Sequence[Columns]) -> list[FlightEvent]:
-        """Take columns within which neither vehicle nor parameters nor mode change."""
+        """Process columns within which vehicle, parameters and mode are constant."""
         mode = self._who.mode
         flown = self._cutting.maneuvers > self._flown_before
         events: list[FlightEvent] = []
@@ -124,15 +125,15 @@ class FlightStream(StreamState):
         return [*events, *self._serving(mine)]
 
     def _serving(self, piece: Sequence[Columns]) -> list[FlightEvent]:
-        """Return the event of a change in the usability of the data; empty without a change."""
+        """Return the event of changed data usability; empty without a change."""
         return list(self._service.advance(piece))
 
     def _take_outputs(
         self, columns: Columns, t: FloatArray, autopilot: str, elevator: list[Commanded], side: list[Decoded]
     ) -> list[Notice]:
-        """Append the samples of the elevator, and those of aileron and rudder, to the two lists.
+        """Append the samples of the elevator, and of aileron and rudder, to the two lists.
 
-        Return a notice for each time that the advisor missed.
+        Return a notice for each time in which the advisor was down.
         """
         missed: list[Notice] = []
         for moved in commanded(self._who.surfaces, self._banks.together(columns), t, autopilot):
@@ -147,7 +148,7 @@ class FlightStream(StreamState):
         return missed
 
     def _set_clock(self, part: Sequence[Columns], orders: IntArray, clock: FloatArray) -> None:
-        """Set the vehicle's clock by a part; readings of the clock have these orders, both of shape (n,)."""
+        """Set the vehicle's clock from clock readings with their arrival orders, both of shape (n,)."""
         if np.isnan(self._first_s) and len(clock) > 1:
             self._first_s = float(clock[1])
             self.marks.start_clock(self._first_s)
@@ -171,7 +172,7 @@ class FlightStream(StreamState):
         return events
 
     def _feed_part(self, part: Sequence[Columns], master: Master, vehicle: Vehicle) -> list[FlightEvent]:
-        """Take columns of one boot: channels first, then the elevator sample by sample."""
+        """Process columns of one boot: channels first, then the elevator sample by sample."""
         self._tracks.forget(max(self._path.newest_s, self._master_s) - self._keep_s)
         orders = np.concatenate(([-1], master.order))
         # A late ATTITUDE states its own time, not the present time.

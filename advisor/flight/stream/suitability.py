@@ -1,10 +1,10 @@
-"""Reasons for which a stream cannot serve to identify a short period: missing or slow messages, and remedies.
+"""Reasons why a stream cannot identify a short period: missing or slow messages, with remedies.
 
-The necessary rate depends on the aircraft. Before an estimate exists, only a floor can be demanded. A 3-2-1-1
-is matched to the short period, and its shortest step is about a third of the natural period. With fewer than
-four samples to that step, neither the step nor its answer can be placed. The floor is eight samples a second.
-A slow jet passes at 10 Hz, and the default rates of autopilots (2 to 4 Hz) fail. With an estimate, each
-manoeuvre is judged against its own natural frequency (`advisor.decision.quality`).
+The necessary message rate depends on the aircraft. Before the first estimate, only a minimum rate can be
+required. A 3-2-1-1 is matched to the short period, and its shortest step is about a third of the natural
+period. With fewer than four samples in that step, the step and its response have no certain time. The minimum
+is eight samples per second. A slow jet passes at 10 Hz, and the default rates of autopilots (2 to 4 Hz) fail.
+After an estimate, each manoeuvre is judged by its own natural frequency (`advisor.decision.quality`).
 """
 
 from collections.abc import Collection, Mapping
@@ -23,7 +23,8 @@ from advisor.words.problems import Problem
 SLOWEST_HZ = 8.0
 """Least rate of elevator, pitch rate and angle of attack for any aircraft, Hz."""
 _FIRST_BANK = 16
-"""Last output of the first SERVO_OUTPUT_RAW. Outputs beyond may come in another message, or in none."""
+"""Last output number in the first SERVO_OUTPUT_RAW bank. Higher outputs may come in another message, or in
+none."""
 _MOTION = ("a_z", "airspeed", "theta")
 """Channels that replace an angle of attack, in addition to the pitch rate."""
 
@@ -38,16 +39,16 @@ def problems(
     still: Collection[Distrust] = (),
     seen: Collection[str] = (),
 ) -> list[Problem]:
-    """Return every problem that keeps a stream from being used, the most fundamental first.
+    """Return every problem that prevents the use of a stream, the most fundamental first.
 
     Parameters
     ----------
     vehicle, other_systems
         Vehicle that is followed, and system ids of the other vehicles heard.
     elevator
-        Outputs of the elevator, or the reason for their absence.
+        Outputs of the elevator, or the reason why they are unknown.
     channels
-        Best arrival of every channel.
+        Best arrival status of every channel.
     maneuvers
         Number of manoeuvres found.
     activities
@@ -78,7 +79,7 @@ def problems(
 
 
 def with_guess(problem: Problem, guess: Guess) -> Problem:
-    """Return the problem of an unknown elevator output with a guess added; any other problem unchanged."""
+    """Return the problem of an unknown elevator output with a guess added; any other problem is unchanged."""
     if problem.code != "no_elevator":
         return problem
     return Problem(problem.code, problem.text, f"{problem.fix.rstrip('.')}; {guess}.")
@@ -171,9 +172,9 @@ def _missing(
 def _is_without_pulse(
     elevator: Surface, channels: Mapping[str, ChannelStatus], seen: Collection[str]
 ) -> bool:
-    """Return whether the message of the elevator's outputs arrives, and never holds a pulse of them.
+    """Return whether the servo output message arrives but never has a pulse for the elevator.
 
-    Without a pitch rate no message can be placed in time, so that no channel tells.
+    Without a pitch rate no message has a vehicle time, so no channel shows this.
     """
     arrives = "q" in channels and "SERVO_OUTPUT_RAW" in seen
     return arrives and "elevator" not in channels and max(elevator.outputs) <= _FIRST_BANK
@@ -190,7 +191,7 @@ def _without_pulse(elevator: Surface, vehicle: Vehicle) -> Problem:
 
 
 def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
-    """Return channels whose messages came, although none could be placed in time."""
+    """Return the channels whose messages arrived, although none has a vehicle time."""
     sources = {reading.channel: reading.message for reading in READINGS if reading.message in seen}
     if not {"SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"}.isdisjoint(seen):
         sources["elevator"] = "SERVO_OUTPUT_RAW"
@@ -202,9 +203,9 @@ def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
 def _not_logged(
     elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle, idle: bool
 ) -> list[Problem]:
-    """Return one problem with everything that a log of the autopilot lacks.
+    """Return one problem that lists everything an autopilot's log lacks.
 
-    ``idle`` tells whether the elevator's output is logged without a pulse, which is a problem of its own.
+    ``idle`` states whether the elevator's output is logged without a pulse, which is a separate problem.
     """
     lacks: dict[str, tuple[str, str]] = {}
     if "q" not in channels:
@@ -229,7 +230,7 @@ def _not_logged(
 
 
 def motion_stands_in(channels: Collection[str]) -> bool:
-    """Return whether an estimate needs no angle of attack, with specific force, air speed and attitude."""
+    """Return whether specific force, air speed and attitude replace an angle of attack."""
     return all(name in channels for name in _MOTION)
 
 

@@ -1,7 +1,7 @@
-"""Outputs and scales of the surfaces, by the parameters heard so far.
+"""Outputs and scales of the control surfaces, from the parameters received so far.
 
-The first test input of a power-on fixes how its pulses are counted: no linkage changes in flight. A limit
-that is heard only later applies to whole manoeuvres, so that none has a step where the limit arrived.
+The first test input of a power-on fixes the pulse scales, because no linkage changes in flight. A limit
+received later applies to whole manoeuvres, so that no manoeuvre has a step at its arrival.
 """
 
 from dataclasses import replace
@@ -22,26 +22,26 @@ from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock
 
 _GROUND_STATION = 190
-"""Component (MAV_COMP_ID_MISSIONPLANNER) under which a ground station stores parameters fetched as a file."""
+"""Component id (MAV_COMP_ID_MISSIONPLANNER) of a ground station that records parameters from a file."""
 
 
 def speakers(vehicle: Vehicle) -> tuple[tuple[int, int], ...]:
-    """Return the senders (system, component) that state the vehicle's parameters. The vehicle comes last and
-    overrides."""
+    """Return the senders (system, component) that state the vehicle's parameters. The vehicle is last in the
+    list, so its values override the others."""
     return (vehicle.system, _GROUND_STATION), (vehicle.system, vehicle.component)
 
 
 class SurfacesHeard:
-    """Finds elevator, aileron and rudder among the outputs.
+    """Elevator, aileron and rudder among the servo outputs.
 
     Parameters
     ----------
     aircraft
-        The aircraft file, for its elevator, aileron and rudder.
+        Aircraft file, with its elevator, aileron and rudder.
     parameters
-        Parameters heard, which this object extends.
+        Received parameters, to which new ones are added.
     finder
-        Vehicle that is followed.
+        Followed vehicle.
     """
 
     def __init__(self, aircraft: Aircraft, parameters: Parameters, finder: VehicleFinder) -> None:
@@ -51,9 +51,9 @@ class SurfacesHeard:
         self._said = ""
         self._said_of: set[tuple[str, float]] = set()
         self.elevator: Surface | Problem = self._found()
-        """Outputs and scale of the elevator by all that was heard, or the reason for their absence."""
+        """Outputs and scale of the elevator from all parameters, or the reason why they are unknown."""
         self.counted: dict[str, Surface] = {}
-        """Elevator, aileron and rudder as their pulses are counted now, where known."""
+        """Elevator, aileron and rudder with their present pulse scales, if known."""
 
     def follow(self) -> list[FlightEvent]:
         """Find the surfaces of another vehicle."""
@@ -61,12 +61,12 @@ class SurfacesHeard:
         return self._settle()
 
     def begin(self) -> None:
-        """Begin another power-on, whose pulses are counted by all limits heard."""
+        """Begin another power-on, whose pulse scales use all received limits."""
         self._held = None
         self._count()
 
     def take(self, output: int) -> list[FlightEvent]:
-        """Take the output that a hand has accepted as the elevator."""
+        """Use the output that the crew accepted as the elevator."""
         self._taken = replace(self._aircraft.elevator, output=output)
         return self._settle()
 
@@ -75,12 +75,12 @@ class SurfacesHeard:
         return isinstance(find_elevator(self._aircraft.elevator, self._wiring(vehicle)), Surface)
 
     def rescaled(self, maneuver: Maneuver) -> Maneuver:
-        """Return a manoeuvre whose pulses are counted by all limits heard."""
+        """Return a manoeuvre whose pulses are converted by all received limits."""
         scale = self.elevator.scale if isinstance(self.elevator, Surface) else None
         return maneuver if scale is None or maneuver.scale is None else maneuver.rescaled(scale)
 
     def hear(self, columns: Columns, now_s: float, flown: bool) -> list[FlightEvent]:
-        """Take parameters.
+        """Take parameter messages, and return events about changed scales.
 
         Parameters
         ----------
@@ -89,7 +89,7 @@ class SurfacesHeard:
         now_s
             Vehicle time of the newest sample, s since boot.
         flown
-            Whether this power-on has a test input, after which its pulses are counted as they are.
+            Whether this power-on has a test input, after which the pulse scales are fixed.
         """
         vehicle, sender = self._vehicle, (columns.system, columns.component)
         events: list[FlightEvent] = []
@@ -119,10 +119,10 @@ class SurfacesHeard:
 
     @property
     def sides_unknown(self) -> Problem | None:
-        """Reason for which aileron or rudder cannot be followed: nothing states their outputs. None before a
-        vehicle is heard, and where both are known.
+        """Reason why aileron or rudder cannot be followed, because no source states their outputs. None
+        before a vehicle is known, and if both outputs are known.
 
-        Where parameters name the outputs of other surfaces, an aircraft may have no rudder.
+        If parameters name the outputs of other surfaces, the aircraft may have no rudder.
         """
         wiring, vehicle = self._wiring(self._vehicle), self._vehicle
         missing = [name for name in ("aileron", "rudder") if name not in self.counted]
@@ -140,7 +140,7 @@ class SurfacesHeard:
         )
 
     def _notice(self, name: str, value: float, text: str) -> list[FlightEvent]:
-        """Return a notice on a parameter's value, once."""
+        """Return one notice about a parameter's value."""
         if (name, value) in self._said_of:
             return []
         self._said_of.add((name, value))
@@ -165,7 +165,7 @@ class SurfacesHeard:
         return found
 
     def _count(self) -> None:
-        """Find the surfaces by all that was heard."""
+        """Find the surfaces from all received parameters."""
         self.elevator, wiring = self._found(), self._wiring(self._vehicle)
         if self._vehicle is not None and self._vehicle.is_multicopter:
             self.counted = {}
@@ -178,7 +178,7 @@ class SurfacesHeard:
         self.counted = {name: surface for name, surface in found.items() if isinstance(surface, Surface)}
 
     def _settle(self) -> list[FlightEvent]:
-        """Find the surfaces by all that was heard, and say what the elevator is made of, once."""
+        """Find the surfaces from all received parameters, and report the elevator's outputs once."""
         self._count()
         said = self.elevator.said if isinstance(self.elevator, Surface) else ""
         if not said or said == self._said:
@@ -188,8 +188,7 @@ class SurfacesHeard:
 
 
 def _follows(was: Surface, now: Surface | Problem) -> bool:
-    """Return whether the angle on the new scale follows from the angle on the old one: the same single
-    output, in the same direction."""
+    """Return whether one output in one direction gives the angle on both the old and the new scale."""
     if isinstance(now, Problem) or now.outputs != was.outputs or now.scale is None or was.scale is None:
         return False
     return now.scale.reversed == was.scale.reversed

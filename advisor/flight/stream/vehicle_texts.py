@@ -1,4 +1,4 @@
-"""Texts of vehicles (STATUSTEXT), joined where a text came in chunks."""
+"""Texts of vehicles (STATUSTEXT), joined if a text came in several messages."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,16 +14,16 @@ SEVERITIES = ("emergency", "alert", "critical", "error", "warning", "notice", "i
 """Names of MAV_SEVERITY 0 to 7 (MAVLink common.xml)."""
 
 _LONGEST = 250
-"""Characters of a text that are kept: five chunks, and the longest message of an ArduPilot log."""
+"""Largest number of characters of a text: five chunks, and the longest message of an ArduPilot log."""
 _CHUNK = 50
-"""Bytes of STATUSTEXT.text; a chunk that is shorter ends its text (MAVLink common.xml)."""
+"""Length of STATUSTEXT.text in bytes; a shorter chunk ends its text (MAVLink common.xml)."""
 _OWN = (READER, FOLLOW, TAKE, DOWN)
 """Beginnings of the texts that the advisor writes into its own stream."""
 
 
 @dataclass(slots=True)
 class _Open:
-    """A text that may have further chunks."""
+    """A text that may continue in further chunks."""
 
     id: int
     severity: int
@@ -32,7 +32,7 @@ class _Open:
 
 
 class VehicleTexts:
-    """Joins the chunks of texts, sender by sender."""
+    """Texts joined from their chunks, sender by sender."""
 
     def __init__(self) -> None:
         self._open: dict[tuple[int, int], _Open] = {}
@@ -64,7 +64,7 @@ class VehicleTexts:
                 yield from _said(sender, severity, whole, at_s)
 
     def finish(self, at_s: float) -> Iterator[VehicleSaid]:
-        """Yield the texts whose last chunk never came."""
+        """Yield the texts whose last chunk did not arrive."""
         for sender, open_ in self._open.items():
             yield from _said(sender, open_.severity, open_.text, at_s)
         self._open.clear()

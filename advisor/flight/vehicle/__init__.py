@@ -1,1 +1,1 @@
-"""The vehicle: who sends, its modes, its parameters, and what its servo outputs move."""
+"""The vehicle: its senders, modes, parameters, and the surfaces that its servo outputs move."""

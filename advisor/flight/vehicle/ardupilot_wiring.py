@@ -1,8 +1,9 @@
 """Roles and scales of servo outputs from ArduPilot's parameters SERVOn_*.
 
-An output can pass a radio channel through. Function 1 passes the output's own channel raw, and function
-50 + k passes channel k raw. Function 139 + k passes channel k on the output's own travel. Where no output has
-the function of a control, the output that passes its stick through is this control.
+A servo output can pass a radio channel through. Function 1 passes the output's own channel unscaled, and
+function 50 + k passes channel k unscaled. Function 139 + k passes radio channel k, scaled to the output's
+travel. Without an output with the control's function, the output that passes its stick through is the
+control.
 """
 
 from collections.abc import Mapping
@@ -13,18 +14,17 @@ from advisor.flight.vehicle.wiring import Parameters, Wiring, Words, limits
 
 _CHANNELS = range(1, 17)
 PREFIXES = ("SERVO", "RCMAP_", "DSPOILER_OPTS", *(f"RC{k}_REVERSED" for k in _CHANNELS))
-"""Beginnings of the names of ArduPilot's parameters that state outputs."""
+"""Beginnings of the names of ArduPilot's parameters about servo outputs."""
 _OUTPUTS = range(1, 33)
 _PASSES_OWN = 1
 _PASSES_RAW, _PASSES_SCALED = 50, 139
-"""Value of SERVOn_FUNCTION that passes radio channel k through, less k: raw, or on the output's travel."""
+"""Value of SERVOn_FUNCTION minus k for an output that passes radio channel k, unscaled or scaled."""
 _STICKS: Mapping[Control, tuple[str, int, Role]] = {
     "aileron": ("RCMAP_ROLL", 1, AILERON),
     "elevator": ("RCMAP_PITCH", 2, ELEVATOR),
     "rudder": ("RCMAP_YAW", 4, RUDDER),
 }
-"""Control to the parameter of its stick's radio channel, the default, and the role of an output that passes
-the stick through."""
+"""Parameter of each stick's radio channel, its default, and the role of an output that passes the stick."""
 
 WORDS = Words(
     function="SERVOn_FUNCTION",
@@ -76,7 +76,7 @@ def _is_scaled(function: int) -> bool:
 
 
 def _passed_channel(n: int, function: int) -> int:
-    """Return the radio channel that output ``n`` passes through; 0 where its function is another."""
+    """Return the radio channel that output ``n`` passes through; 0 for any other function."""
     if function == _PASSES_OWN:
         return n
     channel = function - (_PASSES_SCALED if _is_scaled(function) else _PASSES_RAW)
@@ -84,7 +84,7 @@ def _passed_channel(n: int, function: int) -> int:
 
 
 def _passing(roles: Mapping[int, Role], passed: Mapping[int, int], parameters: Parameters) -> dict[int, Role]:
-    """Return the roles of outputs that pass a stick through, for controls that no other output makes."""
+    """Return the roles of outputs that pass a stick through, for controls without another output."""
     found: dict[int, Role] = {}
     for control, (name, usual, role) in _STICKS.items():
         if not any(one.weight(control) for one in roles.values()):

@@ -1,7 +1,7 @@
-"""Breaks in the stamps of one power-on: times in which the advisor did not listen, and leaps of the clock.
+"""Breaks in the stamps of one power-on: times in which the advisor was down, and jumps of the clock.
 
-The process of the link writes a text into its own stream when it listens again. A log and a link both blame
-a gap while the advisor was down on the advisor, not on radio or pilot.
+After a pause the link's process writes a text into its own stream. In a log and in a link, a gap while the
+advisor was down is not blamed on radio or pilot.
 """
 
 import numpy as np
@@ -11,16 +11,16 @@ from advisor.flight.signals.messages import Columns, FloatArray
 DOWN = b"Advisor listens again"
 """Text that the advisor writes into its own stream after it was down."""
 LEAP_S = 600.0
-"""Least step of the stamps that is a leap of the clock, s. No silence of ten minutes divides one movement of
-the elevator."""
+"""Least step of the stamps that counts as a jump of the clock, s. A movement of the elevator never contains a
+silence of ten minutes."""
 _READ_WITHIN_S = 2.0
-"""Time of arrival after the text, s, within which a gap of the stamps belongs to it. Packets that have waited
-in the socket come first, within milliseconds."""
+"""Largest time of arrival after the text, s, of a gap that the advisor caused. Packets from the socket's
+queue arrive first, within milliseconds."""
 _LEAST_S = 0.5
-"""Least gap of the elevator's stamps that counts, s: two samples of the slowest usable stream of 4 Hz."""
+"""Least gap in the elevator's stamps that is recorded, s: two samples at 4 Hz."""
 
 Stretch = tuple[float, float]
-"""Begin and end, s since boot."""
+"""Begin and end of a stretch of vehicle time, s since boot."""
 
 
 class Breaks:
@@ -43,12 +43,12 @@ class Breaks:
                 self._until_s = arrival_s + _READ_WITHIN_S
 
     def take(self, t: FloatArray, arrival_s: FloatArray) -> list[Stretch]:
-        """Take samples of the elevator; return the gaps that the advisor has caused.
+        """Take elevator samples, and return the gaps that the advisor has caused.
 
         Parameters
         ----------
         t, arrival_s : shape (n,)
-            Vehicle times and host times of arrival, s.
+            Vehicle times and host times of arrival of the samples, s.
         """
         stamps = np.concatenate(([self._last_s], t))
         newest = np.fmax.accumulate(stamps)
@@ -61,16 +61,16 @@ class Breaks:
         return found
 
     def take_clock(self, clock: FloatArray) -> None:
-        """Take readings of a vehicle's clock, shape (n,), s since boot; the first is the last one before."""
+        """Take clock readings, shape (n,), s since boot; the first is the last earlier reading."""
         for row in np.flatnonzero(np.diff(clock) >= LEAP_S):
             self._leaps.append((float(clock[row]), float(clock[row + 1])))
 
     def missed_s(self, from_s: float, to_s: float) -> float:
-        """Return the length of the gaps by the advisor that touch a stretch of vehicle time, s."""
+        """Return the total length of the advisor's gaps that overlap a stretch of vehicle time, s."""
         return sum(_lengths(self._missed, from_s, to_s))
 
     def leapt_s(self, from_s: float, to_s: float) -> float:
-        """Return the longest leap of a clock that touches a stretch of vehicle time, s; 0 for none."""
+        """Return the longest clock jump that overlaps a stretch of vehicle time, s; 0 for none."""
         return max(_lengths(self._leaps, from_s, to_s), default=0.0)
 
 

@@ -1,9 +1,8 @@
-"""Choice among several vehicles, decided from the stream alone, so that a log and a link agree.
+"""Choice among several vehicles, from the stream alone, so that a log and a link agree.
 
-The first vehicle heard is followed. A vehicle that falls silent, or has no elevator, is left for the only
-other vehicle that sends and has an elevator. A vehicle that has served for a while is kept, however long it
-is silent. The flight test of one aircraft must not end in that of another aircraft. If several qualify, the
-crew is asked.
+The first vehicle that sends is followed. If the vehicle is silent or has no elevator, the only other usable
+vehicle is followed. A vehicle that was usable for a while is kept, however long it is silent. The flight test
+of one aircraft must not end in that of another aircraft. If several vehicles qualify, the crew is asked.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,36 +14,36 @@ from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.problems import Problem
 
 GIVEN_UP_AFTER_S = 15.0
-"""Time for which a vehicle may be silent, or its elevator unknown, before another is followed, s. Parameters
-and streams take about so long to arrive."""
+"""Time for which a vehicle may be silent, or its elevator unknown, before another one is followed, s.
+Parameters and streams take about 15 s to arrive."""
 LATELY_S = 5.0
-"""Time within which all needed messages must have come from a vehicle that counts as sending, s."""
+"""Time within which a vehicle must have sent all needed messages, s."""
 SERVED_S = 60.0
-"""Total time of service after which a vehicle is kept, s: two manoeuvres with their pauses."""
+"""Total usable time after which a vehicle is kept, s: two manoeuvres with their pauses."""
 
 FOLLOW = b"Advisor follows vehicle "
-"""Text that the advisor adds to its stream when a hand chooses another vehicle; a number ends the text."""
+"""Text in the stream when the crew chooses another vehicle, followed by its number."""
 
 TAKE = b"Advisor takes for the elevator output "
-"""Text that the advisor adds to its stream when a hand accepts a guess; the output's number ends the text."""
+"""Text in the stream when the crew accepts a guessed elevator, followed by the output's number."""
 
 _OUTPUTS = frozenset({"SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"})
 _ATTITUDES = frozenset({"ATTITUDE", "ATTITUDE_QUATERNION"})
 
 
 def chosen(text: bytes, what: bytes) -> int | None:
-    """Return the number in one of the advisor's texts, ``FOLLOW`` or ``TAKE``; None for any other text."""
+    """Return the number in an advisor's text, ``FOLLOW`` or ``TAKE``; None for any other text."""
     number = text.removeprefix(what)
     return int(number) if text.startswith(what) and number.isdigit() else None
 
 
 class Following:
-    """Compares the vehicles once a second of arrival.
+    """Comparison of the vehicles once a second of arrival.
 
     Parameters
     ----------
     has_elevator
-        Whether the elevator's outputs of a vehicle are known.
+        Function that returns whether the elevator's outputs of a vehicle are known.
     """
 
     def __init__(self, has_elevator: Callable[[Vehicle], bool]) -> None:
@@ -57,14 +56,14 @@ class Following:
     def better(
         self, piece: Sequence[Columns], vehicle: Vehicle, all_heard: Sequence[Vehicle]
     ) -> Vehicle | None:
-        """Return the vehicle that replaces ``vehicle`` after this piece; None to keep ``vehicle``.
+        """Return the vehicle that replaces ``vehicle`` after these messages; None to keep ``vehicle``.
 
         Parameters
         ----------
         piece
             Messages of one second of arrival, from all senders.
         vehicle
-            Vehicle that is followed so far.
+            Vehicle that has been followed so far.
         all_heard
             Every vehicle that has sent a heartbeat.
         """
@@ -104,26 +103,28 @@ class Following:
 
 
 WINDOW_S = 5.0
-"""Stretch of arrival over which jumps are counted, s."""
+"""Length of arrival time over which clock jumps are counted, s."""
 LEAST_JUMP_S = 0.5
-"""Least step back of the clock that counts, s. Packets that a radio delivers late lie closer."""
+"""Least backward step of the clock that is counted, s. Packets that a radio delivers late have smaller
+steps."""
 FEWEST_JUMPS = 3
-"""Fewest steps back within the window. A reboot sets the clock back only once."""
+"""Least number of backward steps within the window for two senders. A reboot sets the clock back only
+once."""
 NO_PACKET_S = 5.0
-"""Largest delay of a packet, s. A larger step back shows another clock, even once."""
+"""Largest delay of a packet, s. A larger backward step shows another clock, even if it occurs once."""
 LARGEST_SPREAD_S, LEAST_SHARE = 0.5, 0.25
-"""Two near clocks keep their distance and alternate. The values are the largest spread of the steps back, s,
-and the least share of steps. Late packets meet neither."""
+"""Two close clocks keep their distance and alternate. The values are the largest spread of the backward
+steps, s, and the least share of such steps. Late packets fulfil neither condition."""
 
 
 class SenderWatch:
-    """Follows the stamps of ATTITUDE under one system and component id."""
+    """Watch of the ATTITUDE stamps under one system and component id."""
 
     def __init__(self) -> None:
         self._arrival_s = np.empty(0)
         self._stamp_s = np.empty(0)
         self.seen: Problem | None = None
-        """Problem of two senders, once they were detected."""
+        """Problem of two senders; None unless detected."""
 
     def hear(self, columns: Sequence[Columns], component: int) -> None:
         """Take the vehicle's messages in order of arrival."""
@@ -134,7 +135,7 @@ class SenderWatch:
                 self._stamp_s = np.concatenate((self._stamp_s, stamps))
 
     def problem(self, system: int, now_s: float) -> Problem | None:
-        """Return the problem of two senders at this time of arrival; None for a single clock."""
+        """Return the problem of two senders at a time of arrival; None for a single clock."""
         lately = (self._arrival_s > now_s - WINDOW_S) & (self._arrival_s <= now_s)
         steps = np.diff(self._stamp_s[lately])
         kept = self._arrival_s > now_s - WINDOW_S

@@ -1,7 +1,7 @@
-"""How aileron, elevator, rudder and flap follow from the servo outputs: one row a function.
+"""Mixing of servo outputs into aileron, elevator, rudder and flap, with one row per function.
 
-An output counts as a share of its travel and rises with its demand. A control is the sum of the outputs, each
-with its weight. The weights undo the mixer, so that every other demand cancels.
+An output is a share of its travel and rises with its demand. A control is the weighted sum of the outputs.
+The weights invert the mixer, so that every other demand cancels.
 
 ArduPlane: ``servos.cpp`` (channel_function_mixer, flaperon_update, dspoiler_update) and ``SRV_Channel.h``.
 PX4 since 1.13: the rules in ``control_allocator/module.yaml``. PX4 counts horizontal and mixed surfaces
@@ -17,7 +17,7 @@ Control = Literal["elevator", "aileron", "rudder", "flap"]
 
 @dataclass(frozen=True, slots=True)
 class Role:
-    """Surface that an output moves, and the output's weight in each control."""
+    """Surface that an output moves, with the output's weight in each control."""
 
     surface: str
     """``elevator``, ``aileron``, ``rudder``, ``flap``, or the name of a mixed pair."""
@@ -29,12 +29,12 @@ class Role:
     flap: float = 0.0
 
     def weight(self, control: Control) -> float:
-        """Return the weight of the output in a control; 0 where a demand for the control leaves it alone."""
+        """Return the weight of the output in a control; 0 if the control's demand does not move it."""
         return float(getattr(self, control))
 
     @property
     def is_mixed(self) -> bool:
-        """Whether the output follows several demands."""
+        """Whether the output responds to several demands."""
         return bool(self.side)
 
 
@@ -53,8 +53,8 @@ def _pair(surface: str, left: Mapping[str, float], right: Mapping[str, float]) -
 def _spoilers(
     surface: str, outer: Mapping[str, float], inner: Mapping[str, float]
 ) -> tuple[Role, Role, Role, Role]:
-    """Return the rows of outer left, inner left, outer right and inner right. Roll and yaw turn round on the
-    left."""
+    """Return the rows of outer left, inner left, outer right and inner right spoiler. Roll and yaw have the
+    opposite sign on the left."""
     mirrored = [
         {control: value if control == "elevator" else -value for control, value in row.items()}
         for row in (outer, inner)
@@ -77,23 +77,25 @@ SPOILERS = _spoilers(
     {"elevator": 0.25, "aileron": 0.25, "rudder": 0.5},
     {"elevator": 0.25, "aileron": 0.25, "rudder": -0.5},
 )
-"""Elevons of full span, each split in two. A rudder demand opens the halves of one wing."""
+"""Elevons of full span, each divided into two halves. A rudder demand opens the two halves of one wing."""
 PART_SPAN_SPOILERS = _spoilers(
     "part-span differential spoiler",
     {"elevator": 0.5, "aileron": 0.5},
     {"elevator": 0.5, "aileron": 0.5, "rudder": -1.0},
 )
-"""The outer halves alone are elevons. The inner halves move with the rudder demand only."""
+"""Differential spoilers whose outer halves alone are elevons. The inner halves move with the rudder demand
+only."""
 OUTER_SPOILERS = _pair(
     "outer differential spoiler", {"elevator": 0.5, "aileron": -0.5}, {"elevator": 0.5, "aileron": 0.5}
 )
-"""Outer halves without inner ones. Spoilers open for yaw alone, which their mean counts as pitch."""
+"""Outer halves of differential spoilers without inner halves. Their mean interprets an opening for yaw as
+pitch."""
 
 ROWS: tuple[Role, ...] = (
     *(ELEVATOR, AILERON, RUDDER, FLAP),
     *(*ELEVONS, *V_TAIL, *A_TAIL, *FLAPERONS, *SPOILERS, *PART_SPAN_SPOILERS, *OUTER_SPOILERS),
 )
-"""All rows."""
+"""All rows of the mixers' table."""
 
 _ARDUPLANE: Mapping[int, Role] = {
     2: FLAP,
@@ -108,16 +110,16 @@ _ARDUPLANE: Mapping[int, Role] = {
     79: V_TAIL[0],
     80: V_TAIL[1],
 }
-"""Value of SERVOn_FUNCTION to the row of the output."""
+"""Row of the output for each value of SERVOn_FUNCTION."""
 _SPOILER_FUNCTIONS = (16, 86, 17, 87)
-"""Values of SERVOn_FUNCTION: outer left, inner left, outer right, inner right."""
+"""Values of SERVOn_FUNCTION for outer left, inner left, outer right, inner right."""
 _FLYING_WING, _FULL_SPAN = 1, 2
-"""Bits of DSPOILER_OPTS: the spoilers also pitch; the inner halves follow roll and pitch as well."""
+"""Bits of DSPOILER_OPTS: the spoilers also pitch, and the inner halves also follow roll and pitch."""
 _USUAL_OPTIONS = _FLYING_WING | _FULL_SPAN
 """ArduPlane's default of DSPOILER_OPTS."""
 
 Torque = tuple[float, float, float]
-"""Signs of the torque in roll, pitch and yaw that a positive command gives."""
+"""Signs of the torques in roll, pitch and yaw for a positive command."""
 PX4: Mapping[int, tuple[Role, Torque]] = {
     1: (AILERON, (-1.0, 0.0, 0.0)),
     2: (AILERON, (1.0, 0.0, 0.0)),
@@ -133,7 +135,7 @@ PX4: Mapping[int, tuple[Role, Torque]] = {
     14: (A_TAIL[1], (0.0, 1.0, 1.0)),
     15: (AILERON, (1.0, 0.0, 0.0)),
 }
-"""Value of CA_SV_CSn_TYPE to the row of the surface and its usual torque."""
+"""Row of the surface and its usual torque for each value of CA_SV_CSn_TYPE."""
 
 
 def arduplane_roles(functions: Mapping[int, int], spoiler_options: int | None) -> dict[int, Role]:
@@ -142,9 +144,9 @@ def arduplane_roles(functions: Mapping[int, int], spoiler_options: int | None) -
     Parameters
     ----------
     functions
-        Output number to SERVOn_FUNCTION.
+        SERVOn_FUNCTION of each output, by the output's number.
     spoiler_options
-        DSPOILER_OPTS; None where unknown.
+        Value of DSPOILER_OPTS; None if unknown.
     """
     spoilers = _spoiler_rows(set(functions.values()), spoiler_options)
     return {n: spoilers.get(value) or _ARDUPLANE.get(value, NOTHING) for n, value in functions.items()}
@@ -159,5 +161,5 @@ def _spoiler_rows(assigned: set[int], options: int | None) -> dict[int, Role]:
 
 
 def sides_of(surface: str, control: Control) -> set[str]:
-    """Return the members of a pair that a control needs; one empty name for a plain surface."""
+    """Return the members of a pair that a control needs; a plain surface has one empty name."""
     return {row.side for row in ROWS if row.surface == surface and row.weight(control)}

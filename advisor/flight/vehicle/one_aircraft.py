@@ -7,21 +7,20 @@ from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.problems import Problem
 
 _PROBE_US = (1400.0, 1600.0)
-"""Pulses between which two elevators' scales are compared, us: within the travel of every servo."""
+"""Pulses at which two elevators' scales are compared, us: within the travel of every servo."""
 _SCALES_AGREE = 0.05
-"""Relative difference of an elevator's scale between flights that counts as equal, as after a new trim."""
+"""Largest relative difference of an elevator's scale between flights of one aircraft, as after a new trim."""
 
 
 class OneAircraft:
-    """Compares the vehicle and the elevator of each flight with those of the first flight with such a vehicle
-    or elevator."""
+    """Comparison of each flight's vehicle and elevator with those of the first flight."""
 
     def __init__(self) -> None:
         self._vehicle: tuple[str, Vehicle] | None = None
         self._elevator: tuple[str, Surface] | None = None
 
     def refuse(self, name: str, vehicle: Vehicle) -> Problem | None:
-        """Return a problem where the vehicle of a flight is certainly another aircraft; else None.
+        """Return a problem if the vehicle of a flight is certainly another aircraft; else None.
 
         Parameters
         ----------
@@ -39,14 +38,14 @@ class OneAircraft:
         )
 
     def other_system(self, name: str, vehicle: Vehicle) -> str:
-        """Return a sentence where the vehicle's system id differs from the first flight's, else ""."""
+        """Return a sentence if the vehicle's system id differs from the first flight's; else ""."""
         first_name, first = self._vehicle = self._vehicle or (name, vehicle)
         if vehicle.system == first.system:
             return ""
         return f"{name}: the vehicle is {vehicle}, and {first} in {first_name}; both count as one aircraft."
 
     def doubt_elevator(self, name: str, elevator: Surface) -> str:
-        """Return a sentence where the elevator is driven otherwise than in the first flight, else ""."""
+        """Return a sentence if the elevator is driven differently from the first flight's; else ""."""
         first_name, first = self._elevator = self._elevator or (name, elevator)
         if elevator.outputs == first.outputs and _scales_agree(elevator, first):
             return ""
@@ -58,7 +57,7 @@ class OneAircraft:
 
 
 def _kind(vehicle: Vehicle) -> str:
-    """Return properties that no setting changes: the autopilot's make, and whether rotors alone steer."""
+    """Return the vehicle's properties that no setting changes, such as the autopilot's make."""
     return f"{vehicle.autopilot} on a {'multicopter' if vehicle.is_multicopter else 'fixed wing'}"
 
 

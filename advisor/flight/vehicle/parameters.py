@@ -1,10 +1,10 @@
 """Parameters stated by vehicles and ground stations, each decoded as its autopilot encodes it.
 
-A filter that no parameter states is unknown. Its delay then is part of the delay of the command and of the
-angle of attack, which the fit estimates with priors.
+A filter without a stated parameter is unknown. The delay of an unknown filter is part of the estimated delays
+of command and angle of attack.
 
 Below its cut-off f a second-order Butterworth low-pass delays every motion by √2/(2πf): 11 ms at 20 Hz. A
-notch of width b at f adds b/(2πf²). The short period is far below both frequencies.
+notch of width b at f adds b/(2πf²). The short period is far below both filter frequencies.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -23,14 +23,15 @@ _FILTERS = ("INS_GYRO_FILTER", "INS_ACCEL_FILTER", "INS_HNTCH_", "IMU_GYRO_CUTOF
 _PREFIXES = (*ardupilot_wiring.PREFIXES, *px4_wiring.PREFIXES, *_FILTERS)
 
 AIRSPEED_SENSOR = ("ARSPD_TYPE", "ARSPD_USE")
-"""ArduPilot's parameters of its air speed sensor: its kind, and its use. 0 means none."""
+"""ArduPilot's parameters of its air speed sensor: type and use, where 0 means none."""
 LOG_PROFILE = "SDLOG_PROFILE"
 """PX4's parameter of the topics that its log holds."""
 
 Sender = tuple[int, int]
 """System id and component id of a sender."""
 Stated = tuple[float, float]
-"""A value in both readings: integers converted to floating point, and integers put there byte by byte."""
+"""A parameter value in both encodings: integers converted to floating point, and integers copied byte by
+byte."""
 
 
 def tells_of_outputs(name: str) -> bool:
@@ -44,22 +45,22 @@ def names_in(columns: Columns) -> list[str]:
 
 
 def read_by(autopilot: str, stated: Stated) -> float:
-    """Return the value by this autopilot's encoding."""
+    """Return the value in this autopilot's encoding."""
     return stated[autopilot == "px4"]
 
 
 class Parameters:
-    """Keeps the parameters that describe the servo outputs and the filters of the inertial sensors.
+    """Parameters of the servo outputs and of the inertial sensors' filters.
 
-    PARAM_VALUE carries every value in a field of floating point. ArduPilot converts integers to floating
-    point; PX4 puts their bytes there (MAVLink's parameter protocol, "C cast" and "bytewise").
+    PARAM_VALUE carries every value in a floating-point field. ArduPilot converts integers to floating point;
+    PX4 copies their bytes ("C cast" and "bytewise" in MAVLink).
     """
 
     def __init__(self) -> None:
         self._known: dict[Sender, dict[str, Stated]] = {}
 
     def news(self, columns: Columns) -> Iterator[tuple[str, Stated | None, Stated]]:
-        """Yield name, earlier value and new value of each parameter that changes the known values."""
+        """Yield name, earlier value and new value of each parameter that changes."""
         cast = np.asarray(columns.fields["param_value"])
         kinds = np.broadcast_to(columns.fields.get("param_type", np.zeros(len(cast))), cast.shape)
         bytewise = cast.astype(np.float32).view(np.int32)
@@ -70,7 +71,7 @@ class Parameters:
                 yield name, before, stated
 
     def keep(self, sender: Sender, name: str, stated: Stated | None) -> None:
-        """Keep a value as the sender's present one; None: as if none had been heard."""
+        """Store a value as the sender's present one; None removes it."""
         known = self._known.setdefault(sender, {})
         if stated is None:
             known.pop(name, None)
@@ -78,7 +79,8 @@ class Parameters:
             known[name] = stated
 
     def stated(self, senders: Sequence[Sender], autopilot: str) -> dict[str, float]:
-        """Return the known parameters of the given senders, name to value. The last sender overrides."""
+        """Return the known parameters of the given senders, by name. The last sender overrides earlier
+        ones."""
         return {
             name: value
             for sender in senders
@@ -87,12 +89,13 @@ class Parameters:
         }
 
     def wiring(self, senders: Sequence[Sender], autopilot: str) -> Wiring:
-        """Return the roles and scales of the outputs by these senders' parameters. The last sender overrides.
+        """Return the roles and scales of the outputs from these senders' parameters. The last sender
+        overrides earlier ones.
 
         Parameters
         ----------
         senders
-            Systems and components that state the vehicle's parameters.
+            System and component ids that state the vehicle's parameters.
         autopilot
             Name of the autopilot in the vehicle's identity.
         """
@@ -104,11 +107,11 @@ class Parameters:
 _RATES = ("p", "q", "r")
 _FORCES = ("a_x", "a_y", "a_z")
 _UNFILTERED_ON_PX4 = "HIGHRES_IMU"
-"""Message of PX4 that comes from the integrals of the sensors, without a filter."""
+"""Message of PX4 from the sensors' integrals, without a filter."""
 
 
 def filter_delay_s(channel: str, source: str, autopilot: str, stated: Mapping[str, float]) -> float:
-    """Return the known delay of a channel by the autopilot's filters, s; 0 where none is known.
+    """Return the known delay of a channel due to the autopilot's filters, s; 0 if unknown.
 
     Parameters
     ----------
@@ -117,7 +120,7 @@ def filter_delay_s(channel: str, source: str, autopilot: str, stated: Mapping[st
     autopilot
         Name of the autopilot in the vehicle's identity.
     stated
-        Parameter name to its value.
+        Value of each parameter, by its name.
     """
     if channel not in _RATES + _FORCES:
         return 0.0
@@ -134,12 +137,12 @@ def filter_delay_s(channel: str, source: str, autopilot: str, stated: Mapping[st
 
 
 def _low_pass_s(cutoff_hz: float) -> float:
-    """Return the delay of a second-order Butterworth filter; a cut-off of 0 switches the filter off."""
+    """Return the delay of a second-order Butterworth filter, s; a cut-off of 0 means no filter."""
     return sqrt(2.0) / (2.0 * pi * cutoff_hz) if cutoff_hz > 0.0 else 0.0
 
 
 def _notch_s(stated: Mapping[str, float]) -> float:
-    """Return the delay of ArduPilot's first harmonic notch."""
+    """Return the delay of ArduPilot's first harmonic notch, s."""
     centre, width = stated.get("INS_HNTCH_FREQ", 0.0), stated.get("INS_HNTCH_BW", 0.0)
     if not stated.get("INS_HNTCH_ENABLE", 0.0) or centre <= 0.0:
         return 0.0

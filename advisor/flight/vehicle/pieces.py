@@ -1,4 +1,4 @@
-"""Messages of one vehicle, cut at changes that affect all later messages, and by boot."""
+"""Messages of one vehicle, divided at changes that affect all later messages, and by boot."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -11,21 +11,21 @@ from advisor.flight.signals.messages import Columns, FloatArray, IntArray
 from advisor.flight.vehicle.parameters import names_in, tells_of_outputs
 
 _EVERY = 100_000
-"""Longest piece in arrival orders (bytes of a log), so that memory stays bounded for any batch."""
+"""Longest piece in arrival orders (bytes of a log), which bounds the memory for any batch."""
 
 _STATES = {"HEARTBEAT": "custom_mode", "EXTENDED_SYS_STATE": "vtol_state"}
-"""Message that repeats a state, to the field of the state."""
+"""Field with the state for each message that repeats a state."""
 
 
 def pieces(columns: Sequence[Columns], by_second: bool = False) -> Iterator[list[Columns]]:
-    """Yield the batch in order of arrival, cut before every change of vehicle, mode or parameter.
+    """Yield the batch in order of arrival, divided before every change of vehicle, mode or parameter.
 
     Parameters
     ----------
     columns
-        Messages of all senders.
+        Messages of all senders, in one batch.
     by_second
-        Whether to cut at each second of arrival as well, at which several vehicles are compared.
+        Whether the batch is also divided at each second of arrival, for the comparison of vehicles.
     """
     filled = [c for c in columns if len(c)]
     if not filled:
@@ -43,7 +43,7 @@ def pieces(columns: Sequence[Columns], by_second: bool = False) -> Iterator[list
 
 
 def _seconds(columns: Sequence[Columns]) -> list[int]:
-    """Return the orders of the messages with which a second of arrival begins."""
+    """Return the arrival orders of the messages that begin a second of arrival."""
     order = np.concatenate([c.order for c in columns])
     rows = np.argsort(order)
     second = np.floor(np.concatenate([c.arrival_s for c in columns])[rows])
@@ -52,7 +52,7 @@ def _seconds(columns: Sequence[Columns]) -> list[int]:
 
 
 def rows_between(columns: Sequence[Columns], first: int, past: int) -> list[Columns]:
-    """Return the rows with ``first <= order < past``, without types that have no such row."""
+    """Return the rows with ``first <= order < past``, without message types that have no such row."""
     found = []
     for c in columns:
         i, j = np.searchsorted(c.order, [first, past])
@@ -83,22 +83,22 @@ class Master:
     boot: int
     """Number of the boot, 0 for the first."""
     order: IntArray
-    """Order of arrival, among all messages, of each accepted stamp, shape (n,)."""
+    """Shape (n,): order of arrival of each accepted stamp, among all messages."""
     t: FloatArray
-    """Accepted stamps, shape (n,), s since boot."""
+    """Shape (n,): accepted stamps, s since boot."""
 
 
 def by_boot(
     columns: Sequence[Columns], component: int, clock: BootClock, boot: int
 ) -> Iterator[tuple[list[Columns], Master]]:
-    """Yield the columns of a vehicle, divided where the vehicle restarted (nearly always: nowhere).
+    """Yield the columns of a vehicle, divided where the vehicle restarted.
 
     Parameters
     ----------
     component
         Component id of the autopilot, whose ``ATTITUDE`` is the master clock.
     clock
-        Clock, which the stamps in ``columns`` advance.
+        Clock of the vehicle, which the stamps in ``columns`` advance.
     boot
         Number of the present boot, to which messages before the first stamp belong.
     """

@@ -1,8 +1,8 @@
 """Roles and scales of servo outputs from PX4's parameters: CA_SV_CSn_* for surfaces, PWM_MAIN_* for outputs.
 
-Surface ``n`` is servo ``n``, counted from 0. An output whose function is 201 + n drives that servo. A
-positive command of an elevator lifts the nose where its torque effectiveness CA_SV_CSn_TRQ_P is positive.
-(PX4 since 1.13: ActuatorEffectivenessControlSurfaces.hpp, mixer_module.cpp.)
+Surface ``n`` belongs to servo ``n``, counted from 0. An output whose function is 201 + n drives that servo. A
+positive elevator command raises the nose if its torque effectiveness CA_SV_CSn_TRQ_P is positive. (PX4 since
+1.13: ActuatorEffectivenessControlSurfaces.hpp, mixer_module.cpp.)
 """
 
 from collections.abc import Iterator, Mapping
@@ -22,23 +22,23 @@ GROUPS = {
     "SIM_GZ_SV": Scale(0.0, 500.0, 1000.0),
     "HIL_ACT": Scale(1000.0, 1500.0, 2000.0),
 }
-"""Group of outputs, by the beginning of its parameters' names, to its default limits."""
+"""Default limits of each group of outputs, by the beginning of its parameters' names."""
 FOLLOWS_PITCH = "READER_PITCH"
-"""``READER_PITCHn`` is 1 or -1 where a reader of logs has found that output n follows the pitch command or
-its opposite. PX4 before 1.13 mixes its outputs by files, which no log holds."""
+"""``READER_PITCHn`` is 1 or -1 if a log reader found that output n follows the pitch command or its opposite.
+PX4 before 1.13 mixes its outputs by files, which no log contains."""
 STANDS_FOR_ELEVATOR = 2.0
-"""Value of such a parameter where the pulses are the pitch command itself, with 500 us for full command."""
+"""Value of ``READER_PITCHn`` if the pulses are the pitch command itself, with 500 us for full command."""
 PREFIXES = ("CA_SV_CS", *GROUPS, FOLLOWS_PITCH)
-"""Beginnings of the names of PX4's parameters that state outputs."""
+"""Beginnings of the names of PX4's parameters about servo outputs."""
 OUTPUTS = range(1, 17)
 """Numbers of the outputs of one group."""
 _SURFACES = range(8)
 _SERVO_1 = 201
-"""Output function of servo 0. Functions 101 to 112 are motors."""
+"""Output function number of servo 0. Functions 101 to 112 belong to motors."""
 _SERVOS = range(16)
 _CUSTOM = 12
 _AXES: Mapping[Control, int] = {"aileron": 0, "elevator": 1, "rudder": 2}
-"""Control to the place of its torque in roll, pitch and yaw."""
+"""Index of each control's torque in roll, pitch and yaw."""
 
 WORDS = Words(
     function="CA_SV_CSn_TYPE",
@@ -54,24 +54,24 @@ WORDS = Words(
 
 @dataclass(frozen=True, slots=True)
 class ServoOutput:
-    """Output that drives a servo."""
+    """Servo output that drives a servo."""
 
     number: int
-    """Number from 1 over all groups that drive anything, with 16 outputs to a group."""
+    """Number of the output, from 1 over all groups in use, with 16 outputs per group."""
     servo: int
-    """Number of the servo, from 0."""
+    """Number of the servo that the output drives, counted from 0."""
     scale: Scale
-    """Limits and direction of the output, whatever surface the servo moves."""
+    """Limits and direction of the output, independent of the surface."""
 
 
 def banks(parameters: Parameters) -> list[str]:
-    """Return the groups with an output that has a function. Outputs 1 to 16 are of the first group, 17 to 32
-    of the next."""
+    """Return the groups that have an output with a function. Outputs 1 to 16 belong to the first group, and
+    17 to 32 to the next group."""
     return [group for group in GROUPS if any(parameters.get(f"{group}_FUNC{k}", 0.0) for k in OUTPUTS)]
 
 
 def servo_outputs(parameters: Parameters) -> list[ServoOutput]:
-    """Return the first output of each servo. Servo n is on output n + 1 where no function is known."""
+    """Return the first output of each servo. Without a known function, servo n is at output n + 1."""
     found: dict[int, ServoOutput] = {}
     for bank, group in enumerate(banks(parameters)):
         for k in OUTPUTS:
@@ -85,7 +85,7 @@ def servo_outputs(parameters: Parameters) -> list[ServoOutput]:
 
 
 def px4_wiring(parameters: Parameters) -> Wiring:
-    """Return the outputs by the surfaces that they drive, else by the findings of a reader of logs."""
+    """Return the wiring of the outputs from the surfaces they drive, else from a log reader's findings."""
     surfaces = {n: (role, _torque(n, kind, parameters)) for n, kind, role in _surfaces(parameters)}
     if not surfaces:
         return _followers(parameters)
@@ -105,9 +105,9 @@ def px4_wiring(parameters: Parameters) -> Wiring:
 
 
 def allocation(parameters: Parameters) -> dict[int, Torque]:
-    """Return each servo's command per unit of the torque set point in roll, pitch and yaw.
+    """Return each servo's command per unit torque demand in roll, pitch and yaw.
 
-    The commands are the pseudo-inverse of the torques. A torque that is not stated is PX4's default, one over
+    The commands are the pseudo-inverse of the torque matrix. An unstated torque is PX4's default: one over
     the number of surfaces with an effect about the axis.
     """
     surfaces = {n: _torque(n, kind, parameters) for n, kind, _ in _surfaces(parameters)}
@@ -120,7 +120,7 @@ def allocation(parameters: Parameters) -> dict[int, Torque]:
 
 
 def _stated_limits(parameters: Parameters) -> frozenset[int]:
-    """Return the outputs whose both limits are stated."""
+    """Return the outputs with both limits stated."""
     return frozenset(
         16 * bank + k
         for bank, group in enumerate(banks(parameters))
@@ -141,13 +141,13 @@ def _surfaces(parameters: Parameters) -> Iterator[tuple[int, int, Role]]:
 
 
 def _stated_torque(n: int, parameters: Parameters) -> Torque:
-    """Return the torque of surface ``n`` in roll, pitch and yaw; 0 where unknown."""
+    """Return the torque of surface ``n`` in roll, pitch and yaw; 0 if unknown."""
     roll, pitch, yaw = (parameters.get(f"CA_SV_CS{n}_TRQ_{axis}", 0.0) for axis in "RPY")
     return roll, pitch, yaw
 
 
 def _torque(n: int, kind: int, parameters: Parameters) -> Torque:
-    """Return the torque of surface ``n``; what is not stated is the usual one of its kind."""
+    """Return the torque of surface ``n``; an unstated one is the usual torque of its kind."""
     usual = PX4.get(kind, (NOTHING, (0.0, 0.0, 0.0)))[1]
     roll, pitch, yaw = (own or other for own, other in zip(_stated_torque(n, parameters), usual, strict=True))
     return roll, pitch, yaw
@@ -160,7 +160,7 @@ def _main_torque(role: Role, torque: Torque) -> float:
 
 
 def _turned(scale: Scale, role: Role, torque: Torque) -> Scale:
-    """Return the scale of an output, reversed where its surface acts in reverse about its main axis."""
+    """Return the scale of an output, reversed if its surface has a negative torque about its main axis."""
     return replace(scale, reversed=scale.reversed != (_main_torque(role, torque) < 0.0))
 
 

@@ -1,10 +1,10 @@
-"""Control surfaces: the servo outputs that move each, and the meaning of their pulse widths.
+"""Control surfaces: their servo outputs, and the deflections for given pulse widths.
 
-The deflection is that of the *command*. The estimator models the servo's answer.
+The deflection is that of the *command*, not of the surface. The estimator models the servo's response.
 
-Signs: an output that is not reversed rises with the demand, and a positive pitch demand lifts the nose. A
-longer pulse moves the trailing edge up, unless the output is reversed. The elevator channel counts trailing
-edge down as positive, which explains the minus in `Scale.deflection`.
+An output that is not reversed rises with the demand, and a positive pitch demand raises the nose. A longer
+pulse moves the trailing edge up, unless the output is reversed. The elevator channel is positive trailing
+edge down, hence the minus in `Scale.deflection`.
 """
 
 from collections.abc import Collection, Iterable, Sequence
@@ -22,7 +22,7 @@ _UNUSED_PX4 = 900.0
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Pulses of one output at full travel, taken as 25 degrees, and at zero deflection."""
+    """Pulses of one output at full travel (taken as 25 degrees) and at zero deflection."""
 
     low_us: float = 1100.0
     trim_us: float = 1500.0
@@ -31,13 +31,14 @@ class Scale:
 
     @property
     def _full_rad(self) -> float:
-        """Surface angle at ``high_us``, rad."""
+        """Deflection at ``high_us``, rad."""
         return float(_FULL_STROKE_RAD if self.reversed else -_FULL_STROKE_RAD)
 
     def deflection(self, pwm_us: FloatArray) -> FloatArray:
-        """Return the surface angle in rad, trailing edge down positive, linear beyond the ends.
+        """Return the surface deflection in rad, trailing edge down positive, linear beyond the limits.
 
-        The autopilot keeps to the limits, not the linkage: a pulse beyond them shows that they are assumed.
+        A pulse beyond the limits shows that the limits are assumed, because the autopilot respects its own
+        limits.
         """
         away = pwm_us - self.trim_us
         stroke = np.where(away < 0.0, self.trim_us - self.low_us, self.high_us - self.trim_us)
@@ -45,7 +46,7 @@ class Scale:
         return np.asarray(self._full_rad * up)
 
     def pulses(self, angle_rad: FloatArray) -> FloatArray:
-        """Return the pulses in us that give these surface angles."""
+        """Return the pulses in us for the given surface deflections."""
         up = angle_rad / self._full_rad
         stroke = np.where(up < 0.0, self.trim_us - self.low_us, self.high_us - self.trim_us)
         return np.asarray(self.trim_us + stroke * up)
@@ -53,22 +54,25 @@ class Scale:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """Pairs (PWM in us, deflection in deg) of the aircraft file, interpolated linearly, not extrapolated."""
+    """Pairs (PWM in us, deflection in deg) of the aircraft file, with linear interpolation and no
+    extrapolation."""
 
     pairs: tuple[tuple[float, float], ...]
 
     def deflection(self, pwm_us: FloatArray) -> FloatArray:
-        """Return the surface angle in rad, positive trailing edge down, held beyond the end pairs."""
+        """Return the surface deflection in rad, positive trailing edge down, constant beyond the end
+        pairs."""
         pwm, deg = zip(*sorted(self.pairs), strict=True)
         return np.asarray(np.radians(np.interp(pwm_us, pwm, deg)))
 
     def carried_over(self, measured: Scale, other: Scale) -> "Calibration":
-        """Return this calibration for another output of the linkage: counted from TRIM, turned by REVERSED.
+        """Return this calibration for another output of the linkage, relative to TRIM, with the sign of
+        REVERSED.
 
         Parameters
         ----------
         measured
-            Scale of the output with the calibration.
+            Scale of the calibrated output.
         other
             Scale of the other output.
         """
@@ -82,69 +86,72 @@ class Part:
     """One servo output that moves a surface."""
 
     output: int
-    """Number of the output, 1..32."""
+    """Number of the output, from 1 to 32."""
     scale: Scale | Calibration
     share: float = 1.0
-    """Share of the surface's deflection. The sizes of one surface's shares sum to 1. The share is negative
-    for the side that a roll or yaw demand moves the other way."""
+    """Share of the output in the surface's deflection. The absolute shares of one surface sum to 1. The share
+    is negative for the side that moves the other way on a roll or yaw demand."""
     sure: bool = True
     """Whether a calibration or a parameter gives the output's sign."""
     side: str = ""
-    """Outputs of one side follow one demand: each can replace the others. Empty: a side of its own."""
+    """Outputs of one side respond to one demand, so that each can replace the others. An empty name means a
+    side of its own."""
 
     @property
     def demand(self) -> str:
-        """Name of the demand that the output follows."""
+        """Name of the demand that the output responds to."""
         return self.side or f"output {self.output}"
 
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """One control surface: its outputs, each with a scale and a share."""
+    """One control surface with its outputs, each with a scale and a share."""
 
     parts: tuple[Part, ...]
     calibrated: bool
-    """Whether a calibration exists. Else the parameters' limits and an assumed 25 deg give the scale."""
+    """Whether the aircraft file has a calibration. Otherwise the parameters' limits and an assumed 25 deg
+    give the scale."""
     said: str
-    """Sentence for the user on the outputs and their scale."""
+    """Sentence for the user about the outputs and their scale."""
     doubts: tuple[Problem, ...] = ()
-    """Problems of limits that are assumed in the scale."""
+    """Problems of assumed limits in the scale."""
 
     @property
     def outputs(self) -> tuple[int, ...]:
-        """Servo outputs 1..32. Elevons, V-tails, split elevators and stabilators with tabs have several."""
+        """Numbers of the servo outputs, 1 to 32. Elevons, V-tails, split elevators and stabilators with tabs
+        have several outputs."""
         return tuple(part.output for part in self.parts)
 
     @property
     def scale(self) -> Scale | None:
-        """Scale of a single output without a calibration, from whose angle the pulse follows; else None."""
+        """Scale of a single output without a calibration; None for several outputs or a calibrated one."""
         scale = self.parts[0].scale
         return scale if len(self.parts) == 1 and isinstance(scale, Scale) else None
 
     @property
     def ports(self) -> tuple[int, ...]:
-        """SERVO_OUTPUT_RAW.port of the banks of 16 that hold the outputs, rising."""
+        """Values of SERVO_OUTPUT_RAW.port for the banks that contain the outputs, rising."""
         return tuple(sorted({(n - 1) // 16 for n in self.outputs}))
 
     @property
     def unsure(self) -> tuple[int, ...]:
-        """Outputs, of several, whose sign is unknown. A single output has the surface's sign."""
+        """Outputs with an unknown sign, if there are several. A single output has the sign of the surface."""
         return tuple(part.output for part in self.parts if not part.sure) if len(self.parts) > 1 else ()
 
     def angles(self, pwm_us: FloatArray) -> FloatArray:
-        """Return the angle that each output commands, rad, from pulses; both of shape (n, outputs)."""
+        """Return the angle that each output commands, rad, for pulses; both of shape (n, outputs)."""
         columns = [part.scale.deflection(pwm_us[:, k]) for k, part in enumerate(self.parts)]
         return np.stack(columns, axis=1)
 
     def combined(self, angles: FloatArray, turned: Iterable[int] = ()) -> FloatArray:
-        """Return the surface angle in rad, shape (n,), from the angles of the outputs.
+        """Return the surface deflection in rad, shape (n,), from the angles of the outputs.
 
         Parameters
         ----------
         angles
-            Shape (n, number of outputs), rad.
+            Shape (n, number of outputs): angles of the outputs, rad.
         turned
-            Outputs with the opposite sign.
+            Outputs to be added with the opposite sign.
         """
         total = np.zeros(len(angles))
         # Column by column, because a product of matrices may round differently for another n.
@@ -153,11 +160,11 @@ class Surface:
         return total
 
     def deflection(self, pwm_us: FloatArray) -> FloatArray:
-        """Return the surface angle in rad from pulses of shape (n, number of outputs)."""
+        """Return the surface deflection in rad for pulses of shape (n, number of outputs)."""
         return self.combined(self.angles(pwm_us))
 
     def without(self, silent: Collection[int]) -> "Surface | None":
-        """Return the surface of the outputs that carry a pulse; None where nothing follows a demand then.
+        """Return the surface with only the outputs that carry a pulse; None if a demand has no output left.
 
         Parameters
         ----------
@@ -180,7 +187,7 @@ class Surface:
 
 
 def _as_before(kept: Sequence[Part], before: Sequence[Part]) -> tuple[Part, ...]:
-    """Return the parts with shares that give each demand the share that it had."""
+    """Return the parts with shares rescaled to each demand's earlier share."""
 
     def total(parts: Iterable[Part], demand: str) -> float:
         return sum(part.share for part in parts if part.demand == demand)
@@ -201,17 +208,17 @@ def driven(pwm_us: FloatArray, autopilot: str) -> NDArray[np.bool_]:
 
 
 def in_shares(parts: Iterable[Part]) -> tuple[Part, ...]:
-    """Return the parts of one surface, in the order of their outputs, with shares whose sizes sum to 1."""
+    """Return the parts of one surface, sorted by output, with absolute shares that sum to 1."""
     ordered = sorted(parts, key=lambda part: part.output)
     total = sum(abs(part.share) for part in ordered)
     return tuple(replace(part, share=part.share / total) for part in ordered)
 
 
 def joined_numbers(outputs: Sequence[int]) -> str:
-    """Return numbers as a sentence lists them: ``1``, ``1 and 2``, ``1, 2 and 3``."""
+    """Return numbers as a list in words: ``1``, ``1 and 2``, ``1, 2 and 3``."""
     return listed([str(n) for n in outputs])
 
 
 def listed(words: Sequence[str]) -> str:
-    """Return words as a sentence lists them: ``a``, ``a and b``, ``a, b and c``."""
+    """Return words as a list in a sentence: ``a``, ``a and b``, ``a, b and c``."""
     return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))

@@ -1,4 +1,4 @@
-"""Identity of the vehicle: the heartbeat that belongs to an aircraft."""
+"""Identity of the vehicle: the heartbeat of an aircraft among all senders."""
 
 from dataclasses import dataclass, replace
 
@@ -10,15 +10,14 @@ from advisor.words.problems import Problem
 _AUTOPILOT_INVALID = 8
 _AUTOPILOTS = {0: "generic", 3: "ardupilot", 12: "px4", 4: "openpilot", 15: "armazila", 18: "smartap"}
 _PERIPHERALS = frozenset({5, 6, 18, 26, 27, 30, 31, 32, 33, 34, 36, 37, 38, 39, 40, 41, 42})
-"""Types that are no vehicle: antenna tracker, ground station, onboard controller, gimbal, ADS-B, camera, and
-other parts."""
+"""Values of MAV_TYPE that are no vehicle, such as antenna tracker, ground station, gimbal and camera."""
 MULTICOPTERS = frozenset({2, 13, 14, 15, 29, 35})
-"""Aircraft on four, six, eight, three, twelve and ten rotors."""
+"""Values of MAV_TYPE for aircraft with four, six, eight, three, twelve and ten rotors."""
 
 
 @dataclass(frozen=True, slots=True)
 class Vehicle:
-    """Autopilot whose messages count."""
+    """Autopilot of the vehicle whose messages are used."""
 
     system: int
     component: int
@@ -27,11 +26,11 @@ class Vehicle:
     type: int
     """MAV_TYPE of the heartbeat."""
     firmware: str | None = None
-    """Version that the vehicle states. None before the first statement."""
+    """Firmware version that the vehicle states. None before the first statement."""
     carrier: Carrier = "telemetry"
-    """Kind of record or link that brings the messages, which decides on the remedies."""
+    """Kind of record or link that carries the messages, on which the remedies depend."""
     log_profile: int | None = None
-    """SDLOG_PROFILE of a PX4 log, None where unknown. No remedy names a bit that is set."""
+    """Value of SDLOG_PROFILE of a PX4 log; None if unknown. Remedies name only bits that are not set."""
 
     def __str__(self) -> str:
         return f"{self.autopilot} {self.system}/{self.component}"
@@ -43,7 +42,7 @@ class Vehicle:
 
     @property
     def no_elevator(self) -> Problem | None:
-        """Reason for which the vehicle can have no elevator, whatever its outputs; None where it can."""
+        """Reason why the vehicle has no elevator, whatever its outputs; None if it can have one."""
         if not self.is_multicopter:
             return None
         return Problem(
@@ -54,7 +53,7 @@ class Vehicle:
 
     @property
     def mends(self) -> Mends:
-        """Remedies for missing or slow messages, in the words of this autopilot."""
+        """Remedies for missing or slow messages, in the terms of this autopilot."""
         return mends_of(self.autopilot, self.carrier, self.log_profile)
 
     def with_firmware(self, firmware: str) -> "Vehicle":
@@ -68,12 +67,12 @@ def is_aircraft(autopilot: int, kind: int) -> bool:
 
 
 class VehicleFinder:
-    """Chooses the vehicle among all senders of heartbeats.
+    """Choice of the vehicle among all senders of heartbeats.
 
     Parameters
     ----------
     target_system
-        System id that the user asked for. None: the first vehicle heard.
+        System id that the user asked for. None for the first vehicle that sends.
     """
 
     def __init__(self, target_system: int | None = None) -> None:
@@ -82,10 +81,10 @@ class VehicleFinder:
         self.others: set[int] = set()
         """System ids of the other vehicles on the stream."""
         self.heard: dict[int, Vehicle] = {}
-        """Every vehicle by its system id, from its first heartbeat."""
+        """Every vehicle since its first heartbeat, by its system id."""
 
     def hear(self, heartbeat: Columns) -> bool:
-        """Take the first row of one sender's heartbeats; return True when it decides the vehicle."""
+        """Take the first row of one sender's heartbeats, and return whether it determines the vehicle."""
         autopilot = int(heartbeat.fields["autopilot"][0])
         kind = int(heartbeat.fields["type"][0])
         if not is_aircraft(autopilot, kind):
@@ -102,7 +101,7 @@ class VehicleFinder:
 
     @property
     def may_choose(self) -> bool:
-        """Whether nobody asked for a vehicle, and there is more than one."""
+        """Whether the user named no vehicle, and there are several."""
         return self._target is None and self.vehicle is not None and bool(self.others)
 
     def follow(self, vehicle: Vehicle) -> None:

@@ -9,23 +9,23 @@ from advisor.flight.vehicle.surfaces import Scale, listed
 from advisor.words.problems import Problem
 
 Names = tuple[str, str, str]
-"""Parameters of the pulses at one full stroke, at zero deflection and at the other full stroke."""
+"""Names of the parameters of the pulses at one full deflection, at zero, and at the other full deflection."""
 
 
 _RECORD = "Record the vehicle's parameters, or give elevator.calibration."
 
 
 def limits(names: Names, stated: Mapping[str, float], usual: Scale) -> tuple[Scale, Problem | None]:
-    """Return the scale of an output, and the problem of limits that are assumed; None where all are stated.
+    """Return the scale of an output, and the problem of its assumed limits; None if all are stated.
 
     Parameters
     ----------
     names
-        Names of the limits' parameters.
+        Names of the parameters of the limits.
     stated
-        Values of the vehicle's parameters.
+        Values of the vehicle's parameters, by name.
     usual
-        Limits that are assumed where the parameters state none, and the direction of the output.
+        Limits that replace unstated ones, and the direction of the output.
     """
     known = [stated.get(name) for name in names]
     wrong = _contradiction(names, known)
@@ -63,7 +63,7 @@ def assumed_limits(output: int, scale: Scale) -> Problem:
 
 
 def _contradiction(names: Names, known: list[float | None]) -> str:
-    """Return in words why no linkage can have the stated limits; empty where one can."""
+    """Return the reason in words why no linkage can have the stated limits; empty if one can."""
     given = [(name, value) for name, value in zip(names, known, strict=True) if value is not None]
     for name, value in given:
         if value <= 0.0:
@@ -80,7 +80,7 @@ def _contradiction(names: Names, known: list[float | None]) -> str:
 
 
 def _completed(known: list[float | None], usual: Scale) -> Scale:
-    """Return stated limits, completed by the usual ones as far as these lie on the right side."""
+    """Return the stated limits, completed by usual ones on the right side of zero."""
     given = [value for value in known if value is not None]
     low, trim, high = known
     low = min([usual.low_us, *given]) if low is None else low
@@ -91,27 +91,27 @@ def _completed(known: list[float | None], usual: Scale) -> Scale:
 
 
 Parameters = Mapping[str, float]
-"""Name to the value of each of the vehicle's parameters."""
+"""Value of each of the vehicle's parameters, by its name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """Names of the outputs' parameters for the users of an autopilot."""
+    """Names of the servo output parameters in an autopilot's terms."""
 
     function: str
-    """Parameter of the surface that an output moves."""
+    """Name of the parameter for the surface that an output moves."""
     elevator: str
-    """Setting that makes an output the elevator."""
+    """Parameter setting that makes an output the elevator."""
     limits: str
-    """Parameters of the pulses at full travel."""
+    """Names of the parameters of the pulses at full travel."""
     trim: str
-    """Parameter of the pulse at zero deflection."""
+    """Name of the parameter of the pulse at zero deflection."""
     sense: str
-    """Parameter of an output's direction; ``{n}`` stands for its number."""
+    """Name of the parameter of an output's direction; ``{n}`` stands for its number."""
     unknown: str
-    """Sentence with the reason for which no output is the elevator."""
+    """Sentence with the reason why no output is the elevator."""
     usual: str
-    """Usual place of the elevator."""
+    """Usual output of the elevator."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,16 +120,17 @@ class Wiring:
 
     words: Words
     roles: Mapping[int, Role] = field(default_factory=dict)
-    """Output number, from 1, to its role where known. Outputs without a surface have a nameless role."""
+    """Role of each output, if known, by the output's number from 1. Outputs without a surface have a role
+    without a name."""
     scales: Mapping[int, Scale] = field(default_factory=dict)
     known_directions: frozenset[int] = frozenset()
     """Outputs whose direction the parameters give."""
     assumed: str = ""
-    """Sentence on guesses among the roles."""
+    """Sentence about guesses among the roles."""
     doubts: Mapping[int, Problem] = field(default_factory=dict)
-    """Output number to the problem of its limits, where some of them are assumed."""
+    """Problem of each output with assumed limits, by the output's number."""
     passed: Mapping[int, int] = field(default_factory=dict)
-    """Output number to the radio channel that it passes through without a mixer."""
+    """Radio channel that each output passes through without a mixer, by the output's number."""
 
     def scale(self, n: int) -> Scale:
         """Return the scale of output ``n``, with ArduPilot's defaults for unknown parameters."""
