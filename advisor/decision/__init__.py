@@ -1,1 +1,1 @@
-"""Decisions: whether a manoeuvre is good, whether the test may stop, and which input to fly next."""
+"""Decisions: acceptance of a manoeuvre, end of the flight test, and the next input."""

@@ -1,4 +1,5 @@
-"""Advice on the next manoeuvre: the best input, how many more, and which parameter delays the stop."""
+"""Advice on the next manoeuvre: the best input, the number of further manoeuvres, and the parameter that
+delays the stop."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -20,12 +21,13 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 
 GENTLE = 0.1
-"""Amplitude of the first input, as a share of the elevator's travel. Nothing is known of the aircraft yet.
-Larger inputs follow step by step (``conditions.BOLDER``)."""
+"""Amplitude of the first input, as a share of the elevator's travel. Before the first manoeuvre no property
+of the aircraft is known. Larger inputs follow in steps (``conditions.BOLDER``)."""
 Choice = tuple[StepInput, FloatArray]
-"""An input, and the (8, 8) covariance of the errors expected from flying the input."""
+"""A test input, and the covariance (8, 8) of the errors that it is expected to give."""
 PASSING = {"separate": 0.5}
-"""Share of equally good manoeuvres that pass the rule. Eq. (11) rejects half, Eq. (10) hardly any."""
+"""Share of equally good manoeuvres that the rule accepts. Eq. (11) rejects half of them, and Eq. (10) hardly
+any."""
 
 
 def next_input(
@@ -33,9 +35,10 @@ def next_input(
     aircraft: Aircraft,
     course: CriterionCourse | None = None,
 ) -> NextInput:
-    """Return the input to fly after the last of ``history``. ``course`` is explained in ``flight_test``.
+    """Return the next input after the last manoeuvre of ``history``. ``course`` is the cache of
+    ``flight_test``.
 
-    The number of further manoeuvres is foretold after the first usable manoeuvre.
+    The number of further manoeuvres is predicted after the first usable manoeuvre.
     """
     plan = aircraft.campaign
     course = course or CriterionCourse(plan)
@@ -68,8 +71,8 @@ def _distance_to_stop(covariance: FloatArray, plan: CampaignPlan, known: Knowled
 
 
 def forecast(history: Sequence[CandidateManeuver], course: CriterionCourse) -> Remaining:
-    """Return the number of further manoeuvres of a crew that flies on as it has flown, whatever the advice
-    is. At least one manoeuvre of ``history`` is usable."""
+    """Return the expected number of further manoeuvres if the crew continues as it has flown. At least one
+    manoeuvre of ``history`` is usable."""
     plan, usable = course.plan, usable_ones(history)
     known = course.knowledge(usable)
     odds = odds_of(history, course)
@@ -90,7 +93,8 @@ def _held_by(history: Sequence[CandidateManeuver], plan: CampaignPlan, known: Kn
 
 
 def _first_input(aircraft: Aircraft) -> NextInput:
-    """Return the advice before any estimate: the textbook's 3-2-1-1, small, timed by any prior model."""
+    """Return the advice before any estimate: a small textbook 3-2-1-1 with a time unit from any prior
+    model."""
     unit = 0.5
     if set(PARAMETERS) <= set(aircraft.model):
         frequency = ShortPeriod.from_mapping(aircraft.model).natural_frequency
@@ -102,15 +106,16 @@ def _first_input(aircraft: Aircraft) -> NextInput:
 
 
 def _same_but_better(flown: CandidateManeuver) -> str:
-    """Return the advice while no manoeuvre was usable: repeat the input, with the remedy of the newest one's
-    first reason."""
+    """Return the advice without a usable manoeuvre: repeat the input with the remedy of the newest first
+    reason."""
     remedy = _remedy(flown)
     kind = flown.maneuver.span.kind if flown.maneuver is not None and is_named(flown) else "last input"
     return f"the elevator's {kind} again{f', {remedy}' if remedy else ''}"
 
 
 def _mend(flown: CandidateManeuver) -> str:
-    """Return the remedy for a faulty channel, which precedes any other input; empty where all are sound."""
+    """Return the remedy for a faulty channel, which precedes any other input; empty without a faulty
+    channel."""
     if flown.reasons and (flown.reasons[0].by_instrument or flown.reasons[0].code in NO_CURE_BY_INPUT):
         return _remedy(flown)
     wrong = flown.maneuver.distrusts if flown.maneuver else ()
@@ -130,11 +135,11 @@ def best_input(
     Parameters
     ----------
     measured_std
-        (8,) standard deviations of the last manoeuvre's estimate. The causes of such errors (coloured
-        residuals, further outputs) persist in the next manoeuvre. The prediction supplies the ratio between
-        inputs.
+        Shape (8,): standard deviations of the last manoeuvre's estimate. The causes of these errors, such as
+        coloured residuals, persist in the next manoeuvre. The prediction gives the ratio between the inputs'
+        errors.
     distance_to_stop
-        Covariance of the next manoeuvre's errors to a measure of the distance to the stop.
+        Function from the covariance of the next manoeuvre's errors to a distance from the stop.
     """
     repeated = expect(conditions.theta, conditions.flown, conditions.instruments)
     if repeated is None:
@@ -146,7 +151,7 @@ def best_input(
 
 
 def _options(conditions: Conditions) -> Iterator[Choice]:
-    """Yield inputs in the direction that was not flown last, with their expected errors."""
+    """Yield inputs in the direction that the last manoeuvre did not have, with their expected errors."""
     frequency = ShortPeriod(conditions.theta).natural_frequency
     if not np.isfinite(frequency) or frequency <= 0.0:
         return
@@ -159,7 +164,7 @@ def _options(conditions: Conditions) -> Iterator[Choice]:
 
 
 def _as_large_as_allowed(option: StepInput, conditions: Conditions) -> Choice | None:
-    """Return the input scaled so that α stays within its limit; the model is linear, so scaling is exact."""
+    """Return the input scaled up to the limit of α, which is exact in a linear model."""
     length = conditions.lead_s + option.duration_s + conditions.free_s
     elevator = option.elevator(conditions.trim_rad, conditions.lead_s, length)
     full = expect(conditions.theta, elevator, conditions.instruments)

@@ -1,9 +1,8 @@
-"""Detection of a change: the aircraft or an instrument differs from its state some manoeuvres ago.
+"""Detection of a change of the aircraft or of an instrument between manoeuvres.
 
-Noise moves every estimate by as much as its interval says. A poor manoeuvre moves one estimate. A change
-moves all later estimates equally. The manoeuvres before and after every possible moment are pooled and
-compared, in a likelihood-ratio test for one change point. The test covers the derivatives, because Z_0 and
-M_0 move with the trim anyway.
+Noise moves every estimate within its interval. A bad manoeuvre moves one estimate only. A change moves all
+later estimates equally. For every possible moment, the manoeuvres before and after are pooled and compared by
+a likelihood-ratio test. The test uses the derivatives only, because Z_0 and M_0 change with the trim.
 """
 
 from collections.abc import Sequence
@@ -33,47 +32,48 @@ FALSE_ALARM = 1e-5
 """Probability of a false alarm in one comparison. A campaign makes a few dozen comparisons, which are not
 independent."""
 CONSISTENCY = 1e-3
-"""Probability below which manoeuvres of one side contradict each other."""
+"""Probability below which the manoeuvres on one side of a change contradict each other."""
 LEAST_SIGMA = 3.0
-"""Least difference, in standard deviations, at which a derivative is named as moved."""
+"""Least difference of a derivative, in standard deviations, that is reported as a change."""
 LEAST_SHARE = 0.08
-"""Least difference, as a share of the derivative's value, at which a derivative is named as moved. Repeated
-estimates of one aircraft always differ by a few per cent."""
+"""Least difference of a derivative, as a share of its value, that is reported as a change. Repeated estimates
+of one aircraft always differ by a few per cent."""
 UNEVEN = 0.03
-"""Largest deviation from a cause, as a share of the derivative's value, at which the cause still explains the
-derivative."""
+"""Largest relative deviation of a derivative from a cause's common factor, for which the cause explains
+it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """One derivative before and after the change."""
+    """One derivative before and after a change of the aircraft."""
 
     parameter: str
     percent: float
     sigma: float
-    """The difference divided by its standard deviation."""
+    """Difference of the derivative divided by its standard deviation."""
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """A change between two manoeuvres: its moment, its derivatives and its likely cause."""
+    """A change between two manoeuvres, with its moment, its derivatives and its likely cause."""
 
     after: int
     """Number of the last manoeuvre before the change, counting from 1 in the order flown."""
     confirmed: bool
-    """Whether at least two manoeuvres show the change. A single one may be a poor manoeuvre instead."""
+    """Whether at least two manoeuvres show the change. A single manoeuvre may be a bad one instead."""
     moved: tuple[Moved, ...]
-    """Derivatives that moved, the most significant first."""
+    """Derivatives that changed, the most significant first."""
     looks_like: str
-    """The simplest cause that explains all derivatives together, in words; empty when no cause does."""
+    """Simplest cause that explains all changed derivatives, in words; empty without one."""
     sentence: str
 
 
 def find_change(history: Sequence[CandidateManeuver]) -> Change | None:
-    """Return the most significant change between manoeuvres of a campaign; None when noise explains all.
+    """Return the most significant change between a campaign's manoeuvres; None if noise explains all
+    differences.
 
-    At least two manoeuvres must stand before the change. With only one manoeuvre on a side, that manoeuvre
-    may be the outlier.
+    At least two manoeuvres must lie before the change. With only one manoeuvre on a side, that manoeuvre may
+    be an outlier.
     """
     flown = [(i, e) for i, m in enumerate(history, start=1) if (e := m.usable)]
     posteriors = posteriors_at_one_speed([e for _, e in flown])
@@ -99,7 +99,7 @@ def find_change(history: Sequence[CandidateManeuver]) -> Change | None:
 
 
 def _compare(before: Pooled, after: Pooled) -> float:
-    """Return the distance between both sides, over its limit. Noise explains no value above 1."""
+    """Return the statistical distance between both sides, over its limit. Noise explains values up to 1."""
     distance, dof = disagreement(before.shared, after.shared)
     if dof == 0:
         return 0.0
@@ -107,14 +107,14 @@ def _compare(before: Pooled, after: Pooled) -> float:
 
 
 def _widening(before: Pooled, after: Pooled) -> float:
-    """Return the variance ratio of the scatter within both sides to their stated errors, at least 1."""
+    """Return the ratio of the scatter within both sides to the stated variances, at least 1."""
     dof = before.dof + after.dof
     return max(1.0, (before.inconsistency + after.inconsistency) / dof) if dof > 0 else 1.0
 
 
 def _back_to_normal(before: Pooled, after: Sequence[Posterior]) -> bool:
-    """Return whether the newest manoeuvre agrees with those before the change. Those after the change were
-    then poor."""
+    """Return whether the newest manoeuvre agrees with the manoeuvres before the change. If so, the manoeuvres
+    just after the change were bad ones."""
     if len(after) < 2:
         return False
     with_old, dof = disagreement(before.shared, after[-1].shared)
@@ -123,7 +123,7 @@ def _back_to_normal(before: Pooled, after: Sequence[Posterior]) -> bool:
 
 
 def _kinematics(names: Sequence[str]) -> FloatArray:
-    """Return what the equation of each derivative adds to it: 1 for the pitch rate's in α̇."""
+    """Return the kinematic term of each derivative's equation: 1 for the pitch rate in α̇, else 0."""
     return np.array([1.0 if name == "Z_q" else 0.0 for name in names])
 
 
@@ -164,11 +164,11 @@ _CAUSES = (
     ("the rudder's effectiveness or its calibration", {f"{y}_delta_r": 1 for y in "YLN"}),
     ("another air speed than recorded", SPEED_EXPONENTS),
 )
-"""Cause of a change to the powers of its factor by derivative, of either axis."""
+"""Powers of a cause's factor for each derivative, by the cause's name, for either axis."""
 
 
 def _simplest_cause(before: Pooled, after: Pooled, names: Sequence[str]) -> str:
-    """Return the simplest cause that explains the differences of all derivatives; empty without one."""
+    """Return the simplest cause that explains all differences of the derivatives; empty without one."""
     known = int(np.sum(np.isfinite(before.shared.theta + after.shared.theta)))
     one = _kinematics(names)
     misfits = {
@@ -182,7 +182,7 @@ def _simplest_cause(before: Pooled, after: Pooled, names: Sequence[str]) -> str:
 
 
 def _misfit(before: Shared, after: Shared, powers: FloatArray, one: FloatArray) -> float:
-    """Return the χ² that remains when ``before`` is multiplied by the best factor to these powers."""
+    """Return the remaining χ² after ``before`` is multiplied by the best factor to these powers."""
     known = np.isfinite(before.theta + after.theta)
     start, target = (np.where(known, side.theta + one, 0.0) for side in (before, after))
     uneven = np.diag((UNEVEN * target) ** 2)

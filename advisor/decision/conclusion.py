@@ -1,4 +1,4 @@
-"""The conclusion from a criterion, for every axis: stop or continue, and the sentence on it."""
+"""Conclusion from a stop criterion, for every axis: stop or continue, with a sentence."""
 
 from collections.abc import Callable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
@@ -19,15 +19,15 @@ class Criterion:
 
     rule: Rule
     by_rule: Mapping[str, RuleProgress]
-    """Every rule to its progress, with the history that the crew heard."""
+    """Progress of each rule, by its name, with the history that the crew heard."""
     sentence: Callable[[bool], str]
-    """Sentence on the criterion, given whether the test stops."""
+    """Function that returns the sentence about the criterion, given whether the test stops."""
     next: Callable[[], NextInput]
-    """Input to fly next where the test goes on."""
+    """Function that returns the next input if the test continues."""
     flown: int
     """Number of manoeuvres flown."""
     usable: AbstractSet[int]
-    """Positions of the usable manoeuvres among them."""
+    """Indices of the usable manoeuvres among the flown ones."""
 
     @property
     def chosen(self) -> RuleProgress:
@@ -44,15 +44,15 @@ def concluded(
 ) -> FlightTestVerdict:
     """Return the verdict on a flight test.
 
-    A test stops where the chosen rule's criterion holds now. A stop that the crew has heard stays. It ends
-    where a change of the aircraft is found, or where one of its manoeuvres is no longer usable.
+    A test stops if the criterion of the chosen rule holds now. A stop that the crew has heard remains valid.
+    The stop is withdrawn after a change of the aircraft, or if one of its manoeuvres is no longer usable.
 
     Parameters
     ----------
     heard
-        What the crew heard after each earlier manoeuvre.
+        Criterion that the crew heard after each earlier manoeuvre.
     change
-        Change of the aircraft between manoeuvres; None where noise explains all differences.
+        Change of the aircraft between manoeuvres; None if noise explains all differences.
     """
     chosen = criterion.chosen
     changed = change.sentence if change is not None and change.confirmed else ""

@@ -18,19 +18,20 @@ from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
 FULL_TRAVEL_RAD = float(np.radians(25.0))
-"""Elevator travel either side of trim where no calibration states one, rad."""
+"""Elevator travel on either side of trim without a calibration, rad."""
 BOLDER = 1.5
-"""Largest ratio of the next input, and of its response, to the largest so far. A build-up of amplitudes has
-steps."""
+"""Largest ratio of the next input, and of its response, to the largest input so far. The amplitude is built
+up in steps."""
 LINEAR_RAD = float(np.radians(5.0))
-"""Largest deviation of α from trim at which the model is taken as linear, rad, where no limit is given."""
+"""Largest deviation of α from trim for which the model is taken as linear, rad, without a stated limit."""
 ALPHA_MARGIN = 0.9
-"""Share of an angle-of-attack limit that the next input may use. The margin is for the model's errors."""
+"""Share of an angle-of-attack limit that the next input may use. The margin allows for errors of the
+model."""
 
 
 @dataclass(frozen=True, slots=True)
 class Conditions:
-    """Conditions of the next input, after the last manoeuvre."""
+    """Trim, instruments and limits of the next input, after the last manoeuvre."""
 
     theta: FloatArray
     trim_rad: float
@@ -40,21 +41,21 @@ class Conditions:
     flown: Signal
     """Elevator of the last manoeuvre."""
     largest_rad: float
-    """Largest amplitude that the limits allow."""
+    """Largest amplitude of the elevator that the limits allow, rad."""
     alpha_rad: float
-    """Largest deviation of α that the limits allow."""
+    """Largest deviation of α that the limits allow, rad."""
     travel_rad: float
-    """Elevator travel from trim to the nearer stop, which is 100 % stick."""
+    """Elevator travel from trim to the nearer stop, rad, which is 100 % stick."""
     nose_up_first: bool
     """Whether the last manoeuvre's first step was nose up."""
     last_covariance: FloatArray
-    """(8, 8) covariance of the last manoeuvre's estimate for given instruments."""
+    """Shape (8, 8): covariance of the last manoeuvre's estimate for given instruments."""
 
 
 def find_conditions(
     history: Sequence[CandidateManeuver], aircraft: Aircraft, course: CriterionCourse
 ) -> Conditions | None:
-    """Return trim, instruments and limits from the usable manoeuvres; None before the first."""
+    """Return trim, instruments and limits from the usable manoeuvres; None without one."""
     flown = [(m, e, m.maneuver) for m in history if (e := m.usable) and m.maneuver is not None]
     if not flown:
         return None
@@ -93,7 +94,7 @@ def _about_trim(maneuver: Maneuver) -> FloatArray:
 
 
 def _nose_up_first(maneuver: Maneuver) -> bool:
-    """Return whether the first large movement is trailing edge up."""
+    """Return whether the first large movement of the elevator is trailing edge up."""
     moved = _about_trim(maneuver)
     return bool(moved[np.argmax(np.abs(moved) >= 0.5 * np.max(np.abs(moved)))] < 0.0)
 
@@ -110,8 +111,8 @@ def _instruments(estimate: Estimate, servo: Servo) -> Instruments:
 
 
 def _excursion(flown: CandidateManeuver, estimate: Estimate) -> float:
-    """Return the largest deviation of α from its initial value, rad: fitted, or predicted where α is not
-    measured."""
+    """Return the largest deviation of α from its initial value, rad: fitted, or predicted without a measured
+    α."""
     if "alpha" not in estimate.fits[0]:
         response = response_to(flown, estimate.theta[list(DERIVATIVES)], None)
         return LINEAR_RAD if response is None else float(response.peak[0])

@@ -1,4 +1,4 @@
-"""Consistency of manoeuvres: outliers among them, and the factor by which scatter widens the intervals."""
+"""Consistency of manoeuvres: outliers, and the factor by which scatter widens the intervals."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -9,23 +9,23 @@ from scipy.special import chdtri
 from advisor.decision.pooling import Posterior, Shared, disagreement, pool, pooled, pooled_without_each
 
 WIDEN_BELOW = 0.05
-"""Probability below which scatter between manoeuvres widens the intervals."""
+"""Probability of the scatter between manoeuvres below which the intervals are widened."""
 OUTLIER_BELOW = 1e-3
-"""Probability below which an outlier is looked for."""
+"""Probability of the scatter between manoeuvres below which an outlier is sought."""
 OUTLIER_IMPROVEMENT = 3.0
 """Least factor by which leaving out an outlier must lower χ² per degree of freedom."""
 FEWEST = 4
-"""Fewest manoeuvres among which an outlier can be identified."""
+"""Least number of manoeuvres among which an outlier can be identified."""
 
 
 @dataclass(frozen=True, slots=True)
 class AlphaApart:
-    """Angle of attack of a manoeuvre whose middle lies beyond the range of the others."""
+    """Angle of attack of a manoeuvre whose middle lies outside the range of the other manoeuvres."""
 
     middle_rad: float
-    """Middle of the manoeuvre's range, about which its derivatives hold, rad."""
+    """Middle of the manoeuvre's angle of attack range, to which its derivatives apply, rad."""
     others_rad: tuple[float, float]
-    """Lowest and highest angle of attack of the others, rad."""
+    """Lowest and highest angle of attack of the other manoeuvres, rad."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,21 +33,21 @@ class Outlier:
     """Distance of an outlying manoeuvre from all others."""
 
     sigma: float
-    """Mahalanobis distance of the manoeuvre's derivatives."""
+    """Mahalanobis distance of the manoeuvre's derivatives from those of the other manoeuvres."""
     limit: float
     """Distance that chance exceeds once in a thousand cases."""
     alpha: AlphaApart | None = None
-    """Angle of attack that separates the manoeuvre from the others. None: no angle of attack separates the
-    manoeuvre."""
+    """Angle of attack that distinguishes the manoeuvre from the others. None if the angle of attack does not
+    distinguish it."""
 
 
 def outliers(posteriors: Sequence[Posterior]) -> Mapping[int, Outlier]:
-    """Return manoeuvres that contradict all the others, which agree with each other, by their index.
+    """Return the manoeuvres that contradict all others, while the others agree, by index.
 
-    The aircraft may differ at the manoeuvre's angle of attack (`beyond_in_alpha`). A search may also end in a
-    wrong minimum, or a gust may look like a response. Such an estimate has a small stated error and would
-    spoil every mean. At most a third of the remaining manoeuvres are such outliers. More contradictions mean
-    a change of the aircraft, or stated errors that are too small.
+    The aircraft may differ at the manoeuvre's angle of attack (`beyond_in_alpha`). The search may also have
+    ended in a wrong minimum, or a gust may look like a response. Such an estimate has a small stated error
+    and would distort every mean. At most a third of the remaining manoeuvres are such outliers. More
+    contradictions mean a change of the aircraft, or stated errors that are too small.
     """
     beyond = beyond_in_alpha(posteriors)
     within = [i for i in range(len(posteriors)) if i not in beyond]
@@ -56,11 +56,11 @@ def outliers(posteriors: Sequence[Posterior]) -> Mapping[int, Outlier]:
 
 
 def beyond_in_alpha(posteriors: Sequence[Posterior]) -> dict[int, Outlier]:
-    """Return manoeuvres beyond the angle of attack of most others, whose derivatives contradict the others'.
+    """Return manoeuvres with an angle of attack outside the others' range and contradicting derivatives.
 
-    In buffet and in a stall the aircraft has other derivatives. Neither a large angle of attack alone nor a
-    contradiction alone shows buffet or a stall. An aircraft may be linear beyond the others' range, and a
-    contradiction may have other causes. A minority at one end of the range is compared with all others,
+    In buffet and in a stall the aircraft has different derivatives. Neither a large angle of attack alone nor
+    a contradiction alone shows buffet or a stall. An aircraft may be linear outside the others' range, and a
+    contradiction may have another cause. A minority at one end of the range is compared with all others,
     whose scatter widens the errors of both.
     """
     known = [i for i, posterior in enumerate(posteriors) if np.all(np.isfinite(posterior.alpha_rad))]
@@ -89,7 +89,7 @@ def _middle(posterior: Posterior) -> float:
 
 
 def _odd(posteriors: Sequence[Posterior]) -> dict[int, Outlier]:
-    """Return manoeuvres whose removal makes the others agree, by their index."""
+    """Return the manoeuvres without which the others agree, by index."""
     inside = list(range(len(posteriors)))
     found: list[int] = []
     while len(inside) >= FEWEST and len(found) + 1 <= (len(posteriors) - 1) // 3:
@@ -116,9 +116,10 @@ def _distance(outlier: Posterior, others: Shared) -> Outlier:
 
 
 def excess(posteriors: Sequence[Posterior]) -> float:
-    """Return the variance ratio of the scatter between manoeuvres to stated errors, 1 unless significant.
+    """Return the ratio of the scatter between manoeuvres to the stated variances; 1 unless significant.
 
-    Metrology's Birge ratio, χ² of derivatives about their pooled value, divided by its degrees of freedom.
+    The ratio is metrology's Birge ratio: χ² of the derivatives about their pooled value, over its degrees of
+    freedom.
     """
     if len(posteriors) < 2:
         return 1.0
@@ -127,13 +128,13 @@ def excess(posteriors: Sequence[Posterior]) -> float:
 
 
 def widened(posterior: Posterior, factor: float) -> Posterior:
-    """Return the estimate with ``factor`` times its own variance. Scatter tells nothing of a common error."""
+    """Return the estimate with its own variance multiplied by ``factor``. Scatter between manoeuvres does not
+    show a common error."""
     return replace(posterior, covariance=factor * posterior.covariance)
 
 
 def consensus(posteriors: Sequence[Posterior]) -> tuple[Posterior, float, tuple[int, ...]]:
-    """Return the pooled estimate without outliers, the factor that widened its variance, and the indices of
-    the outliers."""
+    """Return the pooled estimate without outliers, its variance factor, and the indices of the outliers."""
     left_out = tuple(outliers(posteriors))
     agreeing = [posterior for i, posterior in enumerate(posteriors) if i not in left_out]
     factor = excess(agreeing)

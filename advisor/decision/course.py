@@ -1,7 +1,8 @@
-"""The criterion of the rule ``information`` after each manoeuvre, kept from one decision to the next.
+"""Criterion of the rule ``information`` after each manoeuvre, cached between decisions.
 
-Knowledge after k manoeuvres depends on those k alone. A decision after one more manoeuvre adds one entry. A
-manoeuvre that is excluded, included or assessed again voids its own entry in the cache and all later entries.
+The knowledge after k manoeuvres depends on these k manoeuvres only. A decision after one more manoeuvre adds
+one entry to the cache. An excluded, included or re-assessed manoeuvre invalidates its own entry in the cache
+and all later entries.
 """
 
 from collections.abc import Sequence
@@ -18,15 +19,15 @@ class Standing:
     """Result of the rule ``information`` after a number of usable manoeuvres."""
 
     percent: float
-    """Criterion, as ``Knowledge.percent``."""
+    """Stop criterion in percent, as in ``Knowledge.percent``."""
     sufficient: bool
-    """Whether the rule said stop."""
+    """Whether the rule's stop criterion held."""
     predicted: bool
-    """Whether the earlier manoeuvres predicted the newest."""
+    """Whether the earlier manoeuvres predicted the newest manoeuvre."""
 
 
 class CriterionCourse:
-    """Cache of one campaign's criterion under one plan. No decision depends on the cache.
+    """Cache of one campaign's stop criterion under one plan. The cache changes no decision.
 
     Parameters
     ----------
@@ -49,7 +50,7 @@ class CriterionCourse:
         return self._standings[n - 1]
 
     def knowledge(self, usable: Sequence[CandidateManeuver]) -> Knowledge:
-        """Return the knowledge after at least one usable manoeuvre. The newest result is kept."""
+        """Return the knowledge after at least one usable manoeuvre. The newest result is cached."""
         if self._known is None or not same(self._known[0], usable):
             self._known = list(usable), knowledge(usable, self.plan)
         return self._known[1]
@@ -65,5 +66,5 @@ class CriterionCourse:
 
 
 def same(mine: Sequence[object], theirs: Sequence[object]) -> bool:
-    """Return whether two sequences hold the same objects."""
+    """Return whether two sequences contain identical objects."""
     return len(mine) == len(theirs) and all(map(is_, mine, theirs))

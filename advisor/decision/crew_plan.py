@@ -1,4 +1,4 @@
-"""The crew's plan of both axes: which axis is done, which is open, and the input to fly next."""
+"""Plan of both axes for the crew: complete axes, open axes, and the next input."""
 
 from dataclasses import dataclass
 from math import inf
@@ -6,23 +6,23 @@ from math import inf
 from advisor.decision.verdict import FlightTestVerdict, NextInput
 
 _IS = {"pitch": "is", "roll and yaw": "are"}
-"""Axis to the verb of a sentence about that axis."""
+"""Verb for each axis in a sentence."""
 
 
 @dataclass(frozen=True, slots=True)
 class CrewPlan:
-    """One plan of a flight on which the elevator and the aileron or the rudder are tested."""
+    """Plan of a flight that tests the elevator and also the aileron or the rudder."""
 
     done: tuple[str, ...]
-    """Axes whose test is complete, ``pitch`` or ``roll and yaw``."""
+    """Axes with a complete test, ``pitch`` or ``roll and yaw``."""
     open: tuple[str, ...]
-    """Other axes, the axis farthest from its limit first."""
+    """Axes with an open test, the one farthest from its limit first."""
     next: NextInput | None
-    """Input of the first open axis, which brings most to what is open; None where no input is advised."""
+    """Next input of the first open axis; None without advice."""
 
     @property
     def sentence(self) -> str:
-        """The plan in one sentence: ``Pitch is complete, roll and yaw are open.``."""
+        """Sentence about the plan: ``Pitch is complete, roll and yaw are open.``."""
         told = [f"{axis} {_IS[axis]} complete" for axis in self.done]
         told += [f"{axis} {_IS[axis]} open" for axis in self.open]
         said = ", ".join(told)
@@ -30,12 +30,12 @@ class CrewPlan:
 
     @property
     def advice(self) -> str:
-        """The next input as a pilot hears it; empty where no input is advised."""
+        """Next input as spoken to a pilot; empty without advice."""
         return self.next.advice if self.next is not None else ""
 
     @property
     def announced(self) -> str:
-        """The plan as a ground station hears it; empty while no axis is complete."""
+        """Text of the plan for a ground station; empty until an axis is complete."""
         if not self.done:
             return ""
         return f"TEST COMPLETE: {self.sentence}" if self.is_complete else self.sentence
@@ -59,6 +59,6 @@ def crew_plan(pitch: FlightTestVerdict, roll_and_yaw: FlightTestVerdict) -> Crew
 
 
 def _share_of_limit(verdict: FlightTestVerdict) -> float:
-    """Return the criterion over its limit; infinite where nothing is known."""
+    """Return the criterion over its limit; infinite without a criterion."""
     now = verdict.criterion_percent
     return inf if now is None else now / verdict.limit_percent

@@ -1,7 +1,7 @@
-"""Completeness of a manoeuvre, and its agreement with the model's assumptions, from the data alone.
+"""Completeness of a manoeuvre's data, and its agreement with the model's assumptions.
 
-The model knows one input, a constant speed and wings level. Each check compares one assumption of the model
-with the flight: the measured number and its limit.
+The model assumes one input, constant speed and level wings. Each check compares a measured number with its
+limit, for one assumption of the model.
 """
 
 from collections.abc import Collection, Sequence
@@ -20,35 +20,36 @@ from advisor.oem.axes.lateral.problem import LEAST_PART
 from advisor.words.digits import distinct_texts
 
 SAMPLES_PER_PERIOD = 8.0
-"""Fewest samples of elevator and pitch rate in one natural period. An aircraft of 2 rad/s needs 2.6 Hz, one
-of 9 rad/s needs 11 Hz. Between slower samples the input is unknown, and no interval shows this error."""
+"""Least number of samples of elevator and pitch rate per natural period. An aircraft of 2 rad/s needs 2.6 Hz,
+one of 9 rad/s needs 11 Hz. With fewer samples the input is unknown, and no interval contains that error."""
 _LONGEST_GAP = (0.3, 0.2, 1.0)
-"""Longest gap: a share of the natural period, then its least and greatest value, s."""
+"""Longest gap in a channel: a share of the natural period, with its least and greatest value in s."""
 _SHORTEST_FREE = 0.75
-"""Least free response, in natural periods. Most of one swing is needed to determine the damping."""
+"""Least duration of the free response, in natural periods. The damping can be determined only from most of
+one oscillation."""
 _SHORTEST_STEP = 0.15
-"""Least length of the shortest step, in natural periods. A servo smears shorter steps of the elevator."""
+"""Least duration of the shortest step, in natural periods. A servo smooths shorter steps of the elevator."""
 _CUT_SHORT_BY = {
     "gap": ("the telemetry breaks off", "check the link"),
     "end of log": ("the recording ends", "let the recording run on for some seconds"),
     "mode change": ("the mode changes", "stay in the mode until the motion has died down"),
 }
-"""Cause of a record that was cut short, other than the pilot's hand, and its remedy."""
+"""Cause and remedy of a record that was cut short by something other than the pilot."""
 _ASSUMED_STROKE_DEG = 25.0
-"""Full travel of the elevator where the aircraft file has no calibration, deg."""
+"""Assumed full travel of the elevator without a calibration, deg."""
 
 
 def incomplete(
     maneuver: Maneuver, needed: Sequence[str], period_s: float, counted: Collection[str]
 ) -> list[Reason]:
-    """Return reasons for incomplete data: missing or faulty channels, slow ones, gaps.
+    """Return reasons for incomplete data: missing, faulty or slow channels, and gaps.
 
     Parameters
     ----------
     maneuver
         Manoeuvre as cut from the stream.
     needed
-        Channels without which nothing can be said.
+        Channels without which no manoeuvre can be judged.
     period_s
         Natural period of the motion, estimated or assumed, s.
     counted
@@ -69,19 +70,19 @@ def incomplete(
 
 
 def not_heard(maneuver: Maneuver) -> Reason:
-    """Return the reason against a record that lacks a part, because the advisor was down."""
+    """Return the reason against a record with a gap while the advisor was down."""
     text = f"{maneuver.missed_s:.1f} s are missing: the advisor was down; fly it again"
     return Reason("advisor_down", text, maneuver.missed_s, 0.0)
 
 
 def leapt(maneuver: Maneuver) -> Reason:
-    """Return the reason of a record in which the vehicle's stamps leap."""
+    """Return the reason against a record in which the vehicle's stamps jump."""
     text = f"the stamps leap by {maneuver.leapt_s / 3600.0:.1f} h; check the vehicle's clock, fly it again"
     return Reason("clock", text, maneuver.leapt_s, 0.0)
 
 
 def too_quick(maneuver: Maneuver, period_s: float) -> list[Reason]:
-    """Return a reason where steps are so short that neither servo nor aircraft follows them."""
+    """Return a reason if steps are too short for the servo and the aircraft."""
     onsets = [onset for onset, _ in maneuver.span.steps]
     if len(onsets) < 2 or maneuver.span.kind == "multisine":
         return []
@@ -122,7 +123,7 @@ def too_slow(channels: Sequence[Channel], period_s: float) -> list[Reason]:
 
 
 def with_gap(channels: Sequence[Channel], maneuver: Maneuver, period_s: float) -> list[Reason]:
-    """Return a reason where the longest gap of the given channels in a manoeuvre is too long."""
+    """Return a reason if the longest gap of the given channels in a manoeuvre is too long."""
     share, least, most = _LONGEST_GAP
     reasons = []
     for c in channels:
@@ -135,7 +136,7 @@ def with_gap(channels: Sequence[Channel], maneuver: Maneuver, period_s: float) -
 
 
 def short_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
-    """Return a reason where the record ends before the motion has died down."""
+    """Return a reason if the record ends before the motion has decayed."""
     if maneuver.span.closed_by == LEFT:
         return _left_too_soon(maneuver)
     if is_broken_off(maneuver.span):
@@ -152,33 +153,33 @@ def short_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
 
 
 def _left_too_soon(maneuver: Maneuver) -> list[Reason]:
-    """Return a reason where the record ends with the change of air speed, before it tells enough."""
+    """Return a reason if the record ends too early because the air speed changed."""
     lasted = maneuver.span.end_s - maneuver.span.start_s
     text = f"air speed left the model after {lasted:.1f} s, too soon; smaller steps, from steady speed"
     return [Reason("airspeed", text, lasted, maneuver.span.end_s - maneuver.span.record_from_s)]
 
 
 def is_broken_off(span: Span) -> bool:
-    """Return whether something ended the record while the control was still away from trim."""
+    """Return whether the record ended while the control was still away from trim."""
     return span.closed_by in _CUT_SHORT_BY and bool(span.steps) and span.steps[-1][1] != 0.0
 
 
 def banked(maneuver: Maneuver, limit: float, mend: str = "fly it wings level") -> list[Reason]:
-    """Return a reason where the bank exceeds its limit, deg."""
+    """Return a reason if the bank exceeds its limit, deg."""
     bank = float(np.degrees(np.max(np.abs(flown(maneuver, "bank")), initial=0.0)))
     return above("bank", bank, limit, "bank reached {} deg (limit {}); " + mend)
 
 
 def above(code: str, value: float, limit: float, text: str, digits: int = 0) -> list[Reason]:
-    """Return a reason where a value exceeds its limit. The reason's text has ``{}`` for value and limit."""
+    """Return a reason if a value exceeds its limit. The text contains ``{}`` in place of value and limit."""
     if value <= limit:
         return []
     return [Reason(code, text.format(*distinct_texts(value, limit, digits)), value, limit)]
 
 
 def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
-    """Return a reason where the air speed left its value before the first step. Often another reason causes
-    the change."""
+    """Return a reason if the air speed deviated too far from its value before the first step. Another reason
+    often causes the change of speed."""
     limit = aircraft.limits.airspeed_change_percent
     speed = flown(maneuver, "airspeed")
     if len(speed) < 2 or not np.median(maneuver.channels["airspeed"].y) > 0.0:
@@ -191,14 +192,14 @@ def changed_speed(maneuver: Maneuver, aircraft: Aircraft) -> list[Reason]:
 
 
 def steep(maneuver: Maneuver, limit: float | None) -> list[Reason]:
-    """Return a reason where the angle of attack exceeds its limit, deg."""
+    """Return a reason if the angle of attack exceeds its limit, deg."""
     alpha = float(np.degrees(np.max(np.abs(flown(maneuver, "alpha")), initial=0.0)))
     text = "angle of attack reached {} deg (limit {}); use less stick"
     return [] if limit is None else above("alpha", alpha, limit, text, 1)
 
 
 def saturated(maneuver: Maneuver, control: str, ends_deg: tuple[float, float] | None) -> list[Reason]:
-    """Return a reason where a control stays at an end of its travel, deg; None: 25 deg either way."""
+    """Return a reason if a control stays at an end of its travel, deg; None means ±25 deg."""
     ends = ends_deg or (-_ASSUMED_STROKE_DEG, _ASSUMED_STROKE_DEG)
     deflection = np.round(np.degrees(flown(maneuver, control)), 6)
     stuck = (deflection <= min(ends)) | (deflection >= max(ends))
@@ -211,7 +212,7 @@ def saturated(maneuver: Maneuver, control: str, ends_deg: tuple[float, float] | 
 
 
 def other_controls(maneuver: Maneuver, names: Sequence[str], mend: str) -> list[Reason]:
-    """Return a reason for each of the given controls that moved much."""
+    """Return a reason for each given control that moved too much."""
     reasons = []
     for name in names:
         moved = _range_deg(maneuver, name) / 2.0
@@ -220,14 +221,13 @@ def other_controls(maneuver: Maneuver, names: Sequence[str], mend: str) -> list[
 
 
 def _range_deg(maneuver: Maneuver, name: str) -> float:
-    """Return the range of a control during the manoeuvre, deg; 0 for one that was not recorded."""
+    """Return the range of a control during the manoeuvre, deg; 0 for an unrecorded control."""
     y = flown(maneuver, name)
     return float(np.degrees(np.ptp(y))) if len(y) else 0.0
 
 
 def follows_motion(maneuver: Maneuver, control: str, others: Sequence[str]) -> list[Reason]:
-    """Return a reason where a control moves so much less than the largest other that this control follows
-    the motion."""
+    """Return a reason if a control moves far less than another one, and so only follows the motion."""
     moved, *beside = (_range_deg(maneuver, name) for name in (control, *others))
     larger = others[int(np.argmax(beside))]
     if moved >= LEAST_PART * max(beside):
@@ -238,7 +238,7 @@ def follows_motion(maneuver: Maneuver, control: str, others: Sequence[str]) -> l
 
 
 def throttled(maneuver: Maneuver) -> list[Reason]:
-    """Return a reason where the throttle moved."""
+    """Return a reason if the throttle moved too much."""
     throttle = flown(maneuver, "throttle")
     change = 100.0 * float(np.ptp(throttle)) if len(throttle) else 0.0
     text = "throttle moved by {} % (limit {}); leave it where it is"

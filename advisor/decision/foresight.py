@@ -1,4 +1,4 @@
-"""Information of an input before its flight: expected errors and excursions of the short-period model."""
+"""Information of an input before its flight: expected errors and excursions from the short-period model."""
 
 from dataclasses import dataclass
 
@@ -15,21 +15,20 @@ from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
 UNMEASURED = 1e3
-"""Noise of an angle of attack that is not measured, rad. The number is so large that α adds no
-information."""
+"""Noise of an unmeasured angle of attack, rad. With this noise α adds no information."""
 
 
 @dataclass(frozen=True, slots=True)
 class Instruments:
-    """Measurement of the outputs, and the servo between stick and surface."""
+    """Sampling and noise of the outputs, and the servo between stick and surface."""
 
     step_s: tuple[float, float]
     """Time between samples of α and of q, s."""
     noise: tuple[float, float]
-    """Standard deviation of α in rad and of q in rad/s."""
+    """Standard deviations of the noise of α in rad and of q in rad/s."""
     servo: Servo
     specific_force: tuple[float, float] | None = None
-    """Time between samples of a_z in s, and the noise of a_z divided by the air speed in 1/s. None: a_z is
+    """Time between samples of a_z in s, and the noise of a_z divided by the air speed in 1/s. None if a_z is
     not used."""
 
 
@@ -38,15 +37,15 @@ class Expectation:
     """Expected errors and excursion of a manoeuvre."""
 
     covariance: FloatArray
-    """(8, 8) Cramér-Rao bound, in the order of ``PARAMETERS``."""
+    """Shape (8, 8): Cramér-Rao bound, in the order of ``PARAMETERS``."""
     alpha_excursion: float
     """Largest deviation of α from its initial value, rad."""
     influence: FloatArray
-    """(n, 8) change of the estimate with each sample."""
+    """Shape (n, 8): change of the estimate with each sample."""
 
     @property
     def std(self) -> FloatArray:
-        """(8,) expected standard deviations."""
+        """Shape (8,): expected standard deviations."""
         return np.sqrt(np.diag(self.covariance))
 
 
@@ -56,14 +55,14 @@ def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Exp
     Parameters
     ----------
     theta
-        (8,) present estimate of the aircraft.
+        Shape (8,): present estimate of the aircraft.
     elevator
-        The command, trim included; the record begins in the model's equilibrium at its first value.
+        Elevator command including trim; the record begins in the model's equilibrium.
 
     Returns
     -------
     Expectation or None
-        None when the input cannot separate the parameters, or the model diverges.
+        None if the input cannot separate the parameters, or the model diverges.
     """
     steps = dict(zip(("alpha", "q"), instruments.step_s, strict=True))
     if instruments.specific_force is not None:
@@ -77,7 +76,7 @@ def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Exp
 
 
 def unmeasured(end_s: float, step_s: float) -> Signal:
-    """Return the stamps of an output that is not flown yet, with zeros for its values."""
+    """Return stamps and zero values for an output that is not flown yet."""
     t = np.arange(0.0, end_s, step_s)
     return Signal(t, np.zeros_like(t))
 
@@ -94,18 +93,18 @@ def foresee(
     Parameters
     ----------
     theta
-        (8,) model of the aircraft.
+        Shape (8,): model of the aircraft.
     noise
-        (4,) standard deviation of each output's noise.
+        Shape (4,): standard deviation of each output's noise.
     prior
         Precision of the parameters before the flight, as in :func:`advisor.oem.covariance.influence`.
     extra
-        Parameters that are estimated as well, such as a servo's lag.
+        Additional estimated parameters, such as a servo's lag.
 
     Returns
     -------
     Expectation or None
-        None when the input cannot separate the parameters, or the model diverges.
+        None if the input cannot separate the parameters, or the model diverges.
     """
     sensitivities = np.empty((len(assembly.z), N_PARAMETERS))
     y = response_from_trim(theta, assembly, sensitivities)
@@ -122,12 +121,12 @@ def foresee(
 def response_from_trim(
     theta: FloatArray, assembly: Assembly, sensitivities: FloatArray | None = None
 ) -> FloatArray | None:
-    """Return the outputs (n,) of one manoeuvre that begins in equilibrium; None where the model diverges.
+    """Return the outputs (n,) of one manoeuvre that begins in equilibrium; None for a diverging model.
 
     Parameters
     ----------
     sensitivities
-        (n, N_PARAMETERS) array that receives the sensitivities. None: not wanted.
+        Array (n, N_PARAMETERS) that receives the sensitivities. None if sensitivities are not needed.
     """
     local = local_at_trim(theta, assembly)
     if local is None:

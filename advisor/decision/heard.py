@@ -1,7 +1,8 @@
-"""Stop criterion as the crew heard it: after each manoeuvre, by the estimates of that moment.
+"""Stop criterion as heard by the crew after each manoeuvre, from the estimates at that time.
 
-A later estimate, such as one that knows the servo's lag, changes the criterion of earlier manoeuvres. What a
-crew has heard stays. The faces also show the criterion by the newest estimates.
+A later estimate, such as one with a known servo lag, changes the criterion of earlier manoeuvres. The
+criterion that a crew has heard is not changed. Screens and pages also show the criterion from the newest
+estimates.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,20 +14,20 @@ from advisor.decision.verdict import FlightTestVerdict, Remaining, RuleProgress
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """Stop criterion of every rule after one manoeuvre, by the estimates of that moment."""
+    """Stop criterion of every rule after one manoeuvre, from the estimates at that time."""
 
     percent: Mapping[str, float | None]
-    """Rule to its stop criterion, per cent. None: the rule has no value yet."""
+    """Stop criterion of each rule, per cent, by the rule's name. None if the rule has no value yet."""
     stops: frozenset[str]
-    """Rules whose stop criterion held."""
+    """Names of the rules whose stop criterion held."""
     usable: frozenset[int] = frozenset()
-    """Positions of the usable manoeuvres among those flown."""
+    """Indices of the usable manoeuvres among the flown ones."""
     remaining: Remaining | None = None
-    """Forecast of further manoeuvres that was spoken."""
+    """Forecast of further manoeuvres that the crew heard."""
 
     @classmethod
     def of(cls, verdict: FlightTestVerdict, usable: Sequence[int] = ()) -> "Heard":
-        """Return what a verdict says of the newest manoeuvre."""
+        """Return the criterion of every rule in a verdict on the newest manoeuvre."""
         rules = verdict.by_rule.items()
         return cls(
             {rule: one.now_percent for rule, one in rules},
@@ -37,12 +38,13 @@ class Heard:
 
 
 def first_stop(heard: Sequence[Heard], rule: str) -> int | None:
-    """Return the number of manoeuvres at the first stop of a rule that a crew has heard; None without one."""
+    """Return the number of manoeuvres at the first stop of a rule that the crew heard; None without a
+    stop."""
     return next((n for n, one in enumerate(heard, start=1) if rule in one.stops), None)
 
 
 def stays(heard: Sequence[Heard], rule: str, usable: AbstractSet[int]) -> bool:
-    """Return whether a stop that the crew has heard still rests on manoeuvres that are ``usable``."""
+    """Return whether all manoeuvres behind a stop that the crew has heard are still ``usable``."""
     stopped = first_stop(heard, rule)
     return stopped is not None and heard[stopped - 1].usable <= usable
 
@@ -53,9 +55,10 @@ def as_heard(found: RuleProgress, rule: str, heard: Sequence[Heard]) -> RuleProg
     Parameters
     ----------
     found
-        Progress of the rule by the newest estimates.
+        Progress of the rule from the newest estimates.
     heard
-        What was heard after each of the first manoeuvres. All other fields are equal to those of ``found``.
+        Criterion that the crew heard after each of the first manoeuvres. All other fields are equal to those
+        of ``found``.
     """
     n, flown = len(heard), len(found.hindsight_percent)
     stopped = first_stop(heard, rule)
@@ -68,14 +71,14 @@ def as_heard(found: RuleProgress, rule: str, heard: Sequence[Heard]) -> RuleProg
 
 
 def spoken_after(before: Heard | None, found: Remaining | None) -> Remaining | None:
-    """Return a forecast; None where it is further from the last one than the last one's own band.
+    """Return a forecast; None if it differs from the last one by more than the last one's band.
 
-    A forecast that jumps foretells nothing. The next one is spoken again.
+    A forecast that jumps has no value for the crew. The next forecast is announced again.
 
     Parameters
     ----------
     before
-        What was heard after the manoeuvre before the newest.
+        Criterion that the crew heard after the manoeuvre before the newest one.
     """
     last = before.remaining if before is not None else None
     if found is None or last is None or last.median is None or last.p90 is None:

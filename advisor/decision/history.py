@@ -1,7 +1,7 @@
-"""Input of the rules: the manoeuvres of a campaign in the order flown, and nothing else.
+"""Input of the rules: only the manoeuvres of a campaign, in the order flown.
 
-Every rule is a function of the whole history, so that excluding a manoeuvre by hand decides anew on all later
-ones. The cache between decisions (``course``) changes no decision.
+Every rule depends on the whole history, so the exclusion of a manoeuvre changes later decisions. The cache
+between decisions (``course``) changes no decision.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from advisor.oem.surface import Servo
 
 @dataclass(frozen=True, slots=True)
 class CandidateManeuver:
-    """One manoeuvre before the rules judge it."""
+    """One manoeuvre before any rule judges it."""
 
     estimate: Estimate | NoEstimate
     reasons: tuple[Reason, ...] = ()
@@ -23,7 +23,7 @@ class CandidateManeuver:
     cautions: tuple[str, ...] = ()
     """Remarks for the verdict that do not reject the manoeuvre."""
     excluded_because: str | None = None
-    """Reason for which an engineer excluded the manoeuvre; None: the manoeuvre counts."""
+    """Reason why an engineer excluded the manoeuvre; None for an included one."""
     maneuver: Maneuver | None = None
     """Flown data, for advice on the next input."""
     air_moved: bool = False
@@ -36,8 +36,8 @@ class CandidateManeuver:
 
     @property
     def usable(self) -> Estimate | None:
-        """Estimate of a manoeuvre that a rule may judge. None: the manoeuvre is excluded, rejected or not
-        estimated."""
+        """Estimate of a manoeuvre for the rules. None if the manoeuvre is excluded, rejected or without an
+        estimate."""
         if isinstance(self.estimate, Estimate) and not self.reasons and self.excluded_because is None:
             return self.estimate
         return None
@@ -49,7 +49,7 @@ def usable_ones(history: Sequence[CandidateManeuver]) -> list[CandidateManeuver]
 
 
 def nothing_tested(history: Sequence[CandidateManeuver]) -> str:
-    """Return the sentence on a history without a usable manoeuvre; empty where one is usable."""
+    """Return the sentence about a history without a usable manoeuvre; empty if one is usable."""
     if usable_ones(history):
         return ""
     if not history:
@@ -60,7 +60,7 @@ def nothing_tested(history: Sequence[CandidateManeuver]) -> str:
 
 
 def is_named(flown: CandidateManeuver) -> bool:
-    """Return whether a crew can repeat the input: its shape has a name."""
+    """Return whether a crew can repeat the input, because its shape has a name."""
     return flown.maneuver is None or flown.maneuver.span.kind != "other"
 
 

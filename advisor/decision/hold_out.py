@@ -1,4 +1,4 @@
-"""Prediction of a manoeuvre's response from the earlier manoeuvres, with its band."""
+"""Prediction of a manoeuvre's response from the earlier manoeuvres, with its 95 % band."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,8 @@ from advisor.oem.prediction import half_widths
 from advisor.words.quantiles import NORMAL_95
 
 FEWEST = 2
-"""Fewest manoeuvres behind a prediction. A single manoeuvre has no confirmation of its errors."""
+"""Least number of earlier manoeuvres for a prediction. The errors of a single manoeuvre are not confirmed by
+another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,22 +25,22 @@ class PredictedOutput:
     """One output over the time of the manoeuvre, SI, at the stamps of its channel."""
 
     t: FloatArray
-    """Stamps, shape (n,), s since boot."""
+    """Shape (n,): stamps of the channel, s since boot."""
     measured: FloatArray
-    """Measured output, shape (n,)."""
+    """Shape (n,): measured values of the output."""
     predicted: FloatArray
-    """Response by the earlier manoeuvres' derivatives, from this manoeuvre's own trim, shape (n,)."""
+    """Shape (n,): response from the earlier manoeuvres' derivatives and this manoeuvre's trim."""
     half: FloatArray
-    """Half-width of the 95 % band due to the errors of the derivatives alone, shape (n,)."""
+    """Shape (n,): half-width of the 95 % band due to errors of the derivatives alone."""
     half_of_samples: FloatArray
-    """Half-width of the band that holds 95 % of the samples, which includes their noise, shape (n,)."""
+    """Shape (n,): half-width of the band that contains 95 % of the samples, including noise."""
 
 
 def predict_last(usable: Sequence[CandidateManeuver]) -> Mapping[str, PredictedOutput]:
-    """Predict the last of the usable manoeuvres from all earlier ones, which are independent of it.
+    """Return the prediction of the last usable manoeuvre from all earlier ones.
 
-    Trim, initial state and biases are estimated for each manoeuvre. So they come from its own fit: the fit
-    less the response from trim by its own derivatives.
+    Trim, initial state and biases are estimated for each manoeuvre. These parameters come from the
+    manoeuvre's own fit, minus the response of its own derivatives.
 
     Parameters
     ----------
@@ -49,8 +50,8 @@ def predict_last(usable: Sequence[CandidateManeuver]) -> Mapping[str, PredictedO
     Returns
     -------
     Mapping
-        Output to its prediction; empty with fewer than ``FEWEST`` manoeuvres before, and where the earlier
-        ones leave a derivative open or the model runs away.
+        Prediction of each output by its name; empty with too few earlier manoeuvres, or for a diverging
+        model.
     """
     last = usable[-1] if len(usable) > FEWEST else None
     if last is None or last.maneuver is None or not isinstance(last.estimate, Estimate):

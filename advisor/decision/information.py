@@ -1,11 +1,11 @@
-"""The rule ``information``: stop when further manoeuvres change nothing that matters, and its words.
+"""The rule ``information``: stop when further manoeuvres change nothing relevant.
 
-The paper's criterion asks whether the last estimates scatter little relative to their mean. That ratio has no
-scale where a parameter is near zero, and it ignores every manoeuvre outside its window. The rule
-``information`` asks three questions about the use of the model. Is the 95 % band of the predicted response
-within the tolerance? Was the newest manoeuvre predicted before the estimate had used it? Is each derivative
-that the crew named within its own tolerance? A parameter that moves no prediction and is not named delays no
-stop.
+The paper's criterion asks whether the last estimates scatter little relative to their mean. The scatter ratio
+has no scale for a parameter near zero, and ignores all manoeuvres outside its window. The rule
+``information`` asks three questions about the model's use. Is the 95 % band of the predicted response within
+the tolerance? Did the earlier manoeuvres predict the newest manoeuvre? Is each derivative with a tolerance
+from the crew within that tolerance? A parameter without its own tolerance that changes no prediction delays
+no stop.
 """
 
 from collections.abc import Mapping, Sequence
@@ -39,53 +39,57 @@ SURPRISING = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Knowledge:
-    """Knowledge of the aircraft after some manoeuvres."""
+    """Knowledge of the aircraft after a number of manoeuvres."""
 
     posterior: Posterior
-    """Pooled estimate of all consistent manoeuvres, wider where they scatter beyond their errors."""
+    """Pooled estimate of all consistent manoeuvres, widened by excess scatter."""
     prediction: Prediction
     """Predicted response to the flown inputs."""
     tolerance_percent: float
     """Tolerance for the half-width of the prediction's 95 % band, % of the response's peak."""
     named: tuple[str, ...]
-    """Parameters that have a tolerance of their own."""
+    """Parameters for which the crew stated a tolerance."""
     tolerance: FloatArray
-    """Shape (8,). Tolerance for the 95 % half-width of each named parameter."""
+    """Shape (8,): tolerance for the 95 % half-width of each named parameter."""
     surprise: float
-    """Distance of the newest manoeuvre from its prediction, as a share of the 99 % limit. NaN without one."""
+    """Distance of the newest manoeuvre from its prediction, over the 99 % limit. NaN without a prediction."""
     missed_percent: float
-    """Largest error of the newest manoeuvre's prediction, % of the response's peak. NaN without one."""
+    """Largest error of the newest manoeuvre's prediction, % of the response's peak. NaN without a
+    prediction."""
     foretold_percent: float
-    """Half-width of the 95 % band of the newest manoeuvre's prediction, % of its peak. NaN without one."""
+    """Half-width of the 95 % band of the newest manoeuvre's prediction, % of its peak. NaN without a
+    prediction."""
     widening: float
-    """Variance ratio by which contradictions between manoeuvres have widened ``posterior``, at least 1."""
+    """Factor by which contradictions between manoeuvres have widened the variance of ``posterior``, at least
+    1."""
     left_out: tuple[int, ...]
-    """Indices of manoeuvres that contradict all the others."""
+    """Indices of manoeuvres that contradict all others."""
     not_identifiable: Mapping[str, str]
-    """Parameter to the reason for which no manoeuvre identifies it. Small errors of such parameters are no
-    knowledge."""
+    """Reason why no manoeuvre identifies a parameter, by the parameter's name. Small errors of such a
+    parameter are not knowledge."""
 
     @property
     def predicted(self) -> bool:
-        """Whether the earlier manoeuvres predicted the newest.
+        """Whether the earlier manoeuvres predicted the newest manoeuvre.
 
-        Either the error of the predicted response is within the tolerance. Such a small error of the model,
-        which no interval of a long campaign contains, does not delay the stop. Or chance explains the error,
-        and the prediction was more precise than the tolerance. An imprecise one would agree with all.
+        The first condition is an error of the predicted response within the tolerance. Such a small model
+        error does not delay the stop. The other condition is an error that chance explains, with a prediction
+        more precise than the tolerance. An imprecise prediction would agree with any response.
         """
         unsure = self.foretold_percent >= self.tolerance_percent
         return self.missed_percent < self.tolerance_percent or (self.surprise < 1.0 and not unsure)
 
     @property
     def prediction_percent(self) -> Mapping[str, float]:
-        """Output to the largest half-width of its 95 % band, % of its peak."""
+        """Largest half-width of each output's 95 % band, % of its peak, by the output's name."""
         return self.prediction.percent(self.posterior.shared.covariance)
 
     @property
     def share(self) -> Mapping[str, float]:
-        """Criterion's quantity to its uncertainty as a share of its tolerance. Infinite where unknown.
+        """Uncertainty of each quantity of the criterion, as a share of its tolerance. The share is infinite
+        if unknown.
 
-        The quantities are the outputs by their names, then the named parameters.
+        The quantities are the outputs, then the named parameters.
         """
         known = np.isfinite(self.posterior.std) & np.isfinite(self.posterior.theta)
         known &= [name not in self.not_identifiable for name in PARAMETERS]
@@ -93,13 +97,14 @@ class Knowledge:
         return self.shares_with(self.prediction_percent, half)
 
     def shares_with(self, band_percent: Mapping[str, float], half: FloatArray) -> Mapping[str, float]:
-        """Return ``share`` for given bands of the outputs, and given (8,) half-widths over tolerance."""
+        """Return ``share`` for given output bands and given half-widths over tolerance (8,)."""
         bands = {name: percent / self.tolerance_percent for name, percent in band_percent.items()}
         return bands | {name: float(half[PARAMETERS.index(name)]) for name in self.named}
 
     @property
     def percent(self) -> float:
-        """Criterion of the rule: the largest `share`, in percent. Below 100 the rule says stop."""
+        """Stop criterion of the rule in percent: the largest `share`. The stop criterion holds below 100
+        percent."""
         return 100.0 * max(self.share.values(), default=float("inf"))
 
     @property
@@ -110,7 +115,7 @@ class Knowledge:
 
     @property
     def sufficient(self) -> bool:
-        """Whether this rule says stop."""
+        """Whether the stop criterion of this rule holds."""
         return self.predicted and self.percent < 100.0
 
 
@@ -145,8 +150,7 @@ def knowledge(usable: Sequence[CandidateManeuver], plan: CampaignPlan) -> Knowle
 def _compared(
     newest: CandidateManeuver, posteriors: Sequence[Posterior], airspeed_m_s: float | None
 ) -> tuple[float, float, float]:
-    """Return the comparison of the newest manoeuvre with its prediction: ``surprise``, ``missed_percent``,
-    ``foretold_percent``."""
+    """Return ``surprise``, ``missed_percent`` and ``foretold_percent`` of the newest manoeuvre."""
     if len(posteriors) < 2:
         return float("nan"), float("nan"), float("nan")
     before, excess, _ = consensus(posteriors[:-1])
@@ -159,11 +163,11 @@ def _compared(
 
 
 SPOKEN = {"alpha": "angle of attack", "q": "pitch rate", "a_z": "normal acceleration"}
-"""Predicted output to its name for people."""
+"""Name of each predicted output for people."""
 
 
 def sentence(known: Knowledge, stop: bool) -> str:
-    """Return the sentence on stop or continue, with its reason."""
+    """Return the sentence about stop or continuation, with its reason."""
     if stop:
         return _stop(known)
     if known.percent >= 100.0:
@@ -200,8 +204,7 @@ def _held_back(known: Knowledge) -> str:
 
 
 def evidence(known: Knowledge) -> tuple[str, ...]:
-    """Return the numbers of the decision, one line each: bands, shares of the tolerances, and the parameters
-    without one."""
+    """Return the numbers behind the decision, one line each: bands and shares of the tolerances."""
     share = known.share
     bands = ", ".join(f"{SPOKEN[name]} {band:.1f} %" for name, band in known.prediction_percent.items())
     named = ", ".join(f"{symbol(name)} {100.0 * share[name]:.0f} %" for name in known.named)

@@ -1,4 +1,4 @@
-"""Inputs that a pilot can fly: order of steps, unit of time, amplitude, direction, and their spoken form."""
+"""Inputs that a pilot can fly: order of steps, time unit, amplitude, direction, and spoken form."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -16,36 +16,37 @@ ORDERS: Mapping[str, tuple[int, ...]] = {
     "2-1-1": (2, 1, 1),
     "doublet": (1, 1),
 }
-"""Input name to the durations of its steps, in units of time. Steps alternate between both sides of trim.
+"""Durations of the steps of each input, in time units, by the input's name. The steps alternate between both
+sides of trim.
 
-No order is longer than the textbook's 3-2-1-1. A long first step shows the stiffness, and a run of equal
-steps excites the short period. Half a step first (1-2-2-...) swings the aircraft evenly about trim, which
-allows more stick within an angle-of-attack limit.
+No order is longer than the textbook 3-2-1-1. A long first step shows the stiffness, and a run of equal steps
+excites the short period. A half step at first (1-2-2-...) moves the aircraft evenly about trim, and allows
+more stick within a limit of α.
 """
 
 SHORTEST_UNIT_S = 0.2
-"""Shortest unit of time, s. Shorter steps cannot be flown by hand, and a servo does not follow them."""
+"""Shortest time unit of an input, s. A hand cannot fly shorter steps, and a servo does not follow them."""
 EDGE_S = 0.02
 """Time that the elevator takes from one step to the next, s."""
 
 
 @dataclass(frozen=True, slots=True)
 class StepInput:
-    """One test input about trim."""
+    """One test input with alternating steps about trim."""
 
     order: str
-    """A key of ``ORDERS``."""
+    """Name of the step order, a key of ``ORDERS``."""
     unit_s: float
     amplitude_rad: float
     """Distance of every step from trim."""
     nose_up_first: bool
-    """Direction of the first step: nose up, or to the right. The other direction is called reverse."""
+    """Direction of the first step: nose up, or to the right. The opposite direction is called reverse."""
     control: str = "elevator"
     """Control that moves: ``elevator``, ``aileron`` or ``rudder``."""
 
     @property
     def duration_s(self) -> float:
-        """Time from the first step to the return to trim."""
+        """Time from the first step to the return to trim, s."""
         return self.unit_s * sum(ORDERS[self.order])
 
     @property
@@ -57,7 +58,8 @@ class StepInput:
         )
 
     def elevator(self, trim_rad: float, lead_s: float, length_s: float) -> Signal:
-        """Return the elevator in rad, trailing edge down positive; the input begins after ``lead_s``."""
+        """Return the elevator command in rad, trailing edge down positive, with its first step at
+        ``lead_s``."""
         side = -1.0 if self.nose_up_first else 1.0
         corners, levels = [0.0], [0.0]
         onset, level = lead_s, 0.0
@@ -69,18 +71,18 @@ class StepInput:
         return Signal(t, trim_rad + self.amplitude_rad * np.array([*levels, 0.0]))
 
     def spoken(self, travel_rad: float) -> str:
-        """Return the input as a pilot hears it: ``reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
+        """Return the input as spoken to a pilot: ``reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
         words = ["" if self.nose_up_first else "reverse", "" if self.control == "elevator" else self.control]
         moved = "pedal" if self.control == "rudder" else "stick"
         called = " ".join(filter(None, (*words, self.order)))
         return f"{called}, {self.unit_s:.1f} s steps, {self.stick_percent(travel_rad)} % {moved}"
 
     def rounded(self, travel_rad: float) -> "StepInput":
-        """Return the input with an amplitude that can be spoken, rounded down unless that gave zero."""
+        """Return the input with an amplitude in spoken steps, rounded down unless that gives zero."""
         return replace(self, amplitude_rad=0.01 * self.stick_percent(travel_rad) * travel_rad)
 
     def stick_percent(self, travel_rad: float) -> int:
-        """Return the amplitude in percent of the travel, in steps of five above 20 %."""
+        """Return the amplitude in percent of the elevator's travel, in steps of five above 20 %."""
         percent = 100.0 * self.amplitude_rad / travel_rad + 1e-9
         return 5 * int(percent / 5.0) if percent > 20.0 else max(1, int(percent))
 

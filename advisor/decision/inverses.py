@@ -1,6 +1,6 @@
-"""Inverses of covariances and information matrices in which some parameters are unknown.
+"""Inverses of covariance and information matrices with unknown parameters.
 
-``covariance_of`` and ``information_of`` take one matrix or a stack of matrices.
+``covariance_of`` and ``information_of`` accept one matrix or a stack of matrices.
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ from advisor.flight.signals.messages import FloatArray
 def information_of(covariance: FloatArray) -> FloatArray:
     """Return the inverse of covariances (..., n, n), with zero rows and columns for unknown parameters.
 
-    A parameter is unknown where its variance is not finite and positive.
+    A parameter is unknown if its variance is not finite and positive.
     """
     variance = np.diagonal(covariance, axis1=-2, axis2=-1)
     return _inverse(covariance, np.isfinite(variance) & (variance > 0.0), 0.0)
@@ -24,9 +24,9 @@ def covariance_of(information: FloatArray) -> FloatArray:
 
 
 def _inverse(matrix: FloatArray, known: np.ndarray, unknown: float) -> FloatArray:
-    """Return the inverse of symmetric positive semi-definite matrices (..., n, n), whatever the units.
+    """Return the inverse of symmetric positive semi-definite matrices (..., n, n), independent of units.
 
-    Rows and columns that are not ``known`` (..., n) become zero, with ``unknown`` on the diagonal.
+    Rows and columns of unknown parameters become zero, with ``unknown`` on the diagonal.
     """
     inside = known[..., :, None] & known[..., None, :]
     one = np.eye(matrix.shape[-1])

@@ -1,4 +1,4 @@
-"""Verdict on a manoeuvre: first objections to the manoeuvre itself, then the rule that the crew chose."""
+"""Verdict on a manoeuvre: objections to its data, then the rule that the crew chose."""
 
 from collections.abc import Container, Mapping, Sequence
 from math import degrees, floor
@@ -15,7 +15,7 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.words.digits import distinct_texts
 
 COLOURED = 0.5
-"""Lag-1 correlation of a residual above which it counts as driven, by moving air or a model error."""
+"""Lag-1 correlation of a residual above which moving air or a model error is assumed."""
 
 
 def judge_campaign(
@@ -23,9 +23,9 @@ def judge_campaign(
 ) -> tuple[ManeuverVerdict, ...]:
     """Return verdicts on all manoeuvres so far, in the order flown, each with the result of every rule.
 
-    A verdict depends only on the earlier manoeuvres, with two exceptions. A manoeuvre may be excluded by
-    hand. Under the rule ``information`` later manoeuvres may show that a manoeuvre contradicts all others. A
-    ``course`` keeps results of earlier decisions, and changes no verdict.
+    A verdict depends only on the earlier manoeuvres, except for two later influences. A manoeuvre may be
+    excluded by hand. Under the rule ``information`` later manoeuvres may show that a manoeuvre contradicts
+    all others. ``course`` caches results of earlier decisions, and changes no verdict.
     """
     course = course or CriterionCourse(plan)
     contradicted = contradicting(history)
@@ -43,7 +43,7 @@ def judge_campaign(
 def judge(
     flown: CandidateManeuver, history: Sequence[CandidateManeuver], plan: CampaignPlan
 ) -> ManeuverVerdict:
-    """Return the verdict on the newest manoeuvre, given the earlier ones."""
+    """Return the verdict on the newest manoeuvre from the earlier ones."""
     return judge_campaign([*history, flown], plan)[-1]
 
 
@@ -63,14 +63,15 @@ def _results(
 
 
 def contradicting(history: Sequence[CandidateManeuver]) -> Mapping[int, Outlier]:
-    """Return usable manoeuvres that contradict all the others, by index. ``information`` leaves them out."""
+    """Return the usable manoeuvres that contradict all others, by index. The rule ``information`` excludes
+    these manoeuvres."""
     usable = [(i, estimate) for i, flown in enumerate(history) if (estimate := flown.usable)]
     found = outliers(posteriors_at_one_speed([estimate for _, estimate in usable]))
     return {usable[k][0]: outlier for k, outlier in found.items()}
 
 
 def accepted_estimates(history: Sequence[CandidateManeuver], rule: Rule) -> list[Estimate]:
-    """Return the estimates of the manoeuvres that ``rule`` accepts, in the order flown."""
+    """Return the estimates of the manoeuvres that a rule accepts, in the order flown."""
     return [
         estimate
         for flown, result in zip(history, results_of(history, rule), strict=True)
@@ -129,7 +130,7 @@ def _why_accepted(flown: CandidateManeuver, rule: Rule, result: RuleResult) -> s
 
 
 def _explained(estimate: Estimate, responses: Sequence[str]) -> str:
-    """Return a clause on the share of the motion that the model explains; empty without a fit."""
+    """Return a clause about the share of the motion that the model explains; empty without a fit."""
     fits = estimate.fits[0] if estimate.fits else {}
     share = min((fit.r2 for name, fit in fits.items() if name in responses), default=0.0)
     # Cut, not rounded: 100 % is printed for an exact fit only.
@@ -137,7 +138,7 @@ def _explained(estimate: Estimate, responses: Sequence[str]) -> str:
 
 
 def _of_limit(cost: float, limit: float) -> str:
-    """Return a cost as a multiple of its limit, for the unit of a cost means nothing to a reader."""
+    """Return a cost as a multiple of its limit, because the unit of a cost is not meaningful to a reader."""
     if limit <= 0.0:
         return "cost above its limit, 0"
     ratio = distinct_texts(cost / limit, 1.0, 2)[0]
@@ -178,7 +179,7 @@ _LESS_WELL = "less well than the last accepted one"
 
 
 def _another_try(flown: CandidateManeuver, estimate: Estimate, rule: Rule) -> str:
-    """Return the advice for another try. Calmer air is advised only where the air moved."""
+    """Return the advice for a repetition of the manoeuvre. Calmer air is advised only if the air moved."""
     if flown.air_moved:
         return "fly it again in calmer air"
     if rule == "separate":

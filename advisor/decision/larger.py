@@ -1,8 +1,8 @@
-"""A manoeuvre refused for its cost alone, although larger than the earlier ones and in agreement with them.
+"""A manoeuvre that is refused for its cost alone, although larger than earlier ones and predicted by them.
 
-The cost J = det R has no scale of the motion. The unexplained part of a response grows with the motion. In
-two channels the cost doubles when each variance of the residual grows by 1.41, that is when the motion grows
-by 1.19. Eqs. (10) and (11) then refuse a manoeuvre with more information than the earlier ones.
+The cost J = det R does not account for the size of the motion. The unexplained part of a response grows with
+the motion. In two channels the cost doubles if each residual variance grows by 1.41, that is for a motion
+1.19 times as large. Eqs. (10) and (11) then refuse a manoeuvre with more information than the earlier ones.
 """
 
 from collections.abc import Sequence
@@ -21,28 +21,27 @@ class Larger:
     """Size of a refused manoeuvre relative to the manoeuvre that set its limit."""
 
     ratio: float
-    """Ratio of the two ranges of the pitch rate."""
+    """Ratio of the pitch rate ranges of both manoeuvres."""
     setter: int | None
-    """Number of the manoeuvre that set the limit. None where a median set the limit."""
+    """Number of the manoeuvre that set the cost limit. None if a median set the limit."""
 
 
 def larger_and_agreeing(
     history: Sequence[CandidateManeuver], accepted: Sequence[bool], course: CriterionCourse
 ) -> Larger | None:
-    """Return the size of the newest manoeuvre where it was larger than the one that set its limit, and
-    predicted.
+    """Return the newest manoeuvre's relative size if it is larger than the limit-setting one and predicted.
 
     Parameters
     ----------
     history
-        Manoeuvres up to and including the one that the paper's rule ``course.plan.rule`` refused.
+        Manoeuvres up to the newest one, which the paper's rule ``course.plan.rule`` refused.
     accepted
-        Whether that rule accepts each manoeuvre.
+        Whether the paper's rule accepts each manoeuvre.
 
     Returns
     -------
     Larger or None
-        None where the manoeuvre was no larger to the printed digits, or contradicts the earlier ones.
+        None if the manoeuvre is not larger at the printed precision, or contradicts the earlier ones.
     """
     before, newest = history[:-1], history[-1]
     setters = [i for i, flown in enumerate(before) if flown.usable]

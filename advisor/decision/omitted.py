@@ -1,4 +1,4 @@
-"""Bias that an omitted pitching moment causes in the derivatives, and the reasons against a manoeuvre by it.
+"""Bias of the derivatives due to an omitted pitching moment, and reasons against a manoeuvre because of it.
 
 S holds the sensitivities of the fitted outputs with respect to the parameters. s is the response to the
 omitted term with the coefficient one. W is the inverse of the noise's covariance. Near the optimum the
@@ -7,11 +7,11 @@ parameters take up
     Δθ = (SᵀWS)⁻¹·SᵀW·s
 
 for each unit of the coefficient (omitted-variable bias; Greene, Econometric Analysis, 2012, ch. 4). An
-unknown coefficient follows from the residual, by least squares with s as one more column. The residual's
-lag-1 correlation is removed first.
+unknown coefficient is estimated from the residual, by least squares with s as an additional column. The
+residual's lag-1 correlation is removed first.
 
-The pitch equation of a rigid body holds q̇ = M/Iyy + (Izz − Ixx)/Iyy·p·r. Every body has Izz ≤ Ixx + Iyy, and
-an aircraft has Ixx ≤ Izz, so that the factor lies between 0 and 1. The largest bias by rolling and yawing is
+The pitch equation of a rigid body is q̇ = M/Iyy + (Izz − Ixx)/Iyy·p·r. Every body has Izz ≤ Ixx + Iyy, and an
+aircraft has Ixx ≤ Izz, so that the factor lies between 0 and 1. The largest bias by rolling and yawing is
 therefore known without aerodynamics and without the inertias (Etkin & Reid, Dynamics of Flight, 1996, ch. 4).
 The effect of the throttle is estimated from the residual.
 """
@@ -35,34 +35,34 @@ from advisor.words.quantities import symbol
 
 _OUTPUTS = ("alpha", "q", "a_z")
 _LOCAL = 2
-"""Number of initial states, which every manoeuvre has of its own."""
+"""Number of initial states of each manoeuvre."""
 _FEWEST = 20
-"""Fewest samples of the pitch rate, two for each of the ten parameters."""
+"""Least number of pitch rate samples, two for each of ten parameters."""
 
 
 @dataclass(frozen=True, slots=True)
 class Bias:
-    """Bias of the eight parameters by one omitted term."""
+    """Bias of the eight parameters due to one omitted term."""
 
     of_one: FloatArray
-    """Shape (8,). Change of the parameters for a coefficient of one."""
+    """Shape (8,): change of the parameters for a coefficient of one."""
     coefficient: float
-    """Coefficient of the term, estimated from the residual."""
+    """Coefficient of the omitted term, estimated from the residual."""
     ratio: float
-    """Coefficient over its standard deviation."""
+    """Coefficient of the omitted term over its standard deviation."""
 
 
 def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | None:
-    """Return the bias by a moment that the model lacks; None for a constant, or where the fit is too short.
+    """Return the bias due to an omitted moment; None for a constant moment, or for too short a fit.
 
     Parameters
     ----------
     maneuver
-        Manoeuvre of the estimate.
+        Manoeuvre for which the estimate was made.
     estimate
         Estimate from this manoeuvre alone.
     term
-        Shape (n,). Omitted part of q̇ for a coefficient of one, at the stamps of the fitted pitch rate.
+        Shape (n,): omitted part of q̇ for a coefficient of one, at the stamps of the fitted pitch rate.
     """
     fits = estimate.fits[0]
     t = fits["q"].t
@@ -79,8 +79,8 @@ def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | 
 
 
 def _regressed(outputs: list[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, float, float]:
-    """Return what the known columns take up of the last one, and the last one's coefficient and its ratio to
-    the standard deviation."""
+    """Return the known columns' share of the last column, its coefficient, and coefficient over standard
+    deviation."""
     rows = np.vstack([rows for rows, _ in outputs])
     residual = np.concatenate([left for _, left in outputs])
     size = np.maximum(np.linalg.norm(rows, axis=0), 1e-300)
@@ -114,7 +114,7 @@ def _columns(estimate: Estimate, t: FloatArray, moved: FloatArray, term: FloatAr
 def _driven(
     system: FloatArray, t: FloatArray, inputs: FloatArray, initial: FloatArray | None = None
 ) -> FloatArray:
-    """Return the states, shape (2, n, m), of the linear system with m pairs of inputs, shape (2, n, m)."""
+    """Return the states, shape (2, n, m), of the linear system for m pairs of inputs, shape (2, n, m)."""
     states = np.zeros_like(inputs)
     if initial is not None:
         states[:, 0] = initial
@@ -127,8 +127,8 @@ def _driven(
 
 
 def _rows(fit: ChannelFit, t: FloatArray, columns: FloatArray, lag1: float) -> tuple[FloatArray, FloatArray]:
-    """Return the sensitivities and the residual of one output over the residual's standard deviation, without
-    the correlation ``lag1`` of neighbours."""
+    """Return sensitivities and residual of one output over its standard deviation, without the correlation
+    ``lag1``."""
     at_fit = np.stack([np.interp(fit.t, t, column) for column in columns.T], axis=1)
     keep = min(max(lag1, 0.0), 0.99)
     rows, left = (both[1:] - keep * both[:-1] for both in (at_fit, fit.residual))
@@ -137,11 +137,11 @@ def _rows(fit: ChannelFit, t: FloatArray, columns: FloatArray, lag1: float) -> t
 
 
 _JUDGED = ("M_alpha", "M_q", "M_delta_e", "Z_alpha")
-"""Derivatives whose bias matters."""
+"""Derivatives whose bias is examined."""
 
 
 def coupled(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
-    """Return reasons where an influence that the model lacks moves a derivative out of its 95 % interval."""
+    """Return a reason for each omitted influence that biases a derivative beyond its 95 % interval."""
     return [*_rolling_with_yawing(maneuver, estimate), *_throttle(maneuver, estimate)]
 
 
@@ -173,8 +173,7 @@ def _at_fit(maneuver: Maneuver, estimate: Estimate, name: str) -> FloatArray:
 
 
 def _beyond(estimate: Estimate, bias: FloatArray, code: str, what: str, cure: str) -> list[Reason]:
-    """Return a reason with the derivative that the bias moves farthest beyond its interval; empty where none
-    is moved beyond."""
+    """Return a reason with the derivative whose bias exceeds its interval most; empty without one."""
     half = NORMAL_95 * estimate.std
     share = {name: abs(float(bias[k]) / float(half[k])) for name, k in _PLACES.items() if half[k] > 0.0}
     name = max(share, key=lambda name: share[name], default="")

@@ -1,8 +1,9 @@
-"""The paper's rules: manoeuvre validation, Eqs. (10) and (11), flight-test validation, Eqs. (12) and (13).
+"""Rules of the paper: manoeuvre validation, Eqs. (10) and (11), and flight-test validation, Eqs. (12) and
+(13).
 
-The costs are those of usable manoeuvres. A quiet or spoilt record was refused earlier for its own reasons,
-and has None in place of a cost. Such a record neither passes a rule nor sets the limit for the next one. The
-reading chosen for each equation, and the others tried, are in ``docs/explanation/rules.md``.
+The costs are those of usable manoeuvres. A quiet or faulty record was refused for other reasons, and has None
+as its cost. A record without a cost passes no rule and sets no limit. The interpretation of each equation,
+and the alternatives, are in ``docs/explanation/rules.md``.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -20,22 +21,23 @@ from advisor.oem.estimate import Estimate
 ALLOWED_INCREASE = 2.0
 """Factor of Eq. (10) by which the cost may rise from one accepted manoeuvre to the next."""
 LEAST_COST = 1e-24
-"""Least cost det R that is compared, from residuals of 1 µrad and 1 µrad/s. Smaller residuals are below every
-instrument's resolution."""
+"""Least cost det R in a comparison, from residuals of 1 µrad and 1 µrad/s. Smaller residuals are below the
+resolution of every instrument."""
 
 Costs = Sequence[float | None]
 
 
 def continuous_improvement(costs: Costs) -> tuple[RuleResult, ...]:
-    """Apply Eq. (10): J(θ̂ᵢ) < 2·J(θ̂ᵢ₋₁), with i − 1 the last manoeuvre that this rule *accepted*.
+    """Return the results of Eq. (10): J(θ̂ᵢ) < 2·J(θ̂ᵢ₋₁), with i − 1 the last manoeuvre that this rule
+    *accepted*.
 
-    The first usable manoeuvre has no predecessor and is accepted. Costs below `LEAST_COST`, of data without
-    noise, count as equal.
+    The first usable manoeuvre has no predecessor and is accepted. Costs below `LEAST_COST`, from data without
+    noise, are treated as equal.
 
     Parameters
     ----------
     costs
-        J = det R of every manoeuvre in the order flown; None where it is not usable.
+        Cost J = det R of every manoeuvre in the order flown; None for an unusable manoeuvre.
     """
     results = []
     limit: float | None = None
@@ -48,14 +50,15 @@ def continuous_improvement(costs: Costs) -> tuple[RuleResult, ...]:
 
 
 def separate_computation(costs: Costs) -> tuple[RuleResult, ...]:
-    """Apply Eq. (11): J(θ̂ᵢ) < median(J(θ̂₁) … J(θ̂ᵢ₋₁)), over all usable manoeuvres, also the rejected ones.
+    """Return the results of Eq. (11): J(θ̂ᵢ) < median(J(θ̂₁) … J(θ̂ᵢ₋₁)), over all usable manoeuvres, even
+    rejected ones.
 
     The first usable manoeuvre has no predecessor and is accepted.
 
     Parameters
     ----------
     costs
-        As for `continuous_improvement`.
+        Costs of the manoeuvres, as for `continuous_improvement`.
     """
     results = []
     earlier: list[float] = []
@@ -68,8 +71,8 @@ def separate_computation(costs: Costs) -> tuple[RuleResult, ...]:
 
 
 def every_usable(costs: Costs) -> tuple[RuleResult, ...]:
-    """Accept every usable manoeuvre, whatever its cost: the rule `information` weights manoeuvres instead of
-    selecting."""
+    """Return acceptance of every usable manoeuvre: the rule `information` weights manoeuvres instead of
+    selecting them."""
     return tuple(RuleResult(cost is not None, None) for cost in costs)
 
 
@@ -78,11 +81,12 @@ MANEUVER_RULES: Mapping[Rule, Callable[[Costs], tuple[RuleResult, ...]]] = {
     "separate": separate_computation,
     "information": every_usable,
 }
-"""Rule name to its manoeuvre validation. All rules always run side by side."""
+"""Manoeuvre validation of each rule, by the rule's name. All rules are always evaluated in parallel."""
 
 
 SCATTER_FACTOR = 5.0
-"""Factor of σ in Eq. (12). The factor belongs to this rule only; a calibrated σ is never multiplied by it."""
+"""Factor of σ in Eq. (12). The factor belongs to Eq. (12) only, and multiplies no other standard
+deviation."""
 
 
 def scatter_by_parameter(theta: FloatArray, criterion: Criterion = "eq12") -> FloatArray:
@@ -91,16 +95,16 @@ def scatter_by_parameter(theta: FloatArray, criterion: Criterion = "eq12") -> Fl
     Parameters
     ----------
     theta
-        Shape (n, 8). The estimates of the last n accepted manoeuvres, one a row.
+        Shape (n, 8): estimates of the last n accepted manoeuvres, one per row.
     criterion
         ``eq12``: 5·σ/|θ̄| with the sample standard deviation (n − 1 in its denominator).
-        ``eq13``: 5·Σ(θ̂ − θ̄)²/(n·|θ̄|), the form that the paper prints. This form is not dimensionless
-        and so depends on the units of the parameters (rad and s here).
+        ``eq13``: 5·Σ(θ̂ − θ̄)²/(n·|θ̄|), the form that the paper prints. Eq. (13) is not dimensionless and
+        depends on the parameters' units (rad and s here).
 
     Returns
     -------
     FloatArray
-        Shape (8,). Infinite where the mean is exactly zero.
+        Shape (8,): relative scatter of each parameter. The scatter is infinite for a mean of exactly zero.
     """
     mean = theta.mean(axis=0)
     spread = theta.std(axis=0, ddof=1) if criterion == "eq12" else theta.var(axis=0)
@@ -110,7 +114,7 @@ def scatter_by_parameter(theta: FloatArray, criterion: Criterion = "eq12") -> Fl
 
 
 def scatter_percent(theta: FloatArray, criterion: Criterion = "eq12") -> float:
-    """Return the stop criterion: norm over the eight parameters of `scatter_by_parameter`, in percent.
+    """Return the stop criterion in percent: the norm of `scatter_by_parameter` over the eight parameters.
 
     The norm takes absolute values, so the sign of a parameter's mean does not matter.
     """
@@ -118,7 +122,8 @@ def scatter_percent(theta: FloatArray, criterion: Criterion = "eq12") -> float:
 
 
 def scattered_most(theta: FloatArray, criterion: Criterion = "eq12") -> str:
-    """Return the parameter that contributes most to `scatter_percent`. One without a value comes first."""
+    """Return the parameter with the largest part in `scatter_percent`. A parameter without a value comes
+    first."""
     return PARAMETERS[int(np.argmax(np.nan_to_num(scatter_by_parameter(theta, criterion), nan=np.inf)))]
 
 

@@ -1,8 +1,8 @@
-"""Estimates of single manoeuvres, combined by their information.
+"""Combination of single manoeuvres' estimates by their information.
 
-For the rules, the pooled estimate replaces the joint output-error estimate. In the linear regime the two
-agree, because the sum of quadratic costs has its minimum at the information-weighted mean. Pooling needs no
-data, only estimates and covariances, so that every decision of a campaign is quickly recomputed.
+For the rules, the pooled estimate replaces the joint output-error estimate. In the linear regime both agree,
+because a sum of quadratic costs has its minimum at the information-weighted mean. Pooling needs only
+estimates and covariances, so every decision is quickly recomputed.
 """
 
 from collections.abc import Sequence
@@ -20,13 +20,14 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
 
 INTERCEPTS = (PARAMETERS.index("Z_0"), PARAMETERS.index("M_0"))
-"""Indices of Z_0 and M_0 in θ. Trim and speed differ between manoeuvres, so each has its own Z_0 and M_0."""
+"""Indices of the intercepts Z_0 and M_0 in θ. Trim and speed differ between manoeuvres, so each manoeuvre has
+separate values of Z_0 and M_0."""
 DERIVATIVES = tuple(k for k in range(len(PARAMETERS)) if k not in INTERCEPTS)
 
 
 @cache
 def _places(names: tuple[str, ...]) -> tuple[list[int], list[int]]:
-    """Return the places of the derivatives and of the intercepts among the parameters of an axis."""
+    """Return the indices of the derivatives and of the intercepts among the parameters of an axis."""
     intercepts = [k for k, name in enumerate(names) if name.endswith("_0")]
     return [k for k in range(len(names)) if k not in intercepts], intercepts
 
@@ -37,33 +38,33 @@ def derivatives_of(names: tuple[str, ...]) -> list[str]:
 
 
 class Shared(NamedTuple):
-    """Mean and covariance of the d derivatives of an axis, which manoeuvres share."""
+    """Mean and covariance of an axis' d derivatives, which all manoeuvres share."""
 
     theta: FloatArray
-    """Mean, shape (d,)."""
+    """Shape (d,): mean of the derivatives."""
     covariance: FloatArray
-    """Covariance, shape (d, d). Infinite on the diagonal for an unknown derivative."""
+    """Shape (d, d): covariance of the derivatives. The diagonal is infinite for an unknown derivative."""
 
 
 @dataclass(frozen=True)
 class Posterior:
-    """Mean and covariance of the p parameters of an axis."""
+    """Mean and covariance of all p parameters of an axis."""
 
     theta: FloatArray
-    """Mean, shape (p,), in the order of ``names``."""
+    """Shape (p,): mean in the order of ``names``."""
     covariance: FloatArray
-    """Covariance for given instruments, shape (p, p). Infinite on the diagonal for an unknown parameter."""
+    """Shape (p, p): covariance for given instruments. The diagonal is infinite for an unknown parameter."""
     common: FloatArray = field(default_factory=lambda: np.zeros((len(PARAMETERS), len(PARAMETERS))))
-    """Covariance by the errors of given instruments, which all estimates share, shape (p, p)."""
+    """Shape (p, p): covariance due to the given instruments' errors, common to all estimates."""
     alpha_rad: tuple[float, float] = (nan, nan)
-    """Lowest and highest measured angle of attack of the manoeuvre, rad. NaN where the angle of attack was
-    not measured."""
+    """Lowest and highest measured angle of attack of the manoeuvre, rad. NaN without a measured angle of
+    attack."""
     names: tuple[str, ...] = PARAMETERS
-    """Names of the parameters. Names that end in ``_0`` are intercepts, which are each manoeuvre's own."""
+    """Names of the parameters. Names that end in ``_0`` are intercepts, which belong to single manoeuvres."""
 
     @property
     def std(self) -> FloatArray:
-        """Standard deviations with both parts of the error, shape (p,)."""
+        """Shape (p,): standard deviations from both parts of the error."""
         return np.sqrt(np.diag(self.covariance) + np.diag(self.common))
 
     @cached_property
@@ -74,17 +75,18 @@ class Posterior:
 
     @cached_property
     def information(self) -> FloatArray:
-        """Information about the derivatives, shape (d, d). Zero for an unknown derivative."""
+        """Shape (d, d): information about the derivatives. Rows and columns of an unknown derivative are
+        zero."""
         return information_of(self.shared.covariance)
 
 
 def posteriors_at_one_speed(estimates: Sequence[Estimate]) -> list[Posterior]:
-    """Return the estimates converted to their mean air speed, where every estimate has its air speed.
+    """Return the estimates converted to their mean air speed, if every estimate has an air speed.
 
     Each parameter scales with its power of V (``SPEED_EXPONENTS``); gravity's part g/V of Z_0 is treated
-    separately. Estimates at one speed, or without a speed, are unchanged. The colour of the residuals comes
-    from instruments and air, which the manoeuvres share. So the factor on the Cramér-Rao bounds is the median
-    over the manoeuvres, which is steadier than each manoeuvre's own. Tests of aileron and rudder share none.
+    separately. Estimates at one speed, or without a speed, are unchanged. All manoeuvres share the residuals'
+    colour, which comes from instruments and air. The factor on the Cramér-Rao bounds is therefore the median
+    over the manoeuvres. Tests of aileron and rudder share no colour.
     """
     if not estimates:
         return []
@@ -99,7 +101,7 @@ def posteriors_at_one_speed(estimates: Sequence[Estimate]) -> list[Posterior]:
 
 
 def _alpha_of(estimate: Estimate) -> tuple[float, float]:
-    """Return the range of the measured angle of attack, rad; NaN where not measured, or without a fit."""
+    """Return the range of the measured angle of attack, rad; NaN without a measurement or a fit."""
     alpha = estimate.fits[0].get("alpha") if estimate.fits else None
     return (nan, nan) if alpha is None else (float(alpha.measured.min()), float(alpha.measured.max()))
 
@@ -110,7 +112,8 @@ def values_at_one_speed(estimates: Sequence[Estimate]) -> FloatArray:
 
 
 def _at_one_speed(estimates: Sequence[Estimate]) -> tuple[FloatArray, FloatArray]:
-    """Return (n, p) factors on each estimate's parameters, without gravity's part, and (n, p) parameters."""
+    """Return the factors (n, p) on each estimate's parameters without gravity's part, and the parameters (n,
+    p)."""
     theta, names = np.array([e.theta for e in estimates]), estimates[0].names
     reference = common_airspeed(estimates)
     if reference is None:
@@ -128,7 +131,7 @@ def common_airspeed(estimates: Sequence[Estimate]) -> float | None:
 
 
 def _covariances(estimates: Sequence[Estimate]) -> FloatArray:
-    """Return (n, p, p) covariances for given instruments, with the colour of the residuals."""
+    """Return the covariances (n, p, p) for given instruments, with the colour of the residuals."""
     if not estimates[0].COLOUR_IS_SHARED:
         return np.array([e.own_covariance for e in estimates])
     plain = np.sqrt(np.array([np.diag(e.own_covariance_cr) for e in estimates]))
@@ -145,11 +148,11 @@ def pool_shared(posteriors: Sequence[Posterior]) -> Shared:
 
 
 def pool(posteriors: Sequence[Posterior]) -> Posterior:
-    """Return the information-weighted mean of several estimates, each with its own intercepts.
+    """Return the information-weighted mean of several estimates, each with separate intercepts.
 
-    The derivatives are shared. Intercepts of the result are means over the manoeuvres. Each manoeuvre's own
-    ones are first corrected for the others' information on its derivatives. No further estimate averages
-    out the error by the instruments, which all estimates share.
+    The derivatives are common to all estimates. Intercepts of the result are means over the manoeuvres. The
+    intercepts of each manoeuvre are first corrected by the other manoeuvres' information on its derivatives.
+    The instruments' error is common to all estimates, so more estimates do not average it out.
 
     Parameters
     ----------
@@ -180,8 +183,8 @@ def disagreement(one: Shared, other: Shared) -> tuple[float, int]:
     Returns
     -------
     tuple of float and int
-        Squared Mahalanobis distance over the derivatives known to both, and their number. The distance has
-        a χ² distribution with that many degrees of freedom when only noise separates the two.
+        Squared Mahalanobis distance over the derivatives known to both, and their number. The distance is
+        χ²-distributed with that many degrees of freedom if only noise separates both estimates.
     """
     return _distance(one.theta - other.theta, information_of(one.covariance + other.covariance))
 
@@ -191,9 +194,9 @@ class Pooled(NamedTuple):
 
     shared: Shared
     inconsistency: float
-    """χ² of the single estimates about the pooled one."""
+    """χ² of the single estimates about the pooled estimate."""
     dof: int
-    """Degrees of freedom of χ²: those of the single estimates, less those of the pooled one."""
+    """Degrees of freedom of χ²: those of the single estimates minus those of the pooled one."""
 
 
 def pooled(posteriors: Sequence[Posterior]) -> Pooled:
@@ -207,29 +210,29 @@ def pooled_without_each(posteriors: Sequence[Posterior]) -> list[Pooled]:
 
 
 def pooled_on_both_sides(posteriors: Sequence[Posterior]) -> list[tuple[Pooled, Pooled]]:
-    """Return two pooled estimates for each estimate but the first: of the earlier ones, and of the rest."""
+    """Return the pooled estimates before and after each moment between two estimates."""
     return _Summed.of(posteriors).both_sides()
 
 
 @dataclass(frozen=True, slots=True)
 class _Summed:
-    """Sums over estimates, from which the pooled estimate of any of them follows.
+    """Sums over estimates, from which the pooled estimate of any subset follows.
 
     χ² about the pooled value is Σ dᵢᵀIᵢdᵢ - vᵀCv with v = Σ Iᵢdᵢ and C = (Σ Iᵢ)⁻¹. Here d is the difference
-    from a value near all estimates. Partial sums suffice, so that pooling every part of a long campaign costs
-    little more than pooling the whole.
+    from a value near all estimates. Partial sums suffice, so pooling every part of a campaign costs little
+    more than pooling the whole.
     """
 
     centre: FloatArray
-    """(d,) origin of the differences; 0 for an unknown derivative."""
+    """Shape (d,): origin of the differences; 0 for an unknown derivative."""
     information: FloatArray
-    """(n, d, d) Iᵢ."""
+    """Shape (n, d, d): information Iᵢ of each estimate."""
     pull: FloatArray
-    """(n, d) Iᵢdᵢ."""
+    """Shape (n, d): products Iᵢdᵢ."""
     own: FloatArray
-    """(n,) dᵢᵀIᵢdᵢ."""
+    """Shape (n,): products dᵢᵀIᵢdᵢ."""
     known: FloatArray
-    """(n,) number of derivatives that each estimate knows."""
+    """Shape (n,): number of known derivatives in each estimate."""
 
     @classmethod
     def of(cls, posteriors: Sequence[Posterior]) -> "_Summed":

@@ -1,8 +1,8 @@
 """Predicted response to the campaign's own inputs, with its uncertainty.
 
-The response from trim, Eqs. (1)-(2), depends on the six derivatives, which manoeuvres share. Trims and
-initial states belong to each manoeuvre and do not enter. The covariance of the derivatives, multiplied by the
-exact sensitivities of the response (delta method), gives its 95 % band.
+The response from trim, Eqs. (1)-(2), depends on the six derivatives common to all manoeuvres. Trims and
+initial states belong to each manoeuvre and are not used. The derivatives' covariance and the exact
+sensitivities of the response give the 95 % band (delta method).
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,13 +25,14 @@ from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 
 PREDICTED = ("alpha", "q", "a_z")
-"""Outputs whose prediction is judged, where measured. The pitch angle follows from q."""
+"""Outputs whose prediction is judged, if measured. The pitch angle follows from q."""
 MOMENTS = 200
-"""Number of times at which a response is compared: 50 ms apart in a record of 10 s."""
+"""Number of times at which responses are compared: 50 ms apart in a record of 10 s."""
 MOST_INPUTS = 12
-"""Number of newest manoeuvres that stand for all. Crews repeat inputs, and long campaigns stay fast."""
+"""Number of the newest manoeuvres that represent all manoeuvres. Crews repeat inputs, so a limit loses little
+and keeps long campaigns fast."""
 _REMEMBERED = 512
-"""Responses kept for the next decision, 30 kB each."""
+"""Number of cached responses, 30 kB each."""
 _SPEED_POWER = np.array([SPEED_EXPONENTS[PARAMETERS[k]] for k in DERIVATIVES], dtype=float)
 
 
@@ -39,15 +40,16 @@ class Response(NamedTuple):
     """Response from trim to one input."""
 
     values: FloatArray
-    """(3, n) α in rad, q in rad/s, a_z over the air speed in 1/s, in the order of ``PREDICTED``."""
+    """Shape (3, n): α in rad, q in rad/s, and a_z over the air speed in 1/s, in the order of
+    ``PREDICTED``."""
     slopes: FloatArray
-    """(3, n, 6) derivative of each output with respect to each of ``DERIVATIVES``."""
+    """Shape (3, n, 6): derivative of each output with respect to each of ``DERIVATIVES``."""
     after_s: FloatArray
-    """(n,) moments, s after the first stamp of the elevator."""
+    """Shape (n,): times in s after the first stamp of the elevator."""
 
     @property
     def peak(self) -> FloatArray:
-        """(3,) largest deviation of each output from trim."""
+        """Shape (3,): largest deviation of each output from trim."""
         return np.asarray(np.max(np.abs(self.values), axis=1))
 
 
@@ -56,8 +58,8 @@ class Prediction:
     """Predicted response of one model to several inputs."""
 
     slopes: Mapping[str, FloatArray]
-    """Output to (n, 6): its change with each derivative in percent of its peak, at all times of all inputs.
-    NaN where the model diverges."""
+    """Shape (n, 6) for each output: change with each derivative in percent of its peak, at all times of all
+    inputs. The change is NaN for a diverging model."""
 
     def percent(self, covariance: FloatArray) -> Mapping[str, float]:
         """Return the largest half-width of the 95 % band, in percent of the peak, for each output.
@@ -65,8 +67,8 @@ class Prediction:
         Parameters
         ----------
         covariance
-            (6, 6) covariance of ``DERIVATIVES``, infinite on the diagonal for an unknown derivative. The
-            band of an output that depends on such a derivative is infinite as well.
+            Shape (6, 6): covariance of ``DERIVATIVES``, infinite on the diagonal for an unknown derivative.
+            The band of an output that depends on an unknown derivative is infinite.
         """
         known = np.isfinite(np.diag(covariance))
         inside = np.where(np.outer(known, known), covariance, 0.0)
@@ -74,9 +76,9 @@ class Prediction:
 
     @property
     def percent_by_derivative(self) -> FloatArray:
-        """(6,) largest change of any output with each derivative alone, in percent of its peak per unit.
+        """Shape (6,): largest change of any output with each derivative, in percent of its peak per unit.
 
-        NaN where the input is unknown, or where the model diverges.
+        NaN for an unknown input or a diverging model.
         """
         if not self.slopes:
             return np.full(len(DERIVATIVES), np.nan)
@@ -92,14 +94,14 @@ def _widest(slope: FloatArray, covariance: FloatArray, known: np.ndarray) -> flo
 def predict(
     flown: Sequence[CandidateManeuver], derivatives: FloatArray, airspeed_m_s: float | None
 ) -> Prediction:
-    """Return the response to the flown inputs; without any output where the inputs are unknown.
+    """Return the response to the flown inputs, without outputs for unknown inputs.
 
     Parameters
     ----------
     derivatives
-        (6,), order of ``DERIVATIVES``.
+        Shape (6,): derivatives in the order of ``DERIVATIVES``.
     airspeed_m_s
-        Air speed of the derivatives. None: each manoeuvre's own air speed.
+        Air speed of the derivatives, m/s. None for each manoeuvre's own air speed.
     """
     slopes: dict[str, list[FloatArray]] = {}
     for one in flown[-MOST_INPUTS:]:
@@ -124,12 +126,13 @@ def missed_percent(
     Parameters
     ----------
     predicted, found
-        (6,) derivatives from the earlier manoeuvres, and from the manoeuvre itself, at ``airspeed_m_s``.
+        Shape (6,): derivatives from the earlier manoeuvres and from the manoeuvre itself, at
+        ``airspeed_m_s``.
 
     Returns
     -------
     float
-        Distance of the worst output. NaN where the input is unknown, or where a model diverges.
+        Largest distance over all outputs. NaN for an unknown input or a diverging model.
     """
     expected = response_to(flown, predicted, airspeed_m_s)
     actual = response_to(flown, found, airspeed_m_s)
@@ -142,7 +145,7 @@ def missed_percent(
 
 
 def measured(flown: CandidateManeuver) -> tuple[str, ...]:
-    """Return the outputs of ``PREDICTED`` that a manoeuvre's estimate uses."""
+    """Return the outputs of ``PREDICTED`` in a manoeuvre's estimate."""
     fits = flown.estimate.fits[0] if isinstance(flown.estimate, Estimate) else {}
     return tuple(name for name in PREDICTED if name in fits)
 
@@ -152,8 +155,8 @@ def response_to(
 ) -> Response | None:
     """Return the response from trim to a manoeuvre's input at the manoeuvre's speed.
 
-    The slopes are with respect to the derivatives at ``airspeed_m_s``. None where the input or a derivative
-    is unknown, or where the model diverges.
+    The slopes are with respect to the derivatives at ``airspeed_m_s``. None for an unknown input or
+    derivative, or for a diverging model.
     """
     if flown.maneuver is None or not np.all(np.isfinite(derivatives)):
         return None
@@ -174,7 +177,7 @@ def response_to(
 
 
 def trim_of(maneuver: Maneuver) -> float:
-    """Return the elevator before the first step, rad."""
+    """Return the elevator deflection before the first step, rad."""
     elevator, span = maneuver.channels["elevator"], maneuver.span
     lead = elevator.cut(span.record_from_s, span.start_s)
     return float(np.nanmedian(lead.y if len(lead) else elevator.y[:1]))
@@ -187,10 +190,11 @@ def _airspeed(maneuver: Maneuver) -> float | None:
 
 
 def _horizon(command: Signal, derivatives: tuple[float, ...]) -> float:
-    """Return the time to which a response is compared. The horizon of a diverging model is the time in which
-    a deviation doubles.
+    """Return the length of time over which a response is compared, s. For a diverging model this is the time
+    in which a deviation doubles.
 
-    The pilot of an unstable aircraft corrects within that time. A longer open loop means nothing.
+    The pilot of an unstable aircraft corrects its motion within that time. A longer open-loop response is not
+    meaningful.
     """
     z_alpha, z_q, _, m_alpha, m_q, _ = derivatives
     trace, determinant = z_alpha + m_q, z_alpha * m_q - (1.0 + z_q) * m_alpha
@@ -204,8 +208,7 @@ def _horizon(command: Signal, derivatives: tuple[float, ...]) -> float:
 
 @lru_cache(maxsize=_REMEMBERED)
 def _respond(t: bytes, elevator: bytes, servo: Servo, derivatives: tuple[float, ...]) -> Response | None:
-    """Return the response to an elevator, whose stamps and deflections are given as bytes so that results can
-    be cached."""
+    """Return the response to an elevator command, given as bytes so that results can be cached."""
     command = Signal(np.frombuffer(t), np.frombuffer(elevator))
     moments = np.linspace(command.t[0], _horizon(command, derivatives), MOMENTS)
     still = Signal(moments, np.zeros(MOMENTS))

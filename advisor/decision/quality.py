@@ -1,13 +1,13 @@
-"""Objections to a single manoeuvre, before any rule compares the manoeuvre with others.
+"""Objections to a single manoeuvre, before any rule compares it with other manoeuvres.
 
-The checks run in this order: complete data, sound instruments, within the model, long enough, rich enough,
-well explained. The first reason is the one that the crew can act on. Reasons that follow from the first
-reason come after the first. One walk examines every axis; what an axis asks is data (``decision.axes``).
+The checks are, in order: complete data, sound instruments, model limits, length, information, fit. The crew
+can act on the first reason. Reasons that follow from the first reason come after it. One function examines
+every axis, with data from the axis (``decision.axes``).
 
-Richness is information, not amplitude: the precision with which the estimate from this manoeuvre alone
-predicts the response to its own input. Moving air, a slow channel, a missing vane or a gentle input all
-lower that precision. Where the input has a good shape, more stick is the remedy. Standard deviations fall
-with the amplitude, so that the reason states the factor.
+Information means the precision with which the manoeuvre's own estimate predicts the response to its input.
+Moving air, a slow channel, a missing vane or a gentle input lower that precision. With a well shaped input,
+more stick is the remedy. Standard deviations are inversely proportional to the amplitude, so the reason
+states the factor.
 """
 
 import math
@@ -37,25 +37,25 @@ from advisor.words.quantiles import NORMAL_95
 
 WIDEST_PREDICTION_PERCENT = 25.0
 """Largest half-width of the predicted rate's 95 % band, % of its peak. A standard deviation of 12 % in M_δe
-alone gives 24. Real records that two halves of a campaign agree on have 9 to 21."""
+alone gives 24 %. Real records that agree between two halves of a campaign have 9 to 21 %."""
 
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """An output that the input of a control moves, and the least response that a test needs."""
+    """An output that a control's input moves, and the least response for a test."""
 
     output: str
     said: str
     unit: str
     handle: str
-    """Handle of the pilot: the stick for the elevator, else the control."""
+    """Control in the pilot's hand: the stick for the elevator, otherwise the control's name."""
     least_signal: float = 12.0
-    """Least ratio of the response's peak to the white part of its noise."""
+    """Least ratio of the response's peak to the white part of the output's noise."""
     least_r2: float = 0.85
-    """Least share of the response that the model must explain, without white noise."""
+    """Least share of the response that the model must explain, after removal of white noise."""
 
     def factor(self, maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> float:
-        """Return by which factor the response is too small, above 1 where it is."""
+        """Return the factor by which the response is too small, above 1 if it is."""
         peak = half_range(maneuver, self.output)
         channel = maneuver.channels[self.output].y
         noise = white_part(fits[self.output].residual if self.output in fits else channel)
@@ -67,41 +67,42 @@ class Response:
 
 @dataclass(frozen=True, slots=True)
 class Examined:
-    """A manoeuvre, with what its axis asks of it."""
+    """A manoeuvre with the requirements of its axis."""
 
     maneuver: Maneuver
     aircraft: Aircraft
     estimate: Estimate | NoEstimate
-    """Estimate from this manoeuvre alone, or the reason for its absence."""
+    """Estimate from this manoeuvre alone, or the reason for a missing estimate."""
     period_s: float
     """Natural period of the motion, estimated or assumed, s."""
     needed: tuple[str, ...]
-    """Channels without which nothing can be said."""
+    """Channels without which no manoeuvre can be judged."""
     responses: tuple[Response, ...]
-    """Channels that respond to the controls flown. The rate that the control moves directly comes first."""
+    """Outputs that respond to the moved controls. The rate that the control moves directly comes first."""
     determined: tuple[str, ...]
     """Derivatives that a test of the moved controls determines."""
     bands: tuple[str, ...]
-    """Outputs whose prediction is narrow after a test that determines its axis."""
+    """Outputs whose prediction must be precise if the test determines its axis."""
     outside: tuple[Reason, ...]
-    """Reasons for leaving the limits of the model."""
+    """Reasons for exceeded limits of the model."""
     quick: tuple[Reason, ...] = ()
-    """Reason for steps that the aircraft does not follow."""
+    """Reasons for steps too short for the aircraft."""
     findings: tuple[InstrumentFinding, ...] = ()
     """Findings of the fit about the instruments."""
     lacks: Callable[[], Iterable[Reason]] = tuple
-    """Returns the reasons by moments that the model leaves out."""
+    """Function that returns reasons for moments that the model omits."""
     modes_alone: tuple[Reason, ...] | None = None
-    """Reasons where a record determines no derivative. None: this test determines at least one derivative."""
+    """Reasons for a record that determines no derivative. None if the test determines at least one
+    derivative."""
 
     @property
     def rates(self) -> Mapping[str, Response]:
-        """Rate of each control, by what the pilot moves."""
+        """Response of the angular rate to each control, by the control in the pilot's hand."""
         return {one.handle: one for one in reversed(self.responses)}
 
 
 def objections(x: Examined) -> tuple[Reason, ...]:
-    """Return objections to a manoeuvre, the most important first; empty for one that the rules may judge."""
+    """Return objections to a manoeuvre, the most important first; empty for one that the rules can judge."""
     maneuver, estimate = x.maneuver, x.estimate
     fits = estimate.fits[0] if isinstance(estimate, Estimate) else {}
     reasons = [*incomplete(maneuver, x.needed, x.period_s, fits), *x.outside]
@@ -131,7 +132,7 @@ def objections(x: Examined) -> tuple[Reason, ...]:
 
 
 def refusals(findings: Iterable[InstrumentFinding]) -> tuple[Reason, ...]:
-    """Return a reason for every contradiction of an instrument that no estimate allows for."""
+    """Return a reason for every contradiction of an instrument that no estimate corrects."""
     return tuple(
         Reason(
             f.code, f"{f.text}; {f.fix}", f.value if isinstance(f.value, float) else math.nan,
@@ -142,10 +143,10 @@ def refusals(findings: Iterable[InstrumentFinding]) -> tuple[Reason, ...]:
 
 
 def is_informed(x: Examined) -> bool:
-    """Return whether a manoeuvre determines its axis, whatever the shape of its end.
+    """Return whether a manoeuvre determines its axis, even with a short free response.
 
-    The predicted outputs' bands are narrow, and the intervals of stiffness, damping and control exclude zero.
-    Without a free response these intervals are wider, and a short tail that they allow does no harm.
+    The outputs' bands must be narrow, and the intervals of stiffness, damping and control must exclude zero.
+    A short free response widens these intervals, and does no harm if they remain narrow enough.
     """
     found = x.estimate
     if isinstance(found, NoEstimate) or not x.bands or not found.prediction:
@@ -159,7 +160,7 @@ def is_informed(x: Examined) -> bool:
 
 
 def _too_gentle(x: Examined, fits: Mapping[str, ChannelFit]) -> list[Reason]:
-    """Return a reason where the response hardly exceeds the noise: of every control, and in any output."""
+    """Return a reason if the response hardly exceeds the noise, in any output and for every control."""
     seen = x.responses if fits else tuple(x.rates.values())
     wanting: dict[str, tuple[float, Response]] = {}
     for response in seen:
@@ -180,7 +181,7 @@ def _too_gentle(x: Examined, fits: Mapping[str, ChannelFit]) -> list[Reason]:
 
 
 def _badly_explained(x: Examined, estimate: Estimate) -> list[Reason]:
-    """Return a reason where residuals are not noise, so that the model does not hold for the manoeuvre.
+    """Return a reason if residuals are not noise, because the model is not valid for the manoeuvre.
 
     In moving air the angle of attack of a vane shows the air, which no model of the aircraft explains.
     """
@@ -202,7 +203,7 @@ def _badly_explained(x: Examined, estimate: Estimate) -> list[Reason]:
 
 
 def _poor(x: Examined, estimate: Estimate) -> list[Reason]:
-    """Return a reason where an estimate predicts too little of its own response."""
+    """Return a reason if an estimate predicts its own response too imprecisely."""
     if x.modes_alone is not None:
         return list(x.modes_alone)
     bands = {name: estimate.prediction.get(one.output, math.inf) for name, one in x.rates.items()}
@@ -221,7 +222,7 @@ def _poor(x: Examined, estimate: Estimate) -> list[Reason]:
 
 
 def _mended(maneuver: Maneuver, reasons: list[Reason]) -> list[Reason]:
-    """Return the reasons with the remedy of a faulty channel in place of a larger input."""
+    """Return the reasons with the remedy of a faulty channel instead of a larger input."""
     if not maneuver.distrusts:
         return reasons
     wrong = maneuver.distrusts[0]
@@ -229,7 +230,7 @@ def _mended(maneuver: Maneuver, reasons: list[Reason]) -> list[Reason]:
 
 
 def half_range(maneuver: Maneuver, name: str) -> float:
-    """Return half the range of a channel during the manoeuvre."""
+    """Return half of a channel's range during the manoeuvre."""
     y = flown(maneuver, name)
     return float(np.ptp(y)) / 2.0 if len(y) else 0.0
 
@@ -242,6 +243,5 @@ def white_part(values: FloatArray) -> float:
 
 
 def _times(factor: float) -> str:
-    """Return the advised factor on the amplitude: a tenth more than needed, rounded to a size that a hand can
-    fly."""
+    """Return the advised factor on the amplitude: a tenth more than needed, rounded for a hand."""
     return f"{min(5.0, max(1.2, 1.1 * factor)):.1f} times"

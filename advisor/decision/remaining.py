@@ -1,4 +1,4 @@
-"""Expected number of further manoeuvres, for each rule, if the next ones give the expected information."""
+"""Expected number of further manoeuvres for each rule, from the expected information."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,14 +19,14 @@ from advisor.words.quantiles import NORMAL_95
 
 @dataclass(frozen=True, slots=True)
 class Share:
-    """Successes among trials, with a prior of nine successes in ten."""
+    """Share of successes among trials, with a prior of nine successes in ten."""
 
     hits: int
     misses: int
 
     @property
     def mean(self) -> float:
-        """Expected share."""
+        """Mean of the share's posterior."""
         return (self.hits + 9.0) / (self.hits + self.misses + 10.0)
 
     def draw(self, rng: np.random.Generator) -> FloatArray:
@@ -36,30 +36,30 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Odds:
-    """Record of a campaign's manoeuvres."""
+    """Shares of usable and of predicted manoeuvres in a campaign."""
 
     usable: Share
     predicted: Share
-    """Share of usable manoeuvres that the earlier ones predicted."""
+    """Share of usable manoeuvres that the earlier manoeuvres predicted."""
 
 
 MOST = 50
-"""Largest number of further manoeuvres that is predicted. Beyond it there is no end in sight."""
+"""Largest number of further manoeuvres that is predicted. Above this number no end is in sight."""
 _DRAWS = 400
 
 
 def by_information(known: Knowledge, next_covariance: FloatArray, odds: Odds) -> Remaining:
-    """Return the number of further manoeuvres until every tolerance is met and the newest manoeuvre is
-    predicted, by simulation.
+    """Return the simulated number of further manoeuvres until every tolerance is met and the newest one is
+    predicted.
 
     Parameters
     ----------
     known
-        Present knowledge.
+        Present knowledge of the aircraft.
     next_covariance
-        (8, 8) covariance of the errors expected from each further manoeuvre.
+        Shape (8, 8): covariance of the expected errors of each further manoeuvre.
     odds
-        Record of this campaign: how many of its manoeuvres were usable, and how many were predicted.
+        Numbers of usable and of predicted manoeuvres in this campaign.
     """
     good = 1 if np.isnan(known.surprise) or not known.predicted else 0
     while good <= MOST and share_after(known, next_covariance, good) >= 1.0:
@@ -82,7 +82,7 @@ def until_usable(needed: int, usable: Share) -> Remaining:
 
 
 def _told(flights: FloatArray | IntArray) -> Remaining:
-    """Return the forecast from draws of the number of further manoeuvres, shape (draws,)."""
+    """Return the forecast from simulated numbers of further manoeuvres, shape (draws,)."""
     median, p90 = np.quantile(flights, [0.5, 0.9], method="higher")
     return Remaining(*(int(n) if n <= MOST else None for n in (median, p90)))
 
@@ -90,7 +90,7 @@ def _told(flights: FloatArray | IntArray) -> Remaining:
 def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> float:
     """Return the largest uncertainty over its tolerance after ``more`` manoeuvres of ``next_covariance``.
 
-    Trims and the constants that hold them belong to each manoeuvre: only their variances add up.
+    Trims and constants belong to each manoeuvre, so only their variances add up.
     """
     inside = np.ix_(DERIVATIVES, DERIVATIVES)
     information = known.posterior.information + more * information_of(next_covariance[inside])
@@ -107,17 +107,17 @@ def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> flo
 def by_scatter(
     window: FloatArray, posterior: Posterior, next_std: FloatArray, plan: CampaignPlan, accepted_share: float
 ) -> Remaining:
-    """Return the number of further manoeuvres until the scatter of the last n accepted ones is low enough, by
-    simulation.
+    """Return the simulated number of further manoeuvres until the last n accepted ones scatter little enough.
 
     Parameters
     ----------
     window
-        (k, 8) last accepted estimates. At most n - 1 of the last estimates stay in the next window.
+        Shape (k, 8): estimates of the last accepted manoeuvres. At most n - 1 of these estimates remain in
+        the next window.
     posterior
         Values about which the next estimates scatter, with their errors.
     next_std
-        (8,) standard deviations of that scatter.
+        Shape (8,): standard deviations of that scatter.
     accepted_share
         Share of manoeuvres that the rule accepts.
     """
@@ -138,22 +138,21 @@ def by_scatter(
 
 
 def odds_of(history: Sequence[CandidateManeuver], course: CriterionCourse) -> Odds:
-    """Return how many manoeuvres of a campaign were usable, and how many usable ones the earlier manoeuvres
-    predicted."""
+    """Return the numbers of usable and of predicted manoeuvres in a campaign."""
     usable = usable_ones(history)
     told = [course.standing(usable[:k]).predicted for k in range(2, len(usable) + 1)]
     return Odds(Share(len(usable), len(history) - len(usable)), Share(sum(told), len(told) - sum(told)))
 
 
 def errors_as_flown(usable: Sequence[CandidateManeuver], widening: float) -> FloatArray:
-    """Return the covariance of a manoeuvre with the mean information of those flown, shape (8, 8).
+    """Return the covariance of a manoeuvre with the mean information of the flown ones, shape (8, 8).
 
     Parameters
     ----------
     usable
-        Usable manoeuvres so far, at least one.
+        Usable manoeuvres so far; at least one.
     widening
-        Variance ratio by which the manoeuvres scatter more than their stated errors.
+        Ratio of the manoeuvres' scatter to their stated variances.
     """
     information = np.mean([information_of(e.own_covariance) for e in estimates_of(usable)], axis=0)
     return np.asarray(widening * covariance_of(information))

@@ -36,11 +36,11 @@ def flight_test(
     Parameters
     ----------
     aircraft
-        Gives the limits of the next input.
+        Aircraft file, which gives the limits of the next input.
     course
-        Keeps results of earlier decisions, and changes no verdict.
+        Cache of earlier decisions, which changes no verdict.
     heard
-        What the crew heard after each earlier manoeuvre.
+        Criterion that the crew heard after each earlier manoeuvre.
     """
     course = course or CriterionCourse(plan)
     by_rule: dict[str, RuleProgress] = {
@@ -73,7 +73,7 @@ def progress(
     plan: CampaignPlan,
     course: CriterionCourse | None = None,
 ) -> RuleProgress:
-    """Return one rule's stop criterion after each manoeuvre. ``course`` is explained in ``flight_test``."""
+    """Return one rule's stop criterion after each manoeuvre. ``course`` is the cache of ``flight_test``."""
     course = course or CriterionCourse(plan)
     limit = limit_percent(rule, plan)
     values: list[float | None] = []
@@ -108,9 +108,9 @@ def progress(
 
 
 def _weighed(history: Sequence[CandidateManeuver], rule: Rule) -> list[bool]:
-    """Return which manoeuvres enter a rule's criterion.
+    """Return whether each manoeuvre is part of a rule's criterion.
 
-    The rule ``information`` uses all usable manoeuvres, because this rule detects contradictions.
+    The rule ``information`` uses all usable manoeuvres, because it detects contradictions itself.
     """
     if rule == "information":
         return [flown.usable is not None for flown in history]

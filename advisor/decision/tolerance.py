@@ -1,4 +1,4 @@
-"""Tolerance of each parameter: the crew's percentage, and its replacement near zero."""
+"""Tolerance of each parameter: the crew's percentage, or its replacement near zero."""
 
 from collections.abc import Mapping
 
@@ -11,34 +11,35 @@ from advisor.decision.prediction import Prediction
 from advisor.flight.signals.messages import FloatArray
 
 NEAR_ZERO = 3.0
-"""Multiple of the prediction's tolerance below which a derivative's whole effect counts as near zero."""
+"""Multiple of the prediction's tolerance below which a derivative's whole effect is near zero."""
 
 SHARE = 2.0
 """Tolerance of a derivative as a multiple of the prediction's tolerance.
 
 An error of 5 to 9 % in M_alpha alone moves the response by 5 % of its peak; in Z_alpha, 7 to 13 %. The
 percentages are from three flights of a real autopilot and from a research jet. The frequency changes with
-the square root of the stiffness. M_delta_e scales the whole response, so that the prediction's band limits
-M_delta_e more closely.
+the square root of the stiffness. M_delta_e scales the whole response, so the prediction's band limits its
+error more strictly.
 """
 LEAST = 1e-12
-"""Least tolerance, in any unit. Data without noise would give a tolerance of zero."""
+"""Least tolerance, in any unit. Data without noise would otherwise give a tolerance of zero."""
 
 
 def tolerances(theta: FloatArray, prediction: Prediction, plan: CampaignPlan) -> FloatArray:
-    """Return the tolerance of each parameter for the half-width of its 95 % interval.
+    """Return the tolerance for each parameter's 95 % half-width.
 
-    The tolerance is the larger of two numbers. One is ``SHARE`` times ``plan.tolerance_percent`` of the
-    parameter. The other is the change that moves the frequency or the damping of the short period by
-    ``plan.tolerance_percent``. A share of a derivative near zero would be smaller than any change that
-    matters. So there the tolerance is δ, the change that alone moves the predicted response by its tolerance.
-    δ fades linearly until the derivative reaches 3·δ. An entry of ``plan.tolerance`` replaces the computed
-    tolerance. Noise does not enter: a poor manoeuvre must not widen a tolerance.
+    The tolerance is the larger of two numbers. The first number is ``SHARE`` times ``plan.tolerance_percent``
+    of the parameter. The second is the change that alters the short period's frequency or damping by
+    ``plan.tolerance_percent``. For a derivative near zero, a share of its value would be smaller than any
+    relevant change. Near zero the tolerance is δ, the change that alone moves the response by its tolerance.
+    δ fades linearly up to 3·δ. An entry of ``plan.tolerance`` replaces the computed tolerance. Noise is not
+    included, because a bad manoeuvre must not widen a tolerance.
 
     Returns
     -------
     FloatArray
-        Shape (8,), in each parameter's unit. Infinite for a derivative on which no response depends.
+        Shape (8,): tolerance in each parameter's unit. The tolerance is infinite for a derivative without
+        effect on the response.
     """
     size = np.abs(theta)
     tolerance: FloatArray = 0.01 * plan.tolerance_percent * SHARE * size
@@ -58,8 +59,8 @@ def tolerances(theta: FloatArray, prediction: Prediction, plan: CampaignPlan) ->
 def _moving_the_short_period(theta: FloatArray) -> Mapping[str, float]:
     """Return the change of each derivative that makes a relative change of 1 in the frequency or the damping.
 
-    ω² = Z_α·M_q - (1 + Z_q)·M_α and 2·ζ·ω = -(Z_α + M_q). Where M_q is a small part of the damping, a large
-    change of M_q matters little.
+    ω² = Z_α·M_q - (1 + Z_q)·M_α and 2·ζ·ω = -(Z_α + M_q). If M_q is a small part of the damping, even a large
+    change of M_q has little effect.
     """
     z_alpha, z_q, m_alpha, m_q = (theta[PARAMETERS.index(n)] for n in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
     damping = abs(z_alpha + m_q)

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from advisor.decision.inputs import StepInput
 
 INFORMATION_LIMIT_PERCENT = 100.0
-"""Limit of the rule ``information``, whose criterion counts in percent of the tolerance."""
+"""Limit of the rule ``information``, whose criterion is in percent of the tolerance."""
 
 
 def limit_percent(rule: Rule, plan: CampaignPlan) -> float:
@@ -19,24 +19,23 @@ def limit_percent(rule: Rule, plan: CampaignPlan) -> float:
 
 
 UNTRUSTED = frozenset({"missing", "frozen"})
-"""Codes of reasons for a faulty channel. No other finding from such data is reported."""
+"""Codes of reasons for a faulty channel. No other finding from a faulty channel is reported."""
 NO_CURE_BY_INPUT = UNTRUSTED | {"rate", "gap", "advisor_down", "clock"}
-"""Codes of reasons that no input remedies. With such a reason no other input is advised."""
+"""Codes of reasons that no input can remedy. With such a reason the advice names no other input."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reason:
-    """Reason for not accepting a manoeuvre: a number, its limit, and the remedy."""
+    """Reason against a manoeuvre: a number, its limit, and the remedy."""
 
     code: str
-    """Stable identifier: ``bank``, ``amplitude``, ``information``, ``fit``, ``rate``, ``gap``, ``cost``,
-    ..."""
+    """Stable identifier of the reason, such as ``bank``, ``amplitude``, ``information`` or ``fit``."""
     text: str
-    """Sentence for pilots, with the remedy."""
+    """Sentence about the reason for pilots, with the remedy."""
     value: float
     limit: float
     by_instrument: bool = False
-    """Whether an instrument is to blame, so that no other flying is a remedy."""
+    """Whether an instrument is the cause, so that other flying is no remedy."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +44,7 @@ class RuleResult:
 
     accepted: bool
     limit: float | None
-    """Limit of the cost J. None where the rule had no earlier manoeuvre to compare with."""
+    """Limit of the cost J. None if the rule had no earlier manoeuvre for comparison."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,53 +53,54 @@ class ManeuverVerdict:
 
     accepted: bool
     sentence: str
-    """One line that a pilot can act on, e.g. ``REPEAT: too gentle, ...``."""
+    """One line for a pilot, such as ``REPEAT: too gentle, ...``."""
     reasons: tuple[Reason, ...]
     """Reasons against the manoeuvre, the most important first; empty for an accepted one."""
     rules: Mapping[str, RuleResult]
-    """Rule name to the rule's own result, whichever rule decides."""
+    """Result of each rule for the manoeuvre, by the rule's name, whichever rule decides."""
     cautions: tuple[str, ...] = ()
-    """Remarks that do not reject the manoeuvre: provenance of alpha, lags, ..."""
+    """Remarks that do not reject the manoeuvre, such as the provenance of alpha."""
 
 
 @dataclass(frozen=True, slots=True)
 class RuleProgress:
-    """Stop criterion under one rule."""
+    """Progress of the stop criterion under one rule."""
 
     stopped_at: int | None
-    """Number of manoeuvres at the first stop of this rule that the crew heard. None: no stop yet."""
+    """Number of manoeuvres at the first stop of this rule that the crew heard. None without a stop."""
     history_percent: tuple[float | None, ...]
-    """Criterion after each manoeuvre, as the crew heard it. None while the manoeuvres are too few for the
-    rule; on roll and yaw also after the stop."""
+    """Criterion after each manoeuvre, as the crew heard it. None with too few manoeuvres for the rule; for
+    roll and yaw also after the stop."""
     limit_percent: float = 25.0
     """Limit of the criterion: 25 % of Eq. (12), or 100 % of the tolerance for ``information``."""
     prediction_percent: Mapping[str, float | None] = field(default_factory=dict)
-    """Under ``information``: output to the 95 % band of its prediction, % of its peak. None: unknown."""
+    """Half-width of each output's 95 % band under ``information``, % of its peak, by the output's name. None
+    if unknown."""
     parameter_percent: Mapping[str, float | None] = field(default_factory=dict)
-    """Under ``information``: named parameter to its 95 % half-width, % of its own tolerance."""
+    """95 % half-width of each named parameter under ``information``, % of its tolerance, by name."""
     now_percent: float | None = None
-    """Criterion now, by the newest estimates. None: the rule has no value yet."""
+    """Present criterion from the newest estimates. None if the rule has no value yet."""
     hindsight_percent: tuple[float | None, ...] = ()
-    """Criterion after each manoeuvre by the newest estimates. Empty where no past is computed anew."""
+    """Criterion after each manoeuvre, recomputed from the newest estimates. Empty if earlier values are not
+    recomputed."""
     hindsight_stopped_at: int | None = None
-    """Number of manoeuvres at the first stop in hindsight. None: no stop."""
+    """Number of manoeuvres at the first stop of the recomputed criterion. None without a stop."""
     holds: bool = False
     """Whether the stop criterion holds now."""
 
     @property
     def percent_of_limit(self) -> tuple[float | None, ...]:
-        """Criterion after each manoeuvre as the crew heard it, in per cent of the rule's limit, the one scale
-        of all rules."""
+        """Criterion after each manoeuvre as the crew heard it, in per cent of the rule's limit."""
         return tuple(map(self._of_limit, self.history_percent))
 
     @property
     def now_percent_of_limit(self) -> float | None:
-        """Criterion by the newest estimates, in per cent of the rule's limit; None without a value."""
+        """Criterion from the newest estimates, in per cent of the rule's limit; None without a value."""
         return self._of_limit(self.now_percent)
 
     @property
     def hindsight(self) -> str:
-        """Sentence on a criterion that differs in hindsight; empty where it agrees with what was heard."""
+        """Sentence about a recomputed criterion that differs from the heard one; empty if both agree."""
         again, heard = (
             tuple("–" if v is None else f"{v:.1f}" for v in values)
             for values in (self.hindsight_percent, self.history_percent)
@@ -117,14 +117,14 @@ class RuleProgress:
 
 @dataclass(frozen=True, slots=True)
 class Remaining:
-    """Expected number of further manoeuvres. None: no end in sight."""
+    """Expected number of further manoeuvres. None if no end is in sight."""
 
     median: int | None
     p90: int | None
 
     @property
     def spoken(self) -> str:
-        """Expectation as a pilot hears it: ``about 2 more, 9 times in 10 at most 4``."""
+        """Forecast as spoken to a pilot: ``about 2 more, 9 times in 10 at most 4``."""
         if self.median is None:
             return "no end in sight"
         at_most = f", 9 times in 10 at most {self.p90}" if self.p90 is not None else ""
@@ -136,19 +136,19 @@ class NextInput:
     """Next input to fly."""
 
     advice: str
-    """Advice as a pilot hears it: ``next: reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
+    """Advice as spoken to a pilot: ``next: reverse 3-2-1-1, 0.4 s steps, 60 % stick``."""
     remaining: Remaining | None
-    """Expected number of further manoeuvres; None while no manoeuvre was usable."""
+    """Expected number of further manoeuvres; None before a usable manoeuvre."""
     holding_back: str | None = None
-    """Parameter, or output of a prediction, that delays the stop."""
+    """Name of the parameter or predicted output that delays the stop."""
     input: "StepInput | None" = None
-    """Input that the advice names; None where the advice names none."""
+    """Input in the advice; None if the advice names none."""
     travel_rad: float | None = None
     """Elevator travel of 100 % stick, rad; None without an input."""
 
     @property
     def foretold(self) -> str:
-        """How many more are expected, as a pilot hears it; empty while nothing foretells it."""
+        """Expected number of further manoeuvres as spoken to a pilot; empty without a forecast."""
         return self.remaining.spoken if self.remaining is not None else ""
 
 
@@ -165,6 +165,6 @@ class FlightTestVerdict:
     by_rule: Mapping[str, RuleProgress] = field(default_factory=dict)
     next: NextInput | None = None
     warnings: tuple[str, ...] = ()
-    """Warnings: a change between manoeuvres, a criterion that cannot fall, ..."""
+    """Warnings, such as a change between manoeuvres or a criterion that cannot fall."""
     evidence: tuple[str, ...] = ()
     """Numbers of the rule ``information``, one line each, whichever rule decides."""

@@ -1,4 +1,4 @@
-"""Warnings in addition to the criterion: it no longer holds, cannot fall, or locks manoeuvres out."""
+"""Warnings about the criterion: it no longer holds, cannot fall, or excludes manoeuvres."""
 
 from collections.abc import Sequence
 
@@ -21,14 +21,14 @@ from advisor.words.quantities import symbol
 def warnings(
     history: Sequence[CandidateManeuver], chosen: RuleProgress, change: Change | None, course: CriterionCourse
 ) -> tuple[str, ...]:
-    """Return sentences on facts that the criterion alone does not show.
+    """Return sentences about facts that the criterion alone does not show.
 
     Parameters
     ----------
     chosen
         Progress of the rule that decides.
     change
-        Change between manoeuvres; None where noise explains all differences.
+        Change between manoeuvres; None if noise explains all differences.
     """
     plan, found = course.plan, []
     if chosen.stopped_at is not None and not chosen.holds:
@@ -55,8 +55,7 @@ def _left_out(history: Sequence[CandidateManeuver], course: CriterionCourse) -> 
 
 
 def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
-    """Return a warning where one manoeuvre's error is so large relative to a parameter that estimates always
-    scatter."""
+    """Return a warning if one manoeuvre's error alone makes the estimates scatter beyond the limit."""
     theta = window(accepted, plan)
     if theta is None or plan.criterion != "eq12":
         return []
@@ -76,7 +75,7 @@ def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
 
 
 def _locked_out(history: Sequence[CandidateManeuver], course: CriterionCourse) -> list[str]:
-    """Return a warning where usable manoeuvres in a row are refused for their cost alone."""
+    """Return a warning if several usable manoeuvres in a row are refused for their cost alone."""
     plan = course.plan
     accepted = [result.accepted for result in results_of(history, plan.rule)]
     refused = 0

@@ -1,1 +1,1 @@
-"""Demands of each axis of the aircraft on a manoeuvre, as data and formulas of its own motion."""
+"""Requirements of each axis on a manoeuvre, as data and formulas of the axis' motion."""

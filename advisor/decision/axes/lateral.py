@@ -1,7 +1,8 @@
-"""Demands of roll and yaw on a manoeuvre: records of aileron and rudder, their limits, and the Dutch roll.
+"""Requirements of roll and yaw on a manoeuvre: records of aileron and rudder, their limits, and the Dutch
+roll.
 
-A bank of up to 45 deg is the response, because the model keeps sin φ. The derivatives hold for one angle of
-attack and one air speed. The moments p·q and q·r are no part of the model.
+The response may bank by up to 45 deg, because the model contains sin φ. The derivatives hold for one angle of
+attack and one air speed. The moments p·q and q·r are not in the model.
 """
 
 import math
@@ -29,20 +30,21 @@ from advisor.words.digits import distinct_texts
 from advisor.words.quantiles import NORMAL_95
 
 BANK_DEG = 45.0
-"""Largest bank in a lateral manoeuvre, deg, where the aircraft file allows no more."""
+"""Largest bank in a lateral manoeuvre, deg, unless the aircraft file has a smaller limit."""
 ALPHA_CHANGE_DEG = 5.0
-"""Largest change of the angle of attack, half of its range, deg: as far as the lift is taken as linear."""
+"""Largest change of the angle of attack, half of its range, deg, for which the lift is taken as linear."""
 COUPLING = 0.2
 """Largest root mean square of the moments p·q and q·r, over that of the angular accelerations."""
 _USUAL_PERIOD_S = 2.0
-"""Period of the Dutch roll where no estimate gives one, s. Small aircraft have 1.8 s, jets 3.5 s."""
+"""Period of the Dutch roll without an estimate, s. Small aircraft have periods of 1.8 s, and jets of 3.5
+s."""
 RESPONSES = {
     "aileron": Response("p", "roll rate", "deg/s", "aileron"),
     "rudder": Response("r", "yaw rate", "deg/s", "rudder"),
 }
-"""Control to the output that shows its response."""
+"""Output that shows the response to each control."""
 _DETERMINED = {"aileron": ("L_p", "L_delta_a"), "rudder": ("N_beta", "N_r", "N_delta_r")}
-"""Control to the derivatives that its test determines."""
+"""Derivatives that a test of each control determines."""
 _TRIMMING = Reason(
     "information",
     "the movement determines no derivative, as a pilot's trimming; fly a doublet, from trim",
@@ -61,7 +63,7 @@ def judge_lateral(
     maneuver
         Manoeuvre as cut from the stream.
     estimate
-        Estimate from this manoeuvre alone, or the reason for its absence.
+        Estimate from this manoeuvre alone, or the reason for a missing estimate.
     """
     controls = [name for name in RESPONSES if name in maneuver.channels]
     outside = banked(maneuver, max(BANK_DEG, aircraft.limits.bank_deg), "less aileron, or shorter")
@@ -110,7 +112,7 @@ def _unsteady_alpha(maneuver: Maneuver) -> list[Reason]:
 
 
 def _pitching(maneuver: Maneuver) -> list[Reason]:
-    """Return a reason where the moments of pitching and rolling together are no longer small."""
+    """Return a reason if the moments of combined pitching and rolling are too large."""
     q, p, r = (maneuver.channels.get(name) for name in ("q", "p", "r"))
     if q is None or p is None or r is None:
         return []
@@ -133,9 +135,9 @@ def _rms(x: np.ndarray) -> float:
 
 
 def _modes_alone(maneuver: Maneuver, estimate: LateralEstimate) -> tuple[Reason, ...]:
-    """Return a reason where the frequency of the Dutch roll, all that a record tells, is known too poorly.
+    """Return a reason if the Dutch roll frequency, the only result of a record, is too uncertain.
 
-    A movement without the shape of a test that determines no derivative is a pilot's trimming.
+    A movement that is no test input and determines no derivative is a pilot's trimming.
     """
     if maneuver.span.kind == "other":
         return (_TRIMMING,)

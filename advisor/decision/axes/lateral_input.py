@@ -1,7 +1,6 @@
 """Advice on the next lateral manoeuvre: the control, the length of a step and the amplitude.
 
-The response is linear: bank and information follow from the input flown last, in proportion to the amplitude
-and to its square.
+Bank and information follow from the last input by linearity, with the amplitude and its square.
 """
 
 from collections.abc import Sequence
@@ -20,23 +19,23 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 
 FIRST_UNIT_S = 1.0
-"""Step of the first doublet, s, before any mode is known. The step lies between half a Dutch roll of a small
-aircraft (0.9 s) and half a Dutch roll of a jet (1.7 s). The step lasts at least two time constants of the
-roll of a small aircraft (0.1 s) and of a jet (0.5 s)."""
+"""Duration of the first doublet's step, s, before any mode is known. The duration lies between half a Dutch
+roll of a small aircraft (0.9 s) and of a jet (1.7 s). The duration is at least two roll time constants of a
+small aircraft (0.1 s) and of a jet (0.5 s)."""
 _CONTROLS = ("aileron", "rudder")
 
 
 @dataclass(frozen=True, slots=True)
 class FlownInput:
-    """An input that was flown, with its response."""
+    """A flown input with the aircraft's response."""
 
     control: str
-    """Control that moved most."""
+    """Control with the largest movement."""
     amplitude_rad: float
     bank_rad: float
-    """Largest bank."""
+    """Largest bank angle during the manoeuvre, rad."""
     remedy: str = ""
-    """Remedy that the first reason against the manoeuvre names; empty for an accepted one."""
+    """Remedy from the first reason against the manoeuvre; empty for an accepted one."""
 
     @classmethod
     def of(cls, maneuver: Maneuver, reasons: Sequence[Reason]) -> "FlownInput":
@@ -50,7 +49,7 @@ class FlownInput:
 
 
 def _amplitude(maneuver: Maneuver, name: str) -> float:
-    """Return the largest deviation from the level before the input, rad."""
+    """Return the largest deviation of a control from its level before the input, rad."""
     channel = maneuver.channels.get(name)
     if channel is None or not len(channel):
         return 0.0
@@ -65,16 +64,16 @@ def next_lateral(
     aircraft: Aircraft,
     holding_back: str,
 ) -> NextInput:
-    """Return the next input.
+    """Return the next lateral input.
 
     Parameters
     ----------
     control
-        Control that the knowledge lacks.
+        Control whose derivatives are least known.
     percent
-        Error of the worst derivative of this control, % of its tolerance; infinite while unknown.
+        Error of the worst derivative of this control, % of its tolerance; infinite if unknown.
     flown
-        All inputs so far, accepted or not.
+        All inputs so far, both accepted and refused.
     holding_back
         Derivative that delays the stop.
     """
@@ -92,9 +91,10 @@ def next_lateral(
 
 
 def _larger(before: FlownInput, percent: float, aircraft: Aircraft) -> float:
-    """Return the amplitude that meets the tolerance with one more manoeuvre, within the bank's limit.
+    """Return the amplitude that meets the tolerance with one more manoeuvre, within the bank limit.
 
-    Errors fall with the amplitude. A build-up goes step by step, and never by less than the amplitude flown.
+    The errors are inversely proportional to the amplitude. The amplitude is built up in steps, and never
+    below the flown amplitude.
     """
     factor = min(max(percent / INFORMATION_LIMIT_PERCENT, 1.0), BOLDER) if percent < inf else 1.0
     limit = ALPHA_MARGIN * max(BANK_DEG, aircraft.limits.bank_deg)
@@ -104,7 +104,7 @@ def _larger(before: FlownInput, percent: float, aircraft: Aircraft) -> float:
 
 
 def _unit_s(control: str, accepted: Sequence[LateralEstimate]) -> float:
-    """Return the length of a step: two time constants of the roll, or half a Dutch roll."""
+    """Return the duration of a step, s: two roll time constants, or half a Dutch roll."""
     modes = [one.modes for one in accepted]
     if control == "aileron":
         known = [2.0 * m.roll_time_constant.value for m in modes if m.roll_time_constant is not None]

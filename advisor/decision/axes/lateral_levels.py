@@ -1,9 +1,9 @@
-"""The lateral requirements of MIL-F-8785C, *Flying Qualities of Piloted Airplanes* (5 November 1980).
+"""Lateral requirements of MIL-F-8785C, *Flying Qualities of Piloted Airplanes* (5 November 1980).
 
-Paragraph 3.3.1.1 (Table VI) bounds frequency ω, damping ζ and ζ·ω of the Dutch roll from below.
-Paragraph 3.3.1.2 (Table VII) bounds the time constant of the roll mode from above.
-Paragraph 3.3.1.3 (Table VIII) bounds the time in which the spiral doubles the bank from below.
-Left out are ζ of 0.4 for air combat and ground attack, and the larger ζ·ω where ω²·|φ/β| exceeds 20 rad²/s².
+Paragraph 3.3.1.1 (Table VI) sets lower limits of frequency ω, damping ζ and ζ·ω of the Dutch roll. Paragraph
+3.3.1.2 (Table VII) sets an upper limit of the roll mode's time constant. Paragraph 3.3.1.3 (Table VIII) sets
+a lower limit of the time in which the spiral doubles the bank. Not included are ζ of 0.4 for air combat and
+ground attack, and the larger ζ·ω if ω²·|φ/β| exceeds 20 rad²/s².
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,35 +21,35 @@ GROUPS: Mapping[Group, str] = {
     "I, II-C, IV": "light or highly manoeuvrable aircraft",
     "II-L, III": "medium and heavy aircraft",
 }
-"""Classes with equal requirements, and their aircraft. Category A counts all of Class II as II-L."""
+"""Aircraft of each group of classes with equal requirements. Category A treats all of Class II as II-L."""
 Mode = Literal["dutch_roll", "roll", "spiral"]
 Least = tuple[float, ...]
-"""Least values of one level. Larger values of the quality are better."""
+"""Least values of the qualities for one level. Larger values of the quality are better."""
 
 _DUTCH: Mapping[Group, Mapping[Category, Least]] = {
     "I, II-C, IV": {"A": (0.19, 0.35, 1.0), "B": (0.08, 0.15, 0.4), "C": (0.08, 0.15, 1.0)},
     "II-L, III": {"A": (0.19, 0.35, 0.4), "B": (0.08, 0.15, 0.4), "C": (0.08, 0.10, 0.4)},
 }
-"""Level 1 of the Dutch roll: ζ, ζ·ω in rad/s, ω in rad/s."""
+"""Level 1 of the Dutch roll: least ζ, ζ·ω in rad/s, and ω in rad/s."""
 _DUTCH_BELOW: tuple[Least, Least] = ((0.02, 0.05, 0.4), (0.0, -inf, 0.4))
-"""Levels 2 and 3 of the Dutch roll, of every class and category."""
+"""Levels 2 and 3 of the Dutch roll, equal for every class and category."""
 _ROLL: Mapping[Group, Mapping[Category, Least]] = {
     "I, II-C, IV": {"A": (1.0, 1.4, 10.0), "B": (1.4, 3.0, 10.0), "C": (1.0, 1.4, 10.0)},
     "II-L, III": dict.fromkeys(CATEGORIES, (1.4, 3.0, 10.0)),
 }
-"""Largest time constant of the roll mode in the levels 1 to 3, s."""
+"""Largest time constant of the roll mode in levels 1 to 3, s."""
 _SPIRAL: Mapping[Category, Least] = {"A": (12.0, 8.0, 4.0), "B": (20.0, 8.0, 4.0), "C": (12.0, 8.0, 4.0)}
-"""Least time to double the bank in the levels 1 to 3, s."""
+"""Least time to double the bank in levels 1 to 3, s."""
 
 
 @dataclass(frozen=True, slots=True)
 class LateralLevels:
-    """Levels of one group of classes in one category of flight phases."""
+    """Levels of the lateral modes for one group of classes in one category of flight phases."""
 
     group: Group
     category: Category
     by_mode: Mapping[Mode, LevelFound]
-    """Level of every mode that the estimate tells."""
+    """Level of every mode in the estimate, by the mode's name."""
 
     @property
     def governing(self) -> LevelFound:
@@ -64,9 +64,9 @@ class LateralLevels:
 
 
 def lateral_levels(modes: LateralModes) -> tuple[LateralLevels, ...]:
-    """Return the levels by group of classes and category; empty where the estimate tells no mode.
+    """Return the levels by group of classes and category; empty for an estimate without modes.
 
-    The interval of ζ·ω is the product of the ends of both intervals, which is wider than 95 %.
+    The interval of ζ·ω is the product of both intervals' ends, which is wider than 95 %.
     """
     values = _values(modes)
     if not values:
@@ -83,9 +83,9 @@ def lateral_levels(modes: LateralModes) -> tuple[LateralLevels, ...]:
 
 
 def _values(modes: LateralModes) -> dict[Mode, tuple[Least, Least, Least]]:
-    """Return the values of each mode with the lower and the upper ends of their 95 % intervals.
+    """Return the value of each mode, with the lower and the upper end of its 95 % interval.
 
-    Signs are chosen so that larger is better: the time constant and the pole count as negative.
+    The time constant and the pole have a negative sign, so that a larger value is better.
     """
     found: dict[Mode, tuple[Least, Least, Least]] = {}
     zeta, omega = modes.dutch_roll_zeta, modes.dutch_roll_omega

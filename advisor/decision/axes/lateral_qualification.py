@@ -1,8 +1,8 @@
-"""The published tolerances of roll and yaw: 14 CFR Part 60, Appendix A, Table A2A, tests 2.d.2 and 2.d.7.
+"""Published tolerances of roll and yaw: 14 CFR Part 60, Appendix A, Table A2A, tests 2.d.2 and 2.d.7.
 
 Roll response (2.d.2): roll rate within 10 % or 2 °/s. Dutch roll (2.d.7): period within 10 %, and time to
-half amplitude within 10 % or damping ratio within 0.02. The table also allows 0.5 s of the period, which is
-a quarter of a small aircraft's. Neither this limit nor the time between peaks of bank and sideslip is
+half amplitude within 10 % or damping ratio within 0.02. The table's alternative of 0.5 s for the period is a
+quarter of a small aircraft's period. The 0.5 s limit and the time between peaks of bank and sideslip are not
 applied.
 """
 
@@ -16,45 +16,45 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 
 SHARE = 0.10
-"""Largest error of roll rate, period and time to half amplitude, over the value flown."""
+"""Largest error of roll rate, period and time to half amplitude, relative to the flown value."""
 RATE_DEG_S = 2.0
-"""Largest error of the roll rate, deg/s, where that is more than ``SHARE``."""
+"""Largest error of the roll rate, deg/s, if larger than ``SHARE`` of the flown roll rate."""
 DAMPING = 0.02
-"""Largest error of the damping ratio, where the time to half amplitude is not within ``SHARE``."""
+"""Largest error of the damping ratio, if the time to half amplitude is not within ``SHARE``."""
 _STEPS = 200
-"""Instants at which the roll rate is compared."""
+"""Number of instants at which the roll rates are compared."""
 
 
 @dataclass(frozen=True, slots=True)
 class LateralTest:
-    """One test of the table: the aircraft as flown, and as the simulator has it."""
+    """One test of the table, with the values of the aircraft and of the simulator."""
 
     entry: str
-    """Number in Table A2A."""
+    """Number of the test in Table A2A."""
     name: str
     unit: str
     flown: float
     simulated: float
     limit: float
-    """Largest difference, in ``unit``."""
+    """Largest allowed difference between aircraft and simulator, in ``unit``."""
 
     @property
     def holds(self) -> bool:
-        """Whether the difference is within its limit."""
+        """Whether the difference is within the limit of the table."""
         return abs(self.simulated - self.flown) <= self.limit
 
 
 def lateral_qualification(
     flown: FloatArray, simulated: FloatArray, trim: Trim, aileron_rad: float, step_s: float
 ) -> tuple[LateralTest, ...]:
-    """Return the tests of a simulator's derivatives against the estimate.
+    """Return the qualification tests of a simulator's derivatives against the estimated ones.
 
     Parameters
     ----------
     flown, simulated
-        (15,) derivatives in the order of ``LATERAL``.
+        Shape (15,): derivatives in the order of ``LATERAL``.
     aileron_rad, step_s
-        Size and duration of the aileron step of the roll response.
+        Size and duration of the aileron step for the roll response.
     """
     a_flown, a_simulated = state_matrix(flown, trim), state_matrix(simulated, trim)
     rates = [
@@ -70,9 +70,9 @@ def lateral_qualification(
 
 
 def dutch_roll_tests(flown: complex, simulated: complex) -> tuple[LateralTest, LateralTest]:
-    """Return period and damping of two Dutch rolls, given by their eigenvalues with positive imaginary part.
+    """Return the tests of period and damping for two Dutch rolls, given by their eigenvalues.
 
-    The damping is compared by the measure that allows the larger difference.
+    The damping is compared by the measure with the larger allowed difference.
     """
     period_s, half_s, damping = (
         [measure(value) for value in (flown, simulated)] for measure in (_period_s, _half_s, _damping)
@@ -89,7 +89,7 @@ def _period_s(value: complex) -> float:
 
 
 def _half_s(value: complex) -> float:
-    """Return the time to half amplitude, s; negative where the amplitude doubles in this time."""
+    """Return the time to half amplitude, s; negative for a growing oscillation."""
     return -log(2.0) / value.real if value.real else inf
 
 
@@ -103,9 +103,9 @@ def peak_roll_rate(theta: FloatArray, a: FloatArray, aileron_rad: float, step_s:
     Parameters
     ----------
     theta
-        (15,) derivatives.
+        Shape (15,): lateral derivatives.
     a
-        (4, 4) state matrix of these derivatives.
+        Shape (4, 4): state matrix of these derivatives.
     """
     value: Mapping[str, float] = dict(zip(LATERAL.names.reported, theta.tolist(), strict=True))
     b = aileron_rad * np.array([value["Y_delta_a"], value["L_delta_a"], value["N_delta_a"], 0.0])

@@ -1,6 +1,6 @@
-"""The lateral flight test: what the joint estimate tells, whether to stop, and what to fly next.
+"""The lateral flight test: knowledge from the joint estimate, stop, and next input.
 
-The joint estimate that every face shows is the one that decides.
+The joint estimate on all screens and pages also decides on the stop.
 """
 
 import math
@@ -32,18 +32,17 @@ JUDGED: Mapping[str, str] = {
     "N_beta": "rudder",
     "N_delta_r": "rudder",
 }
-"""Derivatives that must meet their tolerance, and the control whose input tells each best."""
+"""Control whose input determines each judged derivative best, by the derivative's name."""
 CHECKED = 2
-"""Least number of accepted manoeuvres that move each control. A single manoeuvre has no scatter: nine
-derivatives of a single rudder doublet were wrong by many of their errors."""
+"""Least number of accepted manoeuvres for each control. A single manoeuvre shows no scatter: nine derivatives
+of one rudder doublet were wrong by many standard errors."""
 _RULE: Rule = "information"
 NOT_FLOWN = "No test input of the aileron or the rudder has been flown."
-"""Sentence of a flight without a lateral manoeuvre."""
+"""Sentence about a flight without a lateral manoeuvre."""
 
 
 def shares_of(joint: LateralEstimate | None, tolerance_percent: float) -> Mapping[str, float]:
-    """Return each judged derivative's 95 % half-width in the joint estimate, % of its tolerance; infinite for
-    an unknown one."""
+    """Return each judged derivative's 95 % half-width, % of its tolerance; infinite if unknown."""
     shares = dict.fromkeys(JUDGED, math.inf)
     if joint is None:
         return shares
@@ -63,22 +62,22 @@ def lateral_flight_test(
     heard: Sequence[Heard] = (),
     change: Change | None = None,
 ) -> FlightTestVerdict:
-    """Return whether the lateral test may stop, and the next input.
+    """Return the verdict on the lateral test, with the next input.
 
     Parameters
     ----------
     history
-        Estimate of every manoeuvre in the order flown; None for one that was not accepted.
+        Estimate of every manoeuvre in the order flown; None for a refused manoeuvre.
     joint
         Joint estimate over the accepted manoeuvres.
     aircraft
-        The crew's aircraft file, with its tolerance.
+        Aircraft file of the crew, with its tolerance.
     flown
-        Inputs of all manoeuvres, accepted or not.
+        Inputs of all manoeuvres, both accepted and refused.
     heard
-        What the crew heard after each earlier manoeuvre.
+        Criterion that the crew heard after each earlier manoeuvre.
     change
-        Change of the aircraft between manoeuvres; None where noise explains all differences.
+        Change of the aircraft between manoeuvres; None if noise explains all differences.
     """
     accepted = [one for one in history if one is not None]
     shares = shares_of(joint, aircraft.campaign.tolerance_percent)
@@ -107,17 +106,17 @@ def lateral_flight_test(
 
 
 def _flown_fewer_than(n: int, accepted: Sequence[LateralEstimate]) -> list[str]:
-    """Return the controls that fewer than ``n`` accepted manoeuvres have moved."""
+    """Return the controls with fewer than ``n`` accepted manoeuvres."""
     return [name for name in LATERAL.inputs if sum(name in one.flown for one in accepted) < n]
 
 
 def _remaining(
     shares: Mapping[str, float], accepted: Sequence[LateralEstimate], flown: int
 ) -> Remaining | None:
-    """Return the expected number of further manoeuvres of a crew that flies on as it has flown.
+    """Return the expected number of further manoeuvres if the crew continues as it has flown.
 
-    The variance of a derivative falls with the number of manoeuvres that move its control. None while an
-    accepted manoeuvre of a control, or the error of a derivative, is lacking.
+    The variance of a derivative falls with the number of manoeuvres that move its control. None if a control
+    has no accepted manoeuvre, or a derivative no error.
     """
     needed = 0
     for control in LATERAL.inputs:

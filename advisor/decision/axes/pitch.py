@@ -1,4 +1,4 @@
-"""Demands of pitch on a manoeuvre: the elevator's record, its limits, and the period of its motion."""
+"""Requirements of pitch on a manoeuvre: the elevator's record, its limits, and the natural period."""
 
 import math
 from dataclasses import replace
@@ -30,7 +30,7 @@ _RESPONSES = (
 _DETERMINED = ("M_alpha", "M_q", "M_delta_e")
 _OTHERS = ("aileron", "rudder")
 NEEDED = ("elevator", "q")
-"""Channels without which nothing can be said of pitch."""
+"""Channels without which no pitch manoeuvre can be judged."""
 
 
 def judge_pitch(
@@ -43,7 +43,7 @@ def judge_pitch(
     maneuver
         Manoeuvre as cut from the stream.
     estimate
-        Estimate from this manoeuvre alone, or the reason for its absence.
+        Estimate from this manoeuvre alone, or the reason for a missing estimate.
     aircraft
         Limits and calibration of the aircraft.
     """
@@ -73,7 +73,7 @@ def judge_pitch(
 
 
 def outside(maneuver: Maneuver, aircraft: Aircraft) -> tuple[Reason, ...]:
-    """Return reasons for leaving the limits: bank, saturation, angle of attack, throttle, other controls."""
+    """Return reasons for exceeded limits: bank, saturation, angle of attack, throttle, other controls."""
     return (
         *banked(maneuver, aircraft.limits.bank_deg),
         *saturated(maneuver, "elevator", aircraft.elevator.ends_deg),
@@ -87,8 +87,8 @@ def outside(maneuver: Maneuver, aircraft: Aircraft) -> tuple[Reason, ...]:
 def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float:
     """Return the natural period of the short-period motion in s, 2π/ω with ω² = Z_α M_q − (1 + Z_q) M_α.
 
-    Without an estimate that predicts its own response, the period follows from the input, which crews match
-    to the aircraft. The period is 2.5 times the shortest step, or twice the median lobe of a multisine.
+    Without a valid estimate, the period follows from the input, which crews match to the aircraft. That
+    period is 2.5 times the shortest step, or twice the median lobe of a multisine.
     """
     if isinstance(estimate, Estimate) and _knows_the_motion(estimate):
         square = estimate.value("Z_alpha") * estimate.value("M_q")
