@@ -57,7 +57,7 @@ def compare_side(
     stated = tuple(
         ComparedDerivative(name, aircraft.model[name], own.agreeing(other))
         for name, own, other in zip(SIDE_PARAMETERS, *told, strict=True)
-        if name in aircraft.model and name not in model.not_identifiable
+        if name in aircraft.model and name not in {*model.not_identifiable, *seen.not_identifiable}
     )
     case = case_of(maneuvers, aircraft, model.theta)
     diagnosis = None if isinstance(case, NoEstimate) else diagnose_side(case, prior)
