@@ -1,1 +1,1 @@
-"""Simulators that a flight is compared with: a small protocol, and adapters to real programs."""
+"""Simulators for a comparison with a flight: a small protocol, and adapters to programs."""

@@ -1,4 +1,5 @@
-"""Derivatives found next to a user's simulator, which agree with the estimate of the same log."""
+"""Agreement of the derivatives from a comparison with a user's simulator with the estimate of the same
+log."""
 
 from dataclasses import replace
 
@@ -10,13 +11,14 @@ from advisor.words.quantities import PARAMETERS
 def agreeing(found: Diagnosis, logged: Estimate | NoEstimate) -> Diagnosis:
     """Return a diagnosis whose derivatives agree with an estimate within their 95 % intervals.
 
-    The estimate knows no simulator. Two readings of one log that differ by more than chance bound the error
-    of both. A derivative whose wider interval contains the simulator's value is not stated as changed.
+    The estimate is made without a simulator. A significant difference between two analyses of one log is a
+    lower bound of both errors. A derivative whose wider interval contains the simulator's value is not stated
+    as changed.
 
     Parameters
     ----------
     logged
-        Estimate of all manoeuvres together, as logged.
+        Estimate from all manoeuvres together, as logged.
     """
     if isinstance(logged, NoEstimate):
         return found

@@ -1,8 +1,8 @@
-"""The air in which a simulator flies a manoeuvre: its density and its wind.
+"""Air in which a simulator flies a manoeuvre: its density and its wind.
 
-A simulator computes forces with the true air speed V and the density ρ of its own standard atmosphere. The
-dynamic pressure ½·ρ·V² of the flight therefore needs two numbers. The first quantity is the true air speed.
-The other is the height at which the standard atmosphere has the density flown in.
+A simulator computes forces with the true air speed V and the density ρ of its own standard atmosphere. Two
+numbers therefore give the flight's dynamic pressure ½·ρ·V² in the simulator. The first number is the true air
+speed. The second number is the height at which the standard atmosphere has the flight's density.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,7 +19,7 @@ from advisor.words.problems import UnusableInputError
 def standard_heights(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Mapping[int, float | None]:
     """Return the height in the standard atmosphere with each manoeuvre's density, m, by manoeuvre number.
 
-    None stands for a manoeuvre with neither static pressure nor height above mean sea level.
+    None for a manoeuvre with neither static pressure nor height above mean sea level.
     """
     temperature_c = aircraft.reference.air_temperature_c
     return {m.number: air_flown([m], temperature_c).height_m for m in maneuvers}
@@ -28,8 +28,8 @@ def standard_heights(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Mappi
 def winds(maneuvers: Sequence[Maneuver]) -> Mapping[int, tuple[float, float]]:
     """Return the mean wind along and right of the heading before the first step, m/s, by manoeuvre number.
 
-    An autopilot's estimate follows a manoeuvre's own sideslip and air speed, so its course is not used.
-    Manoeuvres without an estimate are missing.
+    An autopilot's wind estimate also responds to sideslip and air speed, so its change within a manoeuvre is
+    not used. Manoeuvres without a wind estimate are missing.
     """
     found = {}
     for maneuver in maneuvers:
@@ -42,7 +42,7 @@ def winds(maneuvers: Sequence[Maneuver]) -> Mapping[int, tuple[float, float]]:
 
 
 def still_air_said(simulator: Simulator, winds: Mapping[int, tuple[float, float]]) -> tuple[str, ...]:
-    """Return a sentence where a simulator would take a wind and the log has none."""
+    """Return a sentence if a simulator could use a wind but the log has none."""
     if winds or "wind" not in simulator.takes:
         return ()
     return (f"The log has no estimate of the wind: {simulator.description} flies in still air.",)
@@ -54,7 +54,7 @@ def refuse_unknown_air(description: str, heights_m: Mapping[int, float | None]) 
     Raises
     ------
     UnusableInputError
-        A manoeuvre's height is None.
+        The height of a manoeuvre is unknown.
     """
     unknown = [number for number, height in heights_m.items() if height is None]
     if unknown:

@@ -1,4 +1,4 @@
-"""Effects around a simulator: between command and surface before it, and in the instruments behind it."""
+"""Effects around a simulator: on the command before it, and in the instruments after it."""
 
 import numpy as np
 
@@ -7,26 +7,26 @@ from advisor.gap.simulator.layout import EFFECT_ENTRIES, INDEX, SKEWS
 from advisor.oem.lag import lagged
 
 COMMAND = EFFECT_ENTRIES[: EFFECT_ENTRIES.index("M_delta2")]
-"""Entries between command and surface."""
+"""Entries for effects between command and surface."""
 
 
 def instruments(
     grid: FloatArray, speed: FloatArray, surface: FloatArray, h: float, p: FloatArray
 ) -> FloatArray:
-    """Return the motion as read by its instruments, without the skew of their stamps.
+    """Return the motion as its instruments read it, without the skew of their stamps.
 
     Parameters
     ----------
     grid
         Shape (4, n + 1): α, q, a_z, θ every ``h`` seconds.
     speed
-        Shape (n + 1,), m/s.
+        Shape (n + 1,): air speed, m/s.
     surface
-        Shape (n,), rad from trim: deflection over each step, which excites a structural mode.
+        Shape (n,): mean deflection over each step, rad from trim, which excites a structural mode.
     h
-        Step in s.
+        Time step, s.
     p
-        Shape (entries,), in the order of ``advisor.gap.simulator.layout.ENTRIES``.
+        Shape (entries,): simulator inputs in the order of ``advisor.gap.simulator.layout.ENTRIES``.
 
     Returns
     -------
@@ -54,13 +54,13 @@ def instruments(
 
 
 def skewed(grid: FloatArray, h: float, p: FloatArray) -> FloatArray:
-    """Return the series, shape (4, n + 1), under stamps that are late by the skews in ``p``."""
+    """Return the series, shape (4, n + 1), delayed by the skews in ``p``."""
     t = np.arange(grid.shape[1]) * h
     return np.stack([np.interp(t - p[INDEX[name]], t, y) for name, y in zip(SKEWS, grid, strict=True)])
 
 
 def lagging(y: FloatArray, h: float, lag_s: float) -> FloatArray:
-    """Return a series of shape (n,) behind a first-order lag, linear between samples; negative leads."""
+    """Return a series of shape (n,) after a first-order lag, linear between samples; a negative lag leads."""
     if lag_s <= 0.0:
         return y - lag_s * np.gradient(y, h) if lag_s < 0.0 else y
     return lagged(np.full(len(y) - 1, h), y[:-1], y[1:], lag_s, float(y[0]))
@@ -69,7 +69,7 @@ def lagging(y: FloatArray, h: float, lag_s: float) -> FloatArray:
 def second_order_response(
     surface: FloatArray, h: float, omega_rad_s: float, damping: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the bend of a structural mode that follows the surface, rad, and its rate, each (n + 1,)."""
+    """Return the angle of a structural mode excited by the surface, rad, and its rate, each (n + 1,)."""
     n = len(surface)
     bend, rate = np.zeros(n + 1), np.zeros(n + 1)
     if omega_rad_s <= 0.0:

@@ -1,4 +1,4 @@
-"""A simulator that is known only by its log: the log is identified first."""
+"""A simulator of which only a log exists: a model is identified from the log."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -19,17 +19,18 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 from advisor.words.quantiles import NORMAL_95
 
 _LEAST = 2
-"""Least number of manoeuvres in a simulator's log. A single one names no effect, for lack of a hold-out."""
+"""Least number of manoeuvres in a simulator's log. A single manoeuvre identifies no effect, because nothing
+remains for a hold-out."""
 _MOTION = ("alpha", "theta", "a_z", "airspeed")
 _SUFFIXES = (*ENDINGS, ".csv", ".txt", ".tsv", ".mat")
 
 
 @dataclass(frozen=True)
 class IdentifiedSimulator(LinearSimulator):
-    """The short period and the effects identified from a simulator's log, as a simulator."""
+    """Short-period model and effects identified from a simulator's log, in place of the simulator."""
 
     as_file: Aircraft = field(default_factory=Aircraft)
-    """The aircraft file with the identified model, servo and effects."""
+    """Aircraft file with the identified model, servo and effects."""
     notes: tuple[str, ...] = ()
     """Sentences about the identified model and effects, with standard deviations."""
 
@@ -42,9 +43,9 @@ def from_log(
     Raises
     ------
     ConfigurationError
-        The file is no log, or there is none.
+        The file does not exist, or is no log.
     UnusableInputError
-        The log has no elevator manoeuvres, or they cannot be used.
+        The log has no usable elevator manoeuvres.
     """
     if path.suffix.lower() not in _SUFFIXES:
         raise ConfigurationError(
@@ -86,7 +87,7 @@ def from_log(
 
 
 def _as_replay(maneuver: Maneuver) -> Replay | None:
-    """Return the logged motion at the stamps of the pitch rate; None where a quantity is missing."""
+    """Return the logged motion at the stamps of the pitch rate; None if a quantity is missing."""
     channels = maneuver.channels
     if not {"q", *_MOTION} <= channels.keys():
         return None

@@ -1,4 +1,4 @@
-"""A simulator that a Python function makes: ``python:module:factory``, in a process of its own."""
+"""A simulator from a Python function: ``python:module:factory``, in a separate process."""
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.simulators.isolated import Isolated
@@ -14,7 +14,7 @@ def make_python(rest: str, aircraft: Aircraft) -> Simulator:
     Raises
     ------
     ConfigurationError
-        ``rest`` is not ``module:factory``, or there is no such module or function.
+        ``rest`` is not ``module:factory``, or the module or function does not exist.
     """
     parts = rest.split(":")
     if len(parts) != _PARTS or not all(part.replace(".", "_").isidentifier() for part in parts):

@@ -1,4 +1,4 @@
-"""A simulator checked before its physics: it trims, rests, answers every control, and means SI units."""
+"""Check of a simulator's interface: trim, rest, response to every control, and SI units."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -22,26 +22,27 @@ from advisor.simulators.surrogate import surrogate_of
 from advisor.words.problems import UnusableInputError
 
 _STEP_S, _LEAD_S = 0.005, 1.0
-"""Step of the record, and time before the input, s."""
+"""Time step of the check's record, s, and time before the input, s."""
 _UNIT_S, _LASTS_S = 0.4, 9.0
-"""Unit of the 3-2-1-1, and length of its record, s."""
+"""Time unit of the 3-2-1-1, s, and length of its record, s."""
 _SIDE_UNIT_S, _SIDE_LASTS_S = 0.5, 5.0
-"""Unit of the doublet of aileron and rudder, and length of its record, s."""
+"""Time unit of the aileron and rudder doublet, s, and length of its record, s."""
 _SIZE_RAD = float(np.radians(1.0))
-"""Step of a control, rad: small enough for a linear answer, far above rounding."""
+"""Size of a control's step, rad: small enough for a linear response, far above rounding."""
 _MOTION = ("beta", "p", "r")
 _NEEDED = ("p", "r", "bank", "beta")
 _REST_S = 5.0
 """Length of the flight with resting controls, s."""
 _MOVES_RAD_S = 1e-6
-"""Least change of the pitch rate, rad/s, of a simulator that answers its elevator: rounding makes less."""
+"""Least change of the pitch rate, rad/s, of a simulator that responds to its elevator, above rounding
+errors."""
 _RESTS_RAD_S = 1e-3
 """Largest pitch rate of a trimmed simulator at rest, rad/s: 0.06 deg/s, half of a gyro's bias."""
 
 
 @dataclass(frozen=True)
 class CheckedSimulator:
-    """Findings on a simulator at one flight condition."""
+    """Results of a simulator's check at one flight condition."""
 
     simulator: str
     airspeed_m_s: float
@@ -49,23 +50,23 @@ class CheckedSimulator:
     alpha_rad: float
     """Angle of attack in the trimmed flight, rad."""
     trim: Mapping[str, float]
-    """Trimmed controls, as far as the simulator tells them."""
+    """Trimmed controls that the simulator reports, by name."""
     a_z_m_s2: float
-    """Specific force along body z in the trimmed flight."""
+    """Specific force along body z in the trimmed flight, m/s²."""
     rest_q_rad_s: float
-    """Largest pitch rate with resting controls."""
+    """Largest pitch rate with resting controls, rad/s."""
     takes: tuple[str, ...]
     lacks: tuple[str, ...]
-    """Controls, parts of the condition, and ``increments`` that the simulator does not take."""
+    """Controls, parts of the condition, and ``increments`` that the simulator does not support."""
     derivatives: Mapping[str, float] = field(default_factory=dict)
     lag_s: float = nan
     """First-order lag between the command and the motion, s."""
     dead_time_s: float = nan
     omega_rad_s: float = nan
-    """Undamped natural frequency of the short period; 0 where it is aperiodic by stiffness."""
+    """Undamped natural frequency of the short period, rad/s; 0 for negative stiffness."""
     damping: float = nan
     side: Mapping[str, float] = field(default_factory=dict)
-    """Derivatives of roll and yaw by the controls that the simulator takes."""
+    """Derivatives of roll and yaw for the controls that the simulator supports."""
     fault: InterfaceFault | None = None
     notes: tuple[str, ...] = ()
 
@@ -73,12 +74,12 @@ class CheckedSimulator:
 def check(simulator: Simulator, condition: Condition, aircraft: Aircraft) -> CheckedSimulator:
     """Fly a simulator at rest and through a 3-2-1-1, and identify its short period.
 
-    The simulator flies alone; a note names the effects of the aircraft file that are left out.
+    Effects of the aircraft file are not included, and a note names them.
 
     Raises
     ------
     UnusableInputError
-        The simulator does not trim, does not fly, or does not answer the elevator.
+        The simulator does not trim, does not fly, or does not respond to the elevator.
     """
     t = _stamps(_LASTS_S)
     rest = t[t < _REST_S]
@@ -104,7 +105,7 @@ def check(simulator: Simulator, condition: Condition, aircraft: Aircraft) -> Che
 
 
 def _not_flown(aircraft: Aircraft) -> Iterator[str]:
-    """Yield a sentence on what the aircraft file adds to its simulator in ``advisor gap`` alone."""
+    """Yield a sentence about parts of the aircraft file that only ``advisor gap`` adds to its simulator."""
     servo = aircraft.elevator
     added = [f"servo {name}" for name, size in (("lag", servo.lag_s), ("delay", servo.delay_s)) if size]
     if added := [*added, *map(spelled, aircraft.effects)]:
@@ -115,15 +116,14 @@ def _not_flown(aircraft: Aircraft) -> Iterator[str]:
 
 
 def _stamps(lasts_s: float) -> FloatArray:
-    """Return the middles of the steps of a record, s."""
+    """Return the middle times of a record's steps, s."""
     return _STEP_S * (np.arange(round(lasts_s / _STEP_S), dtype=np.float64) + 0.5)
 
 
 def _check_side(found: CheckedSimulator, simulator: Simulator, condition: Condition) -> CheckedSimulator:
-    """Fly a doublet of each control of roll and yaw that the simulator takes, and test the answer.
+    """Fly a doublet of each supported control of roll and yaw, and test the response.
 
-    The kinematics of the replay give signs and units, and a regression of the angular accelerations gives the
-    derivatives of the control.
+    The kinematics show signs and units, and a regression gives the control's derivatives.
     """
     side: dict[str, float] = {}
     notes = [*found.notes]
@@ -144,7 +144,8 @@ def _check_side(found: CheckedSimulator, simulator: Simulator, condition: Condit
 
 
 def _side_derivatives(replay: Replay, moved: FloatArray, control: str) -> tuple[dict[str, float], float]:
-    """Return L and N by the motion and the control, and the size of the answer (``control_fault``)."""
+    """Return L and N derivatives by the motion and the control, and the size of the response
+    (``control_fault``)."""
     motion = [np.asarray(getattr(replay, name)) for name in _MOTION]
     columns = np.column_stack([*motion, moved, np.ones(len(moved))])
     turns, against = TURNS[control]
@@ -158,7 +159,7 @@ def _side_derivatives(replay: Replay, moved: FloatArray, control: str) -> tuple[
 
 
 def _refuse_unmoved(flown: Replay, said: str) -> None:
-    """Refuse a simulator that stands still through a 3-2-1-1."""
+    """Refuse a simulator that does not move during a 3-2-1-1."""
     if float(np.ptp(flown.q)) < _MOVES_RAD_S:
         raise UnusableInputError(
             "simulator_elevator",
@@ -169,14 +170,14 @@ def _refuse_unmoved(flown: Replay, said: str) -> None:
 
 
 def _answer(flown: Replay) -> float:
-    """Return the change of the angle of attack over that of the elevator."""
+    """Return the ratio of the changes of angle of attack and elevator."""
     return float(np.ptp(flown.alpha)) / (2.0 * _SIZE_RAD)
 
 
 def _identified(
     found: CheckedSimulator, simulator: Simulator, condition: Condition, flown: Replay, t: FloatArray
 ) -> CheckedSimulator:
-    """Return the findings with derivatives, lag, dead time and natural motion."""
+    """Return the results with derivatives, lag, dead time and natural motion added."""
     flights = prepare([_as_maneuver(flown, t)], Aircraft())
     flying = Flying(simulator, flights, {1: condition.height_m}, {1: {}}, condition.mass_kg, lambda *_: None)
     command = np.zeros((1, len(ENTRIES)))
@@ -205,7 +206,7 @@ def _three_two_one_one(t: FloatArray) -> FloatArray:
 
 
 def _steps(t: FloatArray, unit_s: float, units: Sequence[float]) -> FloatArray:
-    """Return steps to both sides in turn, each as long as its number of units, rad, shape (n,)."""
+    """Return alternating steps, each with the duration of its number of units, rad, shape (n,)."""
     onsets = _LEAD_S + unit_s * np.concatenate([[0.0], np.cumsum(units)])
     out = np.zeros(t.size)
     for k, (begin, end) in enumerate(pairwise(onsets)):
@@ -214,7 +215,7 @@ def _steps(t: FloatArray, unit_s: float, units: Sequence[float]) -> FloatArray:
 
 
 def _as_maneuver(flown: Replay, t: FloatArray) -> Maneuver:
-    """Return a replay as a manoeuvre without any instrument."""
+    """Return a replay as a manoeuvre without instrument errors."""
     series = {
         "alpha": flown.alpha, "q": flown.q, "theta": flown.theta, "a_z": flown.a_z,
         "airspeed": flown.airspeed_m_s, "height": flown.height_m,

@@ -1,7 +1,7 @@
-"""The comparison of a flight with the user's own simulator: place, cause and shrink of the gap.
+"""Comparison of a flight with the user's own simulator: place, cause and shrink of the gap.
 
-The simulator S replays the recorded inputs. The simulator's linear surrogate L is diagnosed on y − (y_S −
-y_L). The difference between S and L belongs to the simulator, and is not called missing.
+The simulator S replays the recorded inputs. The diagnosis compares the simulator's linear surrogate L with y
+− (y_S − y_L). The difference between S and L is part of the simulator, and is not reported as missing.
 """
 
 from collections.abc import Mapping, Sequence
@@ -50,19 +50,19 @@ from advisor.simulators.trims import trim_differences
 from advisor.simulators.unseen import Flown, UnseenManeuvers, changes_something, resaid, shrink_on, unseen_of
 
 _FLIES, _DIAGNOSED, _FOUND = 0.2, 0.9, 0.95
-"""Shares of the work that are done after the first replays, after the diagnosis, and after the replays with
-the correction."""
+"""Completed shares of the work after the first replays, after the diagnosis, and after the corrected
+replays."""
 
 
 @dataclass(frozen=True)
 class Compared:
-    """The diagnosis against a simulator, and the simulator's linear surrogate."""
+    """Diagnosis against a simulator, with the simulator's linear surrogate."""
 
     diagnosis: Diagnosis
     aircraft: Aircraft
-    """The aircraft file with the simulator's surrogate as its model."""
+    """Aircraft file with the simulator's surrogate as its model."""
     findings: Findings | None = None
-    """Findings behind the diagnosis."""
+    """Findings on which the diagnosis is based."""
 
 
 def compare(
@@ -78,12 +78,12 @@ def compare(
     Parameters
     ----------
     maneuvers, holdout, progress, prior
-        Arguments of ``advisor.gap.diagnose.diagnose``.
+        Arguments as in ``advisor.gap.diagnose.diagnose``.
     simulator
-        The user's own simulator.
+        User's own simulator.
     aircraft
-        The aircraft file. The file's effects and servo act around and in the simulator; the file's model is
-        not used.
+        Aircraft file of the crew. The effects and the servo of the aircraft file are used, but its model is
+        not.
 
     Raises
     ------
@@ -154,7 +154,7 @@ def _measured(
     flown: Flown,
     as_flown: Mapping[int, AsGiven],
 ) -> Diagnosis:
-    """Return the diagnosis with the gap of the simulator itself, before and after the findings."""
+    """Return the diagnosis with the simulator's own gap, before and after the corrections."""
     diagnosis, gap = examined.diagnosis, flown.told
     assert gap is not None
     if unseen is not None and flown.after is not None and not gap.on_paper:
@@ -170,7 +170,7 @@ def _measured(
 
 
 def _as_logged(traces: Sequence[Trace], as_flown: Mapping[int, AsGiven]) -> tuple[Trace, ...]:
-    """Return the traces of the flight as logged, with those of the simulator instead of its surrogate."""
+    """Return the traces of the logged flight, with those of the simulator in place of its surrogate."""
     found = []
     for trace in traces:
         one = as_flown[trace.number]
@@ -183,7 +183,7 @@ def _as_logged(traces: Sequence[Trace], as_flown: Mapping[int, AsGiven]) -> tupl
 
 
 def _linear(flying: Flying) -> dict[int, AsGiven]:
-    """Return how a linear simulator starts every manoeuvre: it equals its surrogate."""
+    """Return the start of every manoeuvre for a linear simulator, which equals its surrogate."""
     begun = []
     for flight in flying.flights.flights:
         rest = Inputs(np.array([0.5, 1.5]) * flight.h, np.zeros(2))
@@ -194,7 +194,7 @@ def _linear(flying: Flying) -> dict[int, AsGiven]:
 def _surrogate_and_rest(
     flying: Flying, aircraft: Aircraft
 ) -> tuple[Surrogate, dict[int, AsGiven], list[Replay]]:
-    """Return the surrogate, and every manoeuvre as flown by the simulator, with the replays."""
+    """Return the surrogate, every manoeuvre as the simulator flew it, and the replays."""
     flights = flying.flights
     variants = variants_for(flights)
     known = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
@@ -223,6 +223,6 @@ def _without_equations(aircraft: Aircraft) -> Aircraft:
 
 
 def _usual(flying: Flying) -> Condition:
-    """Return the condition in the middle of those at the starts of the manoeuvres."""
+    """Return the median flight condition at the starts of the manoeuvres."""
     height = float(np.mean([flying.condition(f).height_m for f in flying.flights.flights]))
     return Condition(flying.flights.reference_m_s, height, 0.0, flying.mass_kg)

@@ -1,4 +1,4 @@
-"""The answer that manoeuvres kept apart contradict: its probability goes to what stays in the simulator."""
+"""An answer that held-out manoeuvres contradict: its probability goes to the remaining corrections."""
 
 import math
 from collections.abc import Sequence
@@ -12,21 +12,21 @@ from advisor.gap.verdict.text import answers_of, sentence_of
 from advisor.words.certainty import DECIDED, as_sure
 
 _IMPOSSIBLE = 1e-300
-"""Numerical: probability that stands for zero in log odds."""
+"""Numerical: probability that replaces zero in log odds."""
 
 
 def contradicted(diagnosis: Diagnosis, removed: float) -> Diagnosis:
-    """Return the diagnosis without its answer, which was taken back.
+    """Return the diagnosis without its withdrawn answer.
 
-    The probability of the answer goes to what stays in the simulator, the first effect or the numbers, where
-    that removes half of the gap. Otherwise it goes to the unknown, in the block of the answer.
+    The answer's probability goes to the remaining corrections, if these remove half of the gap. Otherwise the
+    probability goes to an effect without a name, in the answer's block.
 
     Parameters
     ----------
     diagnosis
-        Diagnosis with the numbers of what stays; its answer is still that of the evidence.
+        Diagnosis with the numbers of the remaining corrections and the original answer.
     removed
-        Share of the gap that what stays removes on the manoeuvres kept apart.
+        Share of the gap on held-out manoeuvres that the remaining corrections remove.
     """
     d = diagnosis
     given_up = d.answer or PARAMETERS
@@ -54,7 +54,7 @@ def contradicted(diagnosis: Diagnosis, removed: float) -> Diagnosis:
 def handed_over(
     evidence: Sequence[AlternativeEvidence], given_up: Alternative, stays: Alternative
 ) -> tuple[AlternativeEvidence, ...]:
-    """Return the evidence with the probability of an answer that was given up at another alternative."""
+    """Return the evidence with the probability of a withdrawn answer given to another alternative."""
     share = sum(one.probability for one in evidence if one.alternative == given_up)
     left = [one for one in evidence if one.alternative != given_up]
     return with_share(left, stays, share) if evidence else ()
@@ -63,9 +63,9 @@ def handed_over(
 def with_share(
     known: Sequence[AlternativeEvidence], alternative: Alternative, share: float
 ) -> tuple[AlternativeEvidence, ...]:
-    """Return the evidence with a share more for one alternative; the others share what is left.
+    """Return the evidence with more probability for one alternative, and proportionally less for the others.
 
-    Likeliest first.
+    The likeliest alternative is first.
     """
     scale = (1.0 - share) / max(sum(one.probability for one in known), _IMPOSSIBLE)
     others = [replace(one, probability=scale * one.probability) for one in known]
@@ -79,7 +79,7 @@ def with_share(
 def answered_by(
     diagnosis: Diagnosis, evidence: tuple[AlternativeEvidence, ...], answer: Alternative
 ) -> Diagnosis:
-    """Return the diagnosis with an answer that flights of the simulator gave, and the odds after them."""
+    """Return the diagnosis with an answer from flights of the simulator, and its odds."""
     verdict: GapVerdict = "effect" if answer.is_effect else answer.kind  # type: ignore[assignment]
     d = replace(diagnosis, verdict=verdict, evidence=evidence, answer=answer, why=(), rival="", decisions=())
     ranked = together((one.alternative, one.probability) for one in evidence)
@@ -99,7 +99,7 @@ def answered_by(
 
 
 def _where(d: Diagnosis, answer: Alternative, removed: float) -> Where:
-    """Return the block of the answer: of numbers, the equation of the derivative that differs most."""
+    """Return the block of the answer; for derivatives, the equation of the one that differs most."""
     if answer.kind == "unknown":
         known = d.probabilities
         blocks = {answer.block: 1.0} if known is None else known.unknown

@@ -1,4 +1,4 @@
-"""A simulator that flies the recorded inputs, and the difference to its linear surrogate."""
+"""Flights of a simulator with the recorded inputs, and its difference from the linear surrogate."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -24,34 +24,35 @@ from advisor.words.problems import UnusableInputError
 Progress = Callable[[str, float], None]
 _LATERAL = ("aileron", "rudder")
 _BANKS_AWAY_RAD = 0.17
-"""Largest difference of the bank angles of simulator and aircraft, rad. At 10 deg the vertical part of the
-lift differs by 1.5 %."""
+"""Largest difference between the bank angles of simulator and aircraft, rad. At 10 deg the vertical part of
+the lift differs by 1.5 %."""
 
 
 @dataclass(frozen=True)
 class Flying:
-    """A simulator with the manoeuvres to be flown."""
+    """A simulator with the manoeuvres that it flies."""
 
     simulator: Simulator
     flights: PreparedManeuvers
     heights_m: Mapping[int, float]
-    """Manoeuvre number to the height in the standard atmosphere with the density of the air, m."""
+    """Height in the standard atmosphere with the air's density, m, by manoeuvre number."""
     controls: Mapping[int, Mapping[str, FloatArray]]
-    """Manoeuvre number to the logged controls (``advisor.simulators.inputs.other_controls``)."""
+    """Logged controls (``advisor.simulators.inputs.other_controls``), by manoeuvre number."""
     mass_kg: float | None
     progress: Progress
     winds: Mapping[int, tuple[float, float]] = field(default_factory=dict)
-    """Manoeuvre number to the wind (``Condition.wind_m_s``). Other manoeuvres are flown in still air."""
+    """Wind (``Condition.wind_m_s``) by manoeuvre number. Manoeuvres without an entry are flown in still
+    air."""
 
     def condition(self, flight: PreparedManeuver) -> Condition:
-        """Return the steady flight at the start of a manoeuvre."""
+        """Return the steady flight condition at the start of a manoeuvre."""
         steady = condition_of(flight, self.heights_m[flight.number], self.mass_kg)
         return replace(steady, wind_m_s=self.winds.get(flight.number, steady.wind_m_s))
 
     def replays(
         self, command: FloatArray, held: bool, increments: tuple[Increments | None, ...] | None = None
     ) -> list[Replay]:
-        """Fly every manoeuvre.
+        """Return the simulator's replay of every manoeuvre.
 
         Parameters
         ----------
@@ -60,12 +61,12 @@ class Flying:
         held
             Whether the command was held between its stamps.
         increments
-            Increments of the simulator in each manoeuvre; None adds nothing.
+            Increments of the simulator in each manoeuvre; None for no increments.
 
         Raises
         ------
         UnusableInputError
-            The simulator does not load, does not trim, takes too long, or returns no finite numbers.
+            The simulator does not load or trim, takes too long, or returns numbers that are not finite.
         """
         found = []
         many = self.flights.flights
@@ -94,24 +95,23 @@ class Flying:
 
 @dataclass(frozen=True)
 class AsGiven:
-    """One manoeuvre as flown by the simulator without added effects."""
+    """One manoeuvre flown by the simulator without added effects."""
 
     flight: PreparedManeuver
-    """Flight with the simulator's own speed and trim."""
+    """Prepared manoeuvre with the simulator's own speed and trim."""
     beyond: FloatArray
-    """Shape (4, n + 1): outputs of the simulator minus those of its surrogate."""
+    """Shape (4, n + 1): simulator outputs minus surrogate outputs."""
 
 
 def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool = False) -> list[FloatArray]:
-    """Return the outputs of a simulator minus those of the surrogate with equal effects, by manoeuvre.
+    """Return the simulator outputs minus those of a surrogate with equal effects, by manoeuvre.
 
     Parameters
     ----------
     replays
-        The simulator's motion in every manoeuvre.
+        Motion of the simulator in every manoeuvre.
     p
-        Shape (manoeuvres, entries): driving numbers of the surrogate, with the effects around and in the
-        simulator.
+        Shape (manoeuvres, entries): inputs of the surrogate, including effects around and in the simulator.
     held
         Whether the command was held between its stamps.
 
@@ -134,16 +134,16 @@ def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool 
 def added(
     flown: Sequence[PreparedManeuver], found: FloatArray, as_given: FloatArray
 ) -> tuple[Increments, ...]:
-    """Return the increments that effects add to the simulator, for every manoeuvre.
+    """Return the increments by which effects change the simulator, for every manoeuvre.
 
     Parameters
     ----------
     flown
-        The manoeuvres as the simulator flew them without the effects.
+        Manoeuvres as the simulator flew them without the effects.
     found
-        Shape (manoeuvres, entries): driving numbers of the surrogate with the effects.
+        Shape (manoeuvres, entries): inputs of the surrogate with the effects.
     as_given
-        Shape (6,): derivatives of the surrogate, without the effects.
+        Shape (6,): derivatives of the surrogate without the effects.
     """
     plain = np.zeros(found.shape[1])
     plain[: len(as_given)] = as_given
@@ -156,7 +156,7 @@ def added(
 
 
 def without_servo(p: FloatArray, surrogate: Surrogate) -> FloatArray:
-    """Return driving numbers, shape (manoeuvres, entries), without the simulator's own lag and delay."""
+    """Return the simulator inputs, shape (manoeuvres, entries), without the simulator's own lag and delay."""
     out = p.copy()
     for name, own in (("lag_s", surrogate.lag_s), ("delay_s", surrogate.delay_s)):
         out[:, INDEX[name]] = np.maximum(out[:, INDEX[name]] - own, 0.0)
@@ -164,7 +164,7 @@ def without_servo(p: FloatArray, surrogate: Surrogate) -> FloatArray:
 
 
 def _rolls_away(replay: Replay, flight: PreparedManeuver) -> bool:
-    """Return whether a simulator with the logged aileron and rudder banks much further than the aircraft."""
+    """Return whether a simulator with the logged aileron and rudder banks much more than the aircraft."""
     if replay.bank is None:
         return False
     middles = (np.arange(flight.n) + 0.5) * flight.h
@@ -173,7 +173,7 @@ def _rolls_away(replay: Replay, flight: PreparedManeuver) -> bool:
 
 
 def _refuse_broken(replay: Replay, description: str, flight: PreparedManeuver) -> None:
-    """Refuse a replay that lacks a number or ends too early, has a wrong sign or unit, or departs."""
+    """Refuse a replay with missing numbers, an early end, a wrong sign or unit, or a departure."""
     series = (
         replay.t,
         replay.alpha,
@@ -205,14 +205,14 @@ def _refuse_broken(replay: Replay, description: str, flight: PreparedManeuver) -
 def refuse_wrong_elevator(
     description: str, m_delta_e: float, replays: Sequence[Replay], flights: PreparedManeuvers
 ) -> None:
-    """Refuse a simulator whose elevator has another sense or unit than that of an aircraft.
+    """Refuse a simulator whose elevator has a wrong sign or unit.
 
-    ``m_delta_e`` is M_δe of the simulator, 1/s².
+    ``m_delta_e`` is the simulator's M_δe, 1/s².
 
     Raises
     ------
     UnusableInputError
-        The simulator pitches up by a positive elevator, or answers it 57 times less than an aircraft.
+        The simulator pitches up on positive elevator, or responds 57 times less than an aircraft.
     """
     pairs = zip(replays, flights.flights, strict=True)
     answer = max(float(np.ptp(replay.alpha) / np.ptp(flight.u)) for replay, flight in pairs)
@@ -222,12 +222,12 @@ def refuse_wrong_elevator(
 
 
 def refuse_unmoved(description: str, replays: Sequence[Replay], flights: PreparedManeuvers) -> None:
-    """Refuse a simulator whose pitch rate moves by less than the noise of the flight's gyro.
+    """Refuse a simulator whose pitch rate changes by less than the gyro noise of the flight.
 
     Raises
     ------
     UnusableInputError
-        The pitch rate moves by less in every manoeuvre.
+        The pitch rate changes by less than the noise in every manoeuvre.
     """
     noise = float(flights.white[flights.channels.index("q")])
     if max(float(np.ptp(replay.q)) for replay in replays) < noise:
@@ -248,13 +248,13 @@ def without_difference(m: Maneuver, as_flown: Mapping[int, AsGiven]) -> Maneuver
 
 
 def without(m: Maneuver, lost: Mapping[str, Signal]) -> Maneuver:
-    """Return the manoeuvre with each of its channels minus the signal of that name."""
+    """Return the manoeuvre with a signal subtracted from each channel of that name."""
     changed = {name: _less(m.channels[name], *by) for name, by in lost.items() if name in m.channels}
     return replace(m, channels={**m.channels, **changed})
 
 
 def _less(channel: Channel, t: FloatArray, by: FloatArray) -> Channel:
-    """Return a channel minus a series; a sample that repeats the one before still repeats it."""
+    """Return a channel minus a series; repeated samples remain repeated."""
     y = channel.y - np.interp(channel.t, t, by)
     fresh = np.concatenate([[True], np.diff(channel.y) != 0.0])
     return replace(channel, y=y[np.maximum.accumulate(np.where(fresh, np.arange(len(y)), 0))])

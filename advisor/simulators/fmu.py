@@ -1,6 +1,6 @@
-"""``fmu:FILE.fmu``: a flight compared with a functional mock-up unit (FMI 2 or 3).
+"""Comparison of a flight with a functional mock-up unit (FMI 2 or 3): ``fmu:FILE.fmu``.
 
-An FMU is a program. The FMU runs in a process of its own, with a time limit and with the user's rights.
+An FMU is a program. The FMU runs in a separate process, with a time limit and the user's rights.
 """
 
 import importlib.util
@@ -32,12 +32,13 @@ _TRIM = ("airspeed", "height", "flight_path", "mass", "wind_along", "wind_right"
 
 
 def make_fmu(file: str, aircraft: Aircraft) -> Isolated:
-    """Return the simulator of ``fmu:FILE.fmu``, in a process of its own.
+    """Return the simulator of ``fmu:FILE.fmu``, in a separate process.
 
     Raises
     ------
     ConfigurationError
-        FMPy is not installed, the file or a variable is not there, or the FMU cannot run on this platform.
+        FMPy is not installed, the file or a variable does not exist, or the FMU does not run on this
+        platform.
     """
     path = Path(file)
     if not path.is_file():
@@ -59,7 +60,7 @@ def make_fmu(file: str, aircraft: Aircraft) -> Isolated:
 
 
 class FmuSimulator:
-    """An FMU that flies recorded inputs (the protocol's simulator).
+    """An FMU that flies recorded inputs (a simulator of the protocol).
 
     Inputs are held over each communication step at their mean. Increments are those of the state in the
     middle of the step, extrapolated by the last step's rates.
@@ -67,11 +68,11 @@ class FmuSimulator:
     Parameters
     ----------
     path : Path
-        The FMU.
+        FMU to be simulated.
     variables : FmuVariables
-        Names of the variables in the FMU.
+        Names of the FMU's variables.
     speed_tolerance_percent : float
-        Largest difference between the air speed at which the FMU begins and the flown one.
+        Largest difference between the FMU's initial air speed and the flown air speed.
     """
 
     speed_limit_s = 20.0
@@ -99,7 +100,7 @@ class FmuSimulator:
         self.takes = frozenset({*self._inputs} & {*CONTROLS} | conditions)
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
-        """Start at the condition, and fly the inputs as departures from their start values."""
+        """Start at the condition, and fly the inputs as deviations from their initial values."""
         step = self._step_s
         t = step * np.arange(math.ceil(inputs.t[-1] / step) + 1)
         middles = t[:-1] + 0.5 * step
@@ -128,11 +129,11 @@ class FmuSimulator:
         return Replay(t, **seen, trim={name: rest[name] for name in held})
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
-        """Return None: an FMU's states are not in general those of a short period."""
+        """Return None, because an FMU's states are not generally those of a short period."""
         return None
 
     def close(self) -> None:
-        """Free the FMU."""
+        """Free the FMU's resources."""
         self._fmu.end()
 
     def _references(self, variables: FmuVariables, names: tuple[str, ...], use: Use) -> dict[str, int]:
@@ -143,7 +144,7 @@ class FmuSimulator:
         }
 
     def _begin(self, condition: Condition, held: Mapping[str, FloatArray]) -> dict[str, float]:
-        """Start in steady flight, and return the values of the inputs there."""
+        """Start in steady flight, and return the initial values of the inputs."""
         start = self._start_values(condition)
         if "alpha" not in self._trim:
             self._fmu.begin(start)
@@ -184,7 +185,7 @@ class FmuSimulator:
         self._fmu.begin(values)
 
     def _steady(self, condition: Condition, start: Mapping[int, float]) -> tuple[float, float]:
-        """Return α and elevator for which neither α nor q changes in the first step (Newton)."""
+        """Return α and elevator for which neither α nor q changes in the first step (Newton's method)."""
 
         def change(at: FloatArray) -> FloatArray:
             self._start_at(condition, start, float(at[0]), float(at[1]))
@@ -207,7 +208,8 @@ class FmuSimulator:
         self._fmu.write({self._inputs[name]: value / self._factor[name] for name, value in values.items()})
 
     def _motion(self, condition: Condition) -> list[float]:
-        """Return the outputs in the order of ``_OUTPUTS``; unmapped speed and height are the condition's."""
+        """Return the outputs in the order of ``_OUTPUTS``; unmapped speed and height are those of the
+        condition."""
         values = dict(zip(self._outputs, self._fmu.read(self._outputs.values()), strict=True))
         kept = {"airspeed": condition.airspeed_m_s, "height": condition.height_m}
         told = {name: self._factor[name] * value for name, value in values.items()}

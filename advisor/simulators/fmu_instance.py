@@ -1,4 +1,4 @@
-"""One FMU through FMPy, of FMI 2 or FMI 3: opened, begun, stepped, read."""
+"""One FMU through FMPy, of FMI 2 or FMI 3: loading, initialisation, steps and values."""
 
 import tempfile
 from collections.abc import Iterable, Mapping
@@ -11,18 +11,18 @@ from advisor.words.problems import UnusableInputError
 
 _REAL = ("Real", "Float64")
 Use = Literal["output", "input", "start"]
-"""Use of a variable: it is read, set in every step, or set before the first step."""
+"""Use of a variable: read, set in every step, or set before the first step."""
 
 
 class Fmu:
-    """An FMU, unpacked into the temporary folder of this process; co-simulation comes before model exchange.
+    """An FMU, unpacked into the temporary folder of this process; co-simulation is preferred to model
+    exchange.
 
     Raises
     ------
     UnusableInputError
-        The file is no FMU of FMI 2 or 3, holds neither co-simulation nor model exchange, or no binary for
-        this platform. The other methods raise it where a variable is missing or no number, or where the FMU
-        refuses a call.
+        The file is no FMU of FMI 2 or 3, has no simulation interface, or no binary for this platform. The
+        other methods raise it for a missing variable, a value that is no number, or a refused call.
     """
 
     def __init__(self, path: Path) -> None:
@@ -56,7 +56,7 @@ class Fmu:
 
     @property
     def default_step_s(self) -> float | None:
-        """Step that the FMU proposes, s; None where it proposes none."""
+        """Step that the FMU proposes, s; None without a proposal."""
         experiment = self._description.defaultExperiment
         step = None if experiment is None else experiment.stepSize
         return None if step is None else float(step)
@@ -112,7 +112,7 @@ class Fmu:
             raise self._refused("where a value is set", error) from error
 
     def read(self, references: Iterable[int]) -> list[float]:
-        """Return values of real variables by value reference."""
+        """Return the values of real variables by value reference."""
         getter = self._instance.getFloat64 if self._is_fmi3 else self._instance.getReal
         try:
             return [float(value) for value in getter(list(references))]
@@ -120,7 +120,7 @@ class Fmu:
             raise self._refused("where its variables are read", error) from error
 
     def step(self, t: float, width: float) -> None:
-        """Advance from ``t`` by ``width`` seconds."""
+        """Advance the FMU from ``t`` by ``width`` seconds."""
         try:
             if self._solver is not None:
                 self._solver.advance(t, width)
@@ -135,7 +135,7 @@ class Fmu:
             raise self._refused(f"at {t:.2f} s", error) from error
 
     def end(self) -> None:
-        """Free the instance, if there is one."""
+        """Free the FMU's instance, if any."""
         if self._instance is None:
             return
         instance, self._instance, self._solver = self._instance, None, None

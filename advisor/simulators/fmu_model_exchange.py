@@ -1,7 +1,7 @@
-"""An FMU for model exchange, which has equations but no solver: SciPy integrates the states.
+"""An FMU for model exchange, which has equations but no solver: SciPy integrates its states.
 
-The states are integrated from one event to the next. An event is a crossing of an indicator or a time
-that the FMU has named. The FMU may also ask for one after a step (FMI 2.0.4, 3.2; FMI 3.0.2, 3.2).
+The states are integrated between events. An event is a zero crossing of an indicator, or a time that the FMU
+has named. The FMU may also request an event after a step (FMI 2.0.4, 3.2; FMI 3.0.2, 3.2).
 """
 
 from ctypes import POINTER, c_double
@@ -15,25 +15,26 @@ from advisor.flight.signals.messages import FloatArray
 _TOLERANCE = 1e-7
 """Relative and absolute tolerance of a step, in the states' own units: a tenth of a microradian."""
 _BEYOND_S = 1e-9
-"""Time after the crossing of an indicator at which the FMU handles the event, s: the indicator has then
-changed its sign. A shorter interval is one step of Euler's method."""
+"""Time after an indicator's zero crossing at which the FMU handles the event, s. A shorter interval is one
+step of Euler's method."""
 _MOST_EVENTS = 100
-"""Most events in one communication step. A model that switches more often than every 0.1 ms does not end."""
+"""Largest number of events in one communication step. A model that switches more often than every 0.1 ms is
+stopped."""
 
 
 class EndedError(Exception):
-    """The FMU ends its simulation."""
+    """The FMU has ended its simulation."""
 
 
 class ModelExchange:
-    """The states of an initialised FMU.
+    """States of an initialised FMU for model exchange.
 
     Parameters
     ----------
     instance
         Model of FMPy, initialised and in event mode.
     description
-        Its model description.
+        Model description of the FMU.
     """
 
     def __init__(self, instance: Any, description: Any) -> None:
@@ -48,14 +49,14 @@ class ModelExchange:
         self._settle()
 
     def advance(self, t: float, width: float) -> None:
-        """Integrate from ``t`` over ``width`` seconds, through all events.
+        """Integrate the states from ``t`` over ``width`` seconds, through all events.
 
         Raises
         ------
         EndedError
-            The FMU ends its simulation.
+            The FMU has ended its simulation.
         RuntimeError
-            The solver finds no solution, or the FMU switches without an end.
+            The solver finds no solution, or the FMU switches endlessly.
         """
         end = t + width
         for _ in range(_MOST_EVENTS):
@@ -72,7 +73,7 @@ class ModelExchange:
         raise RuntimeError(f"it switches more than {_MOST_EVENTS} times in {width:g} s")
 
     def _settle(self) -> None:
-        """Update the discrete states until they rest, and return to continuous time."""
+        """Update the discrete states until they are constant, and return to continuous time."""
         changing = True
         while changing:
             changing, ends, _, _, is_timed, next_event_s = self._update()
@@ -82,7 +83,7 @@ class ModelExchange:
         self._instance.enterContinuousTimeMode()
 
     def _integrate(self, t: float, until: float) -> float:
-        """Integrate to the next crossing of an indicator or to ``until``, and return the time reached."""
+        """Integrate to the next indicator crossing or to ``until``, and return the time reached."""
         x = self._read(self._instance.getContinuousStates, self._states)
         if until - t > _BEYOND_S:
             t, x = self._solved(t, until, x)
@@ -92,7 +93,7 @@ class ModelExchange:
         return after
 
     def _solved(self, t: float, until: float, x: FloatArray) -> tuple[float, FloatArray]:
-        """Return the time and the states at the next crossing of an indicator, or at ``until``."""
+        """Return time and states at the next indicator crossing, or at ``until``."""
         before = self._signs()
         watched = before != 0.0
 

@@ -1,4 +1,4 @@
-"""The gap in the user's own simulator: with the effects it flies manoeuvres that no search has used."""
+"""Gap in the user's own simulator with the effects added, on held-out manoeuvres."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -36,7 +36,7 @@ EQUATIONS = ("force_equation", "moment_equation")
 
 @dataclass(frozen=True)
 class CarriedPart:
-    """The part of a model that the simulator can take."""
+    """Part of a model that the simulator supports."""
 
     point: SearchPoint
     on_paper: tuple[str, ...]
@@ -49,20 +49,20 @@ def in_simulator(
     surrogate: Surrogate,
     as_flown: Mapping[int, AsGiven],
 ) -> Flown:
-    """Measure the gap in the simulator as given, and with the effects and numbers that an export writes.
+    """Return the gap in the simulator as given, and with the effects and derivatives of an export.
 
     Parameters
     ----------
     whole
-        Diagnosis of all manoeuvres, with the simulator's difference to its surrogate subtracted.
+        Diagnosis of all manoeuvres without the difference between simulator and surrogate.
     unseen
-        Manoeuvres kept apart, with the diagnosis of the others; None where nothing was found.
+        Held-out manoeuvres with the diagnosis of the others; None if nothing was found.
     flying
-        The simulator with the manoeuvres.
+        Simulator with the manoeuvres to fly.
     surrogate
         Linear surrogate of the simulator.
     as_flown
-        Manoeuvre number to the manoeuvre as flown by the simulator.
+        Manoeuvre as the simulator flew it, by manoeuvre number.
     """
     problem, floor = whole.findings.problem, floor_of(whole)
     flights = problem.flights.flights
@@ -109,11 +109,11 @@ def in_simulator(
 def where_it_acts(
     whole: Examined, flying: Flying, surrogate: Surrogate, as_flown: Mapping[int, AsGiven]
 ) -> Examined:
-    """Return the diagnosis with its numbers fitted where simulator and surrogate both have the effects.
+    """Return the diagnosis refitted with the effects in both simulator and surrogate.
 
-    The difference between the two depends on the motion. The motion with a servo's lag is another one than
-    that of the simulator as given. Other numbers alone change the difference in second order. The likelier
-    numbers stay. Arguments are those of ``in_simulator``.
+    The difference between simulator and surrogate depends on the motion. With a servo lag the simulator's
+    motion differs from that of the simulator as given. Other numbers alone change the difference in second
+    order. The likelier parameter values are kept. Arguments are those of ``in_simulator``.
     """
     if whole.seen_in is None or not changes_something(whole.diagnosis):
         return whole
@@ -161,7 +161,7 @@ def _flown_with(
 
 
 def _carried(point: SearchPoint, problem: EffectProblem, surrogate: Surrogate, flying: Flying) -> CarriedPart:
-    """Return a model without the parts that the simulator cannot take, and the names of those parts."""
+    """Return a model without the parts that the simulator does not support, and these parts' names."""
     on_paper: list[str] = []
     if not flying.simulator.takes_increments:
         derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
@@ -183,7 +183,7 @@ def _carried(point: SearchPoint, problem: EffectProblem, surrogate: Surrogate, f
 
 
 def with_series(problem: EffectProblem, grids: Sequence[FloatArray], sign: float) -> EffectProblem:
-    """Return the problem with series on the grid, times ``sign``, added to the measurements."""
+    """Return the problem with series on the time grid, times ``sign``, added to the measurements."""
     flights = []
     for flight, grid in zip(problem.flights.flights, grids, strict=True):
         t = np.arange(grid.shape[1]) * flight.h
@@ -198,7 +198,7 @@ def with_series(problem: EffectProblem, grids: Sequence[FloatArray], sign: float
 def _without_air(
     whole: Examined, problem: EffectProblem, point: SearchPoint, kept: Sequence[int], offset_rad: float
 ) -> float:
-    """Return the gap without what the air and the instruments' natural errors explain in the same samples."""
+    """Return the gap without the part that air and natural instrument errors explain."""
     floor = floor_of(whole)
     left = predicted(problem, point, floor, kept, offset_rad).mean_square
     air, last = whole.findings.air, whole.findings.last.held_out

@@ -1,7 +1,7 @@
 """Force and moment that effects add to a simulator: Eqs. (1)-(2) with the effects minus those without.
 
-The equations are those of the diagnosis (``advisor.gap.simulator.right_sides``). An effect therefore acts in
-the user's simulator as in the model in which the diagnosis found the effect.
+The equations are those of the diagnosis (``advisor.gap.simulator.right_sides``). An effect therefore has the
+same terms in the user's simulator as in the diagnosis' model.
 """
 
 from dataclasses import dataclass, field
@@ -20,20 +20,21 @@ _TRIMS = (INDEX["Z_trim"], INDEX["M_trim"])
 _CARRIED = np.isin(ENTRIES, (*DERIVATIVES, "Z_trim", "M_trim", *EQUATION_ENTRIES)) & ~np.isin(
     ENTRIES, PROPELLER.entries
 )
-"""Entries that become increments, shape (entries,). A simulator has a propeller of its own."""
+"""Entries that become increments, shape (entries,). A simulator has its own propeller model."""
 
 
 @dataclass(frozen=True)
 class SimulatorIncrements:
-    """Increments of a simulator: an instance is an ``advisor.simulators.protocol.Increments``."""
+    """Increments of a simulator, with the interface ``advisor.simulators.protocol.Increments``."""
 
     numbers: FloatArray
-    """Shape (2, entries): driving numbers with the effects, and as the simulator has them."""
+    """Shape (2, entries): simulator inputs with the effects, and without them."""
     alpha_trim: float
     """Angle of attack at which the simulator is trimmed, rad."""
     reference_m_s: float
     ground_m: float
-    """Height above the ground at the start of the manoeuvre, m. A simulator's own height is a density's."""
+    """Height above the ground at the start of the manoeuvre, m. The height in a simulator's state stands for
+    the air density."""
     _memory: dict[str, float] = field(default_factory=dict, compare=False, repr=False)
 
     def __call__(self, state: State) -> tuple[float, float]:
@@ -48,8 +49,7 @@ class SimulatorIncrements:
         return float(found[0] - plain[0]), float(found[1] - plain[1])
 
     def _remembered(self, state: State) -> tuple[float, float]:
-        """Return the lagging angle of the lift and the lagging throttle of the engine, after the time since
-        the last call."""
+        """Return the lift's lagging angle and the engine's lagging throttle at the state's time."""
         seen = self._memory
         if not seen or state.t < seen["t"]:
             seen.update(t=state.t, lift=self.alpha_trim, engine=0.0, began_m=state.height_m)
@@ -66,14 +66,14 @@ class SimulatorIncrements:
 
 
 def carried(p: FloatArray) -> FloatArray:
-    """Return driving numbers, shape (entries,), with those alone that become increments."""
+    """Return the simulator inputs, shape (entries,), with only the entries that become increments."""
     return np.where(_CARRIED, p, 0.0)
 
 
 def trimmed(
     p: FloatArray, alpha: float, theta: float, speed: float, height: float, reference: float
 ) -> FloatArray:
-    """Return driving numbers, shape (entries,), with the trim terms of steady flight in this state."""
+    """Return the simulator inputs, shape (entries,), with the trim terms of steady flight in this state."""
     # Both equations are linear in their trim term.
     both = np.tile(carried(p), (2, 1))
     both[:, _TRIMS] = [[0.0, 0.0], [1.0, 1.0]]

@@ -1,4 +1,4 @@
-"""Inputs of a simulator from a flown manoeuvre, and the replay as a manoeuvre on the gap's own grid."""
+"""Inputs of a simulator from a flown manoeuvre, and the replay as a manoeuvre on the gap's time grid."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -26,13 +26,13 @@ from advisor.oem.rows import Signal
 from advisor.simulators.protocol import CONTROLS, Condition, Inputs, Replay
 
 _RATE_S = 0.02
-"""Interval of the stamps at which a replay is read where nothing was measured."""
+"""Interval of the stamps at which a replay is read if nothing was measured, s."""
 
 
 def condition_of(flight: PreparedManeuver, height_m: float, mass_kg: float | None) -> Condition:
-    """Return the steady flight at the start of a manoeuvre: mean speed before the first step.
+    """Return the steady flight condition at the start of a manoeuvre: mean speed before the first step.
 
-    ``height_m`` is the height in the standard atmosphere with the density of the air flown in.
+    ``height_m`` is the height in the standard atmosphere with the flight's air density.
     """
     before = max(int(flight.first_step_s / flight.h), 1)
     speed = float(np.mean(flight.slow[SPEED, :before]))
@@ -41,9 +41,9 @@ def condition_of(flight: PreparedManeuver, height_m: float, mass_kg: float | Non
 
 
 def surface_of(flight: PreparedManeuver, p: FloatArray, held: bool) -> FloatArray:
-    """Return the surface's departure from trim, rad, shape (n,): the mean over each step.
+    """Return the surface's deviation from trim, rad, shape (n,): the mean over each step.
 
-    ``p``, shape (entries,), has the effects between the recorded command and the surface.
+    ``p``, shape (entries,), holds the effects between the recorded command and the surface.
     """
     stamps = flight.t_held if held else flight.t_u
     return surface(flight.h, flight.n, stamps, flight.u, held, flight.u_trim, p)
@@ -58,10 +58,10 @@ def inputs_of(
 
 
 def as_flight(flight: PreparedManeuver, replay: Replay, reference_m_s: float) -> PreparedManeuver:
-    """Return the manoeuvre as flown by the simulator: equal command, with the simulator's own speed and trim.
+    """Return the manoeuvre as flown by the simulator, with the simulator's own speed and trim.
 
-    Bank and turn are those of the simulator, zero in the vertical plane, and thrust equals drag. The height
-    above the ground changes as the simulator's.
+    Bank and turn rate are the simulator's, zero in the vertical plane, and thrust equals drag. The height
+    above the ground changes with the simulator's height.
     """
     middles = (np.arange(flight.n) + 0.5) * flight.h
     slow = np.zeros_like(flight.slow)
@@ -83,7 +83,7 @@ def as_flight(flight: PreparedManeuver, replay: Replay, reference_m_s: float) ->
 
 
 def at_reference(flight: PreparedManeuver, reference_m_s: float) -> PreparedManeuver:
-    """Return the manoeuvre with derivatives at another reference speed."""
+    """Return the manoeuvre with another reference speed of the derivatives."""
     trim = flight.trim.copy()
     trim[REFERENCE] = reference_m_s
     return replace(flight, trim=trim)
@@ -97,7 +97,7 @@ def on_grid(replay: Replay, flight: PreparedManeuver) -> FloatArray:
 
 
 def read_from(flight: PreparedManeuver, grid: FloatArray, channels: tuple[str, ...]) -> PreparedManeuver:
-    """Return the manoeuvre with a series on the grid, shape (4, n + 1), in place of the measurements."""
+    """Return the manoeuvre with a series on the time grid, shape (4, n + 1), as measurements."""
     t = np.arange(flight.n + 1) * flight.h
     stamps = np.arange(0.0, t[-1], _RATE_S)
     names = ("alpha", "q", "a_z", "theta")
@@ -111,7 +111,7 @@ def read_from(flight: PreparedManeuver, grid: FloatArray, channels: tuple[str, .
 
 
 def _pull_along(replay: Replay) -> FloatArray:
-    """Return the specific force along body x, m/s², of a motion in the vertical plane, shape (m,)."""
+    """Return the specific force along body x, m/s², for motion in the vertical plane, shape (m,)."""
     path = replay.theta - replay.alpha
     along = np.gradient(replay.airspeed_m_s, replay.t) + GRAVITY_M_S2 * np.sin(path)
     return np.asarray((along - replay.a_z * np.sin(replay.alpha)) / np.cos(replay.alpha))
@@ -122,7 +122,7 @@ def other_controls(
 ) -> Mapping[int, Mapping[str, FloatArray]]:
     """Return the logged controls of ``CONTROLS`` by manoeuvre number, each of shape (n,) on its grid.
 
-    Values are departures from the mean before the first step of the elevator.
+    Values are deviations from the mean before the elevator's first step.
     """
     by_number = {m.number: m for m in maneuvers}
     return {flight.number: _departures(flight, by_number[flight.number]) for flight in flights}

@@ -1,13 +1,13 @@
-"""Signs and units of a simulator, by the kinematics of its own replay: no aerodynamics is needed.
+"""Signs and units of a simulator, from the kinematics of its own replay, without aerodynamics.
 
 In still air and in the vertical plane
 
     θ̇ = q        α̇ = q + (a_z·cos α − a_x·sin α + g·cos γ)/V        a_z = −g·cos θ in steady level flight
 
-(Klein and Morelli, *Aircraft System Identification*, chapter 10). A factor of −1 or 180/π between the sides
-is a sign or a unit, if the motion agrees with itself without that factor. The tests of the interface need
-neither a flight nor a model of the simulator. A control's sense is that of the convention, and a control in
-degrees has 57 times less effect than any aircraft's.
+(Klein and Morelli, *Aircraft System Identification*, chapter 10). A factor of −1 or 180/π between both sides
+is a wrong sign or unit, if the motion is consistent without it. The tests of the interface need neither a
+flight nor a model of the simulator. A control must have the convention's sign, and a control in degrees has
+57 times less effect.
 """
 
 from collections.abc import Sequence
@@ -24,14 +24,14 @@ from advisor.words.problems import UnusableInputError
 
 _PER_RAD = degrees(1.0)
 _NEAR = log(1.5)
-"""Largest logarithm of the ratio between a factor and a unit's factor that counts as that unit. Units differ
-by a factor of 3 or more."""
+"""Largest absolute logarithm of the ratio between a factor and a unit's factor that identifies the unit.
+Units differ by a factor of 3 or more."""
 _MOVES_RAD = 1e-4
-"""Least range of ∫q dt, rad, by which a unit can be told. A real test input moves the nose by a hundred
-times as much."""
+"""Least range of ∫q dt, rad, for a test of the units. A real test input moves the nose by a hundred times
+this range."""
 _MENDS = 0.5
-"""Largest share of the motion's disagreement with itself that may remain without a wrong sign or unit. Half:
-without a fault, a change of sign or unit makes more disagreement instead of less."""
+"""Largest share of the motion's inconsistency that may remain after correction of a sign or unit. Without a
+fault, a change of sign or unit increases the inconsistency."""
 _SMALL_RAD = 0.7
 """Largest angle of attack or pitch angle, rad, of a test manoeuvre: 40 deg."""
 
@@ -41,7 +41,7 @@ _NAMES = {"alpha": "α", "theta": "θ"}
 
 @dataclass(frozen=True)
 class InterfaceFault:
-    """A wrong sign or unit of one quantity."""
+    """Wrong sign or unit of one quantity of a simulator."""
 
     quantity: str
     found: str
@@ -49,14 +49,14 @@ class InterfaceFault:
     fix: str
 
     def refuse(self, description: str) -> UnusableInputError:
-        """Return the refusal of a simulator with this fault."""
+        """Return the error message that refuses a simulator with this fault."""
         return UnusableInputError(
             "simulator_interface", f"{description} gives {self.quantity} {self.found}.", self.fix
         )
 
 
 def interface_fault(replay: Replay) -> InterfaceFault | None:
-    """Return the first wrong sign or unit of a replay's outputs; None where they agree with each other."""
+    """Return the first wrong sign or unit of a replay's outputs; None if they are consistent."""
     a_z = float(replay.a_z[0])
     if _is(a_z, GRAVITY_M_S2):
         return _sign("a_z", f"as {a_z:+.2f} m/s² in steady flight, where body z down gives -9.81")
@@ -83,7 +83,7 @@ def interface_fault(replay: Replay) -> InterfaceFault | None:
 
 
 def _mended(replay: Replay, fault: InterfaceFault) -> Replay:
-    """Return the replay without a wrong sign or unit of α, q or θ."""
+    """Return the replay with a wrong sign or unit of α, q or θ corrected."""
     factor = -1.0 if "reversed" in fault.found else 1.0 / _PER_RAD
     changed: dict[str, Any] = {
         name: factor * getattr(replay, name)
@@ -94,7 +94,7 @@ def _mended(replay: Replay, fault: InterfaceFault) -> Replay:
 
 
 def _misfit(replay: Replay) -> float:
-    """Return the disagreement of θ with ∫q dt, and of α with the path, as shares of these motions."""
+    """Return the inconsistency of θ with ∫q dt, and of α with the path, as shares of these motions."""
     turned = _integrated(replay.q, replay.t)
     pairs = (
         (replay.theta - replay.theta[0], turned),
@@ -127,19 +127,19 @@ def _of_the_angles(replay: Replay, turned: FloatArray) -> InterfaceFault | None:
 
 
 def _slopes(replay: Replay, turned: FloatArray) -> tuple[float, float, float]:
-    """Return the slopes of θ on ∫q dt, and of α on ∫q dt and on the path's turning: each is 1 in SI units."""
+    """Return the slopes of θ on ∫q dt, and of α on ∫q dt and on the path's turning, each 1 in SI units."""
     columns = np.column_stack([turned, _path_turning(replay)])
     by_q, by_force = np.linalg.lstsq(columns, replay.alpha - replay.alpha[0])[0]
     return _slope(turned, replay.theta - replay.theta[0]), float(by_q), float(by_force)
 
 
 def _agrees(replay: Replay) -> bool:
-    """Return whether the outputs of a replay agree with each other."""
+    """Return whether the outputs of a replay are consistent with each other."""
     return all(_is(slope, 1.0) for slope in _slopes(replay, _integrated(replay.q, replay.t)))
 
 
 def _in_radians(replay: Replay, names: Sequence[str]) -> Replay:
-    """Return the replay with some of its series taken from degrees."""
+    """Return the replay with some of its series converted from degrees."""
     changed: dict[str, Any] = {name: np.radians(getattr(replay, name)) for name in names}
     return replace(replay, **changed)
 
@@ -152,27 +152,26 @@ _POSITIVE = {
     "aileron": ("it rolls to the other side", "a positive aileron rolls to the left"),
     "rudder": ("it yaws to the other side", "a positive rudder yaws to the left"),
 }
-"""Control to the fault of its sense, and to the convention."""
+"""Sentences about a control with a wrong sign: the fault and the convention, by the control."""
 
 
 _LEAST = {"elevator": 0.1, "aileron": 0.6, "rudder": 0.1}
-"""Least answer to a control in rad: change of α by the elevator, steady roll rate by the aileron (1/s),
-sideslip by the rudder. Aircraft on record have 0.3 to 3, 3 to 11 and 0.4 to 2; a control that is taken in
-degrees answers 57 times less. An aileron answers at most 57 times the least; α and β may do more, where an
-aircraft is hardly stable."""
+"""Least response to a control: change of α per elevator, steady roll rate per aileron (1/s), sideslip per
+rudder. Recorded aircraft have 0.3 to 3, 3 to 11 and 0.4 to 2; a control read in degrees gives 57 times less.
+An aileron response is at most 57 times the least; α and β may exceed that with low stability."""
 
 
 def control_fault(control: str, turns: float, answer: float) -> InterfaceFault | None:
-    """Return the wrong sign or unit of a control; None where it turns the simulator as it turns an aircraft.
+    """Return the wrong sign or unit of a control; None if the simulator responds like an aircraft.
 
     Parameters
     ----------
     control
-        ``elevator``, ``aileron`` or ``rudder``.
+        Name of the control: ``elevator``, ``aileron`` or ``rudder``.
     turns
-        M_δe, L_δa or N_δr, 1/s².
+        Derivative M_δe, L_δa or N_δr, 1/s².
     answer
-        Size of the answer by the table of ``_LEAST``.
+        Size of the response as in ``_LEAST``.
     """
     if answer < _LEAST[control]:
         told = f"{_LEAST[control] / max(answer, 1e-6):.0f} times less effect than the weakest of an aircraft"
@@ -192,7 +191,7 @@ def control_fault(control: str, turns: float, answer: float) -> InterfaceFault |
 
 
 def side_fault(replay: Replay) -> InterfaceFault | None:
-    """Return the first wrong sign or unit of p, r, bank and β; None where they agree with each other.
+    """Return the first wrong sign or unit of p, r, bank and β; None if they are consistent.
 
     φ̇ = p + tan θ·(q·sin φ + r·cos φ)        β̇ = a_y/V + (g/V)·cos θ·sin φ + sin α·p − cos α·r
     """
@@ -236,18 +235,18 @@ def _path_turning(replay: Replay) -> FloatArray:
 
 
 def _integrated(rate: FloatArray, t: FloatArray) -> FloatArray:
-    """Return the integral of a rate over time, by trapezes, shape (m,)."""
+    """Return the integral of a rate over time, by the trapezoidal rule, shape (m,)."""
     steps = 0.5 * (rate[1:] + rate[:-1]) * np.diff(t)
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def _slope(x: FloatArray, y: FloatArray) -> float:
-    """Return the slope of y on x."""
+    """Return the regression slope of y on x."""
     return float(x @ y / max(float(x @ x), 1e-300))
 
 
 def _is(factor: float, unit: float) -> bool:
-    """Return whether a factor is that of a sign or unit."""
+    """Return whether a factor equals that of a sign or unit."""
     return factor * unit > 0.0 and abs(log(factor / unit)) < _NEAR
 
 

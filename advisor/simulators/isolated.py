@@ -1,4 +1,4 @@
-"""A simulator in a process of its own: foreign code crashes or hangs only there."""
+"""A simulator in a separate process, so that foreign code crashes or hangs only there."""
 
 import importlib
 import os
@@ -18,7 +18,7 @@ from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, S
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _GOODBYE_S = 1.0
-"""Time in s that a process has to end after its connection is closed."""
+"""Time that the process may take to end after its connection is closed, s."""
 MOST_MEMORY_BYTES = 8 << 30
 """Largest address space of a simulator's process, bytes. Python with numerical libraries takes 2 GB of
 addresses, JSBSim and FMUs with tables less than 1 GB more."""
@@ -27,30 +27,29 @@ addresses, JSBSim and FMUs with tables less than 1 GB more."""
 class Isolated:
     """A simulator that is built and flown in another process.
 
-    The parent imports nothing of the simulator, and receives numbers and text only. The folder in which the
-    parent was started stands last on the child's path of modules. What the child prints goes nowhere. The
-    child and all that it starts form a process group, which ends with the simulator. The child's memory is
-    limited.
+    The parent imports no code of the simulator, and receives only numbers and text. The parent's start folder
+    is last on the child's module path. Output that the child prints is discarded. The child and all its
+    processes form a process group, which ends with the simulator. The child's memory is limited.
 
     Parameters
     ----------
     make : str
         ``module:name`` of the callable that builds the simulator.
     *arguments
-        Arguments of ``make``; each can be pickled.
+        Arguments of ``make``, which must be picklable.
     description : str
-        The simulator's name in every sentence.
+        Name of the simulator in every sentence.
     speed_limit_s : float
-        Wall time that one replay or one linearisation may take.
+        Largest wall time of one replay or linearisation.
     start_limit_s : float
-        Wall time that building the simulator may take.
+        Largest wall time for building the simulator.
 
     Raises
     ------
     ConfigurationError
         The simulator cannot be built.
     UnusableInputError
-        Each method: the simulator refuses, raises, crashes, returns no numbers, or takes too long.
+        A method raises it if the simulator refuses, raises, crashes, returns no numbers, or takes too long.
     """
 
     def __init__(
@@ -78,17 +77,17 @@ class Isolated:
             raise
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
-        """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
+        """Trim at the condition, and fly the inputs as deviations from the trimmed controls."""
         columns, trim = self._ask("replay", condition, inputs, increments)
         return Replay(**{name: row and np.array(row) for name, row in columns.items()}, trim=trim)
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
-        """Return dimensional short-period derivatives at the condition, or None without any."""
+        """Return dimensional short-period derivatives at the condition; None if the simulator has none."""
         derivatives: Mapping[str, float] | None = self._ask("linearise", condition)
         return derivatives
 
     def close(self) -> None:
-        """End the process, and remove the files that the simulator left in its temporary folder."""
+        """End the process, and remove the simulator's temporary files."""
         self._end()
         self._folder.cleanup()
 
@@ -165,7 +164,7 @@ class Isolated:
 
 
 def _serve(connection: Connection, folder: str, make: str, arguments: tuple[Any, ...]) -> None:
-    """Build the simulator and answer the parent until the parent hangs up."""
+    """Build the simulator, and serve the parent's requests until the parent closes the connection."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if os.name == "posix":
         os.setpgid(0, 0)
@@ -202,14 +201,14 @@ def _serve(connection: Connection, folder: str, make: str, arguments: tuple[Any,
 
 
 def _kill_group(leader: int) -> None:
-    """End what the simulator's process has started, and the process itself."""
+    """End the simulator's process and all processes that it started."""
     if os.name == "posix":
         with suppress(OSError):  # nothing of it is left, or it died before it led a group
             os.killpg(leader, signal.SIGKILL)
 
 
 def _limit_memory() -> None:
-    """Let a simulator that asks for too much memory fail, instead of the advisor or the whole computer."""
+    """Limit the memory, so that only a too large simulator fails."""
     try:
         import resource
     except ImportError:  # Windows
@@ -241,12 +240,12 @@ _OPTIONAL = ("a_x", "bank", "r", "p", "a_y", "beta")
 
 
 def _plain(replay: Any) -> tuple[dict[str, list[float] | None], dict[str, float]]:
-    """Return the series and the trimmed controls of a replay as plain numbers, checked."""
+    """Return the checked series and trimmed controls of a replay as plain numbers."""
     return _columns(replay), _numbers(getattr(replay, "trim", None)) or {}
 
 
 def _columns(replay: Any) -> dict[str, list[float] | None]:
-    """Return the series of a replay as plain numbers, checked."""
+    """Return the checked series of a replay as plain numbers."""
     rows: dict[str, list[float] | None] = {}
     for one in fields(Replay):
         if one.name == "trim":

@@ -1,4 +1,4 @@
-"""``jsbsim:MODEL`` or ``jsbsim:PATH/model.xml``: a flight compared with a JSBSim aircraft."""
+"""Comparison of a flight with a JSBSim aircraft: ``jsbsim:MODEL`` or ``jsbsim:PATH/model.xml``."""
 
 import math
 from collections.abc import Mapping
@@ -16,17 +16,17 @@ from advisor.simulators.protocol import State as Motion
 from advisor.words.problems import UnusableInputError
 
 _THRUST_SHARE = 0.01
-"""Largest force along the flight path, over the weight, of a state that counts as trimmed."""
+"""Largest force along the flight path, over the weight, in a trimmed state."""
 _MOTION = ("alpha", "q", "theta", "a_z", "airspeed_m_s", "height_m", "a_x", "bank", "r", "p", "a_y", "beta")
-"""Series of a replay."""
+"""Names of the series in a replay."""
 _SHOWN = 6
-"""Most foreign properties that are named."""
+"""Largest number of foreign properties in a sentence."""
 _PROBE = 1e-3
-"""Departures for central differences: of α and of the elevator in rad, of q in rad/s."""
+"""Steps of central differences: α and elevator in rad, q in rad/s."""
 
 
 def make_jsbsim(model: str, aircraft: Aircraft) -> Isolated:
-    """Return the simulator of ``jsbsim:MODEL``, in a process of its own.
+    """Return the simulator of ``jsbsim:MODEL``, in a separate process.
 
     Raises
     ------
@@ -38,18 +38,18 @@ def make_jsbsim(model: str, aircraft: Aircraft) -> Isolated:
 
 
 class Jsbsim:
-    """A JSBSim aircraft that flies recorded inputs (the protocol's simulator).
+    """A JSBSim aircraft that flies recorded inputs (a simulator of the protocol).
 
-    The recorded elevator is a departure from the trimmed surface. The departure enters at the pilot's
-    command, by the inverse of the model's own curve from command to surface. An actuator in the model's
-    flight control stays in the path: its lag, its hysteresis and its stops are the simulator's own. A flight
-    control that feeds motion back is bypassed: there the surface itself is written. Aileron, rudder and
-    throttle enter at the pilot's commands. A positive aileron rolls, and a positive rudder yaws, to the left.
+    The recorded elevator is a deviation from the trimmed surface. The deviation is commanded at the pilot's
+    input, by the inverse of the model's command-to-surface curve. An actuator in the model's flight control
+    is kept, with its lag, hysteresis and stops. A flight control with feedback of the motion is bypassed, and
+    the surface itself is set. Aileron, rudder and throttle are commanded at the pilot's inputs. Positive
+    aileron rolls to the left, and positive rudder yaws to the left.
 
     Parameters
     ----------
     path : Path
-        The model's XML.
+        XML file of the model.
     """
 
     takes_increments = True
@@ -64,7 +64,7 @@ class Jsbsim:
         self.notes = _of_foreign(self._flight.foreign)
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
-        """Trim at the condition, and fly the inputs as departures from the trimmed controls."""
+        """Trim at the condition, and fly the inputs as deviations from the trimmed controls."""
         try:
             return self._fly(condition, inputs, increments)
         except Exception:
@@ -108,7 +108,7 @@ class Jsbsim:
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return central differences of α̇ and q̇ about the trimmed state, at constant speed and flight path.
 
-        A moment by the rate of α becomes part of the derivatives, as in the short-period model.
+        A moment due to α̇ becomes part of the derivatives, as in the short-period model.
         """
         start = self._trimmed(condition)
         by_alpha = self._slopes(condition, start, alpha=_PROBE)
@@ -124,7 +124,7 @@ class Jsbsim:
         }
 
     def close(self) -> None:
-        """Do nothing: JSBSim lives in this process."""
+        """Do nothing, because JSBSim runs in this process."""
 
     def _trimmed(self, condition: Condition) -> SteadyState:
         near = next(reversed(self._trims.values()), None)
@@ -164,7 +164,7 @@ class Jsbsim:
         return (u * w_dot - w * u_dot) / (u * u + w * w), fdm["accelerations/qdot-rad_sec2"]
 
     def _throw(self, name: str) -> float:
-        """Return the command per radian of surface, positive where a positive surface turns to the left."""
+        """Return the command per radian of surface, positive if positive surface turns to the left."""
         fdm = self._flight.fdm
         surface, rate = {
             "aileron": ("fcs/left-aileron-pos-rad", "accelerations/pdot-rad_sec2"),
@@ -186,7 +186,7 @@ class Jsbsim:
         return math.copysign(1.0 / throw, seen[-1.0][1] - seen[1.0][1])
 
     def _motion(self) -> tuple[float, ...]:
-        """Return the motion in the order of ``_MOTION``."""
+        """Return the motion's quantities in the order of ``_MOTION``."""
         fdm = self._flight.fdm
         acceleration = FOOT_M / fdm["inertia/mass-slugs"]
         return (
@@ -230,7 +230,7 @@ class Jsbsim:
 
 
 def _of_foreign(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return a sentence on the properties that another program would write; none without any."""
+    """Return a sentence about properties that another program would write; empty without one."""
     if not names:
         return ()
     shown = ", ".join(names[:_SHOWN]) + (", ..." if len(names) > _SHOWN else "")

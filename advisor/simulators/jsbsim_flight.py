@@ -1,7 +1,7 @@
 """One JSBSim aircraft in SI units, for steady states, commands and readings.
 
-The flight stands still while a state is sought (:meth:`Flight.freeze`): position and velocity keep their
-values, and engines and propellers settle. Lags of the flight control pass meanwhile.
+The aircraft is held still while a state is sought (:meth:`Flight.freeze`), and engines and propellers settle.
+Lags in the flight control also settle.
 """
 
 from math import cos, sin
@@ -22,7 +22,7 @@ STEP_S = 0.005
 _LATITUDE_DEG = 45.0
 """Latitude at which gravity is standard, deg."""
 _CLEARANCE_M = 3000.0
-"""Height above the terrain, m, which is lowered so that gear and ground effect play no part."""
+"""Height above the terrain, m, so that gear and ground effect have no influence."""
 _ADAMS_BASHFORTH_2, _NONE = 3, 0
 _INTEGRATORS = {
     "simulation/integrator/rate/rotational": _ADAMS_BASHFORTH_2,
@@ -32,44 +32,45 @@ _INTEGRATORS = {
 }
 _COMMANDS = np.linspace(-1.0, 1.0, 81)
 _PROBE = 0.02
-"""Departures of α (rad) and of q (rad/s) that show whether the flight control feeds motion back."""
+"""Deviations of α (rad) and q (rad/s) for a test whether the flight control has feedback."""
 _SETTLED_RAD = 1e-7
-"""Change of the surface in one step, rad, below which filters between command and surface rest."""
+"""Change of the surface in one step, rad, below which filters before the surface have settled."""
 _LONGEST_SETTLING_STEPS = 600
-"""Most steps for which such filters are awaited: three seconds."""
+"""Largest number of steps in which such filters must settle: three seconds."""
 _SETTLE_STEPS = 3
-"""Number of calls until all values follow: forces trail the state, and the rate of α trails the forces, by
-one call each."""
+"""Number of calls until all values are consistent: forces lag the state, and α̇ lags the forces, by one call
+each."""
 
 
 class SteadyState(NamedTuple):
-    """The steady state of one condition."""
+    """Steady state of the aircraft at one condition."""
 
     alpha: float = 0.0
     elevator: float = 0.0
     """Surface deflection, rad."""
     aileron: float = 0.0
-    """Command from -1 to 1."""
+    """Aileron command from -1 to 1."""
     rudder: float = 0.0
-    """Command from -1 to 1."""
+    """Rudder command from -1 to 1."""
     phi: float = 0.0
     throttle: float = 0.6
     axial: float = 0.0
-    """Force along the path that balances the excess of thrust, lb."""
+    """Force along the path that balances excess thrust, lb."""
 
 
 class JsbsimFlight:
-    """A loaded model; the elevator is commanded in radians of surface.
+    """A loaded JSBSim model, with its elevator commanded in radians of surface.
 
-    The elevator takes the model's own path from command to surface, with its actuator, where that path is one
-    curve. Where the flight control feeds motion back, the surface itself is written, and actuator and flight
-    control are bypassed. Filters in the path rest only after some steps of frozen flight. A steady state is
-    sought with the surface written, and the filters settle before the flight begins.
+    The elevator uses the model's path from command to surface, with its actuator, if that path is one curve.
+    If the flight control has feedback, the surface itself is set, without actuator and flight control.
+    Filters in the path settle only after some steps of frozen flight. A steady state is sought with the
+    surface set, and the filters settle before the flight begins.
 
     Raises
     ------
     UnusableInputError
-        The model does not load. :meth:`begin` raises it where the command moves no ``fcs/elevator-pos-rad``.
+        The model does not load; :meth:`begin` also raises it if the command moves no
+        ``fcs/elevator-pos-rad``.
     """
 
     def __init__(self, path: Path) -> None:
@@ -114,7 +115,7 @@ class JsbsimFlight:
             self.fdm[integrator] = _NONE
 
     def release(self) -> None:
-        """Let the aircraft fly from the state that it was put into."""
+        """Release the aircraft to fly from its present state."""
         if self._writes and self._curve is not None:
             self._command(self._resting)
             for _ in range(self._settling):
@@ -134,11 +135,11 @@ class JsbsimFlight:
 
     @property
     def _writes(self) -> bool:
-        """Whether the surface is written in a steady state."""
+        """Whether the surface itself is set in a steady state."""
         return self._curve is None or self._settling > 0
 
     def _command(self, surface: float) -> None:
-        """Give the command by which the surface comes to rest at ``surface``, rad."""
+        """Set the command for which the surface settles at ``surface``, rad."""
         assert self._curve is not None
         surfaces, commands = self._curve
         self.fdm["fcs/elevator-cmd-norm"] = float(np.interp(surface, surfaces, commands))
@@ -149,7 +150,7 @@ class JsbsimFlight:
             self.fdm[f"fcs/throttle-cmd-norm[{i}]"] = min(max(setting, 0.0), 1.0)
 
     def put(self, state: SteadyState, gamma: float, q: float = 0.0) -> None:
-        """Put the aircraft into a state on a path of angle ``gamma``, with pitch rate ``q``."""
+        """Set a state of the aircraft on a path of angle ``gamma``, with pitch rate ``q``."""
         fdm = self.fdm
         fdm["ic/vt-fps"] = self._airspeed_fps
         fdm["ic/alpha-rad"] = state.alpha
@@ -170,7 +171,7 @@ class JsbsimFlight:
         fdm.resume_integration()
 
     def _blow(self, phi: float, theta: float) -> None:
-        """Begin the flight in the wind. JSBSim's own initial wind changes the air speed twice."""
+        """Begin the flight in wind. JSBSim's own initial wind would change the air speed twice."""
         fdm, (along, right) = self.fdm, self._wind_fps
         down = along * sin(theta)
         of_the_body = {
@@ -185,12 +186,12 @@ class JsbsimFlight:
         fdm["atmosphere/wind-north-fps"], fdm["atmosphere/wind-east-fps"] = along, right
 
     def run_engines(self) -> None:
-        """Run engines and propellers for a second of frozen flight."""
+        """Run engines and propellers for one second of frozen flight."""
         for _ in range(round(1.0 / STEP_S)):
             self.fdm.run()
 
     def accelerations(self) -> FloatArray:
-        """Return u̇, v̇, ẇ in m/s², ṗ, q̇, ṙ in rad/s², shape (6,)."""
+        """Return u̇, v̇, ẇ in m/s² and ṗ, q̇, ṙ in rad/s², shape (6,)."""
         fdm = self.fdm
         linear = [FOOT_M * fdm[f"accelerations/{one}dot-ft_sec2"] for one in "uvw"]
         return np.array(linear + [fdm[f"accelerations/{one}dot-rad_sec2"] for one in "pqr"])
@@ -214,7 +215,7 @@ class JsbsimFlight:
             fdm.run_ic()
 
     def _elevator_curve(self, condition: Condition) -> tuple[FloatArray, FloatArray] | None:
-        """Return surfaces in ascending order and their commands; None where the surface is written."""
+        """Return ascending surface angles and their commands; None if the surface itself is set."""
         fdm = self.fdm
         fdm[WRITES] = 0.0
         fdm["fcs/pitch-trim-cmd-norm"] = 0.0

@@ -1,11 +1,11 @@
-"""A JSBSim aircraft from a copy of its XML, which also takes increments and a written surface.
+"""A JSBSim aircraft from a changed copy of its XML, which accepts increments and a set surface.
 
-The copy lies in a temporary folder; nothing is written next to the model. The copy has external forces and an
-external moment for increments, and a point mass for the flown mass. A last channel of its flight control can
-write the elevator. The copy has no <output> and no <input>: the model opens neither files nor sockets.
+The copy is in a temporary folder; nothing is written next to the model. The copy has an external force and
+moment for increments, and a point mass for the flown mass. A last channel of the copy's flight control can
+set the elevator. The copy has no <output> and no <input>, so the model opens neither files nor sockets.
 
-A property that only another program writes, such as FlightGear, gets the value 0. JSBSim ends on a property
-that does not exist.
+A property that only another program writes, such as FlightGear, gets the value 0. JSBSim would abort on an
+unknown property.
 """
 
 import importlib.util
@@ -28,19 +28,19 @@ _OWN = (
 )  # fmt: skip
 """First parts of the names of JSBSim's own properties."""
 _SECTIONS = frozenset({"system", "autopilot", "flight_control", "aerodynamics", "channel", "metrics"})
-"""Elements whose own ``property`` is a declaration."""
+"""XML elements whose ``property`` attribute is a declaration."""
 _PROSE = frozenset({"description", "documentation", "note", "reference", "fileheader", "tableData"})
-"""Elements whose text is no property."""
+"""XML elements whose text is not a property."""
 _NAME = re.compile(r"(?<![\w/.-])-?(/?[A-Za-z_][\w.\[\]-]*(?:/[A-Za-z_][\w.\[\]-]*)+)")
 
 
 def foreign_properties(roots: Iterable[ET.Element]) -> tuple[str, ...]:
-    """Return the names of properties that a model reads, that it writes nowhere, and that JSBSim has not.
+    """Return the properties that a model reads but that neither the model nor JSBSim defines.
 
     Parameters
     ----------
     roots
-        Outermost elements of the model's files.
+        Root elements of the model's files.
     """
     read: dict[str, None] = {}
     written: set[str] = set()
@@ -59,7 +59,7 @@ def foreign_properties(roots: Iterable[ET.Element]) -> tuple[str, ...]:
 
 
 def _without_prose(parent: ET.Element, element: ET.Element) -> Iterator[tuple[ET.Element, ET.Element]]:
-    """Yield every element that holds no prose, after its parent."""
+    """Yield every element that is no prose, with its parent first."""
     if element.tag in _PROSE:
         return
     yield parent, element
@@ -68,7 +68,7 @@ def _without_prose(parent: ET.Element, element: ET.Element) -> Iterator[tuple[ET
 
 
 def _dashed(name: str) -> str:
-    """Return the name of a component as JSBSim spells its property."""
+    """Return the property name that JSBSim makes from a component's name."""
     return name.strip().lower().replace(" ", "-")
 
 
@@ -76,19 +76,19 @@ FORCE = "external_reactions/advisor-force"
 AXIAL = "external_reactions/advisor-axial"
 MOMENT = "external_reactions/advisor-moment/magnitude-lbsft"
 WRITES = "advisor/elevator-writes"
-"""Property that is 1 where the surface is written and the model's flight control is bypassed."""
+"""Property that is 1 if the surface itself is set and the model's flight control is bypassed."""
 WRITTEN = "advisor/elevator-written-rad"
 LOAD = "inertia/pointmass-weight-lbs"
 LOAD_PLACE = "inertia/pointmass-location-{}-inches"
 
 
 def find_model(name: str) -> Path:
-    """Return the XML file of a model that JSBSim ships, or of a user's own path.
+    """Return the XML file of a model that JSBSim ships, or of the user's path.
 
     Raises
     ------
     ConfigurationError
-        JSBSim is not installed, ships no such model, or the path is no file.
+        JSBSim is not installed or has no such model, or the path is no file.
     """
     if name.endswith(".xml") or os.sep in name or "/" in name:
         path = Path(name)
@@ -110,9 +110,9 @@ def find_model(name: str) -> Path:
 
 
 def load(path: Path, dt: float) -> tuple[Any, tuple[str, ...]]:
-    """Return JSBSim with the model, and the properties of other programs that are 0 there.
+    """Return JSBSim with the model, and the names of other programs' properties, set to 0.
 
-    ``dt`` is the step in seconds.
+    ``dt`` is the time step, s.
 
     Raises
     ------
@@ -178,7 +178,7 @@ def _equipped(path: Path) -> "ET.ElementTree[ET.Element]":
 
 
 def _files(tree: "ET.ElementTree[ET.Element]", folders: Sequence[Path]) -> list[ET.Element]:
-    """Return the outermost elements of a model and of the included systems that are found."""
+    """Return the root elements of a model's file and of its included systems."""
     root = tree.getroot()
     assert root is not None
     found = [root]
@@ -194,7 +194,7 @@ def _files(tree: "ET.ElementTree[ET.Element]", folders: Sequence[Path]) -> list[
 
 
 def _section(root: ET.Element, tag: str, folder: Path | None = None) -> ET.Element:
-    """Return the section with the content of its own ``file``; the section is created where there is none."""
+    """Return the section with the content of its own ``file``; a missing section is created."""
     section = root.find(tag)
     if section is None:
         section = ET.SubElement(root, tag, {"name": "advisor"})

@@ -1,9 +1,9 @@
-"""Steady, straight flight of a JSBSim aircraft, by Newton's method on the model's own accelerations.
+"""Steady, straight flight of a JSBSim aircraft, by Newton's method on the model's accelerations.
 
-JSBSim's own trim steps engines by half a second, which a constant-speed propeller does not survive. Here
-engines run in their own time while the flight stands still. Angle of attack, elevator, bank, aileron and
-rudder solve the normal, lateral and rotational accelerations; the throttle solves the axial one. Thrust that
-no throttle gives (a glider, a flight path that is not quite level) is balanced by a force along the path.
+JSBSim's own trim advances engines by half a second, with which a constant-speed propeller fails. Here engines
+run in their own time while the aircraft is held still. Angle of attack, elevator, bank, aileron and rudder
+balance all accelerations except the axial one. Thrust that no throttle gives, as for a glider, is balanced by
+a force along the path.
 """
 
 from dataclasses import dataclass
@@ -23,20 +23,21 @@ _LONGEST_STEP = 0.1
 """Longest Newton step of an angle (rad) or of a command."""
 _NEWTON_STEPS = 40
 _STEADY = 1e-6
-"""Acceleration below which flight is steady, m/s² and rad/s²."""
+"""Acceleration below which flight counts as steady, m/s² and rad/s²."""
 _THROTTLES = 12
 _NEARBY = 0.05
-"""Numerical: first change of the throttle, 0 to 1. The trim of a neighbouring condition lies within."""
+"""Numerical: first change of the throttle, 0 to 1. The trim of a neighbouring condition lies within this
+change."""
 _BALANCED_M_S2 = 1e-3
-"""Axial acceleration, m/s², that the throttle need not remove: the force along the path balances it."""
+"""Axial acceleration, m/s², that remains to the force along the path instead of the throttle."""
 _ENGINE_SECONDS = 30
 _ENGINES_STEADY = 1e-4
-"""Change of the axial acceleration in one second, m/s², below which engines run steadily."""
+"""Change of the axial acceleration in one second, m/s², below which engines count as steady."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Tried:
-    """Steady flight at one throttle, and the remaining axial acceleration, m/s²."""
+    """Steady flight at one throttle, with its remaining axial acceleration, m/s²."""
 
     state: SteadyState
     excess: float
@@ -48,19 +49,19 @@ def trim(
     known: SteadyState | None = None,
     near: SteadyState | None = None,
 ) -> SteadyState:
-    """Put the aircraft into steady flight, held still, and return its state.
+    """Trim the aircraft in steady flight, held still, and return its state.
 
     Parameters
     ----------
     known
-        Earlier trim of the condition, whose throttle is kept while the engines settle anew.
+        Earlier trim of the condition, whose throttle is kept while the engines settle again.
     near
-        Trim of another condition, from which the search starts.
+        Trim of a neighbouring condition, at which the search starts.
 
     Raises
     ------
     UnusableInputError
-        No angle of attack and no elevator carry the aircraft at the condition.
+        No angle of attack and elevator balance the aircraft at the condition.
     """
     flight.begin(condition)
     tried = [_steady(flight, condition, known or near or SteadyState())]
@@ -75,8 +76,7 @@ def trim(
 
 
 def _next_throttle(tried: list[_Tried]) -> float | None:
-    """Return the next throttle between a decelerating and an accelerating one; None where the last one is
-    good enough."""
+    """Return the next throttle between deceleration and acceleration; None if the last one is good enough."""
     last = tried[-1]
     if abs(last.excess) < _BALANCED_M_S2 or len(tried) >= _THROTTLES:
         return None
@@ -117,7 +117,8 @@ def _settle_engines(flight: JsbsimFlight) -> None:
 
 
 def _newton(flight: JsbsimFlight, condition: Condition, state: SteadyState) -> SteadyState:
-    """Solve all accelerations except the axial one, by least squares where an axis has no control."""
+    """Return the state without all accelerations but the axial one; least squares for an axis without
+    control."""
     gamma = condition.flight_path_rad
 
     def accelerations(at: SteadyState) -> FloatArray:

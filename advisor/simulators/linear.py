@@ -1,4 +1,4 @@
-"""The eight parameters as a simulator: Eqs. (1)-(2) about a trim, with exact kinematics, in still air."""
+"""Eight parameters as a simulator: Eqs. (1)-(2) about a trim, with exact kinematics, in still air."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -13,19 +13,19 @@ from advisor.gap.simulator.surface import above_start
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
 
 _FARTHEST_RAD = 1.5
-"""Angle of attack, rad, at which the computation ends."""
+"""Angle of attack, rad, at which the simulation stops."""
 _Motion = tuple[float, float, float]
-"""α (rad), q (rad/s) and θ (rad)."""
+"""Values of α (rad), q (rad/s) and θ (rad)."""
 
 
 @dataclass(frozen=True)
 class LinearSimulator:
-    """Short-period derivatives at a reference speed, which scale with the speed."""
+    """Simulator of short-period derivatives at a reference speed, which scale with the speed."""
 
     derivatives: Mapping[str, float]
-    """Z_alpha, Z_q, Z_delta_e, M_alpha, M_q, M_delta_e."""
+    """Derivatives Z_alpha, Z_q, Z_delta_e, M_alpha, M_q, M_delta_e."""
     reference_m_s: float | None = None
-    """Reference speed of the derivatives, m/s; None means the speed that is flown."""
+    """Air speed of the derivatives, m/s; None for the flown speed."""
     description: str = "the aircraft file's model"
     takes_increments: bool = True
     takes: frozenset[str] = frozenset()
@@ -67,10 +67,10 @@ class LinearSimulator:
         return {name: self.derivatives[name] * v ** powers[name] for name in DERIVATIVES}
 
     def close(self) -> None:
-        """Do nothing: no process runs."""
+        """Do nothing, because no process runs."""
 
     def _rates(self, speed: float, steep: float) -> FloatArray:
-        """Return six derivatives at the speed, g/V, and the lift that carries the weight."""
+        """Return six derivatives at the speed, g/V, and the lift that balances the weight."""
         here = self.linearise(Condition(speed))
         weight = GRAVITY_M_S2 / speed
         return np.array([*(here[name] for name in DERIVATIVES), weight, -weight * np.cos(steep)])
@@ -81,8 +81,8 @@ def _step(
 ) -> tuple[float, tuple[float, float]]:
     """Return the normal force over m·V in rad/s, and the rates of α and q.
 
-    ``rates``, shape (8,), has the six derivatives, g/V, and the lift in trim, rad/s; ``weight`` is the
-    weight's part of α̇.
+    ``rates``, shape (8,), holds the six derivatives, g/V and trim lift, rad/s; ``weight`` is gravity's part
+    of α̇.
     """
     z_alpha, z_q, z_delta, m_alpha, m_q, m_delta, _, level = rates.tolist()
     normal = level + z_alpha * now.alpha + z_q * now.q + z_delta * now.elevator

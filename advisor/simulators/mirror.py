@@ -1,8 +1,8 @@
-"""An effect that only the simulator has: a rate limit, play, a filter that the aircraft does not show.
+"""An effect that only the simulator has, such as a rate limit, play or a filter.
 
-A fit to the flight cannot take such an effect out of a simulator, because its size would be negative. The
-aircraft and the simulator then exchange roles. A quick look at the simulator's own replays finds their
-likeliest effect, which joins the surrogate. Where the aircraft then flies like that surrogate without the
+A fit to the flight cannot remove such an effect from a simulator, because its size would be negative.
+Aircraft and simulator therefore exchange their roles. A quick fit to the simulator's own replays finds their
+likeliest effect, which is added to the surrogate. If the aircraft flies like that surrogate without the
 effect, the replays are diagnosed in full.
 """
 
@@ -41,10 +41,10 @@ from advisor.words.certainty import as_sure
 from advisor.words.problems import UnusableInputError
 
 _BLOCKS = frozenset({"input", "alpha_sensor", "pitch_rate_sensor", "accelerometer", "timing"})
-"""Blocks whose effects lie around the physics: in the actuator and in the instruments."""
+"""Blocks outside the physics: the actuator and the instruments."""
 _CLEARLY = 0.5
-"""Largest gap without the simulator's effect, relative to that of the simulator as it is. Two fits of one
-flight that differ by less are no evidence of a role."""
+"""Largest gap without the simulator's effect, relative to the gap of the simulator as given. A smaller
+difference between two fits of one flight is no evidence."""
 _MOTION = ("alpha", "q", "theta", "a_z")
 
 
@@ -53,13 +53,13 @@ class Mirrored:
     """A simulator with an effect that the aircraft lacks."""
 
     causes: tuple[Cause, ...]
-    """Effects of the simulator, with negative sizes."""
+    """Effects of the simulator that the aircraft lacks, with negative sizes."""
     before: float
     after: float
-    """Gap of the simulator as it is, and without its effects, no number fitted to the flight."""
+    """Gap of the simulator without these effects, with no parameter fitted to the flight."""
 
     def said(self, diagnosis: Diagnosis) -> Diagnosis:
-        """Return the diagnosis with the effects as its causes."""
+        """Return the diagnosis with the simulator's effects as its causes."""
         removed = 100.0 * (1.0 - self.after / self.before)
         first = self.causes[0]
         sentence = f"{_said(first)}; without it the gap is {removed:.0f} % less."
@@ -88,20 +88,20 @@ def mirrored(
     aircraft: Aircraft,
     as_flown: Mapping[int, AsGiven],
 ) -> Mirrored | None:
-    """Return the effects that only the simulator has; None where there is none.
+    """Return the effects that only the simulator has; None without such effects.
 
     Parameters
     ----------
     whole
         Diagnosis of the flight against the simulator.
     maneuvers
-        The flight as logged.
+        Manoeuvres of the flight, as logged.
     flying, replays
-        The simulator, and its replays without added effects.
+        Simulator, and its replays without added effects.
     aircraft
-        The aircraft file.
+        Aircraft file of the crew.
     as_flown
-        Manoeuvre number to the simulator's difference to its surrogate, which the diagnosis went without.
+        Difference of simulator and surrogate that the diagnosis removed, by manoeuvre number.
     """
     if whole.diagnosis.verdict not in ("effect", "parameters", "unknown"):
         return None
@@ -143,8 +143,8 @@ def mirrored(
 def _quick_look(
     as_flights: Sequence[Maneuver], unknown: Aircraft
 ) -> tuple[Mapping[str, float], Mapping[str, Mapping[str, float]]] | None:
-    """Return the derivatives of replays, and their likeliest effect around the physics with its sizes; None
-    where no effect lowers the cost."""
+    """Return the replays' derivatives and likeliest actuator or instrument effect; None if no effect lowers
+    the cost."""
     problem, plain = fit_baseline(prepare(as_flights, unknown), unknown)
     around = [variant for variant in variants_for(problem.flights) if variant.block in _BLOCKS]
     found = Screen(problem, plain).likeliest(around)
@@ -163,14 +163,14 @@ def _gap_without(
     grids: Mapping[int, AsGiven],
     as_file: Aircraft,
 ) -> float:
-    """Return the gap of the flight to the simulator without its effects, no number fitted to the flight.
+    """Return the flight's gap to the simulator without its effects, with no parameter fitted to the flight.
 
     Parameters
     ----------
     as_flown, grids
-        Manoeuvre number to the simulator's difference to its surrogate, and to that with its effects.
+        Difference of simulator and surrogate, without and with the effects, by manoeuvre number.
     as_file
-        The aircraft file of the surrogate without the effects.
+        Aircraft file of the surrogate without the effects.
     """
     problem, floor = whole.findings.problem, floor_of(whole)
     flights = problem.flights.flights
@@ -207,7 +207,7 @@ def _as_flights(maneuvers: Sequence[Maneuver], flying: Flying, replays: Sequence
 def _beyond(
     flying: Flying, replays: Sequence[Replay], as_file: Aircraft, effects: Mapping[str, Mapping[str, float]]
 ) -> dict[int, AsGiven]:
-    """Return the simulator's difference to a surrogate with its effects."""
+    """Return the difference between the simulator and a surrogate with its effects."""
     flights = flying.flights
     base = with_known(base_entries(as_file), effects, flights, variants_for(flights))
     derivatives = np.array([as_file.model[name] for name in DERIVATIVES])
@@ -223,7 +223,7 @@ def _beyond(
 
 
 def _said(cause: Cause) -> str:
-    """Return the statement about an effect of the simulator with a negative size."""
+    """Return the statement about a simulator effect of negative size."""
     if cause.block == "input":
         return what(cause)
     read = what(_negative(cause))
@@ -231,7 +231,7 @@ def _said(cause: Cause) -> str:
 
 
 def _negative(cause: Cause) -> Cause:
-    """Return a cause of the simulator as one of the aircraft: its size is what the aircraft lacks."""
+    """Return a simulator's cause as one of the aircraft, with the size that the aircraft lacks."""
     first, *rest = cause.parameters.items()
     name, size = first
     return replace(cause, parameters={name: Value(-size.value, size.std), **dict(rest)})

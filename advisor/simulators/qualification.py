@@ -1,4 +1,4 @@
-"""The published tolerance of the short period: 14 CFR Part 60, Appendix A, Table A2A, test 2.c.10.
+"""Published tolerance of the short period: 14 CFR Part 60, Appendix A, Table A2A, test 2.c.10.
 
 Pitch within 1.5° or pitch rate within 2 °/s, and normal acceleration within 0.10 g, over the time history.
 """
@@ -14,7 +14,7 @@ from advisor.gap.result import Qualification
 from advisor.gap.verdict.numbers import BAND, yardsticks
 
 _WINDOW_S = 0.1
-"""Length in s of the average over an error. A shorter error is instrument noise."""
+"""Length of the moving average over an error, s. Shorter errors are instrument noise."""
 
 
 def qualified(
@@ -25,11 +25,11 @@ def qualified(
     Parameters
     ----------
     problem
-        The flights as measured.
+        Manoeuvres of the flight, as measured.
     before, after
-        Residuals of the simulator as given, and with the effects; None where nothing was added.
+        Residuals of the simulator as given, and with the effects; None if nothing was added.
     kept
-        Indices of the manoeuvres that count.
+        Indices of the manoeuvres used for the comparison.
     """
     table = []
     for c, channel in enumerate(problem.channels):
@@ -59,7 +59,7 @@ def _error(problem: EffectProblem, held: HeldOut, kept: Sequence[int], c: int) -
 
 
 def _averaged(t: FloatArray, y: FloatArray) -> FloatArray:
-    """Return the mean of the samples within the window about each stamp, both of shape (n,)."""
+    """Return the mean of the samples within the window around each stamp, both of shape (n,)."""
     first = np.searchsorted(t, t - 0.5 * _WINDOW_S, side="left")
     behind = np.searchsorted(t, t + 0.5 * _WINDOW_S, side="right")
     sums = np.concatenate([[0.0], np.cumsum(y)])

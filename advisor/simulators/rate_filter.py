@@ -1,8 +1,8 @@
-"""A filter of the pitch rate that only the simulator has, shown by the simulator's own attitude.
+"""A pitch rate filter that only the simulator has, found from the simulator's own attitude.
 
-A replay has no noise. The relation θ̇ = q·cos φ − r·sin φ holds to the step of the simulation, whatever the
-aerodynamics. A pitch rate that departs from the attitude's rate is late. With a first-order filter the
-departure is τ·q̇, with a delay nearly so.
+A replay has no noise. The relation θ̇ = q·cos φ − r·sin φ holds within the simulation's step, independent of
+aerodynamics. A pitch rate that differs from the attitude's rate is late. The difference is τ·q̇ for a
+first-order filter, and nearly so for a delay.
 """
 
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from advisor.simulators.protocol import Replay
 
 
 def unfiltered(replay: Replay) -> Replay:
-    """Return the replay with the pitch rate of its own attitude."""
+    """Return the replay with a pitch rate computed from its own attitude."""
     rate = np.gradient(replay.theta, replay.t)
     if replay.bank is None:
         return replace(replay, q=rate)
@@ -30,7 +30,7 @@ def unfiltered(replay: Replay) -> Replay:
 
 
 def lateness(replays: Sequence[Replay]) -> Value:
-    """Return the lag of the replays' pitch rate behind their attitude's rate, s, by least squares."""
+    """Return the lag of the replays' pitch rate relative to the attitude's rate, s, by least squares."""
     missing, rate = (np.concatenate(series) for series in zip(*map(_departure, replays), strict=True))
     information = max(float(rate @ rate), 1e-300)
     lag_s = float(rate @ missing) / information
@@ -39,16 +39,17 @@ def lateness(replays: Sequence[Replay]) -> Value:
 
 
 def cause_of(late: Value, after: float, own: Diagnosis) -> Cause:
-    """Return the lateness as a cause, with the size that the aircraft has less of.
+    """Return the filter as a cause, with the size that the aircraft lacks.
 
     Parameters
     ----------
     late
         Lag of the simulator's pitch rate, s.
     after
-        Gap of the flight to the simulator without that lag.
+        Gap of the flight to the simulator without the lag.
     own
-        Diagnosis of the replays without that lag. The probability of the cause is that they lack nothing.
+        Diagnosis of the replays without the lag. The probability of the cause is that of the answer "nothing"
+        for these replays.
     """
     told = own.probabilities
     likeliness = 0.0 if told is None else told.none + told.parameters
@@ -59,6 +60,6 @@ def cause_of(late: Value, after: float, own: Diagnosis) -> Cause:
 
 
 def _departure(replay: Replay) -> tuple[FloatArray, FloatArray]:
-    """Return the attitude's rate minus the pitch rate, rad/s, and the derivative of the pitch rate, rad/s²,
-    both of shape (m,)."""
+    """Return the attitude's rate minus the pitch rate, rad/s, and the pitch rate's derivative, rad/s², shape
+    (m,) each."""
     return unfiltered(replay).q - replay.q, np.gradient(replay.q, replay.t)

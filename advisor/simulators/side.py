@@ -1,8 +1,8 @@
-"""Roll and yaw of the user's simulator: the flight without the difference of the simulator to its surrogate.
+"""Roll and yaw of the user's simulator: the flight without the difference between simulator and surrogate.
 
 The simulator S flies the recorded aileron, rudder, elevator and throttle. The lateral model L is fitted to
-that motion. The diagnosis compares L with y − (y_S − y_L), as on the pitch axis (``compare``). A change of L
-by an effect then counts as an equal change of S.
+the simulator's motion. The diagnosis compares L with y − (y_S − y_L), as on the pitch axis (``compare``). A
+change of L by an effect therefore counts as an equal change of S.
 """
 
 from collections.abc import Mapping, Sequence
@@ -33,12 +33,13 @@ from advisor.words.problems import UnusableInputError
 from advisor.words.quantiles import NORMAL_95
 
 STEP_S = 0.02
-"""Interval of the inputs, and of the stamps at which a replay is read, s: as on the pitch axis."""
+"""Interval of the inputs and of the replay's stamps, s, as for the pitch axis."""
 OWN_DELAY, OWN_LAG = Prior(0.0, 0.1), Prior(FIRST_LAG_S, 0.1)
-"""Delay and lag between the simulator's input and its surfaces, s. Noiseless replays tell them alone."""
+"""Priors of delay and lag between the simulator's input and its surfaces, s. Replays without noise determine
+both values without the priors."""
 TURNS = {"aileron": ("L_delta_a", "L_p"), "rudder": ("N_delta_r", "N_beta")}
-"""Control to two derivatives: the control's moment, and the moment that opposes the motion.
-``interface.control_fault`` compares their ratio with the simulator's answer."""
+"""Two derivatives for each control: the control's moment, and the moment that opposes the motion.
+``interface.control_fault`` compares the ratio of both with the simulator's response."""
 
 
 def side_without_difference(
@@ -47,19 +48,20 @@ def side_without_difference(
     aircraft: Aircraft,
     progress: Progress = lambda *_: None,
 ) -> tuple[list[Maneuver], Aircraft]:
-    """Return the manoeuvres without the simulator's difference to its surrogate, and the surrogate's file.
+    """Return the manoeuvres without the difference between simulator and surrogate, and the surrogate's file.
 
     Parameters
     ----------
     maneuvers
         Manoeuvres of aileron and rudder.
     aircraft
-        The aircraft file. Servos of the file act ahead of the simulator; its model is not used.
+        Aircraft file of the crew. The servos of the file are applied before the simulator; the file's model
+        is not used.
 
     Raises
     ------
     UnusableInputError
-        The records cannot be used, or the simulator does not fly them in roll and yaw.
+        The records cannot be used, or the simulator does not fly roll and yaw.
     """
     said = simulator.description
     flown = prepare_lateral(maneuvers, aircraft)
@@ -93,7 +95,7 @@ def side_without_difference(
 
 
 def _condition(maneuver: Maneuver, record: LateralRecord, aircraft: Aircraft) -> Condition:
-    """Return the steady flight before the first step, at no height and in still air."""
+    """Return the steady flight before the first step, at zero height and in still air."""
 
     def mean(signal: Signal) -> float:
         before = signal.y[signal.t < maneuver.span.start_s]
@@ -104,7 +106,7 @@ def _condition(maneuver: Maneuver, record: LateralRecord, aircraft: Aircraft) ->
 
 
 def _inputs(maneuver: Maneuver, record: LateralRecord, aircraft: Aircraft) -> tuple[Inputs, FloatArray]:
-    """Return the recorded inputs as departures, behind the file's servos, and their stamps in the record."""
+    """Return the recorded inputs as deviations, after the file's servos, and their stamps in the record."""
     begin = min(signal.t[0] for signal in record.outputs.values())
     end = max(signal.t[-1] for signal in record.outputs.values())
     t: FloatArray = begin + STEP_S * (np.arange(int(np.ceil((end - begin) / STEP_S)) + 1) + 0.5)
@@ -146,7 +148,7 @@ def _as_record(replay: Replay, inputs: Inputs, t: FloatArray) -> LateralRecord:
 
 
 def _surrogate(records: tuple[LateralRecord, ...], flown: LateralProblem, said: str) -> LateralSolution:
-    """Return the lateral model of the replays, with lag and delay between input and surface."""
+    """Return the lateral model fitted to the replays, with lag and delay between input and surface."""
     problem = LateralProblem(
         records, flown.reference_airspeed_m_s, servos={name: Servo() for name in LATERAL.inputs}
     )
@@ -163,7 +165,7 @@ def _surrogate(records: tuple[LateralRecord, ...], flown: LateralProblem, said: 
 
 
 def _file(surrogate: LateralSolution, aircraft: Aircraft, said: str) -> Aircraft:
-    """Return the aircraft file with the surrogate as its model, and both servos in series."""
+    """Return the aircraft file with the surrogate as its model, and with both servos in series."""
     untold = lateral_not_identifiable(surrogate)
     told = zip(LATERAL.names.reported, surrogate.theta, strict=True)
     servos = {}
@@ -188,14 +190,14 @@ def _file(surrogate: LateralSolution, aircraft: Aircraft, said: str) -> Aircraft
 
 
 def _beyond(surrogate: LateralSolution, name: str, least: float, other_s: float = 0.0) -> float:
-    """Return a lag or delay of the simulator with another time, s; 0 if below the least one or its error."""
+    """Return the simulator's lag or delay combined with another time, s; 0 if insignificant."""
     value, std = surrogate.nuisances.get(name, (0.0, 0.0))
     value += other_s
     return value if value > max(least, NORMAL_95 * std) else 0.0
 
 
 def _refuse_untaken(simulator: Simulator, flown: LateralProblem) -> None:
-    """Refuse a simulator that does not take a control of the test."""
+    """Refuse a simulator that does not support a control of the test."""
     for name in LATERAL.inputs:
         if flown.flies(name) and name not in simulator.takes:
             raise UnusableInputError(
@@ -206,7 +208,7 @@ def _refuse_untaken(simulator: Simulator, flown: LateralProblem) -> None:
 
 
 def _refuse_broken(replay: Replay, said: str, maneuver: Maneuver, duration_s: float) -> None:
-    """Refuse a replay without roll and yaw, one that ends too early, and one with a wrong sign or unit."""
+    """Refuse a replay without roll and yaw, with an early end, or with a wrong sign or unit."""
     missing = [name for name in NEEDED if getattr(replay, name) is None]
     if replay.a_y is None and replay.beta is None:
         missing.append("a_y (or beta)")
@@ -234,7 +236,7 @@ def _refuse_broken(replay: Replay, said: str, maneuver: Maneuver, duration_s: fl
 
 
 def _refuse_wrong_control(surrogate: LateralSolution, flown: LateralProblem, said: str) -> None:
-    """Refuse a simulator whose aileron or rudder has another sense or unit than that of an aircraft."""
+    """Refuse a simulator whose aileron or rudder has a wrong sign or unit."""
     found = dict(zip(LATERAL.names.reported, map(float, surrogate.theta), strict=True))
     for name, (turns, against) in TURNS.items():
         if flown.flies(name):

@@ -22,7 +22,7 @@ _OURS = {
     "python": "advisor.simulators.by_python:make_python",
 }
 _NEEDS = {"jsbsim": ("jsbsim", "jsbsim"), "fmu": ("fmpy", "fmu")}
-"""Kind to the package that it imports, and to the extra of this project that installs the package."""
+"""Required package, and the extra of this project that installs it, for each kind of simulator."""
 _FORMS = "linear, jsbsim:MODEL, fmu:FILE, python:module:factory, log:FILE"
 
 ReadLog = Callable[[Path], list[Maneuver]]
@@ -35,18 +35,18 @@ def simulator_of(specification: str, aircraft: Aircraft, read_log: ReadLog) -> S
     Parameters
     ----------
     specification
-        Specification in the user's spelling.
+        Specification as the user wrote it.
     aircraft
-        The aircraft file.
+        Aircraft file of the crew.
     read_log
         Function that reads a log written by the simulator.
 
     Raises
     ------
     ConfigurationError
-        The kind is unknown, its package is missing, or what follows the colon names nothing.
+        The kind is unknown, its package is missing, or the part after the colon does not exist.
     UnusableInputError
-        The simulator's log cannot be used.
+        The log of the simulator cannot be used.
     """
     kind, _, rest = specification.partition(":")
     if kind == "linear":

@@ -1,9 +1,9 @@
-"""Whether a log's air speed is an indicated or a true one, where the motion contradicts the convention.
+"""Kind of a log's air speed, indicated or true, if the motion contradicts the convention.
 
-MAVLink's VFR_HUD shows an indicated or calibrated air speed, so every log's speed is made true with the
-density. Simulators often log the true one there, and some loggers say true and log the indicated one. At the
-wrong one of the two, a user's simulator has other forces: by 13 % at 1,200 m. Curvature of the flight path
-and accelerometer show the true air speed: V·(q − α̇) is the specific force across the path.
+MAVLink's VFR_HUD carries an indicated or calibrated air speed, so a log's speed is corrected with the
+density. Simulators often log the true air speed there, and some loggers label an indicated one as true. With
+the wrong kind, a user's simulator has forces wrong by 13 % at 1,200 m. The flight path's curvature and the
+accelerometer show the true air speed, because V·(q − α̇) is the specific force.
 """
 
 from collections.abc import Sequence
@@ -23,15 +23,15 @@ from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
 from advisor.words.quantiles import NORMAL_95
 
 _ODDS = 10.0
-"""Prior odds that a log follows MAVLink's convention: one log in ten is thought to break it."""
+"""Prior odds that a log follows MAVLink's convention."""
 _MATTERS = 0.02
 """Least relative difference between true and indicated air speed that is examined: that at 400 m. A static
-port is as wrong (the prior of ``TRUE_AIR_SPEED``)."""
+port has errors of this size (the prior of ``TRUE_AIR_SPEED``)."""
 
 
 @dataclass(frozen=True)
 class SpeedKind:
-    """Manoeuvres with the air speed that the motion shows, and a sentence where that is another kind."""
+    """Manoeuvres with the kind of air speed that fits the motion, and a sentence about a changed kind."""
 
     maneuvers: list[Maneuver]
     note: str = ""
@@ -64,7 +64,7 @@ def by_the_motion(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SpeedKin
 
 
 def _other_kind(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> float:
-    """Return the factor from the air speed in use to that of the other kind; 1 in air of unknown density."""
+    """Return the factor from the used air speed to the other kind's; 1 for an unknown density."""
     air = air_flown(maneuvers, aircraft.reference.air_temperature_c)
     if air.source == "sea level":
         return 1.0

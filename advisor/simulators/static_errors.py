@@ -1,7 +1,6 @@
-"""Errors that no motion shows, in words: the trim, the air speed, and numbers that differ together.
+"""Sentences about errors that no motion shows: the trim, the air speed, and derivatives that differ together.
 
-Z_α = -q̄·S·C_Lα/(m·V) and M_α = q̄·S·c·C_mα/I_yy: the weight moves the Zs alone, the inertia the Ms alone, the
-density both.
+Z_α = -q̄·S·C_Lα/(m·V) and M_α = q̄·S·c·C_mα/I_yy: mass scales the Zs, inertia the Ms, and density both.
 """
 
 from collections.abc import Iterator, Sequence
@@ -15,37 +14,38 @@ from advisor.gap.result import Diagnosis, TrimDifference
 from advisor.gap.simulator.layout import DERIVATIVES
 
 _TRIM_OFF = {"alpha": 0.0175, "elevator": 0.0175, "throttle": 0.1}
-"""Quantity to the least difference of two trims that is said. A vane or a surface aligned by hand is right to
-0.5 deg. Thrust at one throttle differs by a tenth between engines of a type."""
+"""Least difference of two trims that is reported, by quantity. A vane or a surface aligned by hand is
+accurate to 0.5 deg. Thrust at one throttle differs by a tenth between engines of a type."""
 _TRIM_SIGMAS = 3.0
-"""Least number of standard deviations of the mean by which two trims differ."""
+"""Least difference of two trims, in standard deviations of the mean, that is reported."""
 _TRIMMED = {
     "alpha": ("angle of attack", "flaps, incidence, weight or air speed differ, or the vane has an offset"),
     "elevator": ("elevator", "centre of gravity, flaps or thrust line differ, or the calibration is off"),
     "throttle": ("throttle", "drag or engine differ"),
 }
 _READS_WRONG = 0.03
-"""Least relative error of the air speed that is said first. The prior of a static port's error has a standard
-deviation of 0.02."""
+"""Least relative error of the air speed that the sentence states first. The prior of a static port's error
+has a standard deviation of 0.02."""
 _SIGMAS = 3.0
-"""Least number of standard deviations by which a common factor differs from 1."""
+"""Least difference of a common factor from 1, in standard deviations, that is reported."""
 _TOGETHER = 0.05
-"""Least relative difference of numbers that are told together, and most of those that count as equal: the
-tolerance of ``campaign.tolerance_percent``."""
+"""Least common relative difference of derivatives that is reported, and largest difference of equal
+factors."""
 _MOMENTS, _FORCES = ("M_alpha", "M_q", "M_delta_e"), ("Z_alpha",)
 
 
 def with_static_errors(
     diagnosis: Diagnosis, examined: Examined, trims: Sequence[TrimDifference] = ()
 ) -> Diagnosis:
-    """Return the diagnosis with its static errors told first, and with what was taken back told last.
+    """Return the diagnosis with its static errors first, and with withdrawn corrections last, in the
+    sentence.
 
     Parameters
     ----------
     examined
-        The evidence of the diagnosis.
+        Evidence of the diagnosis.
     trims
-        Trims of the simulator and of the aircraft; empty without a simulator that trims.
+        Trims of simulator and aircraft; empty for a simulator without trim.
     """
     told = (*_of_the_trims(trims), *_of_the_speed(examined), *_of_numbers_together(diagnosis, examined))
     sentence = " ".join([*told, diagnosis.sentence, *diagnosis.taken_back])
@@ -53,7 +53,7 @@ def with_static_errors(
 
 
 def is_off(trim: TrimDifference) -> bool:
-    """Return whether two trims differ by more than instruments and scatter explain."""
+    """Return whether two trims differ by more than instrument errors and scatter."""
     by = abs(trim.simulator - trim.aircraft)
     return by > max(_TRIM_OFF[trim.quantity], _TRIM_SIGMAS * trim.std)
 
@@ -75,7 +75,7 @@ def _of_the_speed(examined: Examined) -> Iterator[str]:
 
 
 def _of_numbers_together(diagnosis: Diagnosis, examined: Examined) -> Iterator[str]:
-    """Yield the one physical number by which several derivatives differ alike."""
+    """Yield a sentence about one physical quantity that explains a common factor of several derivatives."""
     prior = examined.findings.problem.prior_derivatives
     if prior is None or diagnosis.verdict != "parameters":
         return
@@ -102,8 +102,8 @@ def _of_numbers_together(diagnosis: Diagnosis, examined: Examined) -> Iterator[s
 def _common(
     diagnosis: Diagnosis, given: dict[str, float], names: Sequence[str]
 ) -> tuple[float, float] | None:
-    """Return the common factor of some derivatives over the simulator's, with its standard deviation; None
-    where they differ by different factors."""
+    """Return the common factor of some derivatives relative to the simulator's, with its error; None without
+    one."""
     if any(given[name] == 0.0 for name in names):
         return None
     ratios = np.array([diagnosis.model[name].value / given[name] for name in names])

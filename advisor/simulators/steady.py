@@ -1,4 +1,4 @@
-"""Steady flight of a simulator that only steps, and its state between two steps."""
+"""Steady flight of a simulator that can only step, and its state between two steps."""
 
 from collections.abc import Callable, Sequence
 
@@ -8,24 +8,23 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.simulators.protocol import State
 
 _DIFFERENCE = 1e-3
-"""Departure of an unknown of the trim for a finite difference, rad or share of the throttle."""
+"""Finite-difference step of an unknown of the trim, rad or share of the throttle."""
 _ROUNDS = 40
 _STEADY = 1e-4
-"""Rate of α (rad/s), of q (rad/s²) and relative rate of the speed (1/s) below which flight is steady: a
-solver may leave as much."""
+"""Rates of α (rad/s), q (rad/s²) and relative speed (1/s) below which flight counts as steady."""
 _LONGEST_MOVE = 0.1
 """Longest Newton step of an angle, rad, or of the throttle."""
 
 
 def steady(rates: Callable[[FloatArray], FloatArray], start: FloatArray) -> FloatArray | None:
-    """Return the unknowns for which no rate differs from zero (Newton); None where none are found.
+    """Return the unknowns for which all rates are zero (Newton's method); None if none are found.
 
     Parameters
     ----------
     rates
-        Rates by the unknowns, both of shape (n,).
+        Function that returns the rates for the unknowns, both of shape (n,).
     start
-        Unknowns at which the search begins.
+        Unknowns at which the search starts.
     """
     at = start
     for _ in range(_ROUNDS):
@@ -49,7 +48,7 @@ def midway(
     Parameters
     ----------
     rows
-        Motion after each step: α, q, θ, a_z, air speed and height, then others.
+        Motion after each step: α, q, θ, a_z, air speed and height, then other quantities.
     """
     before, now = rows[-2] if len(rows) > 1 else rows[-1], rows[-1]
     alpha_dot, q_dot = ((now[i] - before[i]) / step_s for i in (0, 1))

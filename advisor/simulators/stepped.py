@@ -1,4 +1,4 @@
-"""A simulator from an environment that only steps: Gymnasium, MuJoCo, Isaac, or a loop of one's own.
+"""A simulator from an environment that can only step: Gymnasium, MuJoCo, Isaac, or a custom loop.
 
     from advisor.simulators.stepped import Stepped
 
@@ -10,8 +10,7 @@
     def make():                      # advisor gap --simulator python:my_module:make
         return Stepped(Mine(), description="my environment")
 
-The wrapper searches the steady flight, replays recorded inputs from there, and adds increments where the
-environment takes them.
+The wrapper finds steady flight, replays recorded inputs, and adds increments if supported.
 """
 
 from collections.abc import Mapping
@@ -28,45 +27,48 @@ from advisor.words.problems import UnusableInputError
 
 _NEEDED = ("alpha", "q", "theta", "a_z")
 _KEPT = ("airspeed", "height")
-"""Quantities that stay at the flight condition where the environment does not observe them."""
+"""Quantities that stay at the flight condition if the environment does not observe them."""
 _SIDE = ("bank", "r", "p", "a_y", "beta")
-"""Quantities of roll and yaw, which an environment may observe."""
+"""Quantities of roll and yaw that an environment may observe."""
 
 
 class Environment(Protocol):
-    """The least that an environment must do. Angles are in rad, α, q and θ positive nose up."""
+    """Methods that an environment must have. Angles are in rad, α, q and θ positive nose up."""
 
     def reset(self, speed: float, height: float, alpha: float, theta: float, **conditions: Any) -> Any:
-        """Begin at a true air speed (m/s), a height (m), angles and the conditions it takes, not rotating."""
+        """Begin at a true air speed (m/s), a height (m), angles and supported conditions, without
+        rotation."""
 
     def step(self, dt: float, **controls: float) -> Any:
-        """Advance by ``dt`` seconds with ``elevator`` (rad, trailing edge down) and the controls it takes."""
+        """Advance by ``dt`` seconds with ``elevator`` (rad, trailing edge down) and the supported
+        controls."""
 
     def observe(self) -> Mapping[str, float]:
-        """Return ``alpha``, ``q``, ``theta`` and ``a_z`` (m/s², -9.81 in level flight), and ``airspeed`` and
-        ``height`` where they change. Roll and yaw have ``p``, ``r``, ``bank``, ``a_y`` and ``beta``."""
+        """Return ``alpha``, ``q``, ``theta`` and ``a_z`` (m/s², -9.81 in level flight), with ``airspeed`` and
+        ``height`` if variable. Quantities of roll and yaw are ``p``, ``r``, ``bank``, ``a_y`` and
+        ``beta``."""
 
 
 class Stepped:
-    """An environment with ``reset``, ``step`` and ``observe`` as a simulator (``protocol.Simulator``).
+    """Simulator from an environment with ``reset``, ``step`` and ``observe`` (``protocol.Simulator``).
 
     Parameters
     ----------
     environment
-        The environment.
+        Environment to be wrapped.
     description
         Name of the environment in every sentence.
     dt
-        Step, s.
+        Time step, s.
     controls
-        Inputs next to the elevator that ``step`` takes by name, of ``protocol.CONTROLS``.
+        Inputs of ``protocol.CONTROLS`` that ``step`` accepts by name.
     conditions
-        Parts of the flight condition that ``reset`` takes by name: ``mass`` in kg, ``wind`` as
+        Parts of the condition that ``reset`` accepts: ``mass`` in kg, ``wind`` as
         ``protocol.Condition.wind_m_s``.
     trims_throttle
-        Whether the throttle is trimmed for a steady speed; it must be one of ``controls``.
+        Whether the throttle is trimmed for steady speed; it must be one of ``controls``.
     increments
-        Whether ``step`` takes ``force`` (rad/s, added to α̇) and ``moment`` (rad/s², added to q̇).
+        Whether ``step`` accepts ``force`` (rad/s, added to α̇) and ``moment`` (rad/s², added to q̇).
     """
 
     speed_limit_s = 60.0
@@ -91,7 +93,7 @@ class Stepped:
         self._unknowns = ("alpha", "elevator", *(("throttle",) if trims_throttle else ()))
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
-        """Search the steady flight, and fly the inputs as departures from its controls."""
+        """Find steady flight, and fly the inputs as deviations from its controls."""
         self._refuse_calls()
         trim = self._trimmed(condition)
         dt = self._dt
@@ -114,14 +116,14 @@ class Stepped:
         return Replay(t, **seen, trim=told)
 
     def linearise(self, condition: Condition) -> None:
-        """Return None: derivatives are identified from replays."""
+        """Return None, because derivatives are identified from replays."""
 
     def close(self) -> None:
-        """Close the environment, where it can be closed."""
+        """Close the environment, if it has a method for that."""
         getattr(self._environment, "close", lambda: None)()
 
     def _refuse_calls(self) -> None:
-        """Refuse an environment whose ``step`` or ``reset`` has other arguments than those that are sent."""
+        """Refuse an environment whose ``step`` or ``reset`` does not accept the arguments that are sent."""
         increments = ("force", "moment") if self.takes_increments else ()
         sent = {
             "step": ("dt", "elevator", *self._controls, *increments),
@@ -153,7 +155,7 @@ class Stepped:
         )  # fmt: skip
 
     def _with_trim(self, trim: Mapping[str, float], controls: Mapping[str, float]) -> dict[str, float]:
-        """Return the controls of one step; those that the flight did not log stay at the trim, or at 0."""
+        """Return the controls of one step; unlogged controls stay at the trim, or at 0."""
         resting = {name: value for name, value in trim.items() if name != "alpha"}
         return {**dict.fromkeys(self._controls, 0.0), **resting, **controls}
 
@@ -180,7 +182,8 @@ class Stepped:
         return [float(({**kept, **seen})[name]) for name in (*_NEEDED, *_KEPT, *self._side)]
 
     def _trimmed(self, condition: Condition) -> dict[str, float]:
-        """Return the controls and angle of attack whose first two steps change nothing (Newton)."""
+        """Return the controls and angle of attack for which two first steps change nothing (Newton's
+        method)."""
 
         def rates(at: FloatArray) -> FloatArray:
             trim = dict(zip(self._unknowns, at.tolist(), strict=True))

@@ -1,4 +1,4 @@
-"""The linear surrogate of a simulator: derivatives, and the lag and delay of its own servo."""
+"""Linear surrogate of a simulator: derivatives, and the lag and delay of its own servo."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -29,25 +29,25 @@ from advisor.simulators.inputs import on_grid, read_from
 from advisor.simulators.protocol import Replay
 
 _STARTS_S = (0.003, 0.03, 0.1)
-"""Starting values of the servo's lag and delay, s: the cost has local minima in a delay."""
+"""Starting values of the servo's lag and delay, s, because the cost has local minima in a delay."""
 _DIGITS = 4
-"""Decimals of a lag or delay in s. A tenth of a millisecond shows in no record."""
+"""Number of decimals of a lag or delay in s. No record shows a tenth of a millisecond."""
 
 
 @dataclass(frozen=True)
 class Surrogate:
-    """First-order model of a simulator."""
+    """Linear model of a simulator, with a first-order servo."""
 
     derivatives: Mapping[str, float]
-    """Z_alpha, Z_q, Z_delta_e, M_alpha, M_q, M_delta_e at the reference speed."""
+    """Derivatives Z_alpha, Z_q, Z_delta_e, M_alpha, M_q, M_delta_e at the reference speed."""
     reference_m_s: float
     lag_s: float = 0.0
     """First-order lag of the simulator's own servo, s."""
     delay_s: float = 0.0
-    """Delay ahead of the simulator's own servo, s."""
+    """Delay before the simulator's own servo, s."""
 
     def aircraft(self, file: Aircraft) -> Aircraft:
-        """Return the aircraft file with the surrogate as its model, and both servos in series."""
+        """Return the aircraft file with the surrogate as its model, and with both servos in series."""
         lag_s, delay_s = file.elevator.lag_s, file.elevator.delay_s
         # What neither of the two states stays open.
         elevator = replace(
@@ -69,18 +69,18 @@ def surrogate_of(
     command: FloatArray,
     linearised: Mapping[str, float] | None,
 ) -> Surrogate:
-    """Identify the surrogate by output error from the simulator's own replays.
+    """Return the surrogate identified by output error from the simulator's own replays.
 
     Parameters
     ----------
     flights
-        The manoeuvres as flown by the aircraft.
+        Manoeuvres as flown by the aircraft.
     flown, replays
-        The manoeuvres as flown by the simulator (``advisor.simulators.inputs.as_flight``).
+        Manoeuvres as flown by the simulator (``advisor.simulators.inputs.as_flight``), and the replays.
     command
         Shape (manoeuvres, entries): effects between the recorded command and the simulator's input.
     linearised
-        The simulator's derivatives, from which the search starts; None starts from a regression.
+        Derivatives of the simulator, at which the search starts; None for a start from a regression.
     """
     # The simulator's four outputs are known without instruments, whichever the flight has measured.
     read = tuple(read_from(f, on_grid(r, f), OUTPUTS) for f, r in zip(flown, replays, strict=True))
@@ -110,7 +110,8 @@ def surrogate_of(
 
 
 def trimmed_at(p: FloatArray, flight: PreparedManeuver) -> FloatArray:
-    """Return driving numbers, shape (entries,), with a manoeuvre's trim terms at the simulator's start."""
+    """Return the simulator inputs, shape (entries,), with a manoeuvre's trim terms at the simulator's
+    start."""
     theta, reference = float(flight.trim[THETA_FROM]), float(flight.trim[REFERENCE])
     speed, height = float(flight.slow[SPEED, 0]), float(flight.slow[HEIGHT, 0])
     return trimmed(p, flight.alpha_trim, theta, speed, height, reference)

@@ -1,4 +1,4 @@
-"""Corrections that make the gap worse on manoeuvres kept apart: they leave the answer and its simulator."""
+"""Corrections that increase the gap on held-out manoeuvres, and are withdrawn."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -23,20 +23,20 @@ from advisor.simulators.unseen import (
 def without_worse(
     whole: Examined, unseen: UnseenManeuvers, measure: Callable[[UnseenManeuvers], Flown]
 ) -> tuple[Examined, Flown]:
-    """Return the diagnosis without effects that raise the gap visibly, and the measurement without them.
+    """Return the diagnosis without effects that visibly increase the gap, and the measurement without them.
 
-    The sets are those of the search: its numbers, then one effect more at a time. First the set with the
-    least gap in manoeuvres that are held out in turn stays. The set of corrections with the least gap on the
-    manoeuvres kept apart stays. A sentence names each effect that was taken back.
+    The candidate sets are the derivatives alone, then one more effect each, in the order of the search. First
+    the set with the least gap on manoeuvres held out in turn is kept. Then the set of corrections with the
+    least gap on held-out manoeuvres is kept. A sentence names each withdrawn effect.
 
     Parameters
     ----------
     whole
         Diagnosis of all manoeuvres.
     unseen
-        Manoeuvres kept apart, with the diagnosis of the others.
+        Held-out manoeuvres, with the diagnosis of the others.
     measure
-        Measures the gap of the manoeuvres kept apart with the answer of the others.
+        Function that measures the gap of the held-out manoeuvres with the others' answer.
     """
     whole = without_raised(whole)
     found = unseen.found
@@ -63,7 +63,7 @@ def without_worse(
 
 
 def _shortened(found: Examined, most: int) -> Examined:
-    """Return a diagnosis with the first effects, at most so many, whose model alone is measured."""
+    """Return a diagnosis with at most the first ``most`` effects, measured with their model."""
     gone, models = found.named[most:], found.findings.models[: most + 1]
     left = {effect: sizes for effect, sizes in found.diagnosis.effects.items() if effect not in gone}
     causes = tuple(
@@ -77,7 +77,7 @@ def _shortened(found: Examined, most: int) -> Examined:
 
 
 def without_raised(whole: Examined) -> Examined:
-    """Return a diagnosis without the effects that raise the gap in manoeuvres that are held out in turn."""
+    """Return a diagnosis without the effects that increase the gap on manoeuvres held out in turn."""
     gaps = [whole_gap(model.held_out.mean_square, floor_of(whole)) for model in whole.findings.models]
     stay = len(whole.named)
     for most in reversed(range(stay)):
@@ -90,10 +90,9 @@ def without_raised(whole: Examined) -> Examined:
 
 
 def _without(whole: Examined, most: int, flown: str, worse: float, better: float, removed: float) -> Examined:
-    """Return a diagnosis with the first effects, at most so many, which names the others and their gap.
+    """Return a diagnosis with at most the first ``most`` effects, which names the others and their gap.
 
-    Without any effect the answer is contradicted; ``removed`` is the share of the gap that the numbers
-    remove.
+    Without any effect the answer is contradicted; ``removed`` is the gap's share that derivatives remove.
     """
     effects = [spelled(effect) for effect in whole.named[most:]]
     said = (*whole.diagnosis.taken_back, taken_back_said(effects, flown, worse, better))
@@ -103,7 +102,7 @@ def _without(whole: Examined, most: int, flown: str, worse: float, better: float
 
 
 def with_unseen_shrink(whole: Examined, unseen: UnseenManeuvers, aircraft: Aircraft) -> Examined:
-    """Return the diagnosis against an aircraft file's model, with the shrink on the manoeuvres kept apart."""
+    """Return the diagnosis against an aircraft file's model, with the shrink on held-out manoeuvres."""
     if whole.findings.problem.prior_derivatives is None:
         return whole
     stays, flown = without_worse(whole, unseen, partial(by_the_file, whole))
@@ -114,12 +113,12 @@ def with_unseen_shrink(whole: Examined, unseen: UnseenManeuvers, aircraft: Aircr
 
 
 def unused(maneuvers: Sequence[int]) -> str:
-    """Return manoeuvres that no fit has used, in words."""
+    """Return in words the manoeuvres that no fit has used."""
     plural = "s" if len(maneuvers) > 1 else ""
     return f"manoeuvre{plural} {', '.join(map(str, maneuvers))}, which no fit has used"
 
 
 def taken_back_said(parts: Sequence[str], flown: str, worse: float, better: float) -> str:
-    """Return the sentence on corrections that raise the gap of the manoeuvres ``flown``, in words."""
+    """Return the sentence about corrections that increase the gap of the manoeuvres ``flown``."""
     gap = f"the gap is {worse:.3g} instead of {better:.3g}"
     return f"Taken back: {' and '.join(parts)}, with which {gap} on {flown}."

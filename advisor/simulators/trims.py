@@ -1,4 +1,4 @@
-"""The trimmed flight of a simulator next to that of the aircraft: angle of attack, elevator, throttle."""
+"""Trimmed flight of simulator and aircraft: angle of attack, elevator, throttle."""
 
 from collections.abc import Mapping, Sequence
 
@@ -14,9 +14,9 @@ from advisor.simulators.protocol import Replay
 def trim_differences(
     flights: PreparedManeuvers, maneuvers: Sequence[Maneuver], replays: Sequence[Replay], aircraft: Aircraft
 ) -> tuple[TrimDifference, ...]:
-    """Return the trims of simulator and aircraft, means over the manoeuvres.
+    """Return the trims of simulator and aircraft, averaged over the manoeuvres.
 
-    The elevator counts where the aircraft file calibrates it, and a control where the simulator tells it.
+    The elevator is included if calibrated, and a control if the simulator reports it.
     """
     by_number = {m.number: m for m in maneuvers}
     flown = [_of_the_flight(f, by_number[f.number], aircraft) for f in flights.flights]
@@ -32,7 +32,7 @@ def trim_differences(
 
 
 def _of_the_flight(flight: PreparedManeuver, maneuver: Maneuver, aircraft: Aircraft) -> Mapping[str, float]:
-    """Return the trim before the first step of a manoeuvre, as far as it was measured."""
+    """Return the measured trim before the first step of a manoeuvre."""
     trim = {"alpha": flight.alpha_trim} if "alpha" in flight.outputs else {}
     if aircraft.elevator.is_calibrated:
         trim["elevator"] = flight.u_trim

@@ -1,7 +1,7 @@
-"""The gap on manoeuvres that the fit has not used.
+"""Gap on manoeuvres that no fit has used.
 
-All manoeuvres name the effects. The fits of derivatives and sizes leave out the manoeuvres kept apart.
-``advisor gap --prove`` leaves them out of the whole search.
+All manoeuvres are used to select the effects. The fits of derivatives and sizes exclude the held-out
+manoeuvres. ``advisor gap --prove`` excludes the held-out manoeuvres from the whole search.
 """
 
 from collections.abc import Collection, Sequence
@@ -27,33 +27,33 @@ from advisor.gap.verdict.text import answers_of, sentence_of
 from advisor.words.certainty import as_sure
 
 LEAST_TRAINED = 2
-"""Least number of manoeuvres for a fit: a single one names no effect."""
+"""Least number of manoeuvres for a fit, because a single one identifies no effect."""
 _EVERY = 3
-"""One manoeuvre of so many is kept apart, as in the folds of the search."""
+"""One in this number of manoeuvres is held out, as in the folds of the search."""
 _OFFSET = "alpha_bias"
 
 
 @dataclass(frozen=True)
 class UnseenManeuvers:
-    """Manoeuvres kept apart, and an answer that has not seen them."""
+    """Held-out manoeuvres, and an answer without them."""
 
     kept: tuple[int, ...]
-    """Indices of the manoeuvres kept apart, in the problem of the whole diagnosis."""
+    """Indices of the held-out manoeuvres, in the problem of the whole diagnosis."""
     found: Examined
-    """Diagnosis of all manoeuvres, with derivatives and sizes fitted without those kept apart."""
+    """Diagnosis of all manoeuvres, with derivatives and sizes fitted without the held-out ones."""
 
 
 def kept_apart(n: int, holdout: int | None) -> tuple[int, ...]:
-    """Return the indices of the manoeuvres to keep apart: the last ``holdout`` ones, or every third.
+    """Return the indices of the held-out manoeuvres: the last ``holdout`` ones, or every third.
 
-    Empty where too few would remain for a search.
+    The result is empty if too few manoeuvres would remain for a search.
     """
     kept = range(n - holdout, n) if holdout is not None and 0 < holdout < n else range(1, n, _EVERY)
     return tuple(kept) if n - len(kept) >= LEAST_TRAINED else ()
 
 
 def changes_something(diagnosis: Diagnosis) -> bool:
-    """Return whether a diagnosis changes the simulator. Moving air alone changes nothing."""
+    """Return whether a diagnosis changes the simulator. Moving air alone does not change the simulator."""
     shrink = diagnosis.shrink
     if shrink is None:
         return False
@@ -63,9 +63,9 @@ def changes_something(diagnosis: Diagnosis) -> bool:
 
 
 def unseen_of(whole: Examined, holdout: int | None) -> UnseenManeuvers | None:
-    """Return a diagnosis with sizes fitted without the manoeuvres kept apart; None where too few remain.
+    """Return a diagnosis with sizes fitted without the held-out manoeuvres; None if too few remain.
 
-    ``holdout`` is that of ``advisor.gap.diagnose.diagnose``.
+    ``holdout`` has the meaning of ``advisor.gap.diagnose.diagnose``.
     """
     numbers = [flight.number for flight in whole.findings.problem.flights.flights]
     kept = kept_apart(len(numbers), holdout)
@@ -75,8 +75,8 @@ def unseen_of(whole: Examined, holdout: int | None) -> UnseenManeuvers | None:
 def sized_without(found: Examined, apart: Collection[int]) -> Examined:
     """Return a diagnosis with derivatives and sizes of effects from fits without some manoeuvres.
 
-    The effects themselves are those that all manoeuvres tell. ``apart`` has the numbers of the manoeuvres
-    that the fits leave out.
+    The effects themselves are selected on all manoeuvres. ``apart`` holds the numbers of the manoeuvres that
+    the fits exclude.
     """
     problem, diagnosis = found.findings.problem, found.diagnosis
     out = [i for i, flight in enumerate(problem.flights.flights) if flight.number in apart]
@@ -98,10 +98,10 @@ def sized_without(found: Examined, apart: Collection[int]) -> Examined:
 
 
 def as_changed(unseen: UnseenManeuvers, whole: Examined) -> SearchPoint:
-    """Return the model that an export writes, for all manoeuvres.
+    """Return the model of an export, for all manoeuvres.
 
-    The nuisance parameters belong to the flight instead of the simulator; only a propeller is exported.
-    Initial states, and the side on which a play rests, start from the whole diagnosis.
+    Nuisance parameters belong to the flight, not to the simulator; only the propeller's are exported. Initial
+    states, and the side on which play rests, start from the whole diagnosis.
     """
     found, everything = unseen.found, whole.findings.last.fitted.point
     point, written = found.findings.last.fitted.point, found.diagnosis.effects
@@ -115,7 +115,7 @@ def as_changed(unseen: UnseenManeuvers, whole: Examined) -> SearchPoint:
 
 
 def with_nuisances(point: SearchPoint, unseen: UnseenManeuvers) -> SearchPoint:
-    """Return a model with the nuisance parameters of the diagnosis without the manoeuvres kept apart."""
+    """Return a model with the nuisance parameters of the diagnosis without held-out manoeuvres."""
     found = unseen.found.findings.last.fitted.point
     for effect, values in zip(found.effects, found.values, strict=True):
         if effect.is_nuisance and effect not in point.effects:
@@ -130,15 +130,15 @@ def predicted(
     kept: Sequence[int],
     offset_rad: float = 0.0,
 ) -> HeldOut:
-    """Return the residuals of a model, with mean squares over the manoeuvres kept apart.
+    """Return the residuals of a model, with mean squares over the held-out manoeuvres.
 
-    Only each manoeuvre's initial state, trim and offsets are refitted, weighed by the noise ``floor`` of
-    shape (channels,).
+    Only initial state, trim and offsets of each manoeuvre are refitted, weighted by ``floor``, shape
+    (channels,).
 
     Parameters
     ----------
     offset_rad
-        Offset of the angle of attack that was removed from the data and that the model does not know.
+        Offset of α that was removed from the data and that the model does not contain.
     """
     plain = replace(problem, whitening=None)
     held = own_refitted(plain, point, floor)
@@ -146,14 +146,14 @@ def predicted(
 
 
 def unknown_offset(whole: Diagnosis, model: Diagnosis | None) -> float:
-    """Return the offset of α that the data lost and that ``model`` does not know, rad.
+    """Return the offset of α that was removed from the data and that ``model`` does not contain, rad.
 
     Parameters
     ----------
     whole
         Diagnosis of the data.
     model
-        Diagnosis behind the model; None for a simulator as given.
+        Diagnosis on which the model is based; None for a simulator as given.
     """
     removed = whole.effects.get(_OFFSET, {}).get("bias_rad", 0.0)
     known = 0.0 if model is None else model.effects.get(_OFFSET, {}).get("bias_rad", 0.0)
@@ -162,22 +162,22 @@ def unknown_offset(whole: Diagnosis, model: Diagnosis | None) -> float:
 
 @dataclass(frozen=True)
 class Flown:
-    """Residuals of a simulator in the manoeuvres kept apart, before and after corrections."""
+    """Residuals of a simulator on held-out manoeuvres, before and after corrections."""
 
     before: HeldOut
     after: HeldOut | None
-    """None where nothing was corrected, or where the simulator did not fly."""
+    """Residuals after corrections; None without a correction, or if the simulator did not fly."""
     gap_before: float
     gap_after: float
-    """Gap with the part of the correction that the simulator takes."""
+    """Gap after the part of the correction that the simulator supports."""
     on_paper: tuple[str, ...] = ()
-    """Corrections that the simulator cannot take, so that no flight of it contradicts them."""
+    """Corrections that the simulator does not support, so that no flight of it contradicts them."""
     told: InSimulator | None = None
-    """The gap for people; None for the model of an aircraft file."""
+    """Gap for the report; None for the model of an aircraft file."""
 
 
 def by_the_file(whole: Examined, unseen: UnseenManeuvers) -> Flown:
-    """Return the residuals of the aircraft file's model before and after what the other manoeuvres found."""
+    """Return the file model's residuals before and after the correction from the other manoeuvres."""
     diagnosis, problem, floor = whole.diagnosis, whole.findings.problem, floor_of(whole)
     assert problem.prior_derivatives is not None
     given = SearchPoint(problem.prior_derivatives, whole.findings.last.fitted.point.own)
@@ -192,7 +192,7 @@ def by_the_file(whole: Examined, unseen: UnseenManeuvers) -> Flown:
 def shrink_on(
     whole: Examined, unseen: UnseenManeuvers, before: HeldOut, after: HeldOut | None
 ) -> Shrink | None:
-    """Return the shrink from ``before`` to ``after`` on the manoeuvres kept apart."""
+    """Return the shrink from ``before`` to ``after`` on the held-out manoeuvres."""
     shrink = whole.diagnosis.shrink
     if shrink is None or after is None:
         return None
@@ -209,14 +209,14 @@ def shrink_on(
 
 
 def resaid(diagnosis: Diagnosis, shrink: Shrink | None, aircraft: Aircraft) -> Diagnosis:
-    """Return the diagnosis with another shrink, also in its sentence, which stays as sure as it was."""
+    """Return the diagnosis with another shrink, also in its sentence, with unchanged certainty."""
     d = diagnosis
     sentence = sentence_of(d.verdict, d.gap, d.where, d.causes, shrink, in_simulator(aircraft))
     return replace(d, shrink=shrink, sentence=as_sure(sentence, answers_of(d.evidence)))
 
 
 def percent_of(was: float, now: float) -> float:
-    """Return the shrink of a gap in per cent."""
+    """Return the shrink of a gap in per cent of its first value."""
     return 100.0 * (1.0 - now / was) if was > 1e-9 else 0.0
 
 
