@@ -1,4 +1,4 @@
-"""Aircraft files as read by the simulator: the linear aircraft of a file's ``model``."""
+"""Aircraft files as the simulator reads them: the linear aircraft of a file's ``model``."""
 
 import math
 from collections.abc import Mapping

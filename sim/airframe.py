@@ -9,7 +9,7 @@ GRAVITY_M_S2 = 9.80665
 """Standard gravity, m/s²."""
 
 AIR_DENSITY_KG_M3 = 1.225
-"""Density of the standard atmosphere at sea level, kg/m³. The heights flown here are low."""
+"""Density of the standard atmosphere at sea level, kg/m³. The bundled aircraft flies at low heights."""
 
 
 @dataclass(frozen=True)
@@ -17,8 +17,7 @@ class Airframe:
     """A rigid aircraft in longitudinal flight with a bank angle.
 
     Coefficients are non-dimensional, referred to wing area and mean chord. Rates are made dimensionless by
-    chord/(2V). Terms beyond the first order count from ``alpha_ref`` and ``delta_e_ref``, the trimmed values,
-    and are zero for the plain aircraft.
+    chord/(2V). Terms beyond the first order are relative to the trimmed ``alpha_ref`` and ``delta_e_ref``.
     """
 
     mass: float
@@ -55,14 +54,13 @@ class Airframe:
     cl_alpha2: float = 0.0
     cl_alpha3: float = 0.0
     stall_alpha: float = 0.0
-    """Angle of attack at which half the flow has separated (Kirchhoff), rad. 0: the flow always stays
-    attached."""
+    """Angle of attack at which half the flow is separated (Kirchhoff), rad; 0 for attached flow."""
     stall_sharpness: float = 0.0
     """Sharpness of the separation over the angle of attack, 1/rad."""
     unsteady_share: float = 0.0
-    """Share of lift that builds up late (Wagner's function with one lag)."""
+    """Share of lift that builds up with a lag (Wagner's function with one lag)."""
     unsteady_lag: float = 1.0
-    """Lag of the late share of lift, s."""
+    """Time constant of the lagging share of lift, s."""
     cm_alpha2: float = 0.0
     cm_alpha3: float = 0.0
     cm_alpha_dot: float = 0.0
@@ -73,11 +71,11 @@ class Airframe:
     cg_aft: float = 0.0
     """Backward shift of the centre of gravity from the reference of the coefficients, m."""
     ground_lift: float = 0.0
-    """Relative gain of lift at the ground, decaying as e^(−h/span)."""
+    """Relative increase of lift at the ground, decaying as e^(−h/span)."""
     ground_moment: float = 0.0
     """Added Cm at the ground, decaying as e^(−h/span)."""
     speed_held: float = 0.0
-    """1: an ideal engine holds the airspeed. 0: the airspeed follows from the forces."""
+    """Speed hold: with 1 an ideal engine holds the airspeed, with 0 it follows from the forces."""
 
 
 AIRFRAME_RECORD = np.dtype([(field.name, np.float64) for field in fields(Airframe)])

@@ -1,4 +1,4 @@
-"""Control of the aircraft: attitude hold between manoeuvres, the test input during them."""
+"""Control of the aircraft: attitude hold between manoeuvres, and the test input during manoeuvres."""
 
 import math
 from dataclasses import dataclass
@@ -15,22 +15,22 @@ MANUAL, FBWA, CRUISE = 0, 5, 7
 
 
 class Demand(NamedTuple):
-    """Demand on the aircraft for the next tick of the loop."""
+    """Demanded controls for the next tick of the loop."""
 
     elevator: float
-    """Elevator before its conversion to a pulse width, rad."""
+    """Elevator demand before its conversion to a pulse width, rad."""
     throttle: float
     aileron: float
     rudder: float
     mode: int
     turbulence: float
-    """Standard deviation of the scenario's present turbulence, m/s, in addition to the background's."""
+    """Standard deviation of the scenario's additional turbulence at this time, m/s."""
 
 
 BANDWIDTH_RAD_S = 0.8
 """Bandwidth of the attitude hold, rad/s."""
 _PITCH_PER_STICK = 3.0
-"""Pitch angle demanded by the stick in FBWA, as a multiple of the deflection in MANUAL."""
+"""Demanded pitch angle per stick in FBWA, as a multiple of the deflection in MANUAL."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,8 @@ class Planned:
 
 
 def plan(scenario: Scenario, amplitude_deg: float, unit_s: float) -> tuple[Planned, ...]:
-    """Place the scenario's manoeuvres in time. Amplitude and unit are the aircraft's usual ones."""
+    """Return the scenario's manoeuvres with their times. ``amplitude_deg`` and ``unit_s`` are the aircraft's
+    usual values."""
     planned = []
     now = scenario.lead_in_s
     for number, maneuver in enumerate(scenario.maneuvers):
@@ -63,7 +64,7 @@ class Pilot(Protocol):
     """Interface of a pilot or autopilot that moves the controls."""
 
     def demand(self, time_s: float, motion: Motion, period_s: float) -> Demand:
-        """Return the controls at ``time_s``, decided from ``motion`` one tick earlier."""
+        """Return the controls at ``time_s``, computed from ``motion`` one tick earlier."""
         ...
 
     def current(self, time_s: float) -> Planned | None:
@@ -76,7 +77,7 @@ class Pilot(Protocol):
 
 
 class Autopilot:
-    """Attitude, height, speed and bank loops, with a pilot who flies the plan."""
+    """Autopilot with attitude, height, speed and bank loops, and a pilot who flies the plan."""
 
     def __init__(
         self,
@@ -121,7 +122,7 @@ class Autopilot:
         return None
 
     def demand(self, time_s: float, motion: Motion, period_s: float) -> Demand:
-        """Return the controls at ``time_s``, decided from ``motion`` one tick earlier."""
+        """Return the controls at ``time_s``, computed from ``motion`` one tick earlier."""
         planned = self.current(time_s)
         upcoming = self._next(time_s)
         lead = planned is not None or any(

@@ -15,7 +15,7 @@ from .tlog import read_tlog
 
 FloatArray = NDArray[np.float64]
 Stream = tuple[FloatArray, FloatArray]
-"""Stamps in s since boot, and values."""
+"""Stamps, s since boot, and values of a channel."""
 
 SETTLING_S = 1.5
 """Time left out after the change to MANUAL, s, because the two flights come from different holds."""
@@ -66,7 +66,7 @@ def distances(flight: Path, replay: Path) -> list[Distance]:
 
 
 def _maneuvers(mode: Stream) -> list[tuple[float, float]]:
-    """Return stretches of MANUAL, without their first moments."""
+    """Return stretches of MANUAL without their first ``SETTLING_S``."""
     stamps, modes = mode
     manual = np.concatenate([[False], modes == MANUAL, [False]])
     edges = np.flatnonzero(np.diff(manual.astype(int)))
@@ -78,7 +78,7 @@ def _maneuvers(mode: Stream) -> list[tuple[float, float]]:
 
 
 def _streams(path: Path) -> dict[str, Stream]:
-    """Return the channels of a log on vehicle time. Heartbeats take the latest attitude's stamp."""
+    """Return the channels of a log on vehicle time. Heartbeats get the stamp of the latest attitude."""
     rows: dict[str, list[tuple[float, float]]] = defaultdict(list)
     now = 0.0
     try:

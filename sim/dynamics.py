@@ -24,14 +24,14 @@ from .airframe import AIR_DENSITY_KG_M3, GRAVITY_M_S2
 FloatArray = NDArray[np.float64]
 
 STATES = ("airspeed", "alpha", "q", "theta", "height", "phi", "p", "alpha_late")
-"""State vector, in m/s, rad, rad/s, rad, m, rad, rad/s, rad (the last is the late share of α in lift)."""
+"""Names of the states, in m/s, rad, rad/s, rad, m, rad, rad/s, rad (the last is the lagging share of α in
+lift)."""
 
 INPUTS = ("elevator", "throttle", "aileron", "gust_up", "gust_head", "extra_cl", "extra_cm")
 """Inputs, in rad, 0..1, −1..1, m/s, m/s; then lift and moment coefficients added from outside."""
 
 DERIVATIVES = (*(f"{name}_dot" for name in STATES), "a_x", "a_z")
-"""Entries of :func:`derivatives`' result: rates of the states, then specific force along body x and z,
-m/s²."""
+"""Entries in the result of :func:`derivatives`: rates of the states, then specific forces, m/s²."""
 
 
 @kernel()
@@ -120,7 +120,7 @@ def step(
     dt: float,
     dx: FloatArray,
 ) -> None:
-    """Advance ``x`` in place by ``dt`` with classical Runge–Kutta, inputs linear from one end to the other.
+    """Advance ``x`` in place by ``dt`` with classical Runge–Kutta and inputs that change linearly.
 
     On return ``dx`` (10,) holds the derivatives at the new state.
     """

@@ -1,4 +1,4 @@
-"""Faults of instruments and telemetry, as the section ``faults`` of a scenario names them."""
+"""Faults of instruments and telemetry, as named in a scenario's section ``faults``."""
 
 from dataclasses import dataclass, field
 from typing import Literal
@@ -13,7 +13,7 @@ FIELDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "accelerometer": ("RAW_IMU", ("xacc", "yacc", "zacc")),
     "airspeed": ("VFR_HUD", ("airspeed",)),
 }
-"""Channel to its message and the fields that carry the channel."""
+"""Message and fields that carry each channel, by the channel's name."""
 
 UNITS: dict[str, dict[str, float]] = {
     "alpha": {"rad": RAD_PER_DEG},
@@ -22,8 +22,8 @@ UNITS: dict[str, dict[str, float]] = {
     "accelerometer": {"counts": 2.048, "g": 1.0},
     "airspeed": {"knots": 3600.0 / 1852.0},
 }
-"""Channel to its wrong units, and the factor from the right one. A count is 1/2048 g. ``g`` needs a message
-with decimals, so that HIGHRES_IMU replaces RAW_IMU."""
+"""Factor from the right unit to each wrong unit, by channel. A count is 1/2048 g. ``g`` needs a message with
+decimals, so that HIGHRES_IMU replaces RAW_IMU."""
 
 STAMPED = (
     "ATTITUDE",
@@ -45,38 +45,41 @@ class Filters:
     """Second-order Butterworth low-pass filters of the autopilot. Noise is added after them."""
 
     gyro_hz: float = 0.0
-    """Cut-off of the gyro's filter, Hz, as INS_GYRO_FILTER. 0: no filter."""
+    """Cut-off of the gyro's filter, Hz, as in INS_GYRO_FILTER; 0 for no filter."""
     accelerometer_hz: float = 0.0
-    """Cut-off of the accelerometer's filter, Hz, as INS_ACCEL_FILTER. 0: no filter."""
+    """Cut-off of the accelerometer's filter, Hz, as in INS_ACCEL_FILTER; 0 for no filter."""
     parameters: Literal["stated", "withheld"] = "stated"
-    """``stated``: the vehicle's parameters name both cut-offs."""
+    """Whether the vehicle's parameters state both cut-offs: ``stated`` or ``withheld``."""
 
 
 @dataclass(frozen=True)
 class Faults:
-    """Faults of one flight. Without any, the log does not change by a byte."""
+    """Faults of instruments and telemetry in one flight. Without faults, the log does not change by a
+    byte."""
 
     units: dict[str, str] = field(default_factory=dict)
-    """Channel to the wrong unit of its messages: alpha rad, q deg/s, theta deg, accelerometer counts or g,
-    airspeed knots."""
+    """Wrong unit of each channel: alpha rad, q deg/s, theta deg, accelerometer counts or g, airspeed
+    knots."""
     scale: dict[str, float] = field(default_factory=dict)
-    """Channel to a factor of its values; −1 reverses them. ``a_z: -1`` is an accelerometer with z up."""
+    """Factor on each channel's values, by the channel's name; −1 reverses them. ``a_z: -1`` is an
+    accelerometer with z up."""
     filters: Filters = field(default_factory=Filters)
     command_late_s: float = 0.0
-    """Time by which the command acts after the stamp of its SERVO_OUTPUT_RAW, s; −0.010 to 0.010 on real
+    """Delay of the command's effect after its SERVO_OUTPUT_RAW stamp, s; −0.010 to 0.010 on real
     autopilots."""
     thin_air_m: float = 0.0
     """Height of the ground above sea level, m. VFR_HUD then shows indicated air speed, and SCALED_PRESSURE
     goes with every GLOBAL_POSITION_INT (standard atmosphere). 0: true air speed."""
     repeated_after_s: float = 0.0
-    """Time after which every message comes again with a new stamp, s. 0: each message comes once."""
+    """Time after which every message is repeated with a new stamp, s; 0 for no repetition."""
     parameters_at_s: float = 0.0
     """Time at which the parameters are sent, s since the log began. ``.inf``: never."""
     clock_lag_s: dict[str, float] = field(default_factory=dict)
-    """Message to the time by which its stamps lag behind the vehicle's clock, s."""
+    """Delay of each message's stamps behind the vehicle's clock, s, by the message's name."""
 
     def problems(self, period_s: float) -> list[str]:
-        """Return every mistake with its path. ``period_s`` is that of the autopilot's loop, s."""
+        """Return every mistake in the faults, with its path. ``period_s`` is that of the autopilot's loop,
+        s."""
         found = [
             f"faults.units.{channel}: '{unit}' is not among the wrong units of this channel: "
             f"{', '.join(UNITS.get(channel, ())) or 'none'}"

@@ -1,4 +1,4 @@
-"""Faults of a scenario in the messages on their way out."""
+"""Faults of a scenario in outgoing messages."""
 
 import math
 from collections.abc import Iterable, Iterator
@@ -31,7 +31,7 @@ def stated(filters: Filters) -> dict[str, float]:
 
 
 class Outgoing:
-    """Changes messages on their way out."""
+    """Changes to outgoing messages by the faults."""
 
     def __init__(self, faults: Faults) -> None:
         self._factors: dict[str, dict[str, float]] = {}
@@ -83,7 +83,7 @@ class Outgoing:
 
 
 def again(message: Message, later_s: float) -> Message:
-    """Return the message with a stamp ``later_s`` later."""
+    """Return the message with its stamp later by ``later_s``."""
     repeated = copy(message)
     if message.get_type() in (*STAMPED, "HIGHRES_IMU", "SCALED_PRESSURE"):
         _shift(repeated, later_s)
@@ -91,7 +91,7 @@ def again(message: Message, later_s: float) -> Message:
 
 
 def _shift(message: Message, by_s: float) -> None:
-    """Move the stamp. Only the IMU's counter has more than 32 bits."""
+    """Shift the stamp of a message by ``by_s``. Only the IMU's counter has more than 32 bits."""
     if hasattr(message, "time_boot_ms"):
         message.time_boot_ms = (message.time_boot_ms + round(1e3 * by_s)) % 2**32
     else:

@@ -1,4 +1,4 @@
-"""Fittings of an aircraft in addition to its flight dynamics: servo, instruments, air, and their effects."""
+"""Parts of an aircraft other than its flight dynamics: servo, instruments, air, and their effects."""
 
 import math
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ from .sensors import DerivedAlpha, SensorEffect, low_passes
 from .servo import FirstOrderServo, Mechanism, SecondOrderServo, TransportDelay
 
 SERVO_HZ, SERVO_DAMPING = 20.0, 0.8
-"""Frequency, Hz, and damping of a servo that is only rate-limited."""
+"""Frequency, Hz, and damping of a servo with a rate limit only."""
 
 
 class AirMass(Protocol):
@@ -28,12 +28,12 @@ class ForceEffect(Protocol):
     """Forces and moments from outside the equations of motion, stepped with the simulation."""
 
     def step(self, time_s: float, motion: Motion, dt: float) -> tuple[float, float]:
-        """Return the added (CL, Cm). The linear aircraft takes them as (α̇, q̇)."""
+        """Return the added (CL, Cm). The linear aircraft uses them as additions to (α̇, q̇)."""
         ...
 
 
 class PlantEffect(Protocol):
-    """A change of the aircraft itself in flight, applied once a tick."""
+    """A change of the aircraft in flight, applied once per tick."""
 
     def apply(self, time_s: float, motion: Motion, engine: Any) -> None:
         """Change fields of ``engine.record``."""
@@ -42,7 +42,7 @@ class PlantEffect(Protocol):
 
 @dataclass
 class Fittings:
-    """Everything between the loop and the flight dynamics, in the order of the signal."""
+    """All parts between the autopilot loop and the flight dynamics, in signal order."""
 
     mechanisms: list[Mechanism] = field(default_factory=list)
     """Stages between command and surface."""
@@ -51,7 +51,7 @@ class Fittings:
     plant: list[PlantEffect] = field(default_factory=list)
     sensors: list[SensorEffect] = field(default_factory=list)
     skews: dict[str, float] = field(default_factory=dict)
-    """Channel name of :class:`sim.sensors.Reading` to the seconds by which its data are late."""
+    """Delay of each channel of :class:`sim.sensors.Reading`, s, by the channel's name."""
     accelerometer_arm_m: float = 0.0
     """Distance of the accelerometer ahead of the centre of gravity, m."""
 
@@ -63,13 +63,12 @@ class Turbulent:
         self.turbulence = turbulence
 
     def step(self, time_s: float, motion: Motion, dt: float) -> tuple[float, float]:
-        """Return the gusts after ``dt``."""
+        """Return the gust speeds after ``dt`` s, m/s."""
         return self.turbulence.step(motion.airspeed, dt)
 
 
 def complete(scenario: Scenario, fittings: Fittings) -> Fittings:
-    """Put the scenario's own servo, air and alpha sensor before the effects, the autopilot's filters after
-    them."""
+    """Return the fittings with the scenario's servo, air and alpha sensor first, and the filters last."""
     basics = Fittings(accelerometer_arm_m=scenario.instruments.accelerometer_arm_m)
     servo, air = scenario.servo, scenario.air
     if servo.delay_s > 0.0:

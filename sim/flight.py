@@ -19,20 +19,20 @@ from .sensors import NOISY, ChannelNoise, Reading, ideal
 from .servo import Servo
 
 _DEPARTED_RAD_S = 50.0
-"""Pitch rate above which the motion counts as unbounded, rad/s. No aircraft flies so."""
+"""Pitch rate above which the motion counts as departed, rad/s. No aircraft reaches this pitch rate."""
 
 
 @dataclass(frozen=True)
 class Sample:
-    """One tick of the loop, with the data for telemetry."""
+    """One tick of the loop, with the data for the telemetry."""
 
     time_s: float
     """Time since the log began, s."""
     reading: Reading
     motion: Motion
-    """True motion, which telemetry never shows."""
+    """True motion, which the telemetry does not contain."""
     pulse_us: int
-    """Elevator command, us."""
+    """Pulse width of the elevator command, us."""
     throttle: float
     aileron: float
     rudder: float
@@ -40,26 +40,26 @@ class Sample:
     north_m: float
     east_m: float
     flying: Planned | None
-    """Manoeuvre being flown."""
+    """Manoeuvre that is being flown; None between manoeuvres."""
 
 
 class Flight:
-    """A scenario in flight.
+    """A scenario with its aircraft, pilot and effects.
 
     Parameters
     ----------
     scenario
         Scenario to fly.
     fittings
-        Effects to fit. None: only those of the scenario's own sections.
+        Effects to be added. None for the scenario's own sections only.
     engine
-        Aircraft to fly. None: the scenario's aircraft from the hangar.
+        Aircraft to fly. None for the scenario's aircraft from the hangar.
     pilot
-        Pilot of the aircraft. None: an autopilot with the scenario's plan.
+        Pilot of the aircraft. None for an autopilot with the scenario's plan.
     duration_s
-        Duration, s. None: to the end of the plan.
+        Duration of the flight, s. None to fly to the end of the plan.
     fresh
-        Builds the plain aircraft again, for a flight that gives the size of the signals.
+        Function that builds the plain aircraft again, for a flight that gives the size of the signals.
 
     Notes
     -----
@@ -97,12 +97,12 @@ class Flight:
         self._deepest_s = max([0.0, *self._fittings.skews.values()])
 
     def samples(self) -> Iterator[Sample]:
-        """Fly, and yield a sample at every tick of the loop.
+        """Fly the scenario, and yield a sample at every tick of the loop.
 
         Raises
         ------
         DepartureError
-            The aircraft departs from all flight: its model is unstable.
+            The aircraft departs from flight, because its model is unstable.
         """
         dt, period = self.scenario.step_s, self._steps * self.scenario.step_s
         held = self.scenario.input == "held"
@@ -206,7 +206,7 @@ def noise_sigma(
 ) -> dict[str, float]:
     """Return the standard deviation of each channel's noise, SI units.
 
-    Percentages refer to the channel's deviation from trim (its largest value or its standard deviation). The
+    Percentages refer to the channel's deviation from trim, as a largest value or a standard deviation. The
     deviation is taken from the scenario's first manoeuvre, flown without noise, effects and turbulence.
     """
     noise = scenario.noise

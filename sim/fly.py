@@ -31,9 +31,9 @@ def serve(
     connection
         Connection string of pymavlink, e.g. ``udpout:127.0.0.1:14550``.
     speed
-        Multiple of real time. None: as fast as possible.
+        Speed of the flight as a multiple of real time. None for the highest possible speed.
     tell
-        Called with a sentence at the begin of each manoeuvre.
+        Function that is called with a sentence at the begin of each manoeuvre.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""Model of a hand-flown test input: slewed edges, uneven steps, corrections, a stick that never rests."""
+"""Model of a hand-flown test input: slewed edges, uneven steps, corrections, an unsteady stick."""
 
 import math
 from collections.abc import Callable
@@ -10,11 +10,11 @@ from .maneuvers import STEPS, Input, elevator_input, stepped
 from .scenario import Maneuver
 
 STICK_HZ = 0.3
-"""Bandwidth of the stick's own motion, Hz. A hand corrects a few times in ten seconds."""
+"""Bandwidth of the stick's random motion, Hz. A hand corrects a few times in ten seconds."""
 _TICK_S = 0.02
-"""Grid of that motion, s, with straight lines between."""
+"""Time step of the stick's random motion, s, with linear interpolation."""
 _CORRECTED_S = (-0.7, -0.3)
-"""Begin and end of a correction before the first step, s. The elevator is then quiet for 0.3 s."""
+"""Begin and end of a correction before the first step, s. The elevator is then constant for 0.3 s."""
 
 Steps = tuple[tuple[float, float], ...]
 
@@ -27,9 +27,9 @@ def by_hand(maneuver: Maneuver, amplitude_rad: float, unit_s: float, seed: list[
     maneuver
         Manoeuvre, with the pilot's imperfections.
     amplitude_rad, unit_s
-        Size of the input, and duration of one of its units.
+        Amplitude of the input, and duration of one time unit.
     seed
-        Seed of all differences between hands.
+        Random seed of the hand's imperfections.
     """
     if maneuver.input in STEPS:
         steps = _uneven(STEPS[maneuver.input], maneuver.uneven, [*seed, 11])
@@ -61,7 +61,7 @@ def _slewed(stick: Input, slew_s: float, trim_after: float = 0.0) -> Input:
     stick
         Input made of steps.
     slew_s
-        Duration of each slope, s. The slope begins where the step was.
+        Duration of each slope, s. Each slope begins at the time of its step.
     trim_after
         Deflection at which the stick comes to rest, rad.
     """

@@ -1,4 +1,4 @@
-"""Aircraft by name, each with suitable test inputs."""
+"""Aircraft by name, each with its suitable test inputs."""
 
 from dataclasses import dataclass, replace
 
@@ -52,7 +52,7 @@ def habits(scenario: Scenario) -> Habits:
 
 
 def build(scenario: Scenario, **changes: float) -> Aircraft:
-    """Return the scenario's aircraft, trimmed. ``changes`` replace fields of a nonlinear airframe."""
+    """Return the trimmed aircraft of the scenario. ``changes`` replace fields of a nonlinear airframe."""
     airspeed = scenario.airspeed_m_s or habits(scenario).airspeed_m_s
     if scenario.engine == "jsbsim":
         return JsbsimAircraft(scenario.aircraft, airspeed, scenario.height_m, scenario.step_s)

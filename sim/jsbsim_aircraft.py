@@ -1,4 +1,4 @@
-"""JSBSim, a six-degree-of-freedom engine, with the controls and instruments of the bundled aircraft."""
+"""JSBSim, a six-degree-of-freedom flight simulator, with the bundled aircraft's controls and instruments."""
 
 import math
 import os
@@ -23,7 +23,7 @@ PROBE_S, PROBE_UNIT_S, PROBE_RAD = 4.0, 0.4, math.radians(0.4)
 
 
 class JsbsimAircraft:
-    """An engine (see :class:`sim.motion.Engine`) that hands each step to JSBSim.
+    """An engine (see :class:`sim.motion.Engine`) that passes each step to JSBSim.
 
     Raises
     ------
@@ -80,8 +80,7 @@ class JsbsimAircraft:
         """Short-period parameters from a regression of the engine's own α̇ and q̇ in a small 3-2-1-1 on its
         states.
 
-        Airspeed and attitude are regressors as well, so that their small changes do not spoil the eight
-        parameters.
+        Airspeed and attitude are also regressors, so that their changes do not bias the eight parameters.
         """
         if self._truth is None:
             probe = JsbsimAircraft(self._name, self._airspeed, self._height, self._dt)
@@ -89,7 +88,8 @@ class JsbsimAircraft:
         return self._truth
 
     def regress(self) -> ShortPeriod:
-        """Fly the small manoeuvre and return its parameters. Afterwards this aircraft is not at trim."""
+        """Fly the small manoeuvre, and return the short-period parameters. The aircraft is no longer at trim
+        afterwards."""
         stick = elevator_input("3211", PROBE_RAD, PROBE_UNIT_S)
         start = self.motion()
         rows = []
@@ -143,7 +143,7 @@ class JsbsimAircraft:
         )
 
     def step(self, controls: Controls, dt: float) -> Motion:
-        """Fly for ``dt`` seconds, which must be the step given at construction."""
+        """Fly for ``dt`` seconds; ``dt`` must be the step given at construction."""
         fdm = self._fdm
         self._command(controls.elevator)
         fdm["fcs/throttle-cmd-norm"] = controls.throttle

@@ -1,7 +1,7 @@
 """Roll and yaw of the bundled aircraft, and the pilot who flies them: ``python -m sim fly --plan lateral``.
 
 The equations are those of Stevens & Lewis, *Aircraft Control and Simulation*, ch. 2. Forces and moments are
-linear, gravity and attitude are in full:
+linear, and the kinematics of gravity and attitude are exact:
 
     β̇ = (Y/m)/V + sin α·p − cos α·r + (g/V)·cos θ·sin φ
     ṗ = L,    ṙ = N,    φ̇ = p + tan θ·r·cos φ
@@ -37,9 +37,9 @@ UAV: Mapping[str, float] = {
 }  # fmt: skip
 """Lateral derivatives of the bundled aircraft at 25 m/s, rad and s; Dutch roll 3.7 rad/s, roll 0.1 s."""
 FULL_RAD = math.radians(25.0)
-"""Deflection of aileron and rudder at full demand, rad."""
+"""Aileron and rudder deflection at full demand, rad."""
 NOISE = {"p": 0.004, "r": 0.003, "phi": 0.002, "a_y": 0.05}
-"""Standard deviation of the lateral instruments' noise, SI."""
+"""Standard deviation of the noise in each lateral channel, SI."""
 _SWING_S = 3.1
 """Period of the throttle's swing, s."""
 _HOLD = (0.12, 0.02)
@@ -58,7 +58,7 @@ class LateralAircraft(LinearAircraft):
     derivatives
         Lateral derivatives at this speed, by name.
     kit
-        Servos, propeller and air of the effects; None for none.
+        Servos, propeller and air of the effects; None for no effects.
     """
 
     def __init__(
@@ -107,7 +107,7 @@ class LateralAircraft(LinearAircraft):
     def _per_speed(self, letter: str, x: NDArray[np.float64], u: NDArray[np.float64]) -> float:
         """Return the side force over mass and speed (Y), or a moment over its inertia (L, N).
 
-        The air that moves sideways adds its angle to the sideslip."""
+        The air's side motion adds its angle to the sideslip."""
         met = (x[0] + self._gust, *x[1:3], *u)
         factors = zip(("beta", "p", "r", "delta_a", "delta_r"), met, strict=True)
         return float(sum(self._d[f"{letter}_{name}"] * value for name, value in factors))
@@ -129,14 +129,14 @@ class LateralAircraft(LinearAircraft):
 
 @dataclass(frozen=True)
 class SideInput:
-    """One input of the lateral plan."""
+    """One input in the lateral plan."""
 
     control: str
     """``aileron`` or ``rudder``."""
     steps: tuple[tuple[float, float], ...]
     """Duration in units and share of the amplitude, as in :data:`sim.maneuvers.STEPS`."""
     amplitude: float
-    """Demand, 0..1."""
+    """Demand of the input, 0..1."""
     unit_s: float
 
 
@@ -149,23 +149,23 @@ PLAN = (
     SideInput("rudder", tuple((n, -share) for n, share in _DOUBLET), 0.25, 0.85),
     SideInput("aileron", tuple((n, -share) for n, share in _DOUBLET), 0.25, 0.5),
 )
-"""Inputs of ``--plan lateral``. Steps of the rudder last half a Dutch roll, those of the aileron five roll
-time constants."""
+"""Inputs of ``--plan lateral``. Rudder steps last half a Dutch roll, and aileron steps five roll time
+constants."""
 
 
 class LateralPilot:
-    """Levels the wings between the inputs, and flies the plan with hands still otherwise.
+    """Pilot who levels the wings between the inputs, and flies the plan with otherwise still hands.
 
     Parameters
     ----------
     scenario
-        Scenario with the times around each input.
+        Scenario with the durations before and after each input.
     trim
-        Controls in level flight.
+        Trimmed controls of level flight.
     swing
-        Amplitude of the throttle's slow swing, 0..1.
+        Amplitude of the throttle's slow oscillation, 0..1.
     slower
-        Factor of the steps' duration, for an aircraft with a slower Dutch roll.
+        Factor on the steps' duration, for an aircraft with a slower Dutch roll.
     """
 
     def __init__(self, scenario: Scenario, trim: Controls, swing: float = 0.0, slower: float = 1.0) -> None:
@@ -181,7 +181,7 @@ class LateralPilot:
         self.end_s = now
 
     def current(self, time_s: float) -> Planned | None:
-        """Return the input flown at ``time_s``, from the change to MANUAL to the change back."""
+        """Return the input that is flown at ``time_s``, between the mode changes to MANUAL and back."""
         return next((p for _, p in self._inputs if p.manual_from_s <= time_s < p.end_s), None)
 
     def mode(self, time_s: float) -> int:
@@ -189,7 +189,7 @@ class LateralPilot:
         return CRUISE if self.current(time_s) is None else MANUAL
 
     def demand(self, time_s: float, motion: Motion, period_s: float) -> Demand:
-        """Return the controls at ``time_s``, decided from ``motion`` one tick earlier."""
+        """Return the controls at ``time_s``, computed from ``motion`` one tick earlier."""
         moved = {"aileron": 0.0, "rudder": 0.0}
         planned = self.current(time_s)
         if planned is None:

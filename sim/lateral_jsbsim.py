@@ -1,4 +1,4 @@
-"""Roll and yaw of a JSBSim aircraft, with servos of aileron and rudder between demand and surface."""
+"""Roll and yaw of a JSBSim aircraft, with servos of aileron and rudder."""
 
 from .effects.side import SideKit
 from .jsbsim_aircraft import FOOT_M, JsbsimAircraft
@@ -10,7 +10,7 @@ _CONTROLS = tuple(_SURFACES)
 
 
 class LateralJsbsim(JsbsimAircraft):
-    """A JSBSim aircraft whose aileron and rudder pass the stages of a kit.
+    """A JSBSim aircraft whose aileron and rudder demands pass a kit's stages.
 
     A positive demand rolls and yaws to the right. The surfaces are recorded positive to the left.
     """
@@ -32,7 +32,7 @@ class LateralJsbsim(JsbsimAircraft):
         return super().motion()._replace(r=fdm["velocities/r-rad_sec"], a_y=side)
 
     def step(self, controls: Controls, dt: float) -> Motion:
-        """Fly for ``dt`` seconds, which must be the step given at construction."""
+        """Fly for ``dt`` seconds; ``dt`` must be the step given at construction."""
         wanted = {"aileron": controls.aileron, "rudder": controls.rudder}
         moved = {}
         for name, demand in wanted.items():
@@ -47,12 +47,12 @@ class LateralJsbsim(JsbsimAircraft):
         return abs(high - low) / 2.0
 
     def _sense(self, name: str, turn: str) -> float:
-        """Return 1 where a positive command turns to the right, else -1."""
+        """Return 1 if a positive command turns to the right, else -1."""
         low, high = (self._at(name, command, turn) for command in (-1.0, 1.0))
         return 1.0 if high > low else -1.0
 
     def _at(self, name: str, command: float, seen: str) -> float:
-        """Return a property under a command, with the flight held still."""
+        """Return a property under a command, in frozen flight."""
         fdm = self._fdm
         fdm.suspend_integration()
         fdm[f"fcs/{name}-cmd-norm"] = command

@@ -31,18 +31,18 @@ class ShortPeriod:
     M_delta_e: float
 
     def trim(self) -> tuple[float, float]:
-        """Return the angle of attack and elevator (rad) of the equilibrium."""
+        """Return the angle of attack and the elevator (rad) in equilibrium."""
         matrix = np.array([[self.Z_alpha, self.Z_delta_e], [self.M_alpha, self.M_delta_e]])
         alpha, elevator = np.linalg.solve(matrix, [-self.Z_0, -self.M_0])
         return float(alpha), float(elevator)
 
     def frequency(self) -> float:
-        """Return the undamped natural frequency in rad/s; 0 for an aircraft without one."""
+        """Return the undamped natural frequency in rad/s; 0 for an aircraft without a short period."""
         squared = self.Z_alpha * self.M_q - (1 + self.Z_q) * self.M_alpha
         return float(np.sqrt(max(squared, 0.0)))
 
     def as_dict(self) -> dict[str, float]:
-        """Return name to value, in the paper's order."""
+        """Return the eight parameters by name, in the paper's order."""
         return asdict(self)
 
 
@@ -53,8 +53,8 @@ RESEARCH_JET = ShortPeriod(-0.009, -0.483, 0.104, 0.676, 0.475, -4.93, -2.01, -7
 def linearise(record: NDArray[np.void], trim: Trim, width: float = 1e-5) -> ShortPeriod:
     """Return the short-period parameters of the nonlinear aircraft about a trim, by central differences.
 
-    Speed, attitude and height stay at their trimmed values, as in the model. Z_0 and M_0 let the linear model
-    trim at the nonlinear aircraft's angle of attack and elevator.
+    Speed, attitude and height stay at their trimmed values, as in the short-period model. Z_0 and M_0 let the
+    linear model trim at the nonlinear aircraft's angle of attack and elevator.
     """
 
     def rates(index: int | None, by: float, elevator: float) -> FloatArray:

@@ -21,7 +21,7 @@ from .servo import Calibration
 
 @dataclass(frozen=True)
 class LinearTerms:
-    """Terms in addition to the eight parameters; all zero for the paper's model. Rad, s and m."""
+    """Terms in addition to the eight parameters, all zero in the paper's model. Units are rad, s and m."""
 
     Z_alpha2: float = 0.0
     Z_alpha3: float = 0.0
@@ -33,22 +33,22 @@ class LinearTerms:
     M_throttle: float = 0.0
     """Pitch acceleration per unit of throttle away from trim, rad/s²."""
     throttle_lag: float = 0.0
-    """Lag of the engine behind its throttle, s. 0: no lag."""
+    """Lag of the engine behind its throttle, s; 0 for no lag."""
     M_thrust: float = 0.0
-    """Contribution of the thrust to the trimmed moment, rad/s², which does not grow with dynamic pressure."""
+    """Thrust part of the trimmed moment, rad/s², which does not grow with dynamic pressure."""
     washed_share: float = 0.0
     """Share of the elevator's effectiveness in the propeller's slipstream, which does not grow with dynamic
     pressure."""
     blown_share: float = 0.0
-    """Growth of the elevator's effectiveness with the excess of thrust over drag, per unit of weight."""
+    """Increase of the elevator's effectiveness by thrust minus drag, per unit of weight."""
     unsteady_share: float = 0.0
     unsteady_lag: float = 1.0
     unsteady_moment: float = 0.0
-    """1: the moment builds up with the lift. 0: the moment follows the angle of attack at once."""
+    """Lift lag in the moment: with 1 the moment lags like the lift, with 0 it follows α at once."""
     stall_alpha: float = 0.0
     """Angle of attack at which half the flow has separated (Kirchhoff), rad."""
     stall_sharpness: float = 0.0
-    """Sharpness of the separation, 1/rad. 0: the flow always stays attached."""
+    """Sharpness of the flow separation, 1/rad; 0 for attached flow."""
     Z_h: float = 0.0
     """Z_0 added at the ground, 1/s, decaying as e^(−h / ground_scale)."""
     lift_h: float = 0.0
@@ -56,13 +56,13 @@ class LinearTerms:
     M_h: float = 0.0
     ground_scale: float = 1.0
     speed_scaled: float = 0.0
-    """1: derivatives change with airspeed, and gravity turns with the flight path. 0: constant."""
+    """Speed scaling: with 1 derivatives change with airspeed and gravity turns with the path, with 0 not."""
     speed_power: float = 0.0
     """Power of V beyond that of dynamic pressure, for lift and moments due to angles."""
     moment_power: float = 0.0
     """Power of V of the moments beyond that of the lift."""
     gravity: float = 0.0
-    """1: gravity turns with the flight path, (g/V)(cos γ − 1) in α̇."""
+    """Gravity term: with 1 gravity turns with the flight path, (g/V)(cos γ − 1) in α̇."""
 
 
 MODEL_RECORD = np.dtype(
@@ -104,7 +104,7 @@ class LinearAircraft:
             ],
             dtype=MODEL_RECORD,
         )  # fmt: skip
-        """Model being flown. Effects may change its fields in flight."""
+        """Model that is flown. Effects may change its fields in flight."""
         self.calibration = Calibration()
         self.trim = Controls(elevator, throttle, 0.0)
         self.airspeed = airspeed_m_s

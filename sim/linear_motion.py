@@ -16,8 +16,7 @@ ROLL_LAG_S = 0.15
 
 @kernel()
 def _bent(angle: float, trimmed: float, about: float, square: float, cube: float) -> float:
-    """Return the square and cube of an angle about another, less their values at the trim, which Z_0 and M_0
-    contain."""
+    """Return the square and cube of an angle relative to another, minus their values at the trim."""
     off, usual = angle - about, trimmed - about
     return square * (off**2 - usual**2) + cube * (off**3 - usual**3)
 

@@ -9,7 +9,7 @@ T = TypeVar("T")
 
 
 class ScenarioError(ValueError):
-    """A user's file has mistakes; ``problems`` lists all of them."""
+    """A user's file has mistakes, all listed in ``problems``."""
 
     def __init__(self, problems: Sequence[str]) -> None:
         super().__init__("; ".join(problems))
@@ -26,7 +26,7 @@ def load(kind: type[T], data: Mapping[str, Any]) -> T:
     Raises
     ------
     ScenarioError
-        Unknown keys and wrong values, all at once.
+        The mapping has unknown keys or wrong values, all reported at once.
     """
     problems: list[str] = []
     value = _mapping(kind, data, "", problems)

@@ -14,7 +14,8 @@ STEPS: Mapping[str, tuple[tuple[float, float], ...]] = {
     "multistep": ((2.0, 0.7), (1.0, -1.0), (1.0, 0.5), (2.0, -0.6), (1.0, 1.0), (1.5, -0.4), (1.5, 0.2)),
     "long": ((16.0, 1.0),),
 }
-"""Inputs made of steps. Positive pulls, so that the first step of ``3211`` raises the nose."""
+"""Steps of each stepped input, as durations in units and shares of the amplitude. A positive step pulls, so
+that the first step of ``3211`` raises the nose."""
 
 MULTISINE_UNITS = 14.0
 MULTISINE_HARMONICS = (1, 2, 3, 4, 5, 6, 7)

@@ -1,4 +1,4 @@
-"""MAVLink 2 messages of the bundled aircraft, in the manner of ArduPlane."""
+"""MAVLink 2 messages of the bundled aircraft, similar to those of ArduPlane."""
 
 import math
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ HOME_LATITUDE, HOME_LONGITUDE = 47.0, 11.0
 METRES_PER_DEGREE = 111_319.5
 
 VERSION = (4, 5, 6)
-"""ArduPlane version that is imitated."""
+"""ArduPlane version that the messages imitate."""
 
 ARMED_MANUAL = int(
     mavlink.MAV_MODE_FLAG_SAFETY_ARMED
@@ -38,10 +38,10 @@ Message = Any
 
 
 class Voice:
-    """Turns samples into due messages, and answers requests.
+    """Source of due messages from samples, and of replies to requests.
 
     Requested rates beyond the loop's rate are limited to it, as on the real autopilot. Servo outputs are
-    written ``output_late_s`` after the tick, and stamped so.
+    written and stamped ``output_late_s`` after the tick.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class Voice:
         self._texts: list[tuple[int, str]] = []
 
     def say(self, text: str, severity: int = 6) -> None:
-        """Queue a STATUSTEXT for the next tick."""
+        """Queue a text as STATUSTEXT for the next tick."""
         self._texts.append((severity, text))
 
     def send_parameters(self) -> None:

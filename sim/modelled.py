@@ -1,4 +1,4 @@
-"""Flights of the aircraft in an aircraft file, with test inputs or recorded ones."""
+"""Flights of the aircraft in an aircraft file, with test inputs or recorded inputs."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -21,8 +21,8 @@ def modelled_flight(scenario: Scenario, path: Path, replayed: Path | None = None
     """Build a flight of the aircraft in ``path``. ``replayed`` is a log whose elevator commands are flown
     again.
 
-    The replay keeps the log's clocks, so that both logs can be compared, and its airspeed where the log has
-    one. Noise in percent has no meaning then and is left out.
+    The replay uses the log's clocks, for a comparison of both logs, and its airspeed if logged. Noise in
+    percent is not defined for a replay and is left out.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Interface of every aircraft here: its motion, whichever engine computes it."""
+"""Interface of every aircraft in this package: its motion, whichever engine computes it."""
 
 from typing import NamedTuple, Protocol
 
@@ -28,25 +28,25 @@ class Motion(NamedTuple):
     a_z: float
     """Specific force along body z (down) at the centre of gravity, m/s²."""
     elevator: float
-    """Deflection of the surface itself, rad, trailing edge down positive."""
+    """Deflection of the surface, not of the command, rad, trailing edge down positive."""
     throttle: float
     gust_up: float
-    """Vertical gust, m/s: α of the air is α + gust_up / V."""
+    """Vertical gust, m/s; the angle of attack of the air is α + gust_up / V."""
     gust_head: float
     """Head-on gust, m/s, added to the airspeed."""
     r: float | None = None
-    """Yaw rate, rad/s. None: that of a coordinated turn."""
+    """Yaw rate, rad/s. None for that of a coordinated turn."""
     a_y: float = 0.0
     """Specific force along body y at the centre of gravity, m/s²."""
 
     @property
     def air_alpha(self) -> float:
-        """Angle of attack that wing and vane meet, rad."""
+        """Angle of attack of the air at wing and vane, rad."""
         return self.alpha + self.gust_up / self.airspeed
 
     @property
     def pitot_airspeed(self) -> float:
-        """Airspeed that the pitot tube meets, m/s."""
+        """Airspeed at the pitot tube, including gusts, m/s."""
         return self.airspeed + self.gust_head
 
 
@@ -82,5 +82,5 @@ class Engine(Protocol):
         ...
 
     def step(self, controls: Controls, dt: float) -> Motion:
-        """Fly for ``dt`` seconds, while the controls move linearly to ``controls``; return the motion."""
+        """Fly for ``dt`` seconds with linear control changes to ``controls``, and return the motion."""
         ...

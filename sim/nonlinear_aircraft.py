@@ -1,4 +1,4 @@
-"""The bundled nonlinear aircraft: an airframe, trimmed, stepped through its equations of motion."""
+"""Bundled nonlinear aircraft: an airframe in trim, integrated by its equations of motion."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +12,11 @@ from .trim import trim_level
 
 
 class NonlinearAircraft:
-    """An engine (see :class:`sim.motion.Engine`) flying an :class:`~sim.airframe.Airframe`."""
+    """An engine (see :class:`sim.motion.Engine`) that flies an :class:`~sim.airframe.Airframe`."""
 
     def __init__(self, airframe: Airframe, airspeed_m_s: float, height_m: float) -> None:
         self.record: NDArray[np.void] = as_record(airframe)
-        """Airframe being flown. Effects may change its fields in flight."""
+        """Airframe that is flown. Effects may change its fields in flight."""
         level = trim_level(self.record, airspeed_m_s, height_m)
         self.record["alpha_ref"] = level.alpha
         self.record["delta_e_ref"] = level.elevator
@@ -35,7 +35,7 @@ class NonlinearAircraft:
 
     @property
     def truth(self) -> ShortPeriod:
-        """Short-period parameters about the trim, by differencing the equations of motion."""
+        """Short-period parameters about the trim, by finite differences of the equations of motion."""
         return linearise(self.record, self.level)
 
     def motion(self) -> Motion:

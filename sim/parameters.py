@@ -19,7 +19,7 @@ STREAM_GROUPS: Mapping[str, tuple[str, ...]] = {
     "EXTRA3": ("SYSTEM_TIME",),
     "PARAMS": (),
 }
-"""Suffix of SRn_* to the messages that ArduPlane sends at its rate (of those known here)."""
+"""Messages that ArduPlane sends at the rate SRn_*, by the parameter's suffix."""
 
 STREAM_OF_ID = {
     1: "RAW_SENS",
@@ -31,10 +31,10 @@ STREAM_OF_ID = {
     11: "EXTRA2",
     12: "EXTRA3",
 }
-"""Number of a MAV_DATA_STREAM in REQUEST_DATA_STREAM to its group."""
+"""Stream group of each MAV_DATA_STREAM number in REQUEST_DATA_STREAM."""
 
 FUNCTIONS = {1: 4, 2: 19, 3: 70, 4: 21}
-"""Servo output to SERVOn_FUNCTION: aileron, elevator, throttle, rudder."""
+"""SERVOn_FUNCTION of each servo output: aileron, elevator, throttle, rudder."""
 
 
 def parameter_table(rates: Mapping[str, float], system: int, calibration: Calibration) -> dict[str, float]:

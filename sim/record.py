@@ -11,11 +11,11 @@ from .telemetry import Telemetry
 
 
 def write_tlog(flight: Flight, out: BinaryIO) -> int:
-    """Fly and write; return the number of messages.
+    """Fly, write the telemetry log, and return the number of messages.
 
     Each record is eight bytes of microseconds since 1970, big-endian, then the frame. The stamps come from
-    simulated time, so that equal scenarios and seeds give equal bytes. The low two bits of a stamp number the
-    link and stay 0.
+    simulated time, so that equal scenarios and seeds give equal bytes. The two lowest bits of a stamp are the
+    link number, which is 0.
     """
     packer = mavlink.MAVLink(None, srcSystem=SYSTEM, srcComponent=COMPONENT)
     telemetry = Telemetry(flight)

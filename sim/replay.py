@@ -24,7 +24,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Recording:
-    """Elevator command, mode and airspeed of a log. Times are vehicle time, seconds since boot."""
+    """Elevator command, mode and airspeed from a log. Times are vehicle times, s since boot."""
 
     time_s: FloatArray
     pulse_us: FloatArray
@@ -35,19 +35,19 @@ class Recording:
     airspeed_time_s: FloatArray
     airspeed_m_s: FloatArray
     calibration: Calibration
-    """Calibration by the log's own SERVOn_* parameters, with ±25 deg at the ends."""
+    """Calibration from the log's SERVOn_* parameters, with ±25 deg at the ends."""
     unix_s: float
-    """Host time of the first command."""
+    """Host time of the first command, s since 1970."""
 
     @property
     def begins_s(self) -> float:
-        """Time of the first MANUAL at or after the first command, s."""
+        """Begin of the first MANUAL stretch, s after the first command."""
         flown = self.mode_time_s[self.mode == MANUAL]
         return max(float(flown[0] - self.time_s[0]), 0.0) if len(flown) else 0.0
 
     def manual(self, time_s: float) -> bool:
-        """Return whether ``time_s`` (since boot) lies in MANUAL. A log without MANUAL counts as all
-        manual."""
+        """Return whether ``time_s`` (since boot) lies in a MANUAL stretch. A log without MANUAL is taken as
+        manual throughout."""
         if not (self.mode == MANUAL).any():
             return True
         index = int(np.searchsorted(self.mode_time_s, time_s, side="right")) - 1
@@ -55,12 +55,13 @@ class Recording:
 
 
 def read_recording(path: Path, output: int | None = None) -> Recording:
-    """Read a tlog. ``output`` is the elevator's servo output. None: the output with function 19.
+    """Return the recording in a tlog. ``output`` is the elevator's servo output. None for the output with
+    function 19.
 
     Raises
     ------
     ScenarioError
-        The log cannot be read or holds no elevator command.
+        The log cannot be read, or contains no elevator command.
     """
     found: dict[str, list[tuple[float, Any]]] = defaultdict(list)
     try:
@@ -120,10 +121,10 @@ def _calibration(parameters: dict[str, float], output: int) -> Calibration:
 
 
 class RecordedPilot:
-    """Plays a recording in its MANUAL stretches. Between them the autopilot holds the attitude.
+    """Pilot who replays a recording in its MANUAL stretches. Between these stretches the autopilot holds the
+    attitude.
 
-    Attitude and height are only integrated, so that an aircraft with small differences would drift away
-    without the hold.
+    Attitude and height are integrated, so a slightly different aircraft would drift away without the hold.
     """
 
     def __init__(self, recording: Recording, calibration: Calibration, autopilot: Autopilot) -> None:
@@ -153,7 +154,7 @@ class RecordedPilot:
 
 
 class RecordedAirspeed:
-    """Recorded speed for the linear aircraft, smoothed over half a second."""
+    """Recorded airspeed for the linear aircraft, smoothed over half a second."""
 
     def __init__(self, recording: Recording) -> None:
         self._time = recording.airspeed_time_s

@@ -19,24 +19,24 @@ class Maneuver:
 
     input: str = "3211"
     mode: Literal["MANUAL", "FBWA"] = "MANUAL"
-    """Mode of the manoeuvre. In FBWA the pilot's input demands a pitch angle, and the attitude hold moves the
-    elevator."""
+    """Flight mode of the manoeuvre. In FBWA the pilot's input demands a pitch angle, and the attitude hold
+    moves the elevator."""
     amplitude_deg: float | None = None
-    """Elevator amplitude, deg. None: the scenario's ``amplitude_deg``."""
+    """Elevator amplitude, deg. None for the scenario's ``amplitude_deg``."""
     unit_s: float | None = None
-    """One unit of time, s. None: the scenario's ``unit_s``."""
+    """Time unit of the input, s. None for the scenario's ``unit_s``."""
     free_s: float | None = None
-    """Free response after the last step, s. None: the scenario's."""
+    """Duration of the free response after the last step, s. None for the scenario's value."""
     gap_s: float | None = None
-    """Attitude hold before the next manoeuvre, s. None: the scenario's."""
+    """Duration of the attitude hold before the next manoeuvre, s. None for the scenario's value."""
     settling_s: float | None = None
-    """Time between the change of the mode and the first step, s. None: the scenario's."""
+    """Time between the change of the mode and the first step, s. None for the scenario's value."""
     slew_s: float = 0.0
     """Duration of the slope that replaces each step, s, as flown by hand."""
     uneven: float = 0.0
     """Largest relative difference of the steps' durations and amplitudes."""
     corrected: float = 0.0
-    """Correction half a second before the first step, as a share of the amplitude."""
+    """Size of a correction half a second before the first step, as a share of the amplitude."""
     stick: float = 0.0
     """Random motion of the stick: standard deviation as a share of the amplitude."""
     trim_after: float = 0.0
@@ -44,13 +44,13 @@ class Maneuver:
     bank_deg: float = 0.0
     """Bank angle of the turn in which the manoeuvre is flown, deg."""
     airspeed_m_s: float | None = None
-    """Airspeed of the manoeuvre, m/s. None: the scenario's."""
+    """Airspeed of the manoeuvre, m/s. None for the scenario's airspeed."""
     height_m: float | None = None
-    """Height above ground of the manoeuvre, m. None: the scenario's."""
+    """Height above ground of the manoeuvre, m. None for the scenario's height."""
     throttle_change: float = 0.0
     """Change of the throttle with the first step, as a share."""
     trim_off_deg: float = 0.0
-    """Offset of the elevator from its trim in MANUAL, deg, pulled. The airspeed then runs away."""
+    """Offset of the elevator from its trim in MANUAL, deg, pulled. The airspeed then changes continuously."""
     aileron: float = 0.0
     """Amplitude (0..1) of a simultaneous aileron doublet."""
     rudder: float = 0.0
@@ -58,15 +58,15 @@ class Maneuver:
     turbulence_m_s: float = 0.0
     """Standard deviation of turbulence during this manoeuvre only, m/s."""
     outage_s: float = 0.0
-    """Silence of the link, s, beginning at the first step."""
+    """Duration of the link's silence, s, from the first step."""
 
 
 @dataclass(frozen=True)
 class Noise:
     """White or coloured measurement noise, in percent of each output's signal or in SI values.
 
-    A percentage gives the standard deviation relative to the output's ``of``: its largest deviation from
-    trim, or its standard deviation. Both sizes are taken from the first manoeuvre, flown without noise.
+    A percentage is relative to the output's ``of``: its largest deviation from trim, or its standard
+    deviation. The reference comes from the first manoeuvre, flown without noise.
     """
 
     percent: float = 0.0
@@ -83,11 +83,12 @@ class Noise:
 
 @dataclass(frozen=True)
 class AlphaSensor:
-    """Source of AOA_SSA."""
+    """Source and errors of AOA_SSA."""
 
     source: Literal["vane", "derived"] = "vane"
-    """A vane sees gusts and is read at every message. ``derived`` is ArduPilot's estimate from inertial
-    speed. It is blind to gusts, late, off by ``bias_deg``, and renewed at ``renewed_hz``."""
+    """A vane reads gusts and has a new value in every message. ``derived`` is ArduPilot's estimate from
+    inertial speed. The estimate does not show gusts, is late, has an offset ``bias_deg``, and is renewed at
+    ``renewed_hz``."""
     lag_s: float = 0.03
     bias_deg: float = 0.3
     renewed_hz: float = 20.0
@@ -95,7 +96,7 @@ class AlphaSensor:
 
 @dataclass(frozen=True)
 class Servo:
-    """Elevator servo; all zero is an ideal one."""
+    """Elevator servo; all zeros give an ideal servo."""
 
     lag_s: float = 0.0
     delay_s: float = 0.0
@@ -114,7 +115,7 @@ class Air:
 
 @dataclass(frozen=True)
 class Clock:
-    """Clocks at the beginning of the log, and errors of the stamps."""
+    """Clocks at the log's beginning, and errors of the stamps."""
 
     boot_s: float = 20.0
     unix_s: float = 1_790_000_000.0
@@ -127,17 +128,17 @@ class Link:
     """Effects of the radio link on the telemetry."""
 
     drop: float = 0.0
-    """Share of messages lost."""
+    """Share of messages that are lost."""
     jitter_s: float = 0.0
-    """Largest delay of arrival, s, in bursts as with radios."""
+    """Largest delay of arrival, s, in bursts as on radios."""
 
 
 @dataclass(frozen=True)
 class Augmentation:
-    """Feedback to the elevator while the pilot flies in MANUAL, for an unstable aircraft."""
+    """Feedback to the elevator in MANUAL, for an unstable aircraft."""
 
     alpha: float = 0.0
-    """Elevator per angle of attack off trim, rad/rad."""
+    """Elevator per deviation of the angle of attack from trim, rad/rad."""
     pitch_rate: float = 0.0
     """Elevator per pitch rate, rad per rad/s."""
 
@@ -170,7 +171,8 @@ def _rates() -> dict[str, float]:
 
 @dataclass(frozen=True)
 class Scenario:
-    """A whole flight. Without any file: the paper's campaign with the bundled UAV at 1 % noise."""
+    """A whole flight with its aircraft, inputs and telemetry. The default is the paper's campaign with the
+    bundled UAV at 1 % noise."""
 
     aircraft: str = "uav"
     """uav | light | linear (the paper's model) | an aircraft file | with JSBSim one of its own, e.g. c172p"""
@@ -181,14 +183,14 @@ class Scenario:
     loop_hz: float = 50.0
     """Rate of the autopilot's loop, at which commands move and telemetry is sent, Hz."""
     airspeed_m_s: float | None = None
-    """Airspeed, m/s. None: the aircraft's usual airspeed."""
+    """Airspeed, m/s. None for the aircraft's usual airspeed."""
     height_m: float = 150.0
     lead_in_s: float = 8.0
     """Attitude hold before the first manoeuvre, s."""
     amplitude_deg: float | None = None
-    """Elevator amplitude, deg. None: the aircraft's usual amplitude."""
+    """Elevator amplitude, deg. None for the aircraft's usual amplitude."""
     unit_s: float | None = None
-    """One unit of the inputs' time, s. None: a unit that suits the aircraft's short period."""
+    """Time unit of the inputs, s. None for a unit that suits the aircraft's short period."""
     settling_s: float = 2.0
     """Time between the change of the mode and the first step, s."""
     free_s: float = 4.0
@@ -197,9 +199,10 @@ class Scenario:
     """Attitude hold after the last manoeuvre, s."""
     maneuvers: tuple[Maneuver, ...] = field(default_factory=_paper_campaign)
     input: Literal["linear", "held"] = "linear"
-    """Motion of the command between two ticks of the loop: in a straight line, or held and then jumping."""
+    """Motion of the command between two ticks of the loop: linear, or held with a jump."""
     speed: Literal["free", "held"] = "free"
-    """``free``: the airspeed follows from the forces. ``held``: an ideal engine holds the airspeed."""
+    """With ``free`` the airspeed follows from the forces. With ``held`` an ideal engine holds the
+    airspeed."""
     servo: Servo = field(default_factory=Servo)
     augmentation: Augmentation = field(default_factory=Augmentation)
     noise: Noise = field(default_factory=lambda: Noise(percent=1.0))
@@ -209,13 +212,13 @@ class Scenario:
     clock: Clock = field(default_factory=Clock)
     link: Link = field(default_factory=Link)
     said: tuple[str, ...] = ()
-    """Two texts that the vehicle sends (STATUSTEXT) where it goes to MANUAL for a manoeuvre, and back."""
+    """Two texts (STATUSTEXT) that the vehicle sends at the mode changes to MANUAL and back."""
     rates: dict[str, float] = field(default_factory=_rates)
-    """Message name to its rate, Hz."""
+    """Rate of each message, Hz, by the message's name."""
     airframe: dict[str, float] = field(default_factory=dict)
     """Fields of the nonlinear airframe (``sim.airframe.Airframe``) that differ from the named aircraft's."""
     effects: dict[str, dict[str, float]] = field(default_factory=dict)
-    """Effect name to its parameters, see ``sim.effects``."""
+    """Parameters of each effect, by the effect's name, see ``sim.effects``."""
     faults: Faults = field(default_factory=Faults)
     """Faults of instruments and telemetry."""
 
@@ -226,7 +229,7 @@ def read_scenario(path: Path) -> Scenario:
     Raises
     ------
     ScenarioError
-        The file has mistakes. The message lists each with its path.
+        The file has mistakes. The error message lists each mistake with its path.
     """
     try:
         data = yaml.safe_load(path.read_text(encoding="utf-8"))
@@ -236,14 +239,14 @@ def read_scenario(path: Path) -> Scenario:
 
 
 def scenario_from(data: dict[str, Any]) -> Scenario:
-    """Build a scenario from a mapping. A manoeuvre may be just its input's name.
+    """Build a scenario from a mapping. A manoeuvre may be given by its input's name only.
 
-    Given ``rates`` change the usual ones.
+    Given ``rates`` replace the usual ones.
 
     Raises
     ------
     ScenarioError
-        The file has mistakes. The message lists each with its path.
+        The file has mistakes. The error message lists each mistake with its path.
     """
     if not isinstance(data, dict):
         raise ScenarioError(["a scenario is a mapping of keys to values"])

@@ -1,4 +1,4 @@
-"""Instruments: the measured part of the motion, with noise."""
+"""Instruments: readings of the motion, with noise."""
 
 import math
 from dataclasses import dataclass
@@ -15,7 +15,8 @@ from .servo import FirstOrderServo, SecondOrderServo
 
 @dataclass(slots=True)
 class Reading:
-    """Readings of the instruments at one instant, SI units. Effects and noise change them in place."""
+    """Readings of the instruments at one instant, SI units. Effects and noise change the readings in
+    place."""
 
     alpha: float
     q: float
@@ -36,7 +37,7 @@ NOISY = ("alpha", "q", "theta", "a_x", "a_z", "airspeed", "climb")
 
 
 class SensorEffect(Protocol):
-    """An instrument's defect, stepped with the simulation."""
+    """An error of an instrument, stepped with the simulation."""
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
         """Change ``reading`` in place after ``dt`` seconds of motion."""
@@ -44,8 +45,8 @@ class SensorEffect(Protocol):
 
 
 def ideal(motion: Motion, accelerometer_arm_m: float = 0.0) -> Reading:
-    """Return readings of perfect instruments. At x ahead of the centre of gravity, the accelerometer feels
-    a_z − x·q̇ and a_x − x·q²."""
+    """Return readings of perfect instruments. An accelerometer at x ahead of the centre of gravity reads a_z
+    − x·q̇ and a_x − x·q²."""
     turn = GRAVITY_M_S2 / motion.airspeed * math.sin(motion.phi) * math.cos(motion.theta)
     return Reading(
         motion.air_alpha,
@@ -64,7 +65,7 @@ def ideal(motion: Motion, accelerometer_arm_m: float = 0.0) -> Reading:
 
 
 class DerivedAlpha:
-    """ArduPilot's angle of attack: from inertial speed, late, offset, renewed at its own rate."""
+    """ArduPilot's angle of attack from inertial speed: late, with an offset, renewed at its own rate."""
 
     def __init__(self, sensor: AlphaSensor) -> None:
         self._sensor = sensor
@@ -75,7 +76,7 @@ class DerivedAlpha:
         self._time_s = 0.0
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Replace the vane's reading. The motion's own α has no gusts."""
+        """Replace the reading of the vane. The α of the motion contains no gusts."""
         if not self._awake or dt == 0.0:
             self._filter.reset(motion.alpha)
             self._awake = True
@@ -90,13 +91,13 @@ class DerivedAlpha:
 
 
 class LowPass:
-    """An instrument's second-order Butterworth filter: at low frequency √2/(2πf) late."""
+    """Second-order Butterworth filter of an instrument, with a delay of √2/(2πf) at low frequency."""
 
     def __init__(self, channels: tuple[str, ...], cutoff_hz: float) -> None:
         self._filters = {name: SecondOrderServo(cutoff_hz, math.sqrt(0.5)) for name in channels}
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Show the filtered channels."""
+        """Replace the readings by the filtered channels."""
         for name, each in self._filters.items():
             if dt == 0.0:
                 each.reset(getattr(reading, name))
@@ -124,7 +125,7 @@ class ChannelNoise:
         self._fresh = math.sqrt(1.0 - colour**2)
 
     def add(self, reading: Reading) -> None:
-        """Add one draw to every channel."""
+        """Add one noise sample to every channel."""
         for name, sigma in self._sigma.items():
             stock = self._stock[name]
             if not stock:

@@ -11,7 +11,7 @@ class Mechanism(Protocol):
     """One stage between command and surface, stepped with the simulation."""
 
     def reset(self, value: float) -> None:
-        """Stand still at ``value`` (rad)."""
+        """Set the stage to rest at ``value`` (rad)."""
         ...
 
     def step(self, value: float, dt: float) -> float:
@@ -21,24 +21,24 @@ class Mechanism(Protocol):
 
 @dataclass(frozen=True)
 class Calibration:
-    """Pulse width against deflection, with straight lines between points and no extrapolation."""
+    """Deflection for a pulse width, with straight lines between points and no extrapolation."""
 
     points: tuple[tuple[float, float], ...] = ((1100.0, -25.0), (1500.0, 0.0), (1900.0, 25.0))
-    """Pairs (µs, deg trailing edge down), pulse widths rising."""
+    """Pairs (µs, deg trailing edge down) with rising pulse widths."""
 
     @property
     def low_us(self) -> int:
-        """Smallest pulse width."""
+        """Smallest pulse width of the calibration, µs."""
         return round(self.points[0][0])
 
     @property
     def high_us(self) -> int:
-        """Largest pulse width."""
+        """Largest pulse width of the calibration, µs."""
         return round(self.points[-1][0])
 
     @property
     def trim_us(self) -> int:
-        """Pulse width of the neutral surface."""
+        """Pulse width of the neutral surface, µs."""
         return self.pulse(0.0)
 
     def pulse(self, deflection: float) -> int:
@@ -52,7 +52,7 @@ class Calibration:
 
 
 def _between(pairs: Sequence[tuple[float, float]], at: float) -> float:
-    """Interpolate linearly in rising pairs (x, y). Beyond them the end values hold."""
+    """Interpolate linearly in rising pairs (x, y). Beyond the pairs, the end values are used."""
     if at <= pairs[0][0]:
         return pairs[0][1]
     for (x0, y0), (x1, y1) in pairwise(pairs):
@@ -62,18 +62,18 @@ def _between(pairs: Sequence[tuple[float, float]], at: float) -> float:
 
 
 class FirstOrderServo:
-    """τ δ̇ = u − δ, solved exactly for an input that is linear over the step."""
+    """First-order servo τ δ̇ = u − δ, solved exactly for an input that is linear over the step."""
 
     def __init__(self, lag_s: float) -> None:
         self.lag_s = lag_s
         self.reset(0.0)
 
     def reset(self, value: float) -> None:
-        """Stand still at ``value``."""
+        """Set the servo to rest at ``value`` (rad)."""
         self._input = self._output = value
 
     def step(self, value: float, dt: float) -> float:
-        """Return the deflection after ``dt``."""
+        """Return the servo's deflection after ``dt`` s, rad."""
         slope = (value - self._input) / dt
         # Response to a ramp: the steady state lags behind the input by τ times its slope.
         trailing = value - self.lag_s * slope
@@ -84,7 +84,8 @@ class FirstOrderServo:
 
 
 class SecondOrderServo:
-    """δ̈ + 2ζω δ̇ + ω² δ = ω² u with a rate limit, in quarter steps of semi-implicit Euler."""
+    """Second-order servo δ̈ + 2ζω δ̇ + ω² δ = ω² u with a rate limit, in quarter steps of semi-implicit
+    Euler."""
 
     def __init__(self, frequency_hz: float, damping: float, rate_limit_rad_s: float = math.inf) -> None:
         self.omega = 2 * math.pi * frequency_hz
@@ -93,11 +94,11 @@ class SecondOrderServo:
         self.reset(0.0)
 
     def reset(self, value: float) -> None:
-        """Stand still at ``value``."""
+        """Set the servo to rest at ``value`` (rad)."""
         self._position, self._rate = value, 0.0
 
     def step(self, value: float, dt: float) -> float:
-        """Return the deflection after ``dt``."""
+        """Return the servo's deflection after ``dt`` s, rad."""
         pieces = 4
         for _ in range(pieces):
             pull = self.omega**2 * (value - self._position) - 2 * self.damping * self.omega * self._rate
@@ -108,19 +109,19 @@ class SecondOrderServo:
 
 
 class TransportDelay:
-    """δ(t) = u(t − T): a queue of past inputs, read between its entries."""
+    """Transport delay δ(t) = u(t − T): a queue of past inputs with interpolation."""
 
     def __init__(self, delay_s: float) -> None:
         self.delay_s = delay_s
         self.reset(0.0)
 
     def reset(self, value: float) -> None:
-        """Hold ``value`` as the whole past."""
+        """Set the whole past of the input to ``value`` (rad)."""
         self._past = [value]
         self._resting = value
 
     def step(self, value: float, dt: float) -> float:
-        """Return the input ``delay_s`` ago."""
+        """Return the input of ``delay_s`` ago, rad."""
         self._past.append(value)
         back = self.delay_s / dt
         whole = int(back)
@@ -140,12 +141,12 @@ class Servo:
         self.stages = stages
 
     def reset(self, value: float) -> None:
-        """Stand still at ``value`` throughout."""
+        """Set all stages to rest at ``value`` (rad)."""
         for stage in self.stages:
             stage.reset(value)
 
     def step(self, value: float, dt: float) -> float:
-        """Return the surface's deflection after ``dt``."""
+        """Return the surface's deflection after ``dt`` s, rad."""
         for stage in self.stages:
             value = stage.step(value, dt)
         return value

@@ -1,4 +1,4 @@
-"""A flight's telemetry: messages in order, with the effects of the radio link."""
+"""Telemetry of a flight: messages in order, with the effects of the radio link."""
 
 import math
 from collections.abc import Iterator
@@ -11,24 +11,24 @@ from .flight import Flight
 from .mavlink import Message, Voice
 
 GREETING = "Bundled aircraft, ArduPlane V4.5.6 manners"
-"""Text that the vehicle repeats, by which listeners recognise a simulated aircraft."""
+"""Text that the vehicle repeats, which identifies a simulated aircraft."""
 
 GREETING_EVERY_S = 10.0
 
 
 @dataclass(frozen=True)
 class Burst:
-    """The messages of one tick of the loop."""
+    """Messages of one tick of the loop."""
 
     time_s: float
     """Simulated time, seconds since the log began."""
     arrival_s: float
-    """Time of arrival at the far end of the link, s."""
+    """Time of arrival at the receiver, s."""
     messages: list[Message]
 
 
 class Telemetry:
-    """Flies a scenario and sends its vehicle's messages."""
+    """Flight of a scenario with the messages that its vehicle sends."""
 
     def __init__(self, flight: Flight) -> None:
         self.flight = flight
@@ -41,7 +41,7 @@ class Telemetry:
         self._generator = np.random.default_rng([scenario.seed, 9])
 
     def bursts(self) -> Iterator[Burst]:
-        """Yield the messages that leave the vehicle, tick by tick."""
+        """Yield the messages of the vehicle, tick by tick."""
         scenario = self.flight.scenario
         parameters_s, repeated_s = scenario.faults.parameters_at_s, scenario.faults.repeated_after_s
         arrival, greeting_s, was_flying = 0.0, 0.0, False

@@ -1,4 +1,4 @@
-"""Reader of telemetry logs for flying them again."""
+"""Reader of telemetry logs for a replay."""
 
 from collections.abc import Collection, Iterator
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Level flight: the angle of attack, elevator and throttle at which nothing accelerates."""
+"""Level flight: angle of attack, elevator and throttle with zero accelerations."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ class TrimError(ValueError):
 
 @dataclass(frozen=True)
 class Trim:
-    """A state of equilibrium."""
+    """An equilibrium state of level flight."""
 
     airspeed: float
     alpha: float
@@ -23,28 +23,28 @@ class Trim:
     height: float
 
     def state(self) -> NDArray[np.float64]:
-        """Return the state vector of :data:`sim.dynamics.STATES`: level, so θ = α."""
+        """Return the state vector :data:`sim.dynamics.STATES` in level flight, with θ = α."""
         return np.array([self.airspeed, self.alpha, 0.0, self.alpha, self.height, 0.0, 0.0, self.alpha])
 
     def inputs(self) -> NDArray[np.float64]:
-        """Return the input vector of :data:`sim.dynamics.INPUTS`."""
+        """Return the input vector :data:`sim.dynamics.INPUTS` of level flight."""
         return np.array([self.elevator, self.throttle, 0.0, 0.0, 0.0, 0.0, 0.0])
 
 
 def trim_level(record: NDArray[np.void], airspeed: float, height: float) -> Trim:
-    """Trim an airframe in straight level flight by Newton's method on (V̇, α̇, q̇).
+    """Return the trim of an airframe in straight level flight, by Newton's method on (V̇, α̇, q̇).
 
     Parameters
     ----------
     record
-        Airframe from :func:`sim.airframe.as_record`, with every effect already in it.
+        Airframe from :func:`sim.airframe.as_record`, including every effect.
     airspeed, height
-        m/s and m.
+        Airspeed in m/s and height in m.
 
     Raises
     ------
     TrimError
-        The aircraft cannot fly level there: the throttle needed is beyond 0..1, or no solution exists.
+        The aircraft cannot fly level: the required throttle is beyond 0..1, or no solution exists.
     """
     free = record.copy()
     free["speed_held"] = 0.0

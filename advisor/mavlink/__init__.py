@@ -1,1 +1,1 @@
-"""Bytes and messages: logs, the live link, and the identity of the vehicle."""
+"""Bytes and messages: logs, the live link, and the vehicle's identity."""

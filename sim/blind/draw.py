@@ -1,4 +1,4 @@
-"""Draw a case: aircraft, manoeuvres, air, noise, and the withheld effect."""
+"""Random draw of a case: aircraft, manoeuvres, air, noise, and the withheld effect."""
 
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, get_args
@@ -19,19 +19,18 @@ from .visibility import structural_gap
 Group = Literal["clean", "hard", "jsbsim", "none", "parameters", "outside", "two", "simulator"]
 GROUPS: tuple[Group, ...] = get_args(Group)
 SHARES = (0.34, 0.20, 0.08, 0.18, 0.04, 0.10, 0.06, 0.0)
-"""Share of each group among the cases by default. ``simulator`` is drawn on request only."""
+"""Default share of each group among the cases. ``simulator`` is drawn on request only."""
 
 SMALLEST_GAP = 0.05
-"""Least structural gap above the noise. A case with a smaller gap is drawn again, because nobody could see
-its effect."""
+"""Least structural gap above the noise, for a visible effect. A case with a smaller gap is drawn again."""
 
 IN_TURNS, STEEPEST_DEG = 0.3, 25.0
 """Share of the flights with manoeuvres in turns, and the steepest bank, deg."""
 
 ATTEMPTS = 10
 OFFSETS = ("alpha_bias", "pitch_rate_bias")
-"""Offsets that hide among a manoeuvre's nuisance parameters. Only kinematics show them, so that their size
-alone counts."""
+"""Offsets that a manoeuvre's nuisance parameters absorb. Only kinematics show these offsets, so only their
+size matters."""
 
 
 @dataclass(frozen=True)
@@ -45,19 +44,19 @@ class Case:
     effects: dict[str, dict[str, float]]
     blocks: list[str]
     gap: float
-    """Structural gap above the noise."""
+    """Structural gap of the case above the noise."""
     hard: bool
     background: list[str] = field(default_factory=list)
-    """Further disturbances of a hard case, in addition to the effect."""
+    """Disturbances of a hard case in addition to the effect."""
 
     @property
     def kind(self) -> str:
-        """Kind of the case, as ``judge`` knows it."""
+        """Kind of the case, by the names of ``judge``."""
         return "one" if self.group in ("clean", "hard", "jsbsim") else self.group
 
     @property
     def condition(self) -> str:
-        """Troubles of the flight, in a word."""
+        """Difficulty of the flight in one word."""
         return "JSBSim" if self.group == "jsbsim" else "hard" if self.hard else "clean"
 
     def key(self) -> dict[str, Any]:
@@ -79,16 +78,16 @@ def draw_case(group: Group, generator: np.random.Generator, natural_share: float
     Parameters
     ----------
     group
-        Group of the case.
+        Group of cases to draw from.
     generator
-        Generator of everything that is drawn.
+        Random generator of all draws.
     natural_share
         Share of the cases with natural nuisances.
 
     Raises
     ------
     RuntimeError
-        No draw of the group was visible, which would mean that sizes and noise do not match.
+        No draw of the group was visible, which means that sizes and noise do not match.
     """
     hard = group == "hard" or (group in ("none", "outside", "two") and generator.random() < 0.3)
     for _ in range(40):
@@ -125,7 +124,7 @@ def _names(group: Group, generator: np.random.Generator) -> list[str]:
 def scenario_of(
     group: Group, names: list[str], hard: bool, generator: np.random.Generator
 ) -> tuple[Scenario, list[str]]:
-    """Draw everything except the sizes."""
+    """Draw all properties of a case except the effect's sizes."""
     uniform = generator.uniform
     engine: Literal["bundled", "jsbsim"] = "jsbsim" if group == "jsbsim" else "bundled"
     aircraft = "c172p" if engine == "jsbsim" else ("uav" if generator.random() < 0.55 else "light")
@@ -183,7 +182,7 @@ def scenario_of(
 
 
 def _noise(generator: np.random.Generator, colour: float) -> Noise:
-    """Return white noise, from good flight-test instruments to a hobby autopilot."""
+    """Return white noise between that of good flight-test instruments and that of a hobby autopilot."""
     level = float(np.exp(generator.uniform(np.log(0.4), np.log(2.0))))
 
     def about(value: float) -> float:
@@ -201,7 +200,7 @@ def _noise(generator: np.random.Generator, colour: float) -> Noise:
 
 
 def _airframe(aircraft: str, generator: np.random.Generator) -> dict[str, float]:
-    """Return another aircraft of one class, with its main figures changed by up to a fifth."""
+    """Return a different aircraft of one class, with its main properties changed by up to a fifth."""
     base = hangar.AIRFRAMES[aircraft][0]
     names = ("mass", "iyy", "cl_alpha", "cl_q", "cl_delta_e", "cm_alpha", "cm_q", "cm_delta_e")
     return {name: getattr(base, name) * float(generator.uniform(0.82, 1.2)) for name in names}
@@ -215,7 +214,7 @@ def sized(
     background: list[str],
     generator: np.random.Generator,
 ) -> Case | None:
-    """Draw sizes until the effect is visible; return None for a flight that cannot show it."""
+    """Draw sizes until the effect is visible; return None if the flight cannot show it."""
     quiet = replace(scenario, noise=Noise(), air=Air(), clock=replace(scenario.clock, jitter_s=0.0))
     flight = flight_of(without_effects(quiet))
     truth = flight.engine.truth
@@ -275,7 +274,7 @@ def _scale(scenario: Scenario, plain: list[Sample]) -> Scale:
 
 
 def _prior_of(truth: ShortPeriod, generator: np.random.Generator) -> ShortPeriod:
-    """Return a simulator with the right structure, and with derivatives off by 10 to 30 percent."""
+    """Return a simulator with the right structure, and with derivatives wrong by 10 to 30 percent."""
     values = truth.as_dict()
     for name in ("Z_alpha", "M_alpha", "M_q", "M_delta_e"):
         values[name] *= 1.0 + float(generator.choice([-1, 1]) * generator.uniform(0.1, 0.3))

@@ -23,7 +23,7 @@ def generate(
     groups: Sequence[Group] = GROUPS,
     tell: Callable[[str], None] = lambda text: None,
 ) -> str:
-    """Draw and fly ``count`` cases into ``folder``; return the seal's hash."""
+    """Draw and fly ``count`` cases into ``folder``, and return the seal's hash."""
 
     def told() -> Iterator[SealedCase]:
         for number, case in enumerate(draw(count, seed, groups), start=1):
@@ -36,7 +36,7 @@ def generate(
 def draw(
     count: int, seed: int, groups: Sequence[Group], natural_share: float = SHARE
 ) -> Iterator[SealedCase]:
-    """Yield the cases of a set, each flown; a share of them has natural nuisances."""
+    """Yield the flown cases of a set, of which a share has natural nuisances."""
     generator = np.random.default_rng([seed, 2026])
     shares = np.array([SHARES[GROUPS.index(group)] for group in groups])
     if not shares.any():

@@ -1,6 +1,7 @@
-"""Nuisances that a flight has by nature and no simulator lacks: lateness, filters, thin air, light gusts.
+"""Nuisances natural to every flight: delays, filters, thin air, light gusts.
 
-A third of the flights have it. A diagnosis that calls it a cause finds one on every real flight.
+A third of the flights have such nuisances. A diagnosis that calls a natural nuisance a cause would find one
+in every real flight.
 """
 
 from dataclasses import replace
@@ -15,17 +16,17 @@ from ..scenario import Air, AlphaSensor, Scenario
 SHARE = 1.0 / 3.0
 """Share of the flights with natural nuisances."""
 _COMMAND_S = (-0.006, 0.010)
-"""Least and greatest time by which a command acts after its stamp, s, over 28 flights of one autopilot."""
+"""Range of the delay between a command's stamp and its effect, s, over 28 flights of one autopilot."""
 _ALPHA_S = (0.02, 0.09)
-"""Least and greatest lag of an angle of attack that an autopilot computes, s."""
+"""Range of the lag of an autopilot's computed angle of attack, s."""
 _CUTOFFS_HZ = (15.0, 20.0, 30.0)
 """Usual cut-offs of an autopilot's filters, Hz."""
 _HIGHEST_M = 2500.0
-"""Greatest height of the ground above sea level, m."""
+"""Largest height of the ground above sea level, m."""
 _GUSTS_M_S = (0.02, 0.08)
-"""Least and greatest turbulence, m/s at 25 m/s, that flies with every aircraft."""
+"""Range of the natural turbulence, m/s at 25 m/s."""
 OF_ALPHA = frozenset({"alpha_lag", "alpha_scale", "alpha_bias", "alpha_vane_offset", "alpha_skew"})
-"""Effects of a vane, which no computed angle of attack shows."""
+"""Effects of a vane, which no computed angle of attack has."""
 OF_THE_AIR = frozenset({"turbulence", "gust"})
 
 
@@ -35,9 +36,9 @@ def natural(scenario: Scenario, names: list[str], speed_share: float) -> Scenari
     Parameters
     ----------
     scenario, names
-        Flight without its effects, and the names of these.
+        Scenario without its effects, and the names of the effects.
     speed_share
-        Air speed relative to 25 m/s. Gusts are as large as their angle.
+        Air speed relative to 25 m/s. Gusts are scaled to a constant angle.
     """
     generator = np.random.default_rng([scenario.seed, 77])
     uniform = generator.uniform
@@ -59,8 +60,7 @@ def natural(scenario: Scenario, names: list[str], speed_share: float) -> Scenari
 
 
 def without_vane_noise(scenario: Scenario) -> Scenario:
-    """Return the scenario without a vane's noise where the angle of attack is computed: its staircase is
-    clean."""
+    """Return the scenario without a vane's noise if the angle of attack is computed."""
     if scenario.alpha.source != "derived":
         return scenario
     return replace(scenario, noise=replace(scenario.noise, alpha_deg=0.0))

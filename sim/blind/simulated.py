@@ -1,7 +1,7 @@
-"""Cases with a user's own simulator: an aircraft of JSBSim flies, and its model is named as the simulator.
+"""Cases with a user's own simulator: a JSBSim aircraft flies, and its model is the simulator.
 
-Either the effect is in the aircraft and missing in the model. Or the effect is in the simulator's servo, by
-the aircraft file, and missing in the aircraft.
+In most cases the effect is in the aircraft and missing in the model. In the others the effect is in the
+simulator's servo, and missing in the aircraft.
 """
 
 from dataclasses import dataclass, replace
@@ -18,11 +18,11 @@ FLEET = {
     "T37": Habits(110.0, 1.5, 0.5),
     "737": Habits(140.0, 1.5, 0.6),
 }
-"""Aircraft of 1 t, 3 t and 50 t, by their names in JSBSim."""
+"""JSBSim names of aircraft of 1 t, 3 t and 50 t."""
 WITHOUT, MIRRORED = 0.2, 0.15
 """Share of the cases without an effect, and share with an effect in the simulator alone."""
 SERVO = {"actuator_lag": "lag_s", "transport_delay": "delay_s"}
-"""Effects that an aircraft file can give to a simulator's servo, with their keys."""
+"""Key in the aircraft file of each effect that a simulator's servo can have."""
 AIR = ("turbulence", "gust")
 """Effects that no simulator can contain."""
 TRIALS = 40
@@ -30,11 +30,11 @@ TRIALS = 40
 
 @dataclass(frozen=True)
 class SimulatedCase(Case):
-    """A case whose aircraft file names a simulator and holds no model."""
+    """A case whose aircraft file names a simulator and contains no model."""
 
     simulator: str = ""
     servo: tuple[tuple[str, float], ...] = ()
-    """Lag or delay of the elevator in the aircraft file."""
+    """Lag or delay of the elevator in the aircraft file, as key and value."""
 
 
 def draw_simulated(generator: np.random.Generator) -> SimulatedCase:
@@ -75,8 +75,8 @@ def draw_simulated(generator: np.random.Generator) -> SimulatedCase:
 
 
 def _named(case: Case, mirrored: bool) -> SimulatedCase:
-    """Return the case with its simulator. A mirrored case has the effect in the simulator's servo, not in the
-    aircraft."""
+    """Return the case with its simulator. A mirrored case has the effect in the simulator's servo instead of
+    the aircraft."""
     scenario, effects, servo = case.scenario, case.effects, []
     if mirrored:
         scenario = replace(scenario, effects={})

@@ -1,4 +1,4 @@
-"""Sizes of effects: from hardly visible to gross, on each aircraft's own scale."""
+"""Sizes of effects, from hardly visible to gross, relative to the aircraft."""
 
 import math
 from collections.abc import Callable
@@ -11,17 +11,17 @@ Draw = Callable[["Scale", np.random.Generator], dict[str, float]]
 
 @dataclass(frozen=True)
 class Scale:
-    """Scale of large and small sizes for one aircraft."""
+    """Scales of small and large sizes for one aircraft."""
 
     length: float
-    """Length relative to the small UAV. Arms and gust lengths grow with it."""
+    """Length scale relative to the small UAV. Arms and gust lengths grow with it."""
     chord: float
     amplitude: float
     """Elevator amplitude of the test inputs, rad."""
     swing: float
-    """Angle-of-attack amplitude of their response, rad."""
+    """Amplitude of the angle of attack in the response, rad."""
     speed: float
-    """Speed relative to 25 m/s. Gusts are as large as their angle."""
+    """Air speed relative to 25 m/s. Gusts are scaled to a constant angle."""
     cl_alpha: float = 4.9
     cm_alpha: float = -0.75
     cm_delta_e: float = -1.15
@@ -118,7 +118,7 @@ INSIDE: dict[str, Draw] = {
     "accelerometer_skew": _SKEW,
     "attitude_skew": _SKEW,
 }
-"""Effects of the gap diagnosis, by name."""
+"""Range of the sizes of each effect of the gap diagnosis, by name."""
 
 OUTSIDE: dict[str, Draw] = {
     "servo_hunting": _pair(_one("amplitude_rad", 0.1, 0.4, by="amplitude"), _one("frequency_hz", 0.8, 3.0)),
@@ -141,7 +141,7 @@ OUTSIDE: dict[str, Draw] = {
     "propeller_buzz": _pair(_one("cm", 0.0015, 0.008), _one("frequency_hz", 0.7, 3.0)),
     "slipstream_beat": _pair(_one("share", 0.15, 0.6), _one("frequency_hz", 0.3, 1.5)),
 }
-"""Effects without a name in the gap diagnosis."""
+"""Range of the sizes of each effect without a name in the gap diagnosis."""
 
 ON_ANY_ENGINE = (
     "actuator_lag",
@@ -162,4 +162,4 @@ ON_ANY_ENGINE = (
     "accelerometer_skew",
     "attitude_skew",
 )
-"""Effects outside the airframe, which JSBSim's aircraft can have as well."""
+"""Effects outside the airframe, which JSBSim aircraft can also have."""

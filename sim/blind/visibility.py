@@ -1,9 +1,9 @@
 """Structural gap: the part of an effect that no choice of the eight parameters can hide.
 
 Two flights without noise are compared, with and without the effect. Least squares remove the part of their
-difference that a short-period model could explain. That model has the eight parameters, and in each manoeuvre
-its own initial states, trim and offsets. The answer to differing commands is removed as well, because
-commands are recorded. The structural gap is the residual of this fit over the noise.
+difference that a short-period model could explain. The short-period model has the eight parameters, and
+separate initial states, trim and offsets in each manoeuvre. The response to differing commands is also
+removed, because commands are recorded. The structural gap is the residual of this fit over the noise.
 """
 
 from collections.abc import Sequence
@@ -82,11 +82,11 @@ def _maneuvers(samples: Sequence[Sample]) -> list[list[int]]:
 def _sensitivities(
     flown: Sequence[Sample], changed: Sequence[Sample], model: ShortPeriod, tick_s: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return stacked responses of (α, q, a_z, θ): to the six derivatives, to a manoeuvre's eight nuisance
-    parameters, and to the difference of the commands.
+    """Return the stacked responses to the six derivatives, to eight nuisance parameters, and to the commands'
+    difference.
 
-    Each response is that of one second-order system to another input. The input is α, q or δe in one of the
-    equations (derivatives), a constant (trim), an initial state, or an offset of a channel.
+    Each response is that of one second-order system to a different input. The input is α, q or δe in an
+    equation, a constant, an initial state, or a channel offset.
     """
     speed = flown[0].motion.airspeed
     matrix = np.array([[model.Z_alpha, 1 + model.Z_q], [model.M_alpha, model.M_q]])

@@ -1,1 +1,1 @@
-"""Effects that a simulator may lack, as physical components to fit to an aircraft."""
+"""Effects that a simulator may lack, as physical components of an aircraft."""

@@ -3,7 +3,7 @@
 import math
 
 _TRIMMED_S = 2.0
-"""Time for which a command must rest to be a trim, s. Few steps of a test input last so long."""
+"""Time for which a command must be constant to count as a trim, s. Few steps of a test input last so long."""
 
 
 class RateLimit:
@@ -14,42 +14,42 @@ class RateLimit:
         self.reset(0.0)
 
     def reset(self, value: float) -> None:
-        """Stand still at ``value``."""
+        """Set the surface to rest at ``value``, rad."""
         self._output = value
 
     def step(self, value: float, dt: float) -> float:
-        """Return the deflection after ``dt``."""
+        """Return the surface deflection after ``dt`` s, rad."""
         most = self.rate * dt
         self._output += min(max(value - self._output, -most), most)
         return self._output
 
 
 class Backlash:
-    """Backlash in the linkage: the surface moves only when one flank or the other pushes."""
+    """Play in the linkage: the surface moves only when one flank pushes."""
 
     def __init__(self, half_width_rad: float) -> None:
         self.half_width = half_width_rad
         self.reset(0.0)
 
     def reset(self, value: float) -> None:
-        """Stand in the middle of the play."""
+        """Set the linkage to the middle of its play."""
         self._output = value
 
     def step(self, value: float, dt: float) -> float:
-        """Return the deflection after ``dt``."""
+        """Return the surface deflection after ``dt`` s, rad."""
         self._output = min(max(self._output, value - self.half_width), value + self.half_width)
         return self._output
 
 
 class Deadband:
-    """Dead band: commands near neutral move nothing, and beyond it the surface follows short of the band.
+    """Dead band: commands near neutral move nothing, and larger ones are reduced by the band's half-width.
 
     Parameters
     ----------
     half_width_rad, neutral_rad
         Half of the band's width, and its centre.
     above_trim_rad
-        Where given, the band moves with the trim, and lies so far above the resting command.
+        Offset of the band from the resting command, for a band that moves with the trim.
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class Deadband:
         """Do nothing, because a dead band has no memory."""
 
     def step(self, value: float, dt: float) -> float:
-        """Return the deflection for ``value``."""
+        """Return the surface deflection for the command ``value``, rad."""
         self._resting_s = self._resting_s + dt if value == self._last else 0.0
         self._last = value
         if self._above_trim is not None and self._resting_s > _TRIMMED_S:
@@ -82,11 +82,11 @@ class Stiction:
         self.reset(0.0)
 
     def reset(self, value: float) -> None:
-        """Stick at ``value``."""
+        """Set the surface to stick at ``value``, rad."""
         self._output = value
 
     def step(self, value: float, dt: float) -> float:
-        """Return the deflection after ``dt``."""
+        """Return the surface deflection after ``dt`` s, rad."""
         if abs(value - self._output) > self.breakaway:
             self._output = value
         return self._output

@@ -1,4 +1,4 @@
-"""Moving air."""
+"""Moving air as an effect: gusts and wind shear."""
 
 from ..atmosphere import gust_1_minus_cos
 from ..motion import Motion
@@ -11,7 +11,7 @@ class Gusts:
         self.amplitude, self.length, self.times_s = amplitude_m_s, length_m, times_s
 
     def step(self, time_s: float, motion: Motion, dt: float) -> tuple[float, float]:
-        """Return the gust at ``time_s``."""
+        """Return the gust speeds at ``time_s``, m/s."""
         up = sum(
             gust_1_minus_cos((time_s - at) * motion.airspeed, self.length, self.amplitude)
             for at in self.times_s
@@ -26,6 +26,6 @@ class WindShear:
         self.gradient, self.height, self.most = gradient_1_s, height_m, most_m_s
 
     def step(self, time_s: float, motion: Motion, dt: float) -> tuple[float, float]:
-        """Return the head wind at the present height."""
+        """Return the head wind at the present height, m/s."""
         wind = self.gradient * (motion.height - self.height)
         return 0.0, min(max(wind, -self.most), self.most)

@@ -1,6 +1,6 @@
 """Every named effect as a physical component of the aircraft.
 
-Signs: a positive skew means late data. A change between manoeuvres begins halfway through the flight, unless
+A positive skew means late data. A change between manoeuvres begins halfway through the flight, unless
 ``at_s`` (seconds since the log began) gives the time. ``ramp_s`` is the duration of a gradual change.
 """
 
@@ -223,4 +223,4 @@ CATALOGUE: dict[str, Kind] = {
     "accelerometer_skew": _skew("a_z", "a_x"),
     "attitude_skew": Kind("timing", {"skew_s": 0.04, "with_pitch_rate": 0.0}, _attitude_late),
 }
-"""Effect name of the gap diagnosis to its component."""
+"""Component of each effect of the gap diagnosis, by the effect's name."""

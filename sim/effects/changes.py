@@ -20,7 +20,7 @@ class Onset:
 
 
 class FieldChange:
-    """Fields of the aircraft's record that change to new values with an onset."""
+    """Fields of the aircraft's record that change to new values with time."""
 
     def __init__(self, onset: Onset, factors: dict[str, float], offsets: dict[str, float]) -> None:
         self.onset, self.factors, self.offsets = onset, factors, offsets
@@ -39,7 +39,7 @@ class FieldChange:
 
 
 class EngineSurge:
-    """An engine whose thrust oscillates slowly, and with it the airspeed."""
+    """An engine whose thrust, and with it the airspeed, oscillates slowly."""
 
     def __init__(self, share: float, period_s: float) -> None:
         self.share, self.period_s = share, period_s

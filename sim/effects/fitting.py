@@ -1,4 +1,4 @@
-"""Fit a scenario's effects to its aircraft."""
+"""Installation of a scenario's effects in its aircraft."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,12 +19,12 @@ KINDS: Mapping[str, Kind] = {**CATALOGUE, **OUTSIDE}
 
 
 def sizes_of(name: str, given: Sizes) -> dict[str, float]:
-    """Return the effect's parameters: its defaults, replaced by the given values.
+    """Return the effect's parameters: the given values, and defaults for the others.
 
     Raises
     ------
     ScenarioError
-        Unknown effect or unknown parameter.
+        The effect or a parameter is unknown.
     """
     if name not in KINDS:
         raise ScenarioError([f"effects.{name}: unknown effect, choose from {', '.join(KINDS)}"])
@@ -40,7 +40,7 @@ def sizes_of(name: str, given: Sizes) -> dict[str, float]:
 
 
 def flight_of(scenario: Scenario) -> Flight:
-    """Build the flight of a scenario with its effects, trimmed together with them.
+    """Return the flight of a scenario with its effects, trimmed including the effects.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Instruments that are not ideal."""
+"""Instruments with errors."""
 
 import math
 from collections.abc import Callable
@@ -16,7 +16,7 @@ class Lagging:
         self._awake = False
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Show a lagged angle of attack."""
+        """Replace the reading by a lagged angle of attack."""
         if not self._awake or dt == 0.0:
             self._filter.reset(reading.alpha)
             self._awake = True
@@ -32,7 +32,7 @@ class Leading:
         self._before: float | None = None
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Show the extrapolated angle of attack."""
+        """Replace the reading by an extrapolated angle of attack."""
         now, before = reading.alpha, self._before
         self._before = now
         if before is not None and dt > 0.0:
@@ -46,19 +46,19 @@ class Scaled:
         self.channel, self.scale, self.bias = channel, scale, bias
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Show (1 + scale) times the truth plus the bias."""
+        """Replace the reading by (1 + scale) times the truth plus the bias."""
         value = getattr(reading, self.channel)
         setattr(reading, self.channel, (1.0 + self.scale) * value + self.bias)
 
 
 class VaneAhead:
-    """A vane ahead of the centre of gravity, which meets the air due to pitching: α − x q / V."""
+    """A vane ahead of the centre of gravity, which reads the air due to pitching: α − x q / V."""
 
     def __init__(self, arm_m: float) -> None:
         self.arm_m = arm_m
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Show the angle of attack at the vane."""
+        """Replace the reading by the angle of attack at the vane."""
         reading.alpha -= self.arm_m * motion.q / motion.airspeed
 
 
@@ -66,8 +66,8 @@ class BendingMode:
     """A gyro on a fuselage that bends when the elevator loads the tail.
 
     η̈ + 2ζω η̇ + ω² η = ω² (δ − δ_trim). The gyro turns with the rate of the local slope, q + gain η̇/ω. The
-    gyro also feels ``displacement_gain`` η of the bend itself. An attitude integrated from the gyro contains
-    the local slope, gain η/ω.
+    gyro also reads ``displacement_gain`` η of the bending itself. An attitude integrated from the gyro
+    contains the local slope, gain η/ω.
     """
 
     def __init__(
@@ -97,11 +97,11 @@ class BendingMode:
 
 
 class Transformed:
-    """A channel shown as a function of its value and the motion."""
+    """A channel that reads a function of its value and the motion."""
 
     def __init__(self, channel: str, shown: Callable[[float, Motion], float]) -> None:
         self.channel, self.shown = channel, shown
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Let the channel show the function of the true value."""
+        """Replace the reading by the function of the true value."""
         setattr(reading, self.channel, self.shown(getattr(reading, self.channel), motion))

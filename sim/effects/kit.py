@@ -1,4 +1,4 @@
-"""Parts that an effect may be fitted to, and the form of an effect."""
+"""Parts of an aircraft to which an effect is added, and the form of an effect."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ Sizes = Mapping[str, float]
 
 @dataclass
 class Kit:
-    """An aircraft on the ground, ready for fitting effects."""
+    """An aircraft before the flight, to which effects are added."""
 
     fittings: Fittings
     trim: Controls
@@ -22,7 +22,7 @@ class Kit:
     height_m: float
     trim_alpha: float
     recorded_s: float = 0.0
-    """Time of the first recorded command, s, where a log is flown again instead of a plan."""
+    """Time of the first recorded command, s, if a log is flown again."""
 
     @property
     def first_s(self) -> float:
@@ -31,7 +31,7 @@ class Kit:
 
     @property
     def middle_s(self) -> float:
-        """A time between two manoeuvres about halfway, s, at which changes begin by default."""
+        """Time between two manoeuvres near the middle, s, at which changes begin by default."""
         if len(self.planned) < 2:
             return 0.5 * self.duration_s
         half = len(self.planned) // 2
@@ -40,16 +40,17 @@ class Kit:
 
 @dataclass(frozen=True)
 class Kind:
-    """One kind of effect."""
+    """One kind of effect, with its component and sizes."""
 
     block: str
     """Block in which the effect acts, by the names of the gap diagnosis."""
     sizes: dict[str, float]
-    """Parameters with a moderate default each, in SI units, angles in rad."""
+    """Moderate default of each parameter, in SI units and rad."""
     fit: Callable[[Kit, Sizes], None] | None = None
-    """Function that fits a component to any engine."""
+    """Function that adds a component to any engine."""
     airframe: Callable[[Sizes], dict[str, float]] | None = None
-    """Fields of the nonlinear airframe that express the effect. The trim includes them."""
+    """Function that returns fields of the nonlinear airframe for the effect. The trim includes these
+    fields."""
     nonlinear_only: bool = False
     """Whether the component changes the nonlinear airframe's own fields in flight, or adds to its
     coefficients."""

@@ -121,7 +121,7 @@ class _StallHysteresis:
 
 
 class _Buzz:
-    """A moment that oscillates by itself, whatever is flown."""
+    """A moment that oscillates independently of the flight."""
 
     def __init__(self, moment: float, frequency_hz: float) -> None:
         self.moment, self.omega = moment, 2 * math.pi * frequency_hz
@@ -245,4 +245,4 @@ OUTSIDE: dict[str, Kind] = {
         "moment_equation", {"share": 0.4, "frequency_hz": 0.9}, _slipstream, nonlinear_only=True
     ),
 }
-"""Effect name to its component. The diagnosis knows none of these names."""
+"""Component of each effect, by the effect's name. The gap diagnosis has none of these names."""

@@ -19,7 +19,7 @@ from .kit import Sizes
 
 @dataclass
 class SideKit:
-    """Parts of a lateral flight that an effect may be fitted to."""
+    """Parts of a lateral flight to which an effect is added."""
 
     seed: int
     mechanisms: dict[str, list[Mechanism]] = field(default_factory=lambda: {"aileron": [], "rudder": []})
@@ -33,14 +33,14 @@ class SideKit:
 
 
 class AccelerometerAhead:
-    """An accelerometer ahead of the centre of gravity, which feels x ṙ sideways."""
+    """An accelerometer ahead of the centre of gravity, which also reads x·ṙ."""
 
     def __init__(self, arm_m: float) -> None:
         self.arm_m = arm_m
         self._before: float | None = None
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Add the acceleration of the yaw rate's change."""
+        """Add the acceleration due to the change of the yaw rate."""
         now, before = reading.r, self._before
         self._before = now
         if before is not None and dt > 0.0:
@@ -99,7 +99,7 @@ SIDE: dict[str, SideKind] = {
     "propeller_roll": SideKind({"aileron_rad": 0.05, "swing": 0.04}, _propeller),
     "side_turbulence": SideKind({"sigma_v_m_s": 0.3, "length_m": 60.0}, _gusts),
 }
-"""Effect name to its component."""
+"""Component of each lateral effect, by the effect's name."""
 
 
 def side_kit(seed: int, effects: Mapping[str, Sizes]) -> SideKit:

@@ -1,4 +1,4 @@
-"""Effects of an aircraft file: terms and components that a diagnosis added to the linear aircraft.
+"""Effects in an aircraft file: terms and components that a diagnosis added to the linear aircraft.
 
 Components (actuators, instruments, timing, air) are those of :mod:`sim.effects.catalogue`. Aerodynamic
 effects are terms of the linear equations.
@@ -17,16 +17,17 @@ from .changes import FieldChange, Onset
 from .kit import Kit, Sizes
 
 Term = Callable[[Kit, Any, Sizes, float], None]
-"""Function that fits a term. Arguments: kit, linear aircraft, parameters, and the boot time at which the log
-begins (s)."""
+"""Function that adds a term to the linear aircraft. Its arguments are kit, linear aircraft, parameters, and
+the boot time of the log's start (s)."""
 
 
 class MoreMass:
-    """Mass and inertia that change. The factors divide the moments and all forces except the weight."""
+    """Change of mass and inertia in flight. The factors divide the moments and all forces except the
+    weight."""
 
     def __init__(self, mass: Callable[[float], float], inertia: Callable[[float], float]) -> None:
         self.mass, self.inertia = mass, inertia
-        """Relative growth of each, as an onset."""
+        """Relative growth of mass and of inertia over time."""
         self._plain: dict[str, float] | None = None
 
     def apply(self, time_s: float, motion: Motion, engine: Any) -> None:
@@ -40,7 +41,7 @@ class MoreMass:
 
 
 def _weight(engine: Any) -> float:
-    """Return the weight's part of Z_0, 1/s. The part of Z_0 that is not gravity's is aerodynamic."""
+    """Return the weight's part of Z_0, 1/s. The other part of Z_0 is aerodynamic."""
     return GRAVITY_M_S2 / float(engine.record["speed_ref"][0])
 
 
@@ -50,9 +51,9 @@ def _onset(kit: Kit, sizes: Sizes, boot_s: float) -> Onset:
 
 
 def _fields(none_at: str = "", **names: str) -> Term:
-    """Return a term whose parameters (keys) are fields of the linear aircraft's record (values).
+    """Return a term that sets fields of the linear aircraft's record, by the parameters' names.
 
-    ``none_at`` is the parameter whose zero means no term, such as a lag or a length.
+    If the parameter ``none_at``, such as a lag or a length, is zero, there is no term.
     """
 
     def fit(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
@@ -81,9 +82,9 @@ def _more_mass(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
 
 
 def _moved_weight(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
-    """Move the centre of gravity: all aerodynamic force, including the weight's support, gets a further arm.
+    """Move the centre of gravity, so that all aerodynamic force gets an additional arm.
 
-    Sizes are relative changes of M_α. With ``stability_only`` nothing else changes, as in textbooks.
+    Sizes are relative changes of M_α. With ``stability_only`` only M_α changes, as in textbooks.
     """
     model = {name: float(engine.record[name][0]) for name in ShortPeriod.__dataclass_fields__}
     arm = model["M_alpha"] / model["Z_alpha"] if model["Z_alpha"] else 0.0
@@ -118,7 +119,7 @@ def _speed(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
 
 
 def _gust(kit: Kit, engine: Any, sizes: Sizes, boot_s: float) -> None:
-    """Add a gust that is strongest at ``at_s``, with the usual length by default."""
+    """Add a gust with its peak at ``at_s``, by default of the usual length."""
     length = sizes.get("length_m", 0.0) or CATALOGUE["gust"].sizes["length_m"]
     peak_s = sizes.get("at_s", boot_s + kit.middle_s) - boot_s
     speed = float(engine.record["speed_ref"][0])
@@ -176,7 +177,7 @@ TERMS: Mapping[str, tuple[frozenset[str], Term]] = {
 
 
 def problems_with(effects: Mapping[str, Sizes]) -> list[str]:
-    """Return the mistakes in an aircraft file's ``effects``."""
+    """Return the mistakes in the ``effects`` of an aircraft file."""
     problems = []
     for name, sizes in effects.items():
         if name in TERMS:
@@ -195,7 +196,7 @@ def problems_with(effects: Mapping[str, Sizes]) -> list[str]:
 
 
 def fit_terms(kit: Kit, engine: Any, effects: Mapping[str, Sizes], boot_s: float) -> None:
-    """Fit every effect of an aircraft file to a linear aircraft."""
+    """Add every effect of an aircraft file to a linear aircraft."""
     for name, sizes in effects.items():
         if name in TERMS:
             TERMS[name][1](kit, engine, sizes, boot_s)

@@ -1,1 +1,1 @@
-"""The protocol of sealed flights, for every generator: write, seal, commit, reveal, score."""
+"""Protocol of sealed flights for every generator: write, seal, commit, reveal, score."""

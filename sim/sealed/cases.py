@@ -1,4 +1,4 @@
-"""Write a set of sealed cases: logs and aircraft files under names that say nothing, and the sealed key."""
+"""Writing of sealed cases: logs and aircraft files under neutral names, and the sealed key."""
 
 import os
 from collections.abc import Iterable, Mapping
@@ -12,21 +12,21 @@ from .seal import seal
 
 LOG, AIRCRAFT = "flight.tlog", "aircraft.yaml"
 MADE_AT = 1_790_000_000
-"""Time stamp of every file, s since 1970, so that the order of making is hidden."""
+"""Time stamp of every file, s since 1970, which hides the order of creation."""
 
 
 @dataclass(frozen=True)
 class SealedCase:
-    """A case as a generator made it."""
+    """A case from a generator, before it is sealed."""
 
     name: str
-    """Name that says nothing: a number in a shuffled order, or random digits."""
+    """Neutral name: a number in a shuffled order, or random digits."""
     truth: Mapping[str, Any]
-    """Truth of the case, with the keys that ``judge`` reads; further keys are facts for readers."""
+    """Truth of the case, with the keys that ``judge`` reads."""
     log: bytes
     """Telemetry log."""
     aircraft: Mapping[str, Any]
-    """Aircraft file: what a crew knows."""
+    """Aircraft file with the crew's knowledge."""
 
 
 def key_beside(folder: Path) -> Path:
@@ -35,7 +35,7 @@ def key_beside(folder: Path) -> Path:
 
 
 def write_set(folder: Path, cases: Iterable[SealedCase]) -> str:
-    """Write each case as it is made, seal the key of all, and return the seal's hash."""
+    """Write each case, seal the key of all cases, and return the seal's hash."""
     folder.mkdir(parents=True, exist_ok=True)
     key = {}
     for case in cases:

@@ -1,15 +1,15 @@
-"""Judge one answer by the truth of its case.
+"""Judgement of one answer against the truth of its case.
 
 The truth of a case has the keys
 
 - ``kind``: ``one`` named effect, ``two``, ``none``, ``parameters`` (the file's numbers are off), ``outside``
   (an effect without a name), ``simulator`` (the file names a user's own simulator);
-- ``condition``: troubles of the flight, in a word: ``clean``, ``hard``, ``JSBSim``, ...;
+- ``condition``: difficulty of the flight in one word: ``clean``, ``hard``, ``JSBSim``, ...;
 - ``effects``: each withheld effect with its sizes, in the contract's names and units;
 - ``blocks``: the block of each effect;
-- ``gap``: the structural gap above the noise; None where the generator does not measure it;
-- ``background``: effects that the flight had in addition to the withheld ones;
-- ``also_true``: effects that the log has by its making, and that nobody asked for.
+- ``gap``: the structural gap above the noise; None if the generator does not measure it;
+- ``background``: effects of the flight in addition to the withheld ones;
+- ``also_true``: effects that the log has because of its generation.
 """
 
 import math
@@ -18,10 +18,10 @@ from dataclasses import dataclass
 from typing import Any
 
 NO_ANSWER = "no answer"
-"""Verdict of a case without a usable answer. An empty answer is right nowhere, so that silence gains
-nothing."""
+"""Verdict of a case without a usable answer. An empty answer is never right, so that silence has no
+advantage."""
 QUIET = ("none", None)
-"""Verdicts that claim nothing. The verdict is ``null`` where no simulator is given."""
+"""Verdicts without a claim. The verdict is ``null`` if no simulator is given."""
 LEFT_ALONE = ("none", "parameters")
 """Verdicts that call the structure of a simulator right."""
 Z95 = 1.959964
@@ -29,7 +29,7 @@ Z95 = 1.959964
 
 @dataclass(frozen=True)
 class Judged:
-    """A case's truth, with the answer to it."""
+    """Truth of a case with its answer."""
 
     kind: str
     condition: str
@@ -41,27 +41,26 @@ class Judged:
     also_true: tuple[str, ...]
     verdict: str | None
     named: tuple[str, ...]
-    """Effects of ``causes``, best first."""
+    """Effects in ``causes``, best first."""
     added: tuple[str, ...]
-    """Effects of the answer's waterfall."""
+    """Effects in the answer's waterfall."""
     probability: float
     parameters: Mapping[str, Mapping[str, float]]
-    """Parameters of the first cause."""
+    """Parameters of the first cause, with value and error."""
     confusions: tuple[str, ...]
     block: str
     shrink_percent: float
     simulator_percent: float
-    """Shrinkage of the gap in the user's own simulator, percent. NaN without one."""
+    """Shrinkage of the gap in the user's own simulator, percent. NaN without a user's simulator."""
 
     @property
     def first(self) -> str | None:
-        """The effect that the verdict stands for; None under any other verdict than ``effect``."""
+        """Effect that the verdict names; None for any other verdict than ``effect``."""
         return self.named[0] if self.verdict == "effect" and self.named else None
 
     @property
     def names_the_cause(self) -> bool:
-        """Whether the first cause is the true one. Without an effect the air, where it moved, is the true
-        cause."""
+        """Whether the first cause is the true one. Without an effect, moving air is the true cause."""
         truth = self.truth or self.background
         return bool(truth) and self.first == truth[0]
 
@@ -72,33 +71,34 @@ class Judged:
 
     @property
     def names_or_confuses(self) -> bool:
-        """Whether the true cause is first, or is stated as indistinguishable from the first."""
+        """Whether the true cause is first, or stated as indistinguishable from the first."""
         return self.names_the_cause or (self.first is not None and self.truth[0] in self.confusions)
 
     @property
     def is_alarm(self) -> bool:
-        """Whether something was claimed that is not there. Background turbulence may be named."""
+        """Whether the answer claims something false. A claim of background turbulence is allowed."""
         return self.verdict not in QUIET and not self.names_what_acted
 
     @property
     def names_both(self) -> bool:
-        """Whether the first cause and the waterfall hold all withheld effects; a mere alternative does not
+        """Whether the first cause and the waterfall contain all withheld effects; an alternative does not
         count."""
         return self.first is not None and set(self.truth) <= {self.first, *self.added}
 
     @property
     def finds_the_block(self) -> bool:
-        """Whether the answer points at a block in which an effect entered."""
+        """Whether the answer names a block in which an effect acts."""
         return self.block in self.blocks
 
     @property
     def is_left_alone(self) -> bool:
-        """Whether a simulator with a right structure is called right, or wrong in numbers only."""
+        """Whether a simulator of right structure is called right, or wrong in its derivatives only."""
         return not self.truth and self.verdict in LEFT_ALONE
 
     @property
     def is_right(self) -> bool:
-        """Whether the answer fits its kind's question: a cause, both, the block, numbers, or nothing."""
+        """Whether the answer is right for the case's kind: a cause, both, the block, derivatives, or
+        nothing."""
         return {
             "none": not self.is_alarm,
             "parameters": self.verdict == "parameters",
@@ -108,8 +108,7 @@ class Judged:
         }.get(self.kind, self.names_the_cause)
 
     def sizes_inside(self) -> list[bool]:
-        """Return, for each size of the truth that the answer also gives, whether its 95 % interval holds the
-        size."""
+        """Return whether the answer's 95 % interval contains the true size, for each size that it states."""
         return [
             abs(float(said["value"]) - true) <= Z95 * float(said["std"])
             for name, true in self.sizes[self.truth[0]].items()
@@ -118,7 +117,8 @@ class Judged:
 
 
 def judge(truth: Mapping[str, Any], answer: Mapping[str, Any]) -> Judged:
-    """Compare an answer (a document of ``advisor gap --json``) with the truth. An empty answer is none."""
+    """Compare an answer (a document of ``advisor gap --json``) with the truth. An empty answer is treated as
+    no answer."""
     usable = bool(answer) and answer.get("usable") is not False
     causes = (answer.get("causes") or []) if usable else []
     first = causes[0] if causes else {}

@@ -32,12 +32,12 @@ def read_answers(path: Path) -> dict[str, dict[str, Any]]:
 
 
 def judge_all(folder: Path, answers: Path, key_file: Path) -> tuple[dict[str, Judged], int]:
-    """Open the key, and return each case judged and the number of cases that are answered.
+    """Open the key, and return each judged case and the number of answered cases.
 
     Raises
     ------
     SealError
-        The answers are not those committed, the key is not the one sealed, or an earlier version wrote it.
+        The answers or the key differ from the committed ones, or an earlier version wrote the key.
     """
     said = read_answers(answers)
     key = unseal(folder, answers, key_file)
@@ -71,7 +71,7 @@ def report(folder: Path, answers: Path, key_file: Path, details: bool = False) -
 
 
 def _wrong(name: str, j: Judged) -> str:
-    """Return the line of an answer that is not right: the truth, and what was told."""
+    """Return the line about a wrong answer: the truth and the answer."""
     told = f"{j.verdict} {j.named[0] if j.named else ''}".strip()
     sizes = {effect: {k: round(v, 5) for k, v in own.items()} for effect, own in j.sizes.items()}
     gap = "" if j.gap is None else f" gap {j.gap:.2f}"
@@ -82,7 +82,7 @@ def _wrong(name: str, j: Judged) -> str:
 def score_document(folder: Path, answers: Path, key_file: Path) -> dict[str, Any]:
     """Return the score table as one JSON document, with the hash of the answers.
 
-    Each figure has ``trials``. A share has ``hits``, any other figure ``value`` in percent.
+    Each figure has ``trials``. A share has ``hits``; any other figure has ``value`` in percent.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Score judged answers: rates with 95 % intervals. One table for every generator."""
+"""Scores of judged answers: rates with 95 % intervals. The table is equal for every generator."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -16,7 +16,7 @@ FAST_S = 5.0
 """Largest processor time of a fast diagnosis, s."""
 BINS = 10
 HARD = "right cause first, hard, moderate or stronger"
-"""Row of the hard cases that are told apart from those too slight to see."""
+"""Table row of the hard cases with an effect that is large enough to see."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def _of(kind: str, judged: Sequence[Judged]) -> list[Judged]:
 
 
 def _by_condition(one: Sequence[Judged]) -> list[Rate]:
-    """Return the share of right causes in each condition but the clean one, which stands first."""
+    """Return the share of right causes in each condition except the clean one."""
     return [
         share(
             f"right cause first, {name}",
@@ -108,7 +108,7 @@ def _by_condition(one: Sequence[Judged]) -> list[Rate]:
 
 
 def _own_simulator(judged: Sequence[Judged]) -> list[Rate]:
-    """Return the figures of the cases that name a user's own simulator."""
+    """Return the figures of the cases with a user's own simulator."""
     withheld, none = [j for j in judged if j.truth], [j for j in judged if not j.truth]
     shrunk = [
         replace(j, shrink_percent=j.simulator_percent) for j in withheld if j.names_the_cause and _adds(j)
@@ -121,7 +121,7 @@ def _own_simulator(judged: Sequence[Judged]) -> list[Rate]:
 
 
 def _adds(j: Judged) -> bool:
-    """Return whether the truth adds an effect to the simulator, instead of removing a servo from it."""
+    """Return whether the right correction adds an effect to the simulator, instead of removing a servo."""
     return all(value >= 0.0 for name, value in j.sizes[j.truth[0]].items() if name in ("lag_s", "delay_s"))
 
 
@@ -148,7 +148,7 @@ def wilson(hits: int, trials: int) -> tuple[float, float]:
 
 
 def share(name: str, hits: Iterable[bool], goal: str) -> Rate:
-    """Return the share of hits with its interval."""
+    """Return the share of hits with its 95 % interval."""
     told = list(hits)
     if not told:
         return Rate(name, math.nan, math.nan, math.nan, 0, goal, 0)
@@ -191,7 +191,7 @@ def _calibration_error(judged: Sequence[Judged]) -> Rate:
 
 
 def _shuffled(judged: Sequence[Judged]) -> Rate:
-    """Return the share of right first causes with shuffled labels, which is chance."""
+    """Return the share of right first causes for shuffled labels, which is the chance level."""
     generator = np.random.default_rng(0)
     hits: list[bool] = []
     for _ in range(20 if judged else 0):

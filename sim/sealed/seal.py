@@ -1,5 +1,4 @@
-"""Seals: the key's salted hash is published first, and answers are committed by hash before the key is
-opened."""
+"""Seals: the key's salted hash is published first, and the answers' hash before the key is opened."""
 
 import hashlib
 import json
@@ -8,20 +7,20 @@ from pathlib import Path
 from typing import Any
 
 SEAL = "SEAL"
-"""File in the cases' folder with the hash of salt and key."""
+"""Name of the file in the cases' folder with the hash of salt and key."""
 
 COMMITMENT = "COMMITMENT"
-"""File in the cases' folder with the hash of the answers."""
+"""Name of the file in the cases' folder with the hash of the answers."""
 
 
 class SealError(ValueError):
-    """A seal is missing or broken. The sentence names the seal."""
+    """A seal is missing or broken. The error message names the seal."""
 
 
 def seal(key: dict[str, Any], key_file: Path, folder: Path) -> str:
-    """Write the key outside the folder and its salted hash inside; return the hash.
+    """Write the key outside the folder and its salted hash inside, and return the hash.
 
-    The salt prevents a guess of the key that is checked against the hash.
+    The salt prevents a test of guessed keys against the hash.
     """
     text = json.dumps({"salt": secrets.token_hex(32), "key": key}, sort_keys=True)
     digest = hashlib.sha256(text.encode()).hexdigest()
@@ -32,7 +31,7 @@ def seal(key: dict[str, Any], key_file: Path, folder: Path) -> str:
 
 
 def commit(folder: Path, answers: Path) -> str:
-    """Commit answers by their hash, and return the hash.
+    """Store the hash of the answers, and return the hash.
 
     Raises
     ------
@@ -48,7 +47,7 @@ def commit(folder: Path, answers: Path) -> str:
 
 
 def unseal(folder: Path, answers: Path, key_file: Path) -> dict[str, Any]:
-    """Open the key, after a check of the committed answers and of the sealed key.
+    """Return the key, after a check of the committed answers and of the sealed key.
 
     Raises
     ------

@@ -15,27 +15,27 @@ from advisor.mavlink.records.equivalent import nearest
 _AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
 """Name of a record to its field with the air speed, the best record first."""
 _CLIMB = ("XKF1", "NKF1", "EKF1")
-"""Records of the estimators, whose VD is the rate of descent. The newest estimator comes first."""
+"""Records of the estimators, whose field VD is the rate of descent. The newest estimator comes first."""
 
 
 @dataclass(frozen=True, slots=True)
 class AirRecords:
-    """Air data, and the sentences about their sources."""
+    """Air data of a log, and the sentences about their sources."""
 
     records: list[dict[str, NDArray[Any]]]
-    """Places in the order of arrival, stamps in us and values of one field, each of shape (n,)."""
+    """Order of arrival, stamps in us and values of one field, each of shape (n,)."""
     said: list[Said]
 
 
 def air(tables: Mapping[str, RecordTable], interrupted: bool) -> AirRecords:
-    """Return the air data in these records.
+    """Return the air data in the records of a log.
 
     Parameters
     ----------
     tables
-        Records by name, of ARSP those of the sensor that flew.
+        Records by name; ARSP holds only those of the sensor in use.
     interrupted
-        Whether there were times at which no air speed sensor was healthy.
+        Whether no air speed sensor was healthy at some times.
     """
     speed, said = _airspeed(tables, interrupted)
     descent = _first(tables, [(record, "VD") for record in _CLIMB])
@@ -53,7 +53,7 @@ def air(tables: Mapping[str, RecordTable], interrupted: bool) -> AirRecords:
 def _airspeed(
     tables: Mapping[str, RecordTable], interrupted: bool
 ) -> tuple[list[dict[str, NDArray[Any]]], list[Said]]:
-    """Return the air speed of the best record, and of the next one where no sensor was healthy."""
+    """Return the air speed from the best record, and from the next record while no sensor was healthy."""
     sources = [
         (tables[name], field)
         for name, field in _AIR_SPEED.items()
@@ -80,7 +80,7 @@ def _airspeed(
 def _first(
     tables: Mapping[str, RecordTable], places: Iterable[tuple[str, str]]
 ) -> tuple[RecordTable, FloatArray] | None:
-    """Return the first record that has its field, and the field's values; None without one."""
+    """Return the first record that has the named field, with the field's values; None without one."""
     for name, field in places:
         if name in tables and field in tables[name].fields:
             table = tables[name].first_instance()

@@ -1,4 +1,4 @@
-"""An ArduPilot log as the messages that its telemetry would have carried."""
+"""An ArduPilot log, converted to the messages that its telemetry would have carried."""
 
 import math
 import re
@@ -46,34 +46,34 @@ _RECORDS: dict[str, set[str]] = {
     "XKF1": {"VD"},
     "XKF2": {"VWN", "VWE"},
 }
-"""Record to its necessary fields. A record without these fields (another vehicle, an older version) counts
-as missing."""
+"""Necessary fields of each record, by the record's name. A record without its necessary fields (another
+vehicle, an older version) counts as missing."""
 _FIELDS = frozenset[str]().union(*_RECORDS.values(), *SDLOG2_RECORDS.values()) | {
     *("TimeUS", "TimeMS", "T", "I", "C"),
     *("As", "BU", "H", "Press", "Pri", "ThO", "U"),
     *(former for renamed in RENAMED.values() for former in renamed),
     *(today for renamed in RENAMED.values() for today in renamed.values()),
 }
-"""Fields that are read: the necessary ones, stamps, a sensor's number, and those of some versions."""
+"""Fields that are read: the necessary ones, stamps, sensor numbers, and those of some versions."""
 _OF_WHOLE_LOG = (*VEHICLE_RECORDS, *HEALTH_RECORDS, *SYSTEM_ID_RECORDS)
-"""Records that later stretches of a log need. All are rare."""
+"""Records of a log that later stretches of the log also need. All these records are rare."""
 _UNDIVIDED = ("TIME",)
-"""Records of logs that are read whole: PX4's, a few minutes long."""
+"""Records of logs that are read as one stretch: PX4's, a few minutes long."""
 _NUMBERED = re.compile(r"(?:C|Ch|Chan|Out)\d+")
-"""Fields of one output or channel each."""
+"""Fields of single outputs or channels."""
 _TEXTS = {"Name", "Message"}
-"""Fields that hold text. All others are numbers."""
+"""Fields that contain text. All others are numbers."""
 
 
 def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
     """Yield the messages of a ``.bin``, or of PX4's ``.px4log`` in its container.
 
-    A batch holds a stretch of one of the logs that were joined into the file.
+    A batch contains a stretch of one of the logs in the file.
 
     Raises
     ------
     UnusableInputError
-        The log holds neither attitude, inertial sensors, nor servo outputs.
+        The log contains neither attitude, inertial sensors, nor servo outputs.
     """
     apart = (name for names in SENSORS_APART.values() for name in names)
     names = None if wanted is None else set(wanted)
@@ -108,9 +108,9 @@ def _after(newest: int, batch: Sequence[Columns], columns: Columns) -> Columns:
 
 
 def _messages(stored: Mapping[str, RecordTable], known: Known) -> tuple[Iterator[Columns] | None, Known]:
-    """Return the messages of a stretch, and what is known of its log for the next stretch.
+    """Return the messages of a stretch, and the facts of its log for the next stretch.
 
-    There are none without attitude, inertial sensors and servo outputs.
+    No messages are returned without attitude, inertial sensors and servo outputs.
     """
     if is_sdlog2(stored):
         return Sdlog2Messages(stored).columns(), known
@@ -127,7 +127,8 @@ def _messages(stored: Mapping[str, RecordTable], known: Known) -> tuple[Iterator
 
 
 def _believable(table: RecordTable) -> RecordTable:
-    """Return the fields whose values fit their names. A damaged definition can make a number a text."""
+    """Return the fields whose value types fit their names. A damaged definition can turn a number into
+    text."""
     fields = {
         name: values
         for name, values in table.fields.items()
@@ -137,7 +138,7 @@ def _believable(table: RecordTable) -> RecordTable:
 
 
 def _batch(columns: Iterator[Columns], names: set[str] | None, part: Stretch) -> Iterator[list[Columns]]:
-    """Yield all wanted messages of a part of a log in one batch; none where there are none."""
+    """Yield all wanted messages of a part of a log in one batch; nothing without messages."""
     with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
         wanted = [_within(part, c) for c in columns if names is None or c.name in names]
     if batch := [c for c in wanted if len(c)]:
@@ -145,6 +146,6 @@ def _batch(columns: Iterator[Columns], names: set[str] | None, part: Stretch) ->
 
 
 def _within(part: Stretch, columns: Columns) -> Columns:
-    """Return the messages whose place lies in the part."""
+    """Return the messages whose position lies in the part."""
     inside = (columns.order >= part.begins) & (columns.order < part.ends)
     return columns if inside.all() else cut(columns, inside)

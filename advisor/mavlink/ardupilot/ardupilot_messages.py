@@ -1,4 +1,4 @@
-"""Records of an ArduPilot log as the messages that its telemetry would have carried."""
+"""Conversion of an ArduPilot log's records to the messages that its telemetry would have carried."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -25,34 +25,34 @@ from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, seco
 from advisor.mavlink.records.equivalent import air_data, message, nearest, side_by_side
 
 _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
-"""Record, of which a vehicle may carry several, to the quantities that the record holds."""
+"""Measured quantities of each record of which a vehicle may have several, by the record's name."""
 _NOT_LOGGED = 255
 """MAV_SEVERITY of a text of MSG, which does not keep the severity (0 to 7)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """Facts of a whole log that its earlier stretches have told; None before the first."""
+    """Facts about a whole log from its earlier stretches; None before the first stretch."""
 
     epoch_s: int | None = None
     """Seconds since 1970 at TimeUS 0 of a log that counted from 1970, else 0."""
     base_s: float | None = None
-    """Time of boot, seconds since 1970; 0 where the log did not state it."""
+    """Time of boot, seconds since 1970; 0 if the log does not state it."""
     health: Mapping[str, set[str]] = field(default_factory=dict)
-    """Record of a sensor to the fields that have stated the sensor as healthy."""
+    """Fields that have stated a sensor as healthy, by the sensor's record."""
     silences: Mapping[str, list[Silence]] = field(default_factory=dict)
-    """Record of a sensor to the times without a healthy one in the newest stretch."""
+    """Times without a healthy sensor in the newest stretch, by the sensor's record."""
 
 
 class Translation:
-    """Translates the records of one stretch of a log.
+    """Conversion of the records in one stretch of a log.
 
     Parameters
     ----------
     read
         Records of the stretch.
     known
-        What the stretches before have told.
+        Facts about the log from the earlier stretches.
     """
 
     def __init__(self, read: Clocked, known: Known) -> None:
@@ -80,7 +80,8 @@ class Translation:
         self._system = system_of(self._tables)
 
     def columns(self) -> Iterator[Columns]:
-        """Yield the messages of each type. Records that no later message needs are dropped on the way."""
+        """Yield the messages of each type. Records that no later message needs are dropped during the
+        conversion."""
         order, time_us, fields = heartbeats(self._tables)
         yield self._made("HEARTBEAT", order, time_us, fields)
         yield from self._attitude()
@@ -128,7 +129,7 @@ class Translation:
         return message(name, self._system, order, arrival_s, fields, "dataflash")
 
     def _attitude(self) -> Iterator[Columns]:
-        """Yield angles at the stamps of ATT, rates at those of their own records."""
+        """Yield angles at the stamps of ATT, and rates at the stamps of their own records."""
         blocks: list[dict[str, NDArray[Any]]] = []
         if "ATT" in self._tables:
             att = self._tables["ATT"]
@@ -210,7 +211,7 @@ class Translation:
         return self._message("RC_CHANNELS", rcin, {"time_boot_ms": _milliseconds(rcin.time_us), **pulses})
 
     def _vfr_hud(self) -> Iterator[Columns]:
-        """Yield the air speed, climb rate and throttle, each at the stamps of its own record."""
+        """Yield air speed, climb rate and throttle, each at the stamps of its own record."""
         found = air(self._tables, bool(self.known.silences.get("ARSP")))
         self._said += found.said
         if found.records:
@@ -239,7 +240,7 @@ class Translation:
         return self._message("GLOBAL_POSITION_INT", pos, fields)
 
     def _statustext(self) -> Columns:
-        """Return the vehicle's own texts, and sentences on choices made in reading the log."""
+        """Return the vehicle's own texts, and sentences about choices during the reading of the log."""
         msg = self._tables.get("MSG")
         own = [] if msg is None else zip(msg.order, msg.time_us, msg.fields["Message"].tolist(), strict=True)
         # A record's own messages use its order and the next one.

@@ -15,17 +15,16 @@ VEHICLE_RECORDS: dict[str, set[str]] = {
     "PARM": {"Name", "Value"},
     "VER": {"Maj", "Min", "Pat", "FWT"},
 }
-"""Record to its necessary fields."""
+"""Necessary fields of each record, by the record's name."""
 _ARDUPILOTMEGA = 3  # MAV_AUTOPILOT
 _BUILD_TO_MAV_TYPE = {1: 10, 2: 2, 3: MAV_TYPE_FIXED_WING, 4: 5, 7: 12, 12: 7, 13: 4}
-"""Value of VER.BU to MAV_TYPE: rover, copter, plane, antenna tracker, submarine, airship, helicopter."""
+"""MAV_TYPE of each value of VER.BU: rover, copter, plane, antenna tracker, submarine, airship, helicopter."""
 _TITLES = {"ArduPlane": MAV_TYPE_FIXED_WING, "ArduCopter": 2, "ArduRover": 10, "ArduSub": 12}
-"""Firmware name in MSG to MAV_TYPE, for logs older than VER."""
+"""MAV_TYPE of each firmware name in MSG, for logs without VER."""
 _STICKS = {"RCMAP_ROLL": (1, 4), "RCMAP_PITCH": (2, 19), "RCMAP_YAW": (4, 21)}
-"""For firmware before SERVOn_FUNCTION: parameter of a stick's output, to its default and to today's
-SERVOn_FUNCTION (ArduPlane 3.7: radio.cpp, RCMapper.cpp)."""
+"""Default and present SERVOn_FUNCTION of each stick's output parameter, for old firmware (ArduPlane 3.7)."""
 _MIXERS = ("ELEVON_MIXING", "ELEVON_OUTPUT", "VTAIL_OUTPUT")
-"""Parameters of that firmware that let outputs serve two axes. The role of each output is then unknown."""
+"""Parameters of old firmware with which outputs move in two axes. The role of each output is then unknown."""
 
 
 def system_of(tables: Mapping[str, RecordTable]) -> int:
@@ -37,9 +36,9 @@ def system_of(tables: Mapping[str, RecordTable]) -> int:
 
 
 def heartbeats(tables: Mapping[str, RecordTable]) -> tuple[IntArray, IntArray, dict[str, ArrayLike]]:
-    """Return a heartbeat before everything else, to make the vehicle known, and two at each change of mode.
+    """Return a heartbeat before all other messages, and two heartbeats at each change of mode.
 
-    A log states a change of mode at its moment. The first of the two heartbeats says that the earlier mode
+    A log states a change of mode at its time. The first of the two heartbeats states that the earlier mode
     lasted until then. Over a link, with one heartbeat a second, the mode might have ended at any time since
     the last heartbeat.
 
@@ -77,7 +76,7 @@ def parameter_fields(parm: RecordTable) -> dict[str, ArrayLike]:
 
 
 def in_todays_parameters(parm: RecordTable) -> RecordTable:
-    """Return the parameters under today's names, also from firmware older than SERVOn_FUNCTION."""
+    """Return the parameters under present names, also from firmware older than SERVOn_FUNCTION."""
     names = [bytes(name) for name in parm.fields["Name"].tolist()]
     if any(name.startswith(b"SERVO") and name.endswith(b"_FUNCTION") for name in names):
         return parm

@@ -1,4 +1,4 @@
-"""Angular rates of an ArduPilot log, from the best of the records that hold them."""
+"""Angular rates of an ArduPilot log, from the best record that contains them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,38 +13,38 @@ RATE_RECORDS: dict[str, set[str]] = {
     "PIDP": {"Act"},
     "RATE": {"R", "P", "Y"},
 }
-"""Record with rates, other than IMU, to its necessary fields. PIDP.Act and RATE are in deg/s (ArduPilot:
+"""Necessary fields of each record with rates, other than IMU. PIDP.Act and RATE are in deg/s (ArduPilot:
 AP_PitchController.cpp of every version that logs Act; log messages PIDP and RATE)."""
 FASTEST_SAMPLES_HZ = 200.0
-"""Largest rate of samples, Hz. Raw gyro records come 1000 times a second and more. Means over 5 ms keep the
-short period: at 40 rad/s they lose 0.2 % of its amplitude."""
+"""Largest sampling rate of the angular rates, Hz. Raw gyro records come 1000 times a second and more. Means
+over 5 ms keep the short period: at 40 rad/s they lose 0.2 % of its amplitude."""
 SLOWEST_ANGLES_HZ = 20.0
 """Least rate of angles, Hz, from which angular rates are derived. The difference over 1/20 s gives the rate
 to 1 % for a natural frequency up to 10 rad/s, typical of a small aircraft."""
 GYRO_FILTER_HZ = 20.0
-"""INS_GYRO_FILTER where the log does not state it, Hz, which is ArduPlane's default. INS_GYRO_FILTER is the
-corner of a second-order low-pass for all gyro readings of the autopilot."""
+"""Value of INS_GYRO_FILTER that is assumed if the log does not state it, Hz: ArduPlane's default.
+INS_GYRO_FILTER is the cut-off frequency of a second-order low-pass for all gyro readings."""
 _FROZEN_S = 1.0
-"""Least time of constant output, s, that shows a controller at rest. A controller that does not run keeps its
-last rate, as ArduPlane's do in MANUAL."""
+"""Least time of constant output, s, that shows an inactive controller. An inactive controller keeps its last
+rate, as ArduPlane's do in MANUAL."""
 
 
 @dataclass(frozen=True, slots=True)
 class Rates:
-    """Angular rates about the body axes, each at its own stamp."""
+    """Angular rates about the body axes, each at its own stamps."""
 
     order: IntArray
-    """Shape (n,). Position of each record in the file, bytes."""
+    """Shape (n,): position of each record in the file, bytes."""
     time_us: IntArray
-    """Shape (n,). Microseconds since boot."""
+    """Shape (n,): stamps, microseconds since boot."""
     values: FloatArray
-    """Shape (3, n), rad/s; NaN for an axis that the record does not hold."""
+    """Shape (3, n): angular rates, rad/s; NaN for an axis that the record lacks."""
     said: str
-    """Sentence on the source of the rates, for the user; empty for IMU."""
+    """Sentence about the source of the rates, for the user; empty for IMU."""
 
 
 def body_rates(tables: Mapping[str, RecordTable]) -> Rates | None:
-    """Return the rates of IMU, else GYR, PIDP, RATE, else those derived from ATT; None without any."""
+    """Return the rates of IMU, else of GYR, PIDP or RATE, else those derived from ATT; None without any."""
     if "IMU" in tables:
         return _read(tables["IMU"], ("GyrX", "GyrY", "GyrZ"), 1.0, "")
     if "GYR" in tables:
@@ -61,8 +61,8 @@ def body_rates(tables: Mapping[str, RecordTable]) -> Rates | None:
 def gyro_delay_s(parm: RecordTable | None) -> float:
     """Return the delay of the autopilot's gyro readings at the frequencies of flight, s.
 
-    A second-order Butterworth low-pass delays by √2 / (2π f), with f of INS_GYRO_FILTER. The
-    result is 11 ms at 20 Hz, where 12 ms were measured in a log of ArduPlane 4.5 (logs/arduplane-calm.tlog).
+    A second-order Butterworth low-pass delays by √2 / (2π f), with f of INS_GYRO_FILTER. The delay is 11 ms
+    at 20 Hz, where a log of ArduPlane 4.5 showed 12 ms (logs/arduplane-calm.tlog).
     """
     corner_hz = GYRO_FILTER_HZ
     if parm is not None:
@@ -72,7 +72,7 @@ def gyro_delay_s(parm: RecordTable | None) -> float:
 
 
 def calmed(table: RecordTable) -> RecordTable:
-    """Return the records of the first raw sensor, averaged so that at most ``FASTEST_SAMPLES_HZ`` remain."""
+    """Return the records of the first raw sensor, averaged to at most ``FASTEST_SAMPLES_HZ``."""
     table = table.first_instance()
     steps_us = np.diff(table.time_us)
     many = int(1e6 / FASTEST_SAMPLES_HZ // max(float(np.median(steps_us)), 1.0)) if len(steps_us) else 1
@@ -97,7 +97,7 @@ def _read(
 
 
 def _stands_still(pid: RecordTable) -> bool:
-    """Return whether the controller's rate is ever constant for ``_FROZEN_S``."""
+    """Return whether the controller's rate is ever constant over ``_FROZEN_S``."""
     moved = np.flatnonzero(np.diff(pid.fields["Act"]) != 0.0) + 1
     edges_us = pid.time_us[np.concatenate(([0], moved, [len(pid) - 1]))]
     return bool(np.max(np.diff(edges_us)) > 1e6 * _FROZEN_S)
@@ -106,7 +106,7 @@ def _stands_still(pid: RecordTable) -> bool:
 def _from_angles(att: RecordTable, delay_s: float) -> Rates | None:
     """Return the rates from differences of the angles, delayed like the gyro's rates.
 
-    The angle of attack is also late. With a rate without delay, derivatives would be wrong by half.
+    The angle of attack is late by an equal delay. With undelayed rates, derivatives would be wrong by half.
     """
     t = att.time_us.astype(np.float64) * 1e-6
     step_s = np.diff(t)

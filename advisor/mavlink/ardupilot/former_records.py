@@ -1,7 +1,7 @@
-"""Records of every firmware since 2013 under today's names, each with its time since boot.
+"""Records of every firmware since 2013 under present names, each with its time since boot.
 
 Firmware of 2013 to 2015 stamped records in milliseconds and numbered channels ``Chan1`` or ``Ch1``. A second
-sensor had a record of its own, and some records had no time (ArduPilot, DataFlash.h and ArduPlane/Log.cpp).
+sensor had a separate record, and some records had no time (ArduPilot, DataFlash.h and ArduPlane/Log.cpp).
 """
 
 import re
@@ -19,32 +19,32 @@ SENSORS_APART = {
     "GYR": ("GYR1", "GYR2", "GYR3"),
     "ACC": ("ACC1", "ACC2", "ACC3"),
 }
-"""Today's record, with a sensor's number in the field I, to the former records of the further sensors."""
+"""Former records of further sensors, by the present record with a sensor number in field I."""
 RENAMED = {
     "CTUN": {"ThrOut": "ThO"},
     "GPS": {"Week": "GWk", "TimeMS": "GMS"},
     "IMU": {"GyHlt": "GH", "AcHlt": "AH"},
 }
-"""Record to the former names of its fields, each with today's."""
+"""Present name of each former field, by the record's name."""
 _CHANNEL = re.compile(r"(?:Chan|Ch)(\d+)")
 _1970_US = 10**15
-"""Least stamp, us, that counts from 1970 and not from boot: 31 years."""
+"""Least stamp, us, that is relative to 1970 instead of boot: 31 years."""
 
 
 @dataclass(frozen=True, slots=True)
 class Clocked:
-    """The records of a log on one clock."""
+    """Records of a log on one clock."""
 
     tables: Mapping[str, RecordTable]
-    """Tables by today's names. Every table has TimeUS, int64."""
+    """Tables of records by their present names. Every table has TimeUS, int64."""
     epoch_s: int
-    """Seconds since 1970 at TimeUS 0 for a log that counted from 1970; 0 for a log that counts from boot."""
+    """Seconds since 1970 at TimeUS 0 for stamps relative to 1970; 0 for stamps since boot."""
 
 
 def in_todays_names(tables: Mapping[str, RecordTable], epoch_s: int | None = None) -> Clocked:
     """Return all records of a log, renamed, on one clock, with several records of one kind of sensor joined.
 
-    ``epoch_s`` is that of an earlier stretch of the log; None: these records tell it.
+    ``epoch_s`` comes from an earlier stretch of the log; None to determine it from these records.
     """
     named = {name: _renamed(name, table) for name, table in tables.items()}
     timed = _timed(named)
@@ -56,7 +56,7 @@ def in_todays_names(tables: Mapping[str, RecordTable], epoch_s: int | None = Non
 
 
 def _epoch_s(timed: Mapping[str, RecordTable]) -> int:
-    """Return the seconds since 1970 of the first stamp that counts from there; 0 for stamps since boot."""
+    """Return the time in seconds since 1970 of the first stamp relative to 1970; 0 for stamps since boot."""
     stamps = np.concatenate([table.time_us for table in timed.values()]) if timed else np.zeros(0, np.int64)
     if len(stamps) == 0 or not np.median(stamps) > _1970_US:
         return 0
@@ -64,7 +64,7 @@ def _epoch_s(timed: Mapping[str, RecordTable]) -> int:
 
 
 def _renamed(name: str, table: RecordTable) -> RecordTable:
-    """Return the fields under today's names, with TimeUS where the record states its time since boot."""
+    """Return the fields under present names, with TimeUS if the record has a time since boot."""
     fields = dict(table.fields)
     if "TimeUS" in fields:
         fields["TimeUS"] = fields["TimeUS"].astype(np.int64)
@@ -83,7 +83,7 @@ def _renamed(name: str, table: RecordTable) -> RecordTable:
 
 
 def _timed(tables: Mapping[str, RecordTable]) -> dict[str, RecordTable]:
-    """Return the tables with a time for each record. A record without time takes that of the stamped record
+    """Return the tables with a time for each record. A record without time gets that of the stamped record
     before it."""
     stamped = [table for table in tables.values() if "TimeUS" in table.fields]
     if not stamped or len(stamped) == len(tables):
@@ -106,7 +106,7 @@ def _at(table: RecordTable, time_us: IntArray) -> RecordTable:
 
 
 def _joined(tables: Mapping[str, RecordTable]) -> dict[str, RecordTable]:
-    """Return the tables with former records of further sensors as numbers in the field I of the first."""
+    """Return the tables with former records of further sensors merged, numbered in field I."""
     found = dict(tables)
     for name, apart in SENSORS_APART.items():
         further = [found.pop(other) for other in apart if other in found]

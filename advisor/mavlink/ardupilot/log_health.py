@@ -1,7 +1,7 @@
-"""Faults of an ArduPilot log, dropped records and a wrong clock, and its SystemID sweeps.
+"""Faults of an ArduPilot log: dropped records and a wrong clock; and its SystemID sweeps.
 
-SIDS holds the settings of a sweep when the sweep begins. SIDD holds one sample of the sweep at a time. The
-vehicle also sends a text at the begin and at the end (``AP_SystemID`` of ArduPlane), which MSG may have lost.
+SIDS contains the settings of a sweep, at its begin. SIDD contains the samples of the sweep. The vehicle also
+sends a text at begin and end of a sweep, which MSG may have lost.
 """
 
 from collections.abc import Iterator, Mapping
@@ -13,18 +13,18 @@ from advisor.mavlink.ardupilot.sensors import Said
 from advisor.mavlink.records.dataflash import RecordTable
 
 HEALTH_RECORDS: dict[str, set[str]] = {"DSF": {"Dp"}}
-"""Records of the log's own health, with their necessary fields (ArduPilot log message DSF)."""
+"""Necessary fields of the records about the log's own health (ArduPilot log message DSF)."""
 WRONG_CLOCK = 0.01
-"""Least relative error of the autopilot's clock that is said. A derivative per second squared is then
-wrong by 2 %; the oscillators of autopilots are right to 1e-4."""
+"""Least relative error of the autopilot's clock that is reported. A second-order derivative is then wrong by
+2 %; the oscillators of autopilots are right to 1e-4."""
 _SURELY = 3.0
-"""Least error of the clock in its own standard errors."""
+"""Least error of the clock that is reported, in standard errors."""
 _FEWEST = 10
-"""Fewest GPS records from which the clock's speed is taken."""
+"""Least number of GPS records for an estimate of the clock's error."""
 
 
 def health(tables: Mapping[str, RecordTable]) -> Iterator[Said]:
-    """Yield sentences on dropped records and on a wrong clock."""
+    """Yield sentences about dropped records and a wrong clock."""
     if "DSF" in tables:
         dsf = tables["DSF"]
         dropped = int(np.max(dsf.fields["Dp"]))
@@ -48,7 +48,7 @@ def health(tables: Mapping[str, RecordTable]) -> Iterator[Said]:
 
 
 def _clock_error(gps: RecordTable) -> float | None:
-    """Return the relative error of the autopilot's clock; None where GPS time does not show one."""
+    """Return the relative error of the autopilot's clock; None if GPS time shows no error."""
     known = gps.fields["GWk"] > 0
     if np.count_nonzero(known) < _FEWEST:
         return None
@@ -65,13 +65,13 @@ def _clock_error(gps: RecordTable) -> float | None:
 
 
 SYSTEM_ID_RECORDS: dict[str, set[str]] = {"SIDS": {"Ax", "Mag", "FSt", "FSp", "TR"}, "SIDD": {"Targ"}}
-"""Records of SystemID, with their necessary fields (ArduPilot log messages SIDS and SIDD)."""
+"""Necessary fields of the SystemID records (ArduPilot log messages SIDS and SIDD)."""
 _AXES = {20: "the roll angle", 21: "the pitch angle", 22: "the ailerons", 23: "the elevator"}
-"""Value of SID_AXIS to what moves in fixed-wing flight. Values 1 to 13 are those of hovering flight."""
+"""Moved quantity of each value of SID_AXIS in fixed-wing flight. Values 1 to 13 belong to hovering flight."""
 
 
 def sweeps(tables: Mapping[str, RecordTable]) -> Iterator[Said]:
-    """Yield a sentence on the settings of each sweep."""
+    """Yield a sentence about the settings of each sweep."""
     if "SIDS" not in tables:
         return
     sids = tables["SIDS"]
@@ -86,13 +86,13 @@ def sweeps(tables: Mapping[str, RecordTable]) -> Iterator[Said]:
 
 
 def lost_texts(tables: Mapping[str, RecordTable]) -> Iterator[tuple[int, int, bytes]]:
-    """Yield the texts at the begin and the end of each sweep, where MSG holds fewer than SIDS has sweeps.
+    """Yield the begin and end texts of sweeps that MSG lacks, according to SIDS.
 
     Yields
     ------
     tuple of int, int and bytes
-        Position of the record in the file, microseconds since boot, and the text. A sweep without a sample
-        in SIDD has no known end, and yields nothing.
+        Each entry is the record's position in the file, its time in us since boot, and the text. A sweep
+        without a sample in SIDD has no known end, and yields no text.
     """
     if not {"SIDS", "SIDD"} <= tables.keys() or _told(tables) >= len(tables["SIDS"]):
         return
@@ -108,7 +108,7 @@ def lost_texts(tables: Mapping[str, RecordTable]) -> Iterator[tuple[int, int, by
 
 
 def _told(tables: Mapping[str, RecordTable]) -> int:
-    """Return the number of sweeps whose begin and end MSG holds."""
+    """Return the number of sweeps whose begin and end texts are in MSG."""
     if "MSG" not in tables:
         return 0
     texts = tables["MSG"].fields["Message"].tolist()

@@ -16,27 +16,29 @@ BoolArray = NDArray[np.bool_]
 _HEALTH = ("H", "GH", "AH")
 """Fields of health (air speed, gyro and accelerometer), 1 for healthy."""
 _IN_USE = "U"
-"""Field that is 1 where the autopilot uses the sensor."""
+"""Name of the field that is 1 if the autopilot uses the sensor."""
 _MOVING = ("GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ")
-"""Fields of IMU. Noise moves at least one of a live sensor's axes from sample to sample."""
+"""Fields of IMU in which a live sensor always shows noise. Noise moves at least one of a live sensor's axes
+from sample to sample."""
 _FROZEN_S = 0.5
-"""Time, s, of constant values after which an inertial sensor counts as dead, whatever its health says. A
-sound sensor repeats its values at most once, when records come faster than samples."""
+"""Time of constant values, s, after which an inertial sensor counts as dead, whatever its health field
+states. A sound sensor repeats a value at most once, if records are faster than samples."""
 
 
 def stated_health(table: RecordTable) -> set[str]:
-    """Return the fields that ever state a healthy sensor. A field that never does distinguishes nothing."""
+    """Return the health fields that state a healthy sensor at least once. A field that never states a healthy
+    sensor is not informative."""
     return {name for name in _stated(table) if np.any(table.fields[name] != 0)}
 
 
 def flown(table: RecordTable, health: Collection[str]) -> RecordTable:
-    """Return the records of the sensor in use at each time; none where no sensor was healthy.
+    """Return the records of the sensor in use at each time; none while no sensor was healthy.
 
-    Only the fields in ``health`` tell of a sensor's health (:func:`stated_health`).
+    Only the fields in ``health`` state a sensor's health (:func:`stated_health`).
 
-    ARSP.Pri names the primary sensor. Where the primary one is not healthy and in use, the lowest-numbered
-    sensor that is counts. Without a stated primary sensor, the healthy sensor of the lowest number counts.
-    (ArduPilot's ARSP and IMU.)
+    ARSP.Pri names the primary sensor. If the primary sensor is not healthy or not in use, the lowest-numbered
+    usable sensor is taken. Without a stated primary sensor, the healthy sensor with the lowest number is
+    taken. The rules are those of ArduPilot's ARSP and IMU.
     """
     if len(table) == 0:
         return table
@@ -59,12 +61,12 @@ def flown(table: RecordTable, health: Collection[str]) -> RecordTable:
 
 @dataclass(frozen=True, slots=True)
 class Said:
-    """One sentence about the sensor in use, with the record that the sentence belongs to."""
+    """One sentence about the sensor in use, with the position of its record."""
 
     order: int
     """Position of the record in the file, bytes."""
     time_us: int
-    """Microseconds since boot."""
+    """Time of the record, microseconds since boot."""
     text: str
 
 
@@ -73,7 +75,7 @@ class Silence:
     """A time with records but without a healthy sensor."""
 
     begin_us: int
-    """Microseconds since boot."""
+    """Begin of the time without a healthy sensor, microseconds since boot."""
     end_us: int
     order: int
     """Position in the file of the last record in this time, bytes."""
@@ -86,9 +88,9 @@ def said(
     health: Collection[str],
     silences: Iterable[Silence],
 ) -> list[Said]:
-    """Return sentences on the first sensor in use, on each change of sensor, and on times without health.
+    """Return sentences about the first sensor in use, changes of sensor, and times without a healthy one.
 
-    Where sensor 0 is in use throughout, there is no sentence.
+    If sensor 0 is always in use, there is no sentence.
 
     Parameters
     ----------
@@ -99,9 +101,9 @@ def said(
     quantity
         Name of the measured quantity.
     health
-        Fields that tell of a sensor's health.
+        Fields that state a sensor's health.
     silences
-        Result of :func:`silences_in`.
+        Times without a healthy sensor, from :func:`silences_in`.
     """
     return [
         *_doubts(every, quantity, health),
@@ -120,7 +122,7 @@ def silences_in(every: RecordTable, table: RecordTable, before: Sequence[Silence
     table
         Records of the sensor in use, from :func:`flown`.
     before
-        Times without a healthy sensor in the stretch before, of which one may last until here.
+        Times without a healthy sensor in the stretch before, of which the last may continue.
     """
     found = []
     for first, last in _silent(every, table):
@@ -131,7 +133,7 @@ def silences_in(every: RecordTable, table: RecordTable, before: Sequence[Silence
 
 
 def _doubts(every: RecordTable, quantity: str, health: Collection[str]) -> list[Said]:
-    """Return a sentence where no record states any sensor as healthy. All sensors then count as healthy."""
+    """Return a sentence if no record states any sensor as healthy. All sensors are then taken as healthy."""
     if len(every) == 0 or set(_stated(every)) <= set(health):
         return []
     text = f"{quantity}: no sensor is ever stated to be healthy, and they are used all the same"
@@ -196,12 +198,12 @@ def _healthy(table: RecordTable, instance: IntArray, health: Collection[str]) ->
 
 
 def _stated(table: RecordTable) -> list[str]:
-    """Return the fields of health in the records."""
+    """Return the names of the health fields in the records."""
     return [name for name in _HEALTH if name in table.fields]
 
 
 def _frozen(table: RecordTable) -> BoolArray:
-    """Return records of one inertial sensor that belong to a stretch of ``_FROZEN_S`` without any change."""
+    """Return whether each record of an inertial sensor lies in a constant stretch of ``_FROZEN_S``."""
     values = np.stack([table.fields[name] for name in _MOVING], axis=1)
     moved = np.concatenate(([True], np.any(np.diff(values, axis=0) != 0.0, axis=1)))
     stretch = np.cumsum(moved) - 1

@@ -1,1 +1,1 @@
-"""The live link: opened, kept alive, recorded, asked."""
+"""The live link: connection, supervision, recording and requests."""

@@ -45,7 +45,7 @@ def status_text(text: str, number: int) -> list[Any]:
 
 
 class Announcer(Talker):
-    """Sends one text for each manoeuvre, and never a second one.
+    """Sender of one text for each manoeuvre.
 
     ``judged`` may be called from any thread. The link asks for the messages in its own thread.
     """
@@ -57,20 +57,20 @@ class Announcer(Talker):
         self._stops_told: set[str] = set()
 
     def judged(self, maneuver: int, sentence: str, stop: str = "", axis: str = "", about: str = "") -> None:
-        """Take the verdict on a manoeuvre.
+        """Take the verdict on a manoeuvre, for an announcement.
 
         Parameters
         ----------
         maneuver
-            Number of the manoeuvre. A later verdict on a manoeuvre is not sent.
+            Number of the manoeuvre. A second verdict on a manoeuvre is not sent.
         sentence
             Sentence of the verdict.
         stop
-            Sentence on the axes whose test is complete; empty where none is.
+            Sentence about axes with a complete test; empty without one.
         axis
-            Words before the number, where each axis counts its own manoeuvres; empty for the elevator's.
+            Words before the number, if each axis numbers its own manoeuvres; empty for the elevator.
         about
-            Axis or plan of ``stop``, which is sent the first time only.
+            Axis or plan of ``stop``, which is sent only once.
         """
         if (axis, maneuver) in self._announced:
             return
@@ -82,16 +82,16 @@ class Announcer(Talker):
         self.say(sentence)
 
     def say(self, sentence: str) -> None:
-        """Take a sentence that is no verdict."""
+        """Take a sentence that is no verdict, for an announcement."""
         self._waiting.append(SPOKEN + sentence)
 
     def source(self, own: Ids, vehicle: Ids) -> Ids:
-        """Return the id of a computer on board, because ground stations show texts of their vehicle's system
-        only."""
+        """Return the ids of an onboard computer, because ground stations show only texts from their vehicle's
+        system."""
         return vehicle[0], dialect.MAV_COMP_ID_ONBOARD_COMPUTER
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
-        """Return the next text that waits, once a vehicle is known."""
+        """Return the next waiting text, if a vehicle is known."""
         if vehicle is None or not self._waiting:
             return []
         self._number += 1
@@ -102,7 +102,7 @@ REOPEN_EVERY_S = 1.0
 
 
 class SeparateConnection(Talker):
-    """Sends to a ground station the messages that a talker would send on the link.
+    """Separate connection to a ground station for the messages of a talker.
 
     MAVProxy forwards messages from its ``--out`` to the vehicle, and does not show these messages. MAVProxy
     shows a message from its ``--master`` when the text carries the system and component of its vehicle
@@ -144,7 +144,7 @@ class SeparateConnection(Talker):
             self._transport = None
 
     def report(self) -> list[str]:
-        """Return, once, a sentence where the connection could not be opened."""
+        """Return one sentence if the connection could not be opened."""
         said, self._said = self._said, []
         return said
 

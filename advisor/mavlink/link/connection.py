@@ -28,7 +28,8 @@ class Address:
 
     kind: Kind
     host: str
-    """Host to listen on or to call; empty for every interface. Serial device, or path of a local socket."""
+    """Host to listen on or to connect to; empty for all interfaces. For other connections the serial device,
+    or the path of a local socket."""
     port: int
     """Network port, or the baud rate of a serial line."""
     text: str
@@ -36,7 +37,8 @@ class Address:
 
     @property
     def speaks_first(self) -> bool:
-        """Whether a packet must be sent before any is received, because it tells the peer our address."""
+        """Whether a packet must be sent before any is received, so that the peer learns the advisor's
+        address."""
         return self.kind == "udpout"
 
 

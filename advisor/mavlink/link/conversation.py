@@ -1,4 +1,4 @@
-"""Messages of the advisor on a link, and their distribution to those who need them."""
+"""Messages of the advisor on a link, and their distribution to the talkers."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -15,7 +15,7 @@ Send = Callable[[bytes], bool]
 
 
 class Conversation:
-    """All talkers of one link, packed under their ids.
+    """All talkers of one link, with their messages packed under the talkers' ids.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class Conversation:
     own
         Ids of the advisor.
     key
-        32-byte signing key; None: frames are not signed.
+        Signing key of 32 bytes; None for unsigned frames.
     """
 
     def __init__(self, talkers: Iterable[Talker], own: Ids, key: bytes | None) -> None:
@@ -37,7 +37,8 @@ class Conversation:
         self._talkers.append(talker)
 
     def hear(self, frames: list[Frame], vehicle: Ids | None, now_s: float) -> list[str]:
-        """Pass the vehicle's frames and every heartbeat to the talkers; return new sentences for the crew."""
+        """Pass the vehicle's frames and every heartbeat to the talkers, and return new sentences for the
+        crew."""
         system = vehicle[0] if vehicle is not None else None
         heard = [frame for frame in frames if frame.system == system or frame.message_id == HEARTBEAT]
         said = []
@@ -50,18 +51,18 @@ class Conversation:
     def speak(
         self, vehicle: Ids | None, reachable: bool, now_s: float, unix_s: float, send: Send
     ) -> list[bytes]:
-        """Send the due messages; return the frames that could be sent.
+        """Send the due messages, and return the frames that were sent.
 
         Parameters
         ----------
         vehicle
-            Vehicle that is followed. None before the first heartbeat.
+            Followed vehicle. None before the first heartbeat.
         reachable
             Whether the vehicle receives messages.
         now_s, unix_s
-            The reader's monotonic time, and the host's time since 1970, s.
+            Monotonic time of the reader, and the host's time since 1970, s.
         send
-            Sends one frame.
+            Function that sends one frame.
         """
         hearing = vehicle if reachable else None
         return [
@@ -71,7 +72,7 @@ class Conversation:
         ]
 
     def leave(self, vehicle: Ids | None, now_s: float, unix_s: float, send: Send) -> list[bytes] | None:
-        """Send the talkers' last messages before the link is closed; None: no answer is awaited any more."""
+        """Send the talkers' last messages before the link is closed; None if no answer is awaited."""
         last = [talker.leave(now_s) for talker in self._talkers]
         if all(messages is None for messages in last):
             return None
@@ -82,7 +83,8 @@ class Conversation:
         ]
 
     def note(self, text: bytes, unix_s: float) -> bytes:
-        """Return a frame with a text of the advisor for its own stream alone. Nothing is sent."""
+        """Return a frame with a text of the advisor that is only recorded in its own stream. The frame is not
+        sent."""
         message = dialect.MAVLink_statustext_message(dialect.MAV_SEVERITY_INFO, text)
         return self._packer.pack(message, self._own, signing_time(unix_s))
 

@@ -1,4 +1,4 @@
-"""From records of a link to messages, and to the vehicle that the flight's stream follows."""
+"""Decoding of a link's records to messages, and the choice of the followed vehicle."""
 
 from dataclasses import replace
 
@@ -13,14 +13,14 @@ from advisor.mavlink.wire.frames import FrameScanner
 
 
 class Decoding:
-    """Decodes records like a log, and chooses the vehicle by the messages that the flight's stream uses.
+    """Decoder of a link's records, which chooses the vehicle like the flight's stream.
 
     Parameters
     ----------
     elevator
-        Elevator of the aircraft file, which shows which of several vehicles has one. None: by parameters.
+        Elevator of the aircraft file, which shows which vehicle has one. None to decide by parameters.
     target_system
-        System id of the vehicle; None: the first autopilot heard.
+        System id of the vehicle; None for the first autopilot that sends.
     """
 
     def __init__(self, elevator: Elevator | None, target_system: int | None) -> None:
@@ -39,7 +39,7 @@ class Decoding:
         return columns
 
     def counted(self, statistics: LinkStatistics) -> LinkStatistics:
-        """Return the statistics with the decoder's counts of the vehicle's frames: lost, late, repeated."""
+        """Return the statistics with the decoder's counts of lost, late and repeated vehicle frames."""
         vehicle = statistics.vehicle
         received = self._scanner.statistics.senders.get(vehicle) if vehicle is not None else None
         if received is None:
@@ -58,7 +58,7 @@ class Decoding:
         self._followed = None
 
     def newly_followed(self) -> Ids | None:
-        """Return the vehicle followed since the last call; None without a change."""
+        """Return the vehicle if it changed since the last call; else None."""
         vehicle = self._who.vehicle
         followed = (vehicle.system, vehicle.component) if vehicle is not None else None
         if followed == self._followed:

@@ -1,7 +1,7 @@
-"""Counts of the messages that a vehicle sends, window by window of the vehicle's own clock.
+"""Counts of a vehicle's messages in windows of the vehicle's own clock.
 
-After a pause of the advisor or of the computer, packets that have waited arrive all at once. By the clock of
-arrival their rate would be a multiple of the sent one.
+After a pause of the advisor or of the computer, waiting packets arrive all at once. By the clock of arrival
+their rate would be a multiple of the true rate.
 """
 
 import struct
@@ -16,15 +16,16 @@ _CLOCK = DEFINITIONS["ATTITUDE"].id
 
 
 class Delivery:
-    """Counts messages of some ids. A window with a pause of the vehicle, or of its clock, gives no rates.
+    """Counter of messages with some ids. A window with a pause of the vehicle, or of its clock, gives no
+    rates.
 
-    A window is over after its length by the clock of arrival. The rates count by the vehicle's clock, or by
-    arrival without that clock.
+    A window ends after its length by the clock of arrival. Rates are computed with the vehicle's clock, or
+    with the clock of arrival without it.
 
     Parameters
     ----------
     messages
-        Ids to count.
+        Message ids to be counted.
     window_s
         Length of a window, s.
     """
@@ -58,7 +59,7 @@ class Delivery:
             self._counts[frame.message_id] += 1
 
     def look(self, now_s: float) -> dict[int, float] | None:
-        """Return the rate of each message over a window, Hz; None while the window is incomplete."""
+        """Return the rate of each message in a finished window, Hz; None for an unfinished window."""
         if self._since_s is None:
             self._begin(now_s)
         assert self._since_s is not None

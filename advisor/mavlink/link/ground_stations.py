@@ -21,7 +21,7 @@ def is_ground_station(frame: Frame) -> bool:
 
 
 def who_sets_rates(stations: Collection[int]) -> str:
-    """Return a clause on who may have changed the rates, and on the remedy.
+    """Return a clause about the station that may have changed the rates, with the remedy.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Health of a link: counted frame by frame, read as a snapshot, reported by its process through restarts."""
+"""Health of a link: counters, a snapshot, and the report of its process through restarts."""
 
 import math
 import time
@@ -18,7 +18,7 @@ class LinkNotice:
     """A message about the link for the crew."""
 
     at_s: float
-    """Host time, seconds since 1970."""
+    """Host time of the notice, seconds since 1970."""
     text: str
 
 
@@ -28,57 +28,57 @@ class LinkStatistics:
 
     connected: bool = False
     vehicle: tuple[int, int] | None = None
-    """System and component of the followed vehicle. None before the first heartbeat of an autopilot."""
+    """System and component id of the followed vehicle. None before the first heartbeat of an autopilot."""
     messages: int = 0
-    """Frames taken from every system."""
+    """Number of frames received from all systems."""
     messages_per_s: float = 0.0
-    """Rate of frames over the last two seconds."""
+    """Rate of frames over the last two seconds, 1/s."""
     vehicle_messages: int = 0
-    """Frames taken from the vehicle, each counted once."""
+    """Number of frames received from the vehicle, each counted once."""
     lost: int = 0
-    """Frames of the vehicle missing by its sequence numbers."""
+    """Number of the vehicle's frames that are missing in its sequence numbers."""
     repeated: int = 0
-    """Frames of the vehicle that a second path brought again."""
+    """Number of the vehicle's frames that a second path repeated."""
     repeated_after_s: float = math.nan
     """Mean delay of a repeat after the first copy, s."""
     late: int = 0
-    """Frames of the vehicle that arrived after a younger one."""
+    """Number of the vehicle's frames that arrived after a later one."""
     bad_crc: int = 0
     garbage_bytes: int = 0
     refused: Mapping[str, int] = field(default_factory=dict)
-    """Refused frames by reason: ``unsigned``, ``forged``, ``replayed``."""
+    """Number of refused frames by reason: ``unsigned``, ``forged``, ``replayed``."""
     silent_s: float = 0.0
-    """Time since the vehicle was last heard."""
+    """Time since the vehicle's last frame, s."""
     reconnects: int = 0
     first_s: float = math.nan
     """Host time of the first record that the link's process heard, seconds since 1970."""
     newest_s: float = math.nan
     """Host time of the newest record, seconds since 1970. NaN before the first record arrives."""
     bank_rad: float = math.nan
-    """Bank of the vehicle by its newest ATTITUDE, rad. NaN before the first."""
+    """Bank of the vehicle from its newest ATTITUDE, rad. NaN before the first."""
     airspeed_m_s: float = math.nan
-    """Air speed of the vehicle by its newest VFR_HUD, m/s. NaN before the first."""
+    """Air speed of the vehicle from its newest VFR_HUD, m/s. NaN before the first."""
     unanswered_s: float = 0.0
-    """Time for which the process of the link has not answered its reader, s."""
+    """Time for which the link's process has not answered its reader, s."""
     recording: Path | None = None
     recorded_bytes: int = 0
     recording_problem: str | None = None
-    """Reason for which the disk accepts nothing at this moment."""
+    """Reason why the recording cannot be written at this moment; None while it can."""
 
     @property
     def lost_percent(self) -> float:
-        """Share of the vehicle's frames that never came."""
+        """Share of the vehicle's frames that did not arrive, per cent."""
         sent = self.vehicle_messages + self.lost
         return 100.0 * self.lost / sent if sent else 0.0
 
     @property
     def repeated_percent(self) -> float:
-        """Share of the vehicle's frames that came twice."""
+        """Share of the vehicle's frames that arrived twice, per cent."""
         return 100.0 * self.repeated / self.vehicle_messages if self.vehicle_messages else 0.0
 
 
 class LinkCounters:
-    """Counts behind ``LinkStatistics``. Times are the monotonic seconds of the reader."""
+    """Counters from which ``LinkStatistics`` is made. Times are monotonic seconds of the reader."""
 
     def __init__(self) -> None:
         self.messages = 0
@@ -96,16 +96,16 @@ class LinkCounters:
             self._recent.popleft()
 
     def rate(self, now_s: float) -> float:
-        """Return frames per second over the last ``RATE_WINDOW_S``."""
+        """Return the rate of frames over the last ``RATE_WINDOW_S``, 1/s."""
         return sum(n for t, n in tuple(self._recent) if t >= now_s - RATE_WINDOW_S) / RATE_WINDOW_S
 
 
 STARTED_WITHIN_S = 0.5
-"""Time before the first connection to a new process, s, at most, within which that process began."""
+"""Largest time between the start of a new process and the first connection to it, s."""
 
 
 class ReportedHealth:
-    """Keeps the newest report of a link's process, with what an earlier process knew."""
+    """Newest health report of a link's process, with facts from an earlier process."""
 
     def __init__(self) -> None:
         self._newest = LinkStatistics()
@@ -114,15 +114,16 @@ class ReportedHealth:
 
     @property
     def statistics(self) -> LinkStatistics:
-        """Health of the link, as reported last."""
+        """Health of the link in the newest report."""
         return replace(self._newest, unanswered_s=self._unanswered_s)
 
     def reconnected(self) -> None:
-        """Take note of a new process behind the link."""
+        """Prepare for the reports of a new process behind the link."""
         self._connected_s = time.monotonic()
 
     def take(self, statistics: LinkStatistics) -> None:
-        """Take a report. The vehicle and its silence outlast the process that heard them."""
+        """Take a health report of the link's process. The vehicle and its silence are kept over a restart of
+        the process."""
         now_s = time.monotonic()
         heard_s = now_s - statistics.silent_s
         # A process counts the silence from its own start.
@@ -132,15 +133,15 @@ class ReportedHealth:
         self._newest = replace(statistics, vehicle=vehicle, silent_s=now_s - self._vehicle_heard_s)
 
     def waited(self, seconds: float) -> bool:
-        """Take a wait without a message; return whether with it the process counts as not answering.
+        """Add a wait without a message, and return whether the process counts as not answering.
 
-        The process says something every 0.2 s.
+        The process sends a message every 0.2 s.
         """
         before_s, self._unanswered_s = self._unanswered_s, self._unanswered_s + seconds
         return before_s < OLD_AFTER_S <= self._unanswered_s
 
     def answered(self) -> bool:
-        """Take the arrival of a message; return whether a silence of the process ends with it."""
+        """Record the arrival of a message, and return whether the process answers again."""
         ends = self._unanswered_s >= OLD_AFTER_S
         self._unanswered_s = 0.0
         return ends

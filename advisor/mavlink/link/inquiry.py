@@ -1,4 +1,4 @@
-"""Questions to the vehicle: the roles and scales of its outputs, and its firmware."""
+"""Requests to the vehicle: roles and scales of its outputs, and its firmware."""
 
 import struct
 from collections.abc import Sequence
@@ -12,25 +12,26 @@ from advisor.mavlink.wire.framing import Frame
 ANSWER_WITHIN_S = 1.0
 MOST_TRIES = 3
 LONGEST_PAUSE_S = 10.0
-"""Longest time between two requests for a parameter that the vehicle is known to have, s."""
+"""Longest time between two requests for a parameter that the vehicle certainly has, s."""
 AT_ONCE = 10
 
 _HEARTBEAT, _PARAM_VALUE = dialect.MAVLINK_MSG_ID_HEARTBEAT, dialect.MAVLINK_MSG_ID_PARAM_VALUE
 
 
 class Inquiry(Talker):
-    """Reads the parameters that give the elevator's output and its scale.
+    """Requests for the parameters that give the elevator's output and its scale.
 
-    ArduPilot's questions are asked until a heartbeat shows PX4. A few questions are open at a time. An
-    unanswered question is repeated and then given up, because a vehicle does not answer for a parameter that
-    it lacks. The limits of an output that the vehicle has named exist, and are asked for until they are
-    heard. The answers reach the advisor like every other message of the link. Answers decide here on the
-    next question only. A vehicle that is followed later is asked as well.
+    ArduPilot's parameters are requested until a heartbeat shows PX4. Only a few requests are open at a time.
+    An unanswered request is repeated and finally dropped, because a vehicle does not answer for an unknown
+    parameter. Limits of a known output exist, and are requested until they arrive. The answers reach the
+    advisor like every other message of the link. Here an answer only determines the next request. If another
+    vehicle is followed later, its parameters are requested too.
 
     Parameters
     ----------
     outputs_only
-        Whether to ask for the outputs alone, not for stream rates, the ground station's id and the firmware.
+        Whether only the outputs are requested, without stream rates, the ground station's id and the
+        firmware.
     """
 
     def __init__(self, outputs_only: bool = False) -> None:
@@ -46,18 +47,18 @@ class Inquiry(Talker):
         self._firmware_asked = self._outputs_only
         self._told = False
         self.parameters: dict[str, float] = {}
-        """Answers so far."""
+        """Received parameters by name."""
 
     def _first_questions(self) -> list[str]:
         return list(self._questions.outputs if self._outputs_only else self._questions.first)
 
     @property
     def done(self) -> bool:
-        """Whether every question was answered or given up."""
+        """Whether every request was answered or dropped."""
         return not self._to_ask and all(tries >= MOST_TRIES for _, tries in self._standing.values())
 
     def hear(self, frame: Frame, now_s: float) -> None:
-        """Take an answer, or the autopilot's heartbeat."""
+        """Take an answer to a request, or the autopilot's heartbeat."""
         payload = frame.payload.ljust(25, b"\0")
         if frame.message_id == _HEARTBEAT:
             is_px4 = payload[5] == dialect.MAV_AUTOPILOT_PX4
@@ -79,7 +80,7 @@ class Inquiry(Talker):
             self._existing.update(details)
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
-        """Return the questions that are due."""
+        """Return the requests that are due."""
         if vehicle is None:
             return []
         if self._vehicle not in (None, vehicle):
@@ -106,7 +107,7 @@ class Inquiry(Talker):
         return questions
 
     def report(self) -> list[str]:
-        """Return a sentence on the answers, once everything was asked."""
+        """Return a sentence about the answers when all requests are finished."""
         if self._told or not self.done:
             return []
         self._told = True
@@ -133,21 +134,21 @@ OUTPUTS = range(1, 17)
 _FUNCTIONS = [f"FUNC{k}" for k in range(1, 9)]
 """Functions of the eight outputs that a bank of PX4 has at most."""
 _SERVOS = range(201, 217)
-"""Output functions of PX4 that are servos."""
+"""Output function numbers of PX4 for servos."""
 PITCH_FUNCTIONS = (19, 77, 78, 79, 80, 16, 17, 86, 87)
-"""SERVOn_FUNCTION of elevator, left and right elevon, left and right V-tail, differential spoilers."""
+"""Values of SERVOn_FUNCTION for elevator, elevons, V-tails and differential spoilers."""
 
 STREAM_GROUPS = ("EXTRA1", "RAW_SENS", "RC_CHAN", "EXTRA2")
 RENAMED = {
     "SYSID_MYGCS": "MAV_GCS_SYSID",
     **{f"SR0_{group}": f"MAV1_{group}" for group in STREAM_GROUPS},
 }
-"""Name of a parameter up to ArduPilot 4.6 to its later name. A vehicle knows one of the two names, so that
-both are requested."""
+"""New name of each parameter that ArduPilot 4.6 still had under an old name. A vehicle knows only one of both
+names, so both are requested."""
 
 
 class Questions(Protocol):
-    """The parameters of one kind of autopilot."""
+    """Parameters to request from one kind of autopilot."""
 
     outputs: Sequence[str]
     """Parameters that show which output is the elevator."""
@@ -158,11 +159,11 @@ class Questions(Protocol):
         """Return the value in a PARAM_VALUE."""
 
     def follow(self, name: str, value: float) -> list[str]:
-        """Return the parameters that an answer makes useful."""
+        """Return the parameters to request after an answer."""
 
 
 class ArduPilotQuestions:
-    """SERVOn_FUNCTION of every output, the stream rates and the ground station's id in both spellings."""
+    """Requests for SERVOn_FUNCTION of every output, the stream rates and the ground station's id."""
 
     outputs: Sequence[str] = tuple(f"SERVO{n}_FUNCTION" for n in OUTPUTS)
     first: Sequence[str] = (*outputs, *(name for pair in RENAMED.items() for name in pair))
@@ -180,7 +181,7 @@ class ArduPilotQuestions:
 
 
 class Px4Questions:
-    """CA_SV_CSn_TYPE of every surface and the functions of the outputs on the two PWM banks."""
+    """Requests for CA_SV_CSn_TYPE of every surface and the functions of the two PWM banks' outputs."""
 
     outputs: Sequence[str] = (
         "CA_SV_CS_COUNT",

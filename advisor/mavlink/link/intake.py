@@ -1,4 +1,4 @@
-"""From pieces of a connection to accepted frames, and to the vehicle that sends them."""
+"""Processing of received bytes to accepted frames, and identification of their vehicle."""
 
 from collections.abc import Mapping
 
@@ -14,16 +14,16 @@ MOST_PEERS = 64
 
 
 class Intake:
-    """Cuts, checks and counts frames; knows the vehicle and its network address.
+    """Cutter, checker and counter of frames, which knows the vehicle and its network address.
 
     Parameters
     ----------
     crc_extra
-        Message id to the checksum's seed.
+        Seed of the checksum, by message id.
     target_system
-        System id of the vehicle; None: the first autopilot heard.
+        System id of the vehicle; None for the first autopilot that sends.
     signatures
-        Check of signatures. None: unsigned frames are accepted.
+        Check of signatures on received frames. None to accept unsigned frames.
     """
 
     def __init__(
@@ -37,11 +37,11 @@ class Intake:
         self._garbage_bytes = 0
         self.counters = LinkCounters()
         self.ground_stations: set[int] = set()
-        """System ids of ground stations heard."""
+        """System ids of the ground stations on the link."""
         self.vehicle: tuple[int, int] | None = None
         self._peers: dict[int, Peer] = {}
         self.other_vehicles: set[int] = set()
-        """System ids of other autopilots than the vehicle."""
+        """System ids of other autopilots than the vehicle's."""
 
     def take(self, pieces: list[tuple[Peer, bytes]], now_s: float) -> list[Frame]:
         """Return the frames that these pieces complete, of every system, in order of arrival."""
@@ -77,12 +77,12 @@ class Intake:
 
     @property
     def bad_crc(self) -> int:
-        """Frames with a wrong checksum."""
+        """Number of frames with a wrong checksum."""
         return self._bad_crc + sum(cutter.bad_crc for cutter in tuple(self._cutters.values()))
 
     @property
     def garbage_bytes(self) -> int:
-        """Bytes outside any frame."""
+        """Number of bytes outside any frame."""
         return self._garbage_bytes + sum(cutter.garbage_bytes for cutter in tuple(self._cutters.values()))
 
     def _cutter(self, peer: Peer) -> FrameCutter:

@@ -1,9 +1,8 @@
-"""The process of the link: listens, records, and passes the bytes on to its readers.
+"""Process of the link, which receives and records bytes and forwards them to its readers.
 
 python -m advisor.mavlink.link.keeper
 
-The keeper estimates, draws and decodes nothing, so that no fault of such work can harm the link or the
-recording.
+The keeper makes no estimate or drawing and decodes nothing, so no fault there can harm the link.
 """
 
 import contextlib
@@ -45,16 +44,16 @@ from advisor.words.problems import UnusableInputError
 
 TELL_EVERY_S = 0.2
 ALONE_FOR_S = 60.0
-"""Time for which a link without an advisor waits for a silent vehicle before its end, s."""
+"""Time for which a link without an advisor waits for a silent vehicle before it ends, s."""
 MOST_BEHIND_BYTES = 64_000_000
-"""Backlog of a reader, bytes, above which the reader is cut off. The reader connects again and reads the
+"""Backlog of a reader, bytes, above which its connection is closed. The reader connects again and reads the
 recording."""
 
 _Message = Hello | Heard | Told
 
 
 class Reader:
-    """Sends to one reader from a separate thread, so that a slow reader delays nobody."""
+    """Sender to one reader in a separate thread, so that a slow reader delays no other."""
 
     def __init__(self, connection: Connection, hello: Hello | None = None) -> None:
         self._connection = connection
@@ -83,7 +82,7 @@ class Reader:
 
 
 class Keeper:
-    """Keeps one link until a stop, or until no advisor looks after it and the vehicle is silent.
+    """Keeper of one link until a stop, or until no advisor guards it and the vehicle is silent.
 
     Parameters
     ----------
@@ -116,7 +115,7 @@ class Keeper:
         self._stop = threading.Event()
 
     def start(self) -> Path | None:
-        """Open the link; return the file of the recording.
+        """Open the link, and return the file of the recording.
 
         Raises
         ------
@@ -130,12 +129,12 @@ class Keeper:
 
     @property
     def recording(self) -> Path | None:
-        """File of the recording. None where nothing is recorded."""
+        """File of the recording. None if nothing is recorded."""
         recorder = self._link.recorder
         return recorder.path if recorder else None
 
     def run(self) -> None:
-        """Pass on the link's bytes until the end, then close link and recording."""
+        """Forward the link's bytes until the end, then close link and recording."""
         told_s = time.monotonic()
         try:
             while not self._stop.is_set() and not self._abandoned():
@@ -184,7 +183,7 @@ class Keeper:
             reader.send(message)
 
     def _abandoned(self) -> bool:
-        """Return whether no advisor looks after the link, and the vehicle has long been silent."""
+        """Return whether no advisor guards the link, and the vehicle has long been silent."""
         since_s, now_s = self._alone_since_s, time.monotonic()
         if since_s is None or now_s - since_s < ALONE_FOR_S:
             return False
@@ -233,7 +232,7 @@ class Keeper:
             self._guarded(-1)
 
     def _lend_socket(self, connection: Connection) -> None:
-        """Share a UDP socket: packets after this process's death wait in it for the next."""
+        """Share a UDP socket, in which packets wait for the next process after this one's death."""
         descriptor = self._link.descriptor if os.name == "posix" else None
         connection.send(descriptor is not None)
         if descriptor is not None:
@@ -261,7 +260,7 @@ def _talkers(keeping: Keeping, announcer: Announcer | None) -> list[Talker]:
 
 
 def main() -> None:
-    """Keep the link that standard input describes; the first answer on standard output names the file."""
+    """Keep the link that standard input describes, and write the recording's file name first."""
     interrupt.ignore()  # a signal is for the screens, which stop this process in order
     keeping: Keeping = pickle.load(sys.stdin.buffer)
     with contextlib.suppress(OSError):  # left by a process of this link that was killed

@@ -14,7 +14,7 @@ from advisor.mavlink.link.health import LinkNotice, LinkStatistics
 
 @dataclass(frozen=True, slots=True)
 class Door:
-    """Address of a link's process. Only holders of the key are let in."""
+    """Address of a link's process. Only holders of the key can connect."""
 
     address: str
     key: bytes = field(repr=False)
@@ -25,7 +25,7 @@ class Door:
         Raises
         ------
         OSError
-            No process answers there.
+            No process answers at the address.
         """
         return Client(self.address, authkey=self.key)
 
@@ -38,7 +38,7 @@ class Door:
 
 
 def new_door() -> Door:
-    """Return a new private address: a local socket in a folder of its own, or a named pipe on Windows."""
+    """Return a new private address: a local socket in a separate folder, or a named pipe on Windows."""
     name = secrets.token_hex(8)
     if os.name == "nt":
         return Door(rf"\\.\pipe\advisor-{name}", secrets.token_bytes(32))
@@ -56,34 +56,35 @@ class Keeping:
     target_system: int | None = None
     record_to: Path | None = None
     goes_on: bool = False
-    """Whether the recording exists and is appended to."""
+    """Whether the recording exists and is continued."""
     signing_key: bytes | None = field(default=None, repr=False)
     request_rates: bool = False
     announce: bool = False
     announce_to: str | None = None
-    """Connection to a ground station for announcements. None: announcements go over the link."""
+    """Connection to a ground station for announcements. None for announcements over the link itself."""
     inherited: int | None = None
-    """File descriptor of an earlier process's UDP socket, in which packets wait. None: open one."""
+    """File descriptor of an earlier process's UDP socket, in which packets wait. None to open a new
+    socket."""
 
 
 @dataclass(frozen=True, slots=True)
 class Hello:
-    """First answer to a reader, with the position in the recording."""
+    """First answer of the link's process to a reader, with the position in the recording."""
 
     recording: Path | None
     written: int
-    """Bytes of the recording that the reader finds in the file."""
+    """Number of bytes in the recording's file."""
     unsaved: bytes
-    """Records that follow and are not in the file yet."""
+    """Records after these bytes that are not in the file yet."""
     before: int
-    """Bytes at the start of the recording from an earlier flight, or from an earlier process."""
+    """Number of bytes at the recording's start from an earlier flight or process."""
     process: int = field(default_factory=os.getpid)
     """Id of the answering process."""
 
 
 @dataclass(frozen=True, slots=True)
 class Heard:
-    """The next records, for every reader."""
+    """Next records of the link, for every reader."""
 
     at: int
     """Position of the records in the recording, bytes from its start."""
@@ -102,28 +103,28 @@ class Told:
 
 @dataclass(frozen=True, slots=True)
 class AnnounceVerdict:
-    """Asks the process of the link to announce a verdict, where announcements are on."""
+    """Order to announce a verdict, if announcements are on."""
 
     maneuver: int
     sentence: str
     stop: str
-    """Sentence on the axes whose test is complete; empty where none is."""
+    """Sentence about axes with a complete test; empty without one."""
     axis: str = ""
     """Words before the number; empty for the elevator's axis."""
     about: str = ""
-    """Axis or plan of the sentence ``stop``, which is sent once for each."""
+    """Axis or plan of the sentence ``stop``, which is sent once per axis or plan."""
 
 
 @dataclass(frozen=True, slots=True)
 class Announce:
-    """Asks the process of the link to announce a sentence, where announcements are on."""
+    """Order to announce a sentence, if announcements are on."""
 
     sentence: str
 
 
 @dataclass(frozen=True, slots=True)
 class CallOrder:
-    """Asks for a call of one of the link's methods, with a request of a crew or a reader."""
+    """Order to call one of the link's methods, from a crew or a reader."""
 
     method: Literal["listen_to", "follow", "take_output", "ask_for_outputs"]
     arguments: tuple[object, ...] = ()
@@ -131,29 +132,28 @@ class CallOrder:
 
 @dataclass(frozen=True, slots=True)
 class Listen:
-    """Asks for everything heard so far, and for all later records."""
+    """Request for all records so far, and for all later ones."""
 
 
 @dataclass(frozen=True, slots=True)
 class Observe:
-    """Asks for the health of the link only, without records and notices."""
+    """Request for the link's health only, without records and notices."""
 
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """Says that the sender looks after the link's process. Where the sender goes without ``Stop``, nobody
-    does.
+    """Message that the sender guards the link's process. If the sender ends without ``Stop``, the process is
+    unguarded.
 
-    The answer says whether the descriptor of a UDP socket follows.
+    The answer states whether the descriptor of a UDP socket follows.
     """
 
 
 @dataclass(frozen=True, slots=True)
 class Alive:
-    """Asks for the time since the slowest thread of the link was last at work. The answer is the time in
-    s."""
+    """Request for the time since the link's slowest thread last worked. The answer is the time in s."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """Asks the process to close the link and the recording, and to end."""
+    """Order to close the link and the recording, and to end the process."""

@@ -1,4 +1,4 @@
-"""A link in a separate process, as its readers see it."""
+"""A link in a separate process, as seen by its readers."""
 
 import time
 from collections.abc import Iterator
@@ -18,24 +18,24 @@ if TYPE_CHECKING:
     from advisor.mavlink.link.decoding import Decoding
 
 PIECE_BYTES = 262_144
-"""Bytes of the recording that one ``read`` decodes: some 5,000 messages."""
+"""Bytes of the recording that one ``read`` decodes: about 5,000 messages."""
 RETRY_EVERY_S = 0.1
 
 
 class KeptLink:
-    """Reads everything that the process of a link has heard since its beginning, then its new records.
+    """Reader of all records of a link's process, from the beginning.
 
-    A restarted reader therefore comes to an equal campaign. After a restart of the link's process, the reader
-    goes on where it was.
+    A restarted reader therefore arrives at an equal campaign. After a restart of the link's process, the
+    reader continues at its position.
 
     Parameters
     ----------
     door
         Address of the process.
     elevator
-        Elevator of the aircraft file, which shows which of several vehicles has one. None: by parameters.
+        Elevator of the aircraft file, which shows which vehicle has one. None to decide by parameters.
     target_system
-        System id of the vehicle; None: the first autopilot heard.
+        System id of the vehicle; None for the first autopilot that sends.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class KeptLink:
         self._connection: Connection | None = None
         self._past: Iterator[bytes] = iter(())
         self._position = 0
-        """Bytes of the recording read so far."""
+        """Number of bytes of the recording read so far."""
         self._before = self._process = 0
         self._next_try_s = 0.0
         self._notices: list[LinkNotice] = []
@@ -67,7 +67,7 @@ class KeptLink:
             self._connection.close()
 
     def read(self, timeout_s: float = 0.1) -> list[Columns]:
-        """Return the next messages in order of arrival, or nothing when none came in time."""
+        """Return the next messages in order of arrival, or an empty list after the timeout."""
         if self._connection is None:
             self._connect(timeout_s)
         piece = next(self._past, None)
@@ -84,7 +84,7 @@ class KeptLink:
 
     @property
     def statistics(self) -> LinkStatistics:
-        """Health of the link, as reported last."""
+        """Health of the link in the newest report."""
         return self._decoding.counted(self._health.statistics)
 
     def take_notices(self) -> list[LinkNotice]:
@@ -98,15 +98,15 @@ class KeptLink:
             self._send(AnnounceVerdict(maneuver, sentence, stop, axis, about))
 
     def follow(self, system: int) -> None:
-        """Follow another vehicle. The stream records the choice, and nothing is sent to a vehicle."""
+        """Follow another vehicle. The stream records the choice; nothing is sent to a vehicle."""
         self._send(CallOrder("follow", (system,)))
 
     def take_output(self, output: int) -> None:
-        """Use an output as the elevator. The stream records the choice, and nothing is sent to a vehicle."""
+        """Use an output as the elevator. The stream records the choice; nothing is sent to a vehicle."""
         self._send(CallOrder("take_output", (output,)))
 
     def ask_for_outputs(self) -> None:
-        """Ask the vehicle once which of its outputs is the elevator."""
+        """Request once from the vehicle which output is its elevator."""
         self._send(CallOrder("ask_for_outputs"))
 
     @cached_property
@@ -159,7 +159,7 @@ class KeptLink:
             yield unread
 
     def _hear(self, timeout_s: float) -> bytes:
-        """Return the next records of the process; empty when none came in time."""
+        """Return the next records of the process, or nothing after the timeout."""
         if self._connection is None:
             return b""
         try:
@@ -180,7 +180,7 @@ class KeptLink:
         return b""
 
     def _wait_in_vain(self, seconds: float) -> None:
-        """Take note of a wait in which the process has said nothing."""
+        """Record a wait in which the process sent nothing."""
         if self._health.waited(seconds):
             self._say(f"the process of the link has not answered for {OLD_AFTER_S:.0f} s")
 

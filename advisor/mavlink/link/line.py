@@ -1,4 +1,4 @@
-"""The connection under a link: opened, cut, and opened again."""
+"""Connection of a link: opened, interrupted, and opened again."""
 
 import contextlib
 import time
@@ -14,14 +14,14 @@ _TRY_EVERY_S = 0.2
 
 
 class Line:
-    """Keeps one connection open.
+    """One connection that is kept open.
 
     Parameters
     ----------
     address
         Parsed connection string.
     inherited
-        File descriptor of another process's UDP socket for the address. None: open one.
+        File descriptor of another process's UDP socket for the address. None to open a new socket.
     stop
         Event that ends every wait.
     """
@@ -38,16 +38,17 @@ class Line:
 
     @property
     def port(self) -> int | None:
-        """Local network port. None without one."""
+        """Local network port. None without a network port."""
         return self._transport.port if self._transport is not None else None
 
     @property
     def descriptor(self) -> int | None:
-        """File descriptor of a socket that another process can continue to use. None without one."""
+        """File descriptor of a socket that another process can continue to use. None without such a
+        socket."""
         return self._transport.descriptor if self._transport is not None else None
 
     def open(self, patience_s: float) -> None:
-        """Open the connection, with attempts for ``patience_s``.
+        """Open the connection, with repeated attempts for ``patience_s``.
 
         Raises
         ------
@@ -75,12 +76,13 @@ class Line:
             self._stop.wait(_TRY_EVERY_S)
 
     def take(self, wait_s: float) -> list[tuple[Peer, bytes]]:
-        """Return the bytes that have arrived, after waiting at most ``wait_s``. Reopen a cut connection.
+        """Return the bytes that have arrived, after waiting at most ``wait_s``. An interrupted connection is
+        opened again.
 
         Raises
         ------
         ConnectionCutError
-            The connection has just been cut.
+            The connection has just been interrupted.
         """
         if self._transport is None:
             self._reopen()

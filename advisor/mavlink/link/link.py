@@ -1,8 +1,8 @@
-"""A live link, treated as a tlog being written.
+"""A live link, processed like a tlog that is being written.
 
 A separate thread takes frames from the connection and puts a time stamp before each, as in a tlog. The thread
-hands these records to the recorder and to the reader of the link. Readers decode these bytes with the scanner
-that reads logs. Live messages and replayed messages are equal, in equal order.
+gives these records to the recorder and to the link's reader. Readers decode the records with the scanner for
+logs. Live messages and replayed messages are equal, in equal order.
 """
 
 import contextlib
@@ -39,45 +39,44 @@ if TYPE_CHECKING:
     from advisor.mavlink.link.decoding import Decoding
 
 BATCH_S = 0.012
-"""Time for which frames gather before they are handed over together, s."""
+"""Time for which frames are collected before they are passed on, s."""
 PAUSE_S = 0.003
-"""Rest between two looks at a busy socket, s, so that several packets share one look."""
+"""Pause between two checks of a busy socket, s, so that one check takes several packets."""
 UNREACHABLE_S = 3.0
 """Silence of the vehicle after which nothing is sent to it, s: three heartbeats."""
 FAREWELL_S = 0.7
-"""Longest time that the end of a link may take to restore settings of the vehicle, s."""
+"""Longest time at the end of a link for restoring the vehicle's settings, s."""
 STOOD_STILL_S = 1.0
-"""Time between two looks at the connection, s, above which packets may be lost: the socket keeps about a
-second of them."""
+"""Time between two checks of the connection, s, above which packets may be lost."""
 QUEUE_LENGTH = 12_000  # batches: more than a minute behind at full load
 
 _HEARD, _SENT_BY_US = 0, 3  # link numbers, the low two bits of a tlog's time stamps
 
 
 class Link:
-    """Listens to one vehicle on one connection. Nothing is sent without talkers.
+    """Link to one vehicle on one connection. A link without talkers sends nothing.
 
     Parameters
     ----------
     connection
         Connection string, see ``parse_connection``.
     source_system
-        System id of the advisor, for all messages sent.
+        System id of the advisor in all its messages.
     target_system
-        System id of the vehicle; None: the first autopilot heard.
+        System id of the vehicle; None for the first autopilot that sends.
     record_to
-        File of the recording; None: no recording.
+        File of the recording; None for no recording.
     goes_on
-        Whether the file exists and is appended to.
+        Whether the file exists and is continued.
     key
-        32-byte signing key: sent messages are signed, and messages without its signature are refused.
+        Signing key of 32 bytes, with which messages are signed and without which they are refused.
     talkers
-        Sources of sent messages. A connection that must send before it receives (``udpout``) adds a
+        Sources of the sent messages. A connection that must send before it receives (``udpout``) adds a
         heartbeat once a second.
     inherited
-        File descriptor of another process's UDP socket for the connection. None: open one.
+        File descriptor of another process's UDP socket for the connection. None to open a new socket.
     patience_s
-        Time for attempts at the first connection, s. A lost connection is tried for ever.
+        Time for attempts at the first connection, s. An interrupted connection is tried without limit.
 
     Raises
     ------
@@ -112,7 +111,7 @@ class Link:
         self._notices: deque[LinkNotice] = deque(maxlen=1000)
         self._motion = MotionNow()
         self._queue: Queue[tuple[float, bytes]] = Queue(QUEUE_LENGTH)
-        """Batches of records, each with the host time of its handing over, s."""
+        """Batches of records, each with the host time at which it was passed on, s."""
         self.first_s = self.newest_s = self.read_to_s = math.nan
         """Host times of the newest batch and of the newest batch that was read, seconds since 1970."""
         self._recorder: Recorder | None = None
@@ -122,7 +121,7 @@ class Link:
         self._thread = threading.Thread(target=self._run, name="link", daemon=True)
         self._unix_offset_s = 0.0
         self.looked_s = time.monotonic()
-        """Monotonic time at which the thread of the link last looked at its connection, s."""
+        """Monotonic time of the link thread's last check of its connection, s."""
 
     def start(self) -> Self:
         """Open the connection and the recording, and begin to listen.
@@ -148,7 +147,7 @@ class Link:
         return self
 
     def stop(self) -> None:
-        """Close everything. The recording is whole afterwards."""
+        """Close everything. The recording is then complete."""
         self._stop.set()
         if self._thread.ident is not None:
             self._thread.join()
@@ -166,19 +165,20 @@ class Link:
 
     @property
     def port(self) -> int | None:
-        """Local network port, which the system chose where the address says 0."""
+        """Local network port, chosen by the system if the address has port 0."""
         return self._line.port
 
     @property
     def descriptor(self) -> int | None:
-        """File descriptor of a socket that another process can continue to use. None without one."""
+        """File descriptor of a socket that another process can continue to use. None without such a
+        socket."""
         return self._line.descriptor
 
     catching_up = False
     """Always False: a link in this process has no earlier records for a reader."""
 
     def read(self, timeout_s: float = 0.1) -> list[Columns]:
-        """Return the messages of the next micro-batch, or nothing when none came in time."""
+        """Return the messages of the next micro-batch, or an empty list after the timeout."""
         records = self.read_records(timeout_s)
         if not records:
             return []
@@ -193,7 +193,7 @@ class Link:
         return columns
 
     def read_records(self, timeout_s: float = 0.1) -> bytes:
-        """Return the next micro-batch as records of a tlog, or nothing when none came in time."""
+        """Return the next micro-batch as records of a tlog, or nothing after the timeout."""
         with contextlib.suppress(Empty):
             self.read_to_s, records = self._queue.get(timeout=timeout_s)
             return records
@@ -203,23 +203,24 @@ class Link:
 
     @property
     def recorder(self) -> Recorder | None:
-        """Recorder of the link. None before the start, and where nothing is recorded."""
+        """Recorder of the link. None before the start, and without a recording."""
         return self._recorder
 
     def listen_to(self, vehicle: Ids) -> None:
-        """Count, watch and answer this vehicle. The stream's decoder says which vehicle to follow."""
+        """Count, watch and answer the messages of this vehicle. The stream's decoder determines which vehicle
+        to follow."""
         self._orders.append(vehicle)
 
     def follow(self, system: int) -> None:
-        """Follow another vehicle. The stream records the choice, and nothing is sent to a vehicle."""
+        """Follow another vehicle. The stream records the choice; nothing is sent to a vehicle."""
         self._orders.append(FOLLOW + str(system).encode())
 
     def take_output(self, output: int) -> None:
-        """Use an output as the elevator. The stream records the choice, and nothing is sent to a vehicle."""
+        """Use an output as the elevator. The stream records the choice; nothing is sent to a vehicle."""
         self._orders.append(TAKE + str(output).encode())
 
     def ask_for_outputs(self) -> None:
-        """Ask the vehicle once which of its outputs is the elevator."""
+        """Request once from the vehicle which output is its elevator."""
         self._orders.append(Inquiry(outputs_only=True))
 
     def take_notices(self) -> list[LinkNotice]:
@@ -231,7 +232,7 @@ class Link:
 
     @property
     def statistics(self) -> LinkStatistics:
-        """Health of the link now."""
+        """Present health of the link."""
         now_s = time.monotonic()
         counters = self._intake.counters
         found = LinkStatistics(
@@ -289,7 +290,7 @@ class Link:
             self._hand_over(bytes(batch))
 
     def _take_leave(self) -> bytes:
-        """Let the talkers end their work, while the vehicle is heard and within ``FAREWELL_S``."""
+        """Let the talkers finish while the vehicle answers, for at most ``FAREWELL_S``."""
         records = bytearray()
         give_up_s = time.monotonic() + FAREWELL_S
         while (now_s := time.monotonic()) < give_up_s and self._reachable(now_s):
@@ -313,7 +314,7 @@ class Link:
         return self._intake.take(pieces, time.monotonic()) if pieces else []
 
     def _obey(self) -> list[bytes]:
-        """Carry out the orders since the last look; return texts for the stream alone."""
+        """Execute the orders since the last check, and return texts for the stream alone."""
         texts = []
         while self._orders:
             match self._orders.popleft():

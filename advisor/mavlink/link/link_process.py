@@ -1,4 +1,4 @@
-"""Supervision of a link's process by the process with the screens."""
+"""Supervision of a link's process by the process of the screens."""
 
 import contextlib
 import os
@@ -22,23 +22,23 @@ from advisor.process.interrupt import hung_up
 
 RETRY_EVERY_S = 1.0
 ASK_EVERY_S = 0.5
-"""Time between two questions whether the process is at work, s."""
+"""Time between two checks whether the process works, s."""
 HUNG_AFTER_S = 5.0
-"""Time without work, s, after which the process is ended and started again. Nothing that it does takes a
-second. Meanwhile the packets of 1 s wait in the socket's buffer, and later ones are lost."""
+"""Time without work, s, after which the process is ended and restarted. No task of the process takes a
+second. Meanwhile the socket's buffer keeps packets of 1 s, and later ones are lost."""
 PATIENCE_S = 10.0
 """Longest time that a process may take to close its recording, s."""
 
 
 class LinkProcess:
-    """Starts the process of a link, restarts it after any unwanted end, and stops it.
+    """Supervisor of a link's process, which starts, restarts and stops it.
 
     Parameters
     ----------
     keeping
         Description of the link and its recording.
     running
-        Running process that keeps this link and that nobody looks after. None: start one.
+        Running process that keeps this link and is unguarded. None to start a new process.
     """
 
     def __init__(self, keeping: Keeping, running: RunningLink | None = None) -> None:
@@ -50,7 +50,7 @@ class LinkProcess:
         self._stopping = threading.Event()
         self._thread = threading.Thread(target=self._look_after, name="guard", daemon=True)
         self.recording: Path | None = running.recording if running else None
-        """File of the recording; None where nothing is recorded."""
+        """File of the recording; None without a recording."""
 
     def link(self, elevator: Elevator | None = None) -> KeptLink:
         """Return a new reader of the link, which can be handed to another process before its first read.
@@ -58,8 +58,7 @@ class LinkProcess:
         Parameters
         ----------
         elevator
-            Elevator of the aircraft file, which shows which of several vehicles has one. None: by
-            parameters.
+            Elevator of the aircraft file, which shows which vehicle has one. None to decide by parameters.
         """
         return KeptLink(self._keeping.door, elevator, self._keeping.target_system)
 
@@ -75,7 +74,7 @@ class LinkProcess:
 
     @property
     def pid(self) -> int | None:
-        """Id of the process. None for a process that another advisor has started."""
+        """Id of the process. None for a process started by another advisor."""
         return self._process.pid if self._process else None
 
     def __enter__(self) -> Self:
@@ -136,7 +135,7 @@ class LinkProcess:
         self._process, self.recording = process, answer
 
     def _stand_guard(self) -> Connection:
-        """Tell the process that somebody looks after it, and hold its UDP socket for the next process."""
+        """Guard the process, and hold its UDP socket for the next process."""
         connection = self._keeping.door.open()
         connection.send(Guard())
         if connection.recv():
@@ -151,7 +150,7 @@ class LinkProcess:
             self._socket = None
 
     def _hangs(self, guard: Connection) -> bool:
-        """Wait until the process ends, or does no work for ``HUNG_AFTER_S``; return whether it hangs.
+        """Wait until the process ends or hangs for ``HUNG_AFTER_S``, and return whether it hangs.
 
         Raises
         ------
@@ -196,7 +195,7 @@ class LinkProcess:
 
 
 def end(running: RunningLink) -> None:
-    """End a link that runs alone. The recording of an ended link is whole."""
+    """End a link that runs without an advisor. The recording of the link is then complete."""
     with contextlib.suppress(OSError, EOFError):
         connection = running.door.open()
         _ask_to_stop(connection)

@@ -1,4 +1,5 @@
-"""Sentences for the crew about its link: silence, cuts, recovery, a second vehicle, a slower stream."""
+"""Sentences for the crew about its link: silence, interruption, recovery, a second vehicle, a slower
+stream."""
 
 import struct
 from collections.abc import Collection
@@ -22,7 +23,7 @@ _REFUSED = {
 
 
 class LinkWatch:
-    """Turns arriving frames, and their absence, into sentences. Times are the reader's monotonic seconds."""
+    """Sentences about arriving frames and about their absence. Times are the reader's monotonic seconds."""
 
     def __init__(self, connection: str) -> None:
         self._connection = connection
@@ -36,26 +37,26 @@ class LinkWatch:
         self.reconnects = 0
 
     def begin(self, now_s: float) -> None:
-        """Take the opening of the connection, at which silence begins to count."""
+        """Record the opening of the connection, at which silence begins to count."""
         self._heard_s = now_s
 
     def start_again(self) -> None:
-        """Forget the rates after another vehicle was chosen."""
+        """Forget the rates after the choice of another vehicle."""
         self._rates.restart()
         self._reboots = RebootWatch()
 
     def silent_s(self, now_s: float) -> float:
-        """Return the time since the vehicle was last heard; without a vehicle, since any sender was."""
+        """Return the time since the vehicle's last frame, s; without a vehicle, since any sender's."""
         return max(0.0, now_s - self._heard_s)
 
     def cut(self, why: str, now_s: float) -> str:
-        """Take a cut of the connection; return the sentence on it."""
+        """Record an interruption of the connection, and return a sentence about it."""
         if self._cut_s is None:
             self._cut_s = now_s
         return f"{self._connection}: connection lost ({why}), trying again"
 
     def look(self, intake: Intake, frames: list[Frame], now_s: float) -> list[str]:
-        """Return sentences on these frames, or on their absence."""
+        """Return sentences about these frames, or about their absence."""
         said = []
         vehicle = intake.vehicle
         relevant = [frame for frame in frames if vehicle is None or frame.system == vehicle[0]]
@@ -91,7 +92,7 @@ class LinkWatch:
 
 
 def _instead(intake: Intake) -> str:
-    """Return a clause on following another vehicle that is heard."""
+    """Return a clause about another vehicle that could be followed."""
     others = sorted(intake.other_vehicles)
     if intake.vehicle is None or not others:
         return ""
@@ -104,15 +105,15 @@ FALLEN = 0.6
 """Share of its best rate below which a stream counts as slowed down."""
 RECOVERED = 0.8
 LEAST_HZ = 2.0
-"""Least best rate of a watched stream, Hz. A window holds too few messages of a slower one."""
+"""Least best rate of a watched stream, Hz. A window contains too few messages of a slower stream."""
 
 _NAMES = {DEFINITIONS[name].id: name for name in WATCHED}
 
 
 class RateWatch:
-    """Compares the indispensable messages of one vehicle with their best rates, window by window.
+    """Comparison of one vehicle's indispensable messages with their best rates, window by window.
 
-    Silence is not watched here: a window with a pause gives no rates.
+    Silence is watched elsewhere, because a window with a pause gives no rates.
     """
 
     def __init__(self) -> None:
@@ -127,7 +128,7 @@ class RateWatch:
         self._delivery.restart()
 
     def look(self, from_vehicle: list[Frame], now_s: float, stations: Collection[int] = ()) -> list[str]:
-        """Return sentences on streams that slowed down or recovered in the vehicle's newest frames.
+        """Return sentences about streams that slowed down or recovered in the vehicle's newest frames.
 
         Parameters
         ----------
@@ -136,7 +137,7 @@ class RateWatch:
         now_s
             Monotonic seconds.
         stations
-            System ids of the ground stations heard.
+            System ids of the ground stations on the link.
         """
         if not from_vehicle:
             return []
@@ -159,13 +160,13 @@ _ATTITUDE = DEFINITIONS["ATTITUDE"].id
 
 
 class RebootWatch:
-    """Follows the clock of ATTITUDE by the rules of the flight's own stream."""
+    """Detection of a reboot from the clock of ATTITUDE, by the rules of the flight's stream."""
 
     def __init__(self) -> None:
         self._clock = BootClock()
 
     def hear(self, frame: Frame) -> bool:
-        """Take a frame of the vehicle; return True when it confirms a reboot."""
+        """Take a frame of the vehicle, and return whether it confirms a reboot."""
         if frame.message_id != _ATTITUDE:
             return False
         boot = self._clock.boot

@@ -1,4 +1,4 @@
-"""Bank and air speed of this moment, read from frames without a decoder."""
+"""Present bank and air speed, read from frames without a decoder."""
 
 import math
 import struct
@@ -13,10 +13,10 @@ class MotionNow:
 
     def __init__(self) -> None:
         self.bank_rad = self.airspeed_m_s = math.nan
-        """Newest values; NaN before the first message."""
+        """Newest bank, rad; NaN before the first message."""
 
     def look(self, frames: list[Frame], system: int) -> None:
-        """Take the newest values from frames of this system."""
+        """Read the newest values from frames of this system."""
         for frame in frames:
             if frame.system != system:
                 continue

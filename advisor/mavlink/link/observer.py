@@ -1,4 +1,4 @@
-"""The health of a link, heard directly from its process by a program that reads no records."""
+"""Health of a link, received from its process by a program that reads no records."""
 
 import contextlib
 from collections.abc import Callable
@@ -15,16 +15,16 @@ LOOK_EVERY_S = 0.25
 
 
 class LinkObserver:
-    """Tells the health of a link several times a second while the context is open.
+    """Observer that reports a link's health several times a second while the context is open.
 
-    No estimate and no backlog of records delays these reports.
+    Neither estimates nor waiting records delay these reports.
 
     Parameters
     ----------
     door
-        Address of the process. None: no process keeps a link, and nothing is reported.
+        Address of the process. None if no process keeps a link, so that nothing is reported.
     tell
-        Called with the health, in a thread of the observer.
+        Function that is called with the health, in a thread of the observer.
     """
 
     def __init__(self, door: Door | None, tell: Callable[[LinkStatistics], object]) -> None:
@@ -48,7 +48,7 @@ class LinkObserver:
             self._thread.join()
 
     def announce(self, sentence: str) -> None:
-        """Ask the process to announce a sentence, where announcements are on."""
+        """Request the announcement of a sentence, if announcements are on."""
         with contextlib.suppress(OSError):
             if self._connection is not None:
                 self._connection.send(Announce(sentence))

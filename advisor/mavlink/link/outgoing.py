@@ -1,4 +1,4 @@
-"""Messages that the advisor sends: packed under its own ids, and signed where a key is given."""
+"""Messages that the advisor sends, packed under its own ids and signed if a key is given."""
 
 from abc import ABC, abstractmethod
 from typing import Any
@@ -19,7 +19,7 @@ class Talker(ABC):
     """Source of messages for the vehicle: a state machine without a clock."""
 
     def source(self, own: Ids, vehicle: Ids) -> Ids:
-        """Return the ids under which the messages are sent; by default the advisor's own."""
+        """Return the ids of the sender of the messages; by default the advisor's own."""
         return own
 
     def hear(self, frame: Frame, now_s: float) -> None:  # noqa: B027
@@ -27,10 +27,10 @@ class Talker(ABC):
 
     @abstractmethod
     def speak(self, vehicle: Ids | None, now_s: float) -> list[Any]:
-        """Return the messages to send now. Without a vehicle, none is heard yet or at present."""
+        """Return the messages that are due. The vehicle is None if none sends yet or at present."""
 
     def leave(self, now_s: float) -> list[Any] | None:
-        """Return the messages to send before the link is closed; None: no answer is awaited any more."""
+        """Return the messages to send before the link is closed; None if no answer is awaited."""
         return None
 
     def report(self) -> list[str]:
@@ -39,12 +39,12 @@ class Talker(ABC):
 
 
 class Packer:
-    """Packs messages into frames, with separate sequence numbers for each sender.
+    """Packer of messages into frames, with separate sequence numbers for each sender.
 
     Parameters
     ----------
     key
-        32-byte signing key; None: frames are not signed.
+        Signing key of 32 bytes; None for unsigned frames.
     """
 
     def __init__(self, key: bytes | None) -> None:
@@ -52,7 +52,7 @@ class Packer:
         self._senders: dict[Ids, dialect.MAVLink] = {}
 
     def pack(self, message: Any, source: Ids, signing_time: int) -> bytes:
-        """Return one frame. ``signing_time`` is in 10 us since 2015, and is raised where it does not rise."""
+        """Return one frame. ``signing_time`` is in 10 us since 2015, and is raised to increase always."""
         mavlink = self._senders.get(source) or self._senders.setdefault(source, self._sender(source))
         mavlink.signing.timestamp = max(mavlink.signing.timestamp, signing_time)
         raw = bytes(message.pack(mavlink))
@@ -68,13 +68,14 @@ class Packer:
 
 
 class Heartbeat(Talker):
-    """A ground station's heartbeat once a second, so that routers and radios learn our address."""
+    """Heartbeat of a ground station once a second, from which routers and radios learn the advisor's
+    address."""
 
     def __init__(self) -> None:
         self._next_s = float("-inf")
 
     def speak(self, vehicle: Ids | None, now_s: float) -> list[Any]:
-        """Return a heartbeat when one is due."""
+        """Return a heartbeat if one is due."""
         if now_s < self._next_s:
             return []
         self._next_s = now_s + 1.0

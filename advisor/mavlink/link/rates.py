@@ -1,4 +1,4 @@
-"""Requests for message rates, and a watch on the rates then delivered."""
+"""Requests for message rates, and a watch on the delivered rates."""
 
 import struct
 from collections.abc import Iterable, Mapping
@@ -15,7 +15,7 @@ from advisor.mavlink.wire.definitions import DEFINITIONS
 from advisor.mavlink.wire.framing import Frame
 
 STREAMS = ("ATTITUDE", "AOA_SSA", "SERVO_OUTPUT_RAW", "RAW_IMU", "VFR_HUD", "GLOBAL_POSITION_INT")
-"""Messages that identification needs, the indispensable first."""
+"""Messages that identification needs, the indispensable ones first."""
 
 ANSWER_WITHIN_S = 1.0
 MEASURE_S = 3.0
@@ -24,7 +24,7 @@ ENOUGH = 0.6
 SHORTEST_LIFE_S = 10.0
 """Least time between two reboots, s. Two senders with one system id would seem to reboot alternately."""
 PUT_BACK_AGAIN_S = 0.2
-"""Time for the vehicle's answers before rates are restored once more, s."""
+"""Time for the vehicle's answers before rates are restored again, s."""
 MOST_PUT_BACK = 3
 
 _COMMAND_ACK = dialect.MAVLINK_MSG_ID_COMMAND_ACK
@@ -39,19 +39,19 @@ _ANSWERS = {
 
 
 class RateRequest(Talker):
-    """Requests one rate after the other, waits for each answer, then watches the delivered rates.
+    """Requests for message rates, one after another, with a watch on the delivered rates.
 
     MAVLink, command protocol: SET_MESSAGE_INTERVAL (511) in a COMMAND_LONG is answered by a COMMAND_ACK that
-    names no message. Only one request is therefore open at a time. An unanswered one is sent again with a
-    raised confirmation. A refused or unanswered request is repeated after a rest that doubles, see
-    `advisor.mavlink.link.message_request`. After a reboot everything is requested again. A granted rate that
-    falls is requested again at once, a few times, then after rests. At the end every message gets its default
+    names no message. Therefore only one request is open at a time. An unanswered request is repeated with a
+    higher confirmation count. A refused or unanswered request is repeated after a rest that doubles, see
+    `advisor.mavlink.link.message_request`. After a reboot all rates are requested again. A granted rate that
+    falls is requested again a few times at once, then after rests. At the end every message gets its default
     rate back.
 
     Parameters
     ----------
     rates_hz
-        Message name to wanted rate in Hz.
+        Requested rate of each message, Hz, by the message's name.
     """
 
     def __init__(self, rates_hz: Mapping[str, float]) -> None:
@@ -68,13 +68,12 @@ class RateRequest(Talker):
         self._put_back = self._unanswered = 0
         self._said: list[str] = []
         self.answers: dict[str, str] = {}
-        """Message name to ``granted``, ``denied``, ``unsupported``, ``failed``, ``rejected for now`` or
-        ``no answer``."""
+        """Last answer for each message, such as ``granted`` or ``no answer``, by the message's name."""
         self.delivered_hz: dict[str, float] = {}
-        """Message name to its rate over the last ``MEASURE_S``, Hz."""
+        """Rate of each message over the last ``MEASURE_S``, Hz, by the message's name."""
 
     def hear(self, frame: Frame, now_s: float) -> None:
-        """Count requested messages, take the awaited answer, and note other stations."""
+        """Count requested messages, take the awaited answer, and record other stations."""
         if self._vehicle is not None and frame.system != self._vehicle[0]:
             if is_ground_station(frame):
                 self._stations.add(frame.system)
@@ -88,7 +87,7 @@ class RateRequest(Talker):
                 self._answered(_ANSWERS[result], now_s)
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
-        """Return the request that is due; none while the vehicle is not heard."""
+        """Return the request that is due; nothing while the vehicle is silent."""
         if vehicle is None:
             self._delivery.restart()
             self._asked_s = float("-inf")
@@ -129,7 +128,7 @@ class RateRequest(Talker):
         return [_set_interval(self._vehicle, request.message, 0.0, self._put_back - 1) for request in asked]
 
     def report(self) -> list[str]:
-        """Return answers and delivered rates, each once."""
+        """Return sentences about answers and delivered rates, each once."""
         said, self._said = self._said, []
         return said
 
@@ -140,7 +139,7 @@ class RateRequest(Talker):
         return _set_interval(self._vehicle, request.message, 1e6 / request.rate_hz, request.tries - 1)
 
     def _begin_anew(self, now_s: float) -> None:
-        """Begin again after a reboot, in which the vehicle has forgotten every rate."""
+        """Begin again after a reboot, in which the vehicle has lost every rate."""
         if now_s - self._began_s < SHORTEST_LIFE_S:
             return
         self._began_s = now_s
@@ -148,7 +147,7 @@ class RateRequest(Talker):
         self._said.append("the vehicle rebooted: every rate is asked for again")
 
     def _forget(self) -> None:
-        """Begin with a vehicle without requests so far."""
+        """Reset the requests for a vehicle without earlier requests."""
         for request in self._requests.values():
             request.begin()
         self._standing = None

@@ -1,4 +1,4 @@
-"""The link's own recording: a tlog that loses at most its last second in a power cut."""
+"""Recording of the link: a tlog that loses at most its last second in a power cut."""
 
 import contextlib
 import os
@@ -12,16 +12,16 @@ from advisor.mavlink.link.recording_file import create, take_up
 from advisor.process.liveness import OLD_AFTER_S
 
 WRITE_EVERY_S = 0.05
-"""Time between two writes to the operating system, s. The death of this process loses at most the records of
-this time."""
+"""Time between two writes to the operating system, s. If this process ends abruptly, at most the records of
+this time are lost."""
 SYNC_EVERY_S = 0.5
 """Time between two synchronisations with the disk, s. A power cut loses at most the records of this time and
 of one write."""
 RETRY_EVERY_S = 1.0
 MOST_UNSAVED_BYTES = 64_000_000
-"""Most bytes that wait in memory while the disk fails: 17 minutes of a link of 60 kB/s."""
+"""Largest number of bytes that wait in memory while the disk fails: 17 minutes at 60 kB/s."""
 LITTLE_SPACE_BYTES = 200_000_000
-"""Free space, bytes, below which the crew is warned: one hour of a link of 60 kB/s."""
+"""Free space on the disk, bytes, below which the crew is warned: one hour at 60 kB/s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,36 +29,36 @@ class Recorded:
     """Progress of a recording."""
 
     written: int
-    """Number of bytes in the file, which ends with a whole record."""
+    """Number of bytes in the file, which ends with a complete record."""
     unsaved: bytes
     """Records in memory that are not in the file yet."""
 
 
 class Recorder:
-    """Appends whole tlog records to a file, in a separate thread.
+    """Recorder that appends complete tlog records to a file, in a separate thread.
 
-    A slow disk cannot delay a packet, because the recorder's thread writes. A failing disk ends neither the
+    A slow disk delays no packet, because the recorder's own thread writes. A failing disk ends neither the
     link nor the recording. Records wait in memory, and the recorder tries again every ``RETRY_EVERY_S``. The
-    file ends with a whole record at every moment between.
+    file always ends with a complete record.
 
     Parameters
     ----------
     path
-        File to make, with its folder. When the file exists, a number is added to the name.
+        File to be created, including its folder. When the file exists, a number is added to the name.
     goes_on
-        Whether to append to an existing file, after its last whole record.
+        Whether an existing file is continued after its last complete record.
 
     Raises
     ------
     UnusableInputError
-        The file cannot be made. Or the existing file is no recording, or is in use.
+        The file cannot be made. The error is also raised if the existing file is no recording, or is in use.
     """
 
     def __init__(self, path: Path, goes_on: bool = False) -> None:
         self.path, self._file = take_up(path) if goes_on else create(path)
         self._written = self._file.tell()
         self.before = self._written
-        """Bytes of the recording from an earlier flight."""
+        """Number of bytes in the recording from an earlier flight."""
         self._problem: str | None = None
         self._busy_since_s: float | None = None
         self._stuck_told = False
@@ -75,24 +75,24 @@ class Recorder:
 
     @property
     def bytes_written(self) -> int:
-        """Bytes added to the file since it was opened."""
+        """Number of bytes added to the file since it was opened."""
         return self._written - self.before
 
     @property
     def problem(self) -> str | None:
-        """Reason for which records wait in memory at this moment; None while all is well."""
+        """Reason why records wait in memory at this moment; None while none must wait."""
         return self._stuck or self._problem
 
     @property
     def _stuck(self) -> str | None:
-        """Clause on a disk that does not answer at this moment; None while the disk answers."""
+        """Clause about a disk that does not answer; None while the disk answers."""
         since_s = self._busy_since_s
         if since_s is None or (waits_s := time.monotonic() - since_s) < OLD_AFTER_S:
             return None
         return f"the disk has not answered for {waits_s:.0f} s; what is heard waits in memory"
 
     def write(self, records: bytes) -> None:
-        """Queue whole records."""
+        """Queue complete records for writing."""
         with self._lock:
             if len(self._pending) + len(records) > MOST_UNSAVED_BYTES:
                 self._dropped += len(records)
@@ -100,12 +100,12 @@ class Recorder:
                 self._pending += records
 
     def recorded(self) -> Recorded:
-        """Return everything queued so far: the bytes in the file, and the records in memory."""
+        """Return the bytes in the file and the records in memory."""
         with self._lock:
             return Recorded(self._written, bytes(self._pending))
 
     def take_notices(self) -> list[str]:
-        """Return sentences on the disk for the crew, since the last call."""
+        """Return sentences about the disk for the crew, since the last call."""
         stuck = self._stuck
         if (stuck is not None) != self._stuck_told:
             self._stuck_told = stuck is not None
@@ -128,7 +128,7 @@ class Recorder:
             self._step()
 
     def _step(self) -> None:
-        """Write the waiting records, and synchronise when due."""
+        """Write the waiting records, and synchronise the file if due."""
         now_s = time.monotonic()
         if now_s - self._failed_s < RETRY_EVERY_S:
             return

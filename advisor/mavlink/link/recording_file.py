@@ -1,4 +1,4 @@
-"""Files of recordings: their names, new files, and continued files."""
+"""Files of recordings: their names, creation and continuation."""
 
 import contextlib
 import os
@@ -13,7 +13,7 @@ from advisor.mavlink.wire.framing import CRC_EXTRA, LONGEST_FRAME, MAGIC, FrameC
 from advisor.words.problems import UnusableInputError
 
 _TAIL_BYTES = 65_536
-"""Bytes at the end of a recording in which the last whole record is sought."""
+"""Bytes at the end of a recording in which the last complete record is sought."""
 
 
 def default_recording(folder: Path | None = None, now: datetime | None = None) -> Path:
@@ -22,9 +22,9 @@ def default_recording(folder: Path | None = None, now: datetime | None = None) -
     Parameters
     ----------
     folder
-        Folder of the recording; None: the user's own folder of recordings.
+        Folder of the recording; None for the user's recordings folder.
     now
-        Start of the flight; None: this moment.
+        Start of the flight; None for this moment.
 
     Returns
     -------
@@ -41,10 +41,9 @@ def recordings_folder() -> Path:
 
 
 def writable_folder() -> tuple[Path, str]:
-    """Return a folder for a recording that the user does not name, and a sentence where this is not the
-    usual folder.
+    """Return a folder for an unnamed recording, and a sentence if it is not the usual folder.
 
-    A home that is full, read-only or missing keeps nobody from advising.
+    A full, read-only or missing home folder prevents no advice.
     """
     own = recordings_folder()
     try:
@@ -65,7 +64,7 @@ def create(path: Path) -> tuple[Path, BinaryIO]:
     Raises
     ------
     UnusableInputError
-        No file can be made there.
+        No file can be created at the path.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -83,12 +82,12 @@ def create(path: Path) -> tuple[Path, BinaryIO]:
 
 
 def take_up(path: Path) -> tuple[Path, BinaryIO]:
-    """Open a recording behind its last whole record. A last record that a power cut broke is removed.
+    """Open a recording after its last complete record. A last record that a power cut broke is removed.
 
     Raises
     ------
     UnusableInputError
-        The file is no telemetry log, is being recorded, or cannot be opened.
+        The file is no telemetry log, is in use by another recorder, or cannot be opened.
     """
     try:
         file = _alone(path, path.open("r+b", buffering=0))
@@ -109,7 +108,7 @@ def take_up(path: Path) -> tuple[Path, BinaryIO]:
 
 
 def _end_of_whole_records(file: BinaryIO, path: Path) -> int:
-    """Return the end of the last whole record, bytes. Bytes after the last whole record were broken by a
+    """Return the end of the last complete record, bytes. Bytes after the last whole record were broken by a
     power cut."""
     size = file.seek(0, os.SEEK_END)
     start = max(0, size - _TAIL_BYTES)
@@ -136,7 +135,7 @@ def _last_frame_ends(data: bytes) -> int:
 
 
 def _alone(path: Path, file: BinaryIO) -> BinaryIO:
-    """Lock the file against a second recorder, where the system can."""
+    """Lock the file against a second recorder, if the system can."""
     try:
         import fcntl
     except ImportError:  # Windows opens no file for writing twice in one program, and has no such lock

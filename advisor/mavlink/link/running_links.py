@@ -1,4 +1,4 @@
-"""Links that run on this computer, so that an advisor finds the link of an advisor that ended."""
+"""Links that run on this computer, for an advisor that continues after another one ended."""
 
 import contextlib
 import json
@@ -16,7 +16,7 @@ from advisor.mavlink.link.keeping import Door
 from advisor.process.atomic_file import write_atomically
 
 ANSWERS_WITHIN_S = 5.0
-"""Time within which the process of a link lets a caller in, s. Nothing that it does takes a second."""
+"""Time within which a link's process must answer a caller, s. No task of the process takes a second."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +28,11 @@ class RunningLink:
     recording: Path | None
     door: Door
     alone: bool
-    """Whether nobody looks after the process, because its advisor ended unasked."""
+    """Whether the process is unguarded, because its advisor ended abruptly."""
 
 
 def note(link: RunningLink) -> None:
-    """Write down a running link and its state, readable by the user only."""
+    """Write a file about a running link and its state, readable by the user only."""
     path = _path(link.pid)
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     content = {
@@ -46,15 +46,15 @@ def note(link: RunningLink) -> None:
 
 
 def forget(pid: int) -> None:
-    """Remove the note of a link that has ended."""
+    """Remove the file about a link that has ended."""
     with contextlib.suppress(OSError):
         _path(pid).unlink(missing_ok=True)
 
 
 def running_alone() -> Iterator[RunningLink]:
-    """Yield links that run without their advisor. Notes of processes that are gone are removed.
+    """Yield links that run without their advisor. Files about ended processes are removed.
 
-    A process that nobody looks after and that hangs is ended, for it would keep its connection for ever.
+    An unguarded process that hangs is ended, because it would keep its connection.
     """
     for path in sorted(_folder().glob("*.json")):
         with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
@@ -69,7 +69,7 @@ def running_alone() -> Iterator[RunningLink]:
 
 
 def _state(door: Door) -> Literal["answers", "hangs", "gone"]:
-    """Return whether the process behind a door lets callers in within ``ANSWERS_WITHIN_S``."""
+    """Return whether the process at an address answers within ``ANSWERS_WITHIN_S``."""
     found: list[Literal["answers", "gone"]] = []
 
     def knock() -> None:

@@ -12,14 +12,14 @@ _MOST_CHUNKS = 512  # taken in one go, so that a flood cannot keep the reader fr
 
 
 class UdpTransport(Transport):
-    """UDP transport, listening (``udpin``) or calling (``udpout``).
+    """UDP transport, listening (``udpin``) or connecting (``udpout``).
 
     Parameters
     ----------
     address
-        Address to listen on or to call.
+        Address to listen on or to connect to.
     inherited
-        File descriptor of another process's socket. None: open one.
+        File descriptor of another process's socket. None to open a new socket.
     """
 
     def __init__(self, address: Address, inherited: int | None = None) -> None:
@@ -47,7 +47,7 @@ class UdpTransport(Transport):
         return bool(select.select([self._socket], [], [], timeout_s)[0])
 
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Return everything that has arrived."""
+        """Return all bytes that have arrived."""
         pieces: list[tuple[Peer, bytes]] = []
         for _ in range(_MOST_CHUNKS):
             try:
@@ -84,7 +84,8 @@ class UdpTransport(Transport):
 
 
 class StreamTransport(Transport):
-    """TCP transport, calling (``tcp``) or waiting for callers in turn (``tcpin``); or a local socket."""
+    """TCP transport, connecting (``tcp``) or accepting one caller after another (``tcpin``); or a local
+    socket."""
 
     def __init__(self, address: Address, timeout_s: float = 2.0) -> None:
         self._listener: socket.socket | None = None

@@ -1,8 +1,8 @@
-"""A flight's recorded sticks, sent to a simulated vehicle as an override of its receiver.
+"""Recorded sticks of a flight, sent to a simulated vehicle as an override of its receiver.
 
 RC_CHANNELS_OVERRIDE (MAVLink common.xml, 70) replaces the receiver's pulses; 0 releases a channel. An
-autopilot accepts an override only from the system id of its ground station. A vehicle must prove to be a
-simulation by a parameter that only simulations have, before anything is sent.
+autopilot accepts an override only from the system id of its ground station. A vehicle must have a parameter
+of simulations before anything is sent.
 """
 
 from typing import Any
@@ -15,19 +15,20 @@ from advisor.mavlink.link.outgoing import Ids, Talker
 from advisor.mavlink.wire.framing import Frame
 
 CHANNELS = 4
-"""Number of overridden channels: roll, pitch, throttle and yaw by the usual order."""
+"""Number of overridden channels: roll, pitch, throttle and yaw in the usual order."""
 SIMULATED = ("SIM_SPEEDUP", "SIM_BAT_DRAIN")
-"""Parameters of ArduPilot's and of PX4's simulation in the loop. No autopilot on board has one."""
+"""Parameters that only the simulations of ArduPilot and PX4 have. An autopilot on board lacks these
+parameters."""
 _STATIONS = ("SYSID_MYGCS", "MAV_GCS_SYSID")
-"""Parameters with the id of the ground station from which ArduPilot takes an override."""
+"""Parameters with the id of the ground station whose override ArduPilot accepts."""
 _ASK_EVERY_S, _ASK_FOR_S, _SEND_EVERY_S = 0.5, 5.0, 0.02
 _RELEASES = 10
-"""Number of releasing messages at the end, because any of them may be lost."""
+"""Number of releasing messages at the end, because messages may be lost."""
 _USUAL_STATION = 255
 
 
 class StickReplay(Talker):
-    """Asks whether the vehicle is simulated, then sends recorded pulses in their own time.
+    """Replay of recorded sticks in their own time, after a test whether the vehicle is simulated.
 
     Parameters
     ----------
@@ -46,7 +47,7 @@ class StickReplay(Talker):
         self._began_s: float | None = None
         self._released = 0
         self.refused = False
-        """Whether the vehicle did not answer for a parameter of a simulation."""
+        """Whether the vehicle lacked the parameters of a simulation."""
 
     @property
     def done(self) -> bool:
@@ -54,7 +55,7 @@ class StickReplay(Talker):
         return self.refused or self._released >= _RELEASES
 
     def source(self, own: Ids, vehicle: Ids) -> Ids:
-        """Return the id of the vehicle's own ground station, whose override it takes."""
+        """Return the id of the vehicle's own ground station, whose override the vehicle accepts."""
         return self._station or _USUAL_STATION, own[1]
 
     def hear(self, frame: Frame, now_s: float) -> None:
@@ -69,7 +70,7 @@ class StickReplay(Talker):
             self._station = int(np.frombuffer(payload[:4], "<f4")[0])
 
     def speak(self, vehicle: Ids | None, now_s: float) -> list[Any]:
-        """Return the questions, then the pulses that are due, at last their release."""
+        """Return the requests, then the pulses that are due, and finally their release."""
         if vehicle is None or self.done:
             return []
         if self._simulated_s is None:
@@ -89,7 +90,7 @@ class StickReplay(Talker):
         return [_override(vehicle, self._pulses[row].tolist())]
 
     def leave(self, now_s: float) -> list[Any] | None:
-        """Return nothing more to send: the vehicle releases an override that ends."""
+        """Return nothing, because the vehicle releases an override that ends."""
         return None
 
     def _asked(self, vehicle: Ids, now_s: float) -> list[Any]:

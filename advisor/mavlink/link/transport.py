@@ -1,7 +1,6 @@
-"""Interface of a link's transport: take bytes, give bytes, notice a cut.
+"""Interface of a link's transport: reception, transmission, and detection of an interruption.
 
-Packets are read raw and never blocking, because decoding every message in Python would be the slow part, not
-the socket.
+Packets are read undecoded and never block, because decoding is slower than the socket.
 """
 
 from abc import ABC, abstractmethod
@@ -13,14 +12,14 @@ Peer = tuple[Any, ...]
 
 
 class ConnectionCutError(Exception):
-    """The far end or the cable went away.
+    """The peer or the cable was disconnected.
 
     Parameters
     ----------
     why
         Reason in words.
     listening
-        Whether the transport waits for the next caller itself. Otherwise the caller opens the transport
+        Whether the transport itself waits for the next caller. Otherwise the caller opens the transport
         again.
     """
 
@@ -30,7 +29,7 @@ class ConnectionCutError(Exception):
 
 
 class Transport(ABC):
-    """An open connection."""
+    """An open connection of a link."""
 
     @abstractmethod
     def wait(self, timeout_s: float) -> bool:
@@ -38,7 +37,7 @@ class Transport(ABC):
 
     @abstractmethod
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Return everything that has arrived, each piece with its sender."""
+        """Return all bytes that have arrived, each piece with its sender."""
 
     @abstractmethod
     def send(self, data: bytes, to: Peer | None) -> bool:
@@ -50,10 +49,11 @@ class Transport(ABC):
 
     @property
     def port(self) -> int | None:
-        """Local network port. None without one."""
+        """Local network port. None without a network port."""
         return None
 
     @property
     def descriptor(self) -> int | None:
-        """File descriptor of a socket that another process can continue to use. None without one."""
+        """File descriptor of a socket that another process can continue to use. None without such a
+        socket."""
         return None

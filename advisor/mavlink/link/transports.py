@@ -47,7 +47,7 @@ class SerialTransport(Transport):
 
 
 class PymavlinkTransport(Transport):
-    """The rarer kinds (multicast, broadcast, web sockets), opened by pymavlink and read raw."""
+    """Rare kinds of connections (multicast, broadcast, web sockets), opened by pymavlink."""
 
     def __init__(self, address: Address) -> None:
         from pymavlink import mavutil
@@ -78,7 +78,7 @@ class PymavlinkTransport(Transport):
 
 
 def _is_terminal(path: str) -> bool:
-    """Return whether a file is a serial line. A name without a file may be a line of Windows."""
+    """Return whether a file is a serial line. A name without a file may be a serial line of Windows."""
     if not os.path.exists(path):
         return True
     end = os.open(path, os.O_RDWR | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_NONBLOCK", 0))
@@ -96,7 +96,7 @@ def open_transport(address: Address, inherited: int | None = None) -> Transport:
     address
         Parsed connection string.
     inherited
-        File descriptor of another process's UDP socket for this address. None: open one.
+        File descriptor of another process's UDP socket for this address. None to open a new socket.
 
     Raises
     ------

@@ -1,1 +1,1 @@
-"""Logs of any kind: recognised, unpacked, opened."""
+"""Logs of any kind: recognition, unpacking and opening."""

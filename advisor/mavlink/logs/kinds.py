@@ -7,8 +7,8 @@ from advisor.mavlink.logs.log_format import LogFormat
 from advisor.words.problems import Problem
 
 BEGINNING_BYTES = 1 << 20
-"""Bytes of a file within which its log must begin. Text in front of a log is a few lines. A megabyte is read
-in milliseconds, so that huge and packed files are refused quickly."""
+"""Number of bytes of a file within which its log must begin. Text in front of a log is a few lines. A
+megabyte is read in milliseconds, so huge and packed files are refused quickly."""
 
 _ARCHIVES = {
     b"BZh": "bzip2",
@@ -17,23 +17,23 @@ _ARCHIVES = {
     b"Rar!": "RAR",
     b"\x28\xb5\x2f\xfd": "zstd",
 }
-"""First bytes of packed files that the advisor does not unpack, to the name of the archive."""
+"""Name of each archive that the advisor does not unpack, by its first bytes."""
 _PACKED_INSIDE = (b"\x1f\x8b", b"PK\x03\x04")
 
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """A log that has been recognised."""
+    """A log whose format was recognised."""
 
     format: LogFormat
     starts_at: int
-    """Bytes before the log's first record."""
+    """Number of bytes before the log's first record."""
 
 
 def recognised(beginning: bytes) -> Found | None:
     """Return the log that begins first within the first ``BEGINNING_BYTES`` of a file; None for no log.
 
-    A format without first bytes of its own is tried where no other begins.
+    A format without first bytes of its own is tried if no other format begins.
     """
     for has_magic in (True, False):
         there = [
@@ -47,7 +47,7 @@ def recognised(beginning: bytes) -> Found | None:
 
 
 def refusal(name: str, beginning: bytes) -> Problem:
-    """Return a problem with the reason for which a file is no log, and with the remedy.
+    """Return a problem with the reason why a file is no log, and with the remedy.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""One format of logs: how it begins, how it is read, how its files are named, and what it refuses."""
+"""One format of logs: its beginning, its reader, its file names, and its refusals."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -9,30 +9,30 @@ from advisor.mavlink.wire.frames import FrameScanner
 from advisor.words.problems import Problem
 
 Read = Callable[[Path, Iterable[str] | None, int, FrameScanner], Iterator[list[Columns]]]
-"""Function that streams the messages of a log. It takes the path and the names of the wanted messages (None:
-all), then the bytes before the first record, and a scanner for telemetry."""
+"""Function that streams the messages of a log. The arguments are the path, the wanted messages (None: all),
+the bytes before the first record, and a scanner."""
 
 
 def nothing_refused(name: str, beginning: bytes) -> Problem | None:
-    """Return None: the format has no relative that a user may give in its place."""
+    """Return None, because the format has no relative that a user may give instead."""
     return None
 
 
 @dataclass(frozen=True, slots=True)
 class LogFormat:
-    """Format of a log file. A module of ``advisor.mavlink.logs.formats`` makes each."""
+    """Format of a log file. Each module of ``advisor.mavlink.logs.formats`` makes one ``LogFormat``."""
 
     holds: str
     """Content of a log in words: ``DataFlash records``."""
     given: str
-    """How a user names such a log: ``an ArduPilot .bin``."""
+    """Words with which a user names such a log: ``an ArduPilot .bin``."""
     ending: str
-    """Usual ending of the files. The content decides, never the name."""
+    """Usual file ending. The content decides, never the name."""
     begins_at: Callable[[bytes], int | None]
-    """Bytes before the first record within the beginning of a file; None: it holds no such log."""
+    """Function that returns the bytes before the first record; None for another kind of file."""
     read: Read
     refusal: Callable[[str, bytes], Problem | None] = nothing_refused
-    """Problem by a file's name and beginning, where the file is a relative of the format that cannot be read.
-    An encrypted log is such a relative."""
+    """Function that returns a problem for an unreadable relative of the format, from file name and beginning.
+    An encrypted log is an example."""
     has_magic: bool = True
-    """Whether fixed first bytes tell the format. Telemetry has none, and is tried last."""
+    """Whether the format has fixed first bytes. Telemetry has none, and is tried last."""

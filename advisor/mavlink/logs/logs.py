@@ -21,21 +21,21 @@ def open_log(
 ) -> Iterator[list[Columns]]:
     """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not.
 
-    The last two hold the autopilot's own records. Records become the messages that telemetry would have
-    carried, in one batch.
+    The last two formats contain the autopilot's own records. Records become the messages that telemetry would
+    have carried, in one batch.
 
     Parameters
     ----------
     path : Path
     wanted : iterable of str, optional
-        Names of the messages to return. Default: all that MAVLink defines.
+        Names of the messages to return. None for all messages that MAVLink defines.
     scanner : FrameScanner, optional
-        Scanner for a tlog, in place of one made with ``wanted``, for the sake of its statistics.
+        Scanner for a tlog instead of one made with ``wanted``, whose statistics the caller uses.
 
     Raises
     ------
     UnusableInputError
-        The file is missing or no regular file. While reading: the file holds no messages.
+        The file is missing or no regular file. During the reading: the file contains no messages.
     """
     return _read(path, beginning_of(path), wanted, scanner or FrameScanner(wanted))
 
@@ -43,7 +43,7 @@ def open_log(
 def _read(
     path: Path, beginning: bytes, wanted: Iterable[str] | None, scanner: FrameScanner
 ) -> Iterator[list[Columns]]:
-    """Yield the messages of one log. Whatever breaks its reader ends this log only, with a sentence."""
+    """Yield the messages of one log. An error of the reader ends this log only, with a sentence."""
     try:
         yield from _messages(path, beginning, wanted, scanner)
     except UnusableInputError:
@@ -74,7 +74,7 @@ def _messages(
 
 
 def _skipped(found: Found, first: list[Columns]) -> Columns:
-    """Return a note on bytes before the first record, placed before the first messages."""
+    """Return a note about bytes before the first record, placed before the first messages."""
     text = f"{READER.decode()}{found.starts_at} bytes in front of the first record were skipped"
     return message(
         "STATUSTEXT",

@@ -1,8 +1,8 @@
 """Parameters that a ground station fetched as a file by MAVLink FTP: ``@PARAM/param.pck``.
 
-QGroundControl, MAVProxy and Mission Planner read ArduPilot's parameters so. The vehicle answers with pieces
-of the file in FILE_TRANSFER_PROTOCOL, some twice and out of order. The file holds the kind, name and value
-of each parameter. A name leaves out the first letters that it shares with the name before (ArduPilot,
+QGroundControl, MAVProxy and Mission Planner read ArduPilot's parameters in this way. The vehicle sends pieces
+of the file in FILE_TRANSFER_PROTOCOL, some twice and out of order. The file contains the kind, name and value
+of each parameter. A name omits the first letters that it shares with the previous name (ArduPilot,
 ``AP_Filesystem_Param.cpp``).
 """
 
@@ -19,17 +19,17 @@ MESSAGE = "FILE_TRANSFER_PROTOCOL"
 _ACK, _OPEN, _READ, _BURST = 128, 4, 5, 15
 """Operations of MAVLink FTP: the answer, opening of a file, and reading of one or many pieces."""
 _HEAD = struct.Struct("<HBBBBBxI")
-"""Sequence number, session, operation, size, operation answered, end of a burst, padding, offset."""
+"""Fields: sequence number, session, operation, size, answered operation, end of a burst, padding, offset."""
 _PLAIN, _WITH_DEFAULTS = 0x671B, 0x671C
 """First number of the file, without and with the parameters' default values."""
 _KINDS = {1: "<b", 2: "<h", 3: "<i", 4: "<f"}
-"""Kind of a parameter to the form of its value."""
+"""Binary form of a parameter's value, by its kind."""
 _HAS_DEFAULT = 1
 MOST_BATCHES = 500
-"""Number of batches with pieces of files that are kept. A download of parameters takes some seconds; one of a
-log may take an hour."""
+"""Largest number of batches with file pieces that are kept. A download of parameters takes some seconds; one
+of a log may take an hour."""
 _REAL32 = 9
-"""MAV_PARAM_TYPE_REAL32. A value from the file is a number already."""
+"""Value of MAV_PARAM_TYPE_REAL32. A value from the file is a number already."""
 
 
 def stated_by_file(batches: Iterable[Sequence[Columns]]) -> list[Columns]:
@@ -45,14 +45,14 @@ def stated_by_file(batches: Iterable[Sequence[Columns]]) -> list[Columns]:
 
 
 class ParameterFiles:
-    """Parameter files of a stream: their values follow the pieces as PARAM_VALUE."""
+    """Parameter files in a stream, whose values are added as PARAM_VALUE messages."""
 
     def __init__(self) -> None:
         self._sent: deque[Columns] = deque(maxlen=MOST_BATCHES)
         self._told = 0
 
     def followed(self, batch: Sequence[Columns]) -> list[Columns]:
-        """Return a batch, followed by the parameters known so far where its pieces have added some."""
+        """Return a batch, followed by all known parameters if its pieces added some."""
         sent = [columns for columns in batch if columns.name == MESSAGE]
         self._sent += sent
         stated = stated_by_file([self._sent]) if sent else []
@@ -105,7 +105,7 @@ def _contiguous(pieces: dict[int, bytes]) -> bytes:
 
 
 def unpacked(data: bytes) -> Iterator[tuple[str, float]]:
-    """Yield name and value of each parameter in a packed file up to a break. Another file yields nothing."""
+    """Yield name and value of each parameter in a packed file, up to a gap. Any other file yields nothing."""
     if len(data) < 6 or struct.unpack_from("<H", data)[0] not in (_PLAIN, _WITH_DEFAULTS):
         return
     at, before = 6, b""

@@ -1,4 +1,4 @@
-"""Telemetry logs of ground stations (``.tlog``): a row of time stamps and frames."""
+"""Telemetry logs of ground stations (``.tlog``): sequences of time stamps and frames."""
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -23,20 +23,20 @@ def read_tlog(
     ----------
     path : Path
     wanted : iterable of str, optional
-        Names of the messages to decode. Default: all defined messages.
+        Names of the messages to decode. None for all defined messages.
     chunk_bytes : int
-        Bytes read at a time, without influence on the messages.
+        Number of bytes read at a time, without influence on the messages.
 
     Raises
     ------
     UnusableInputError
-        The file holds no MAVLink, which is known at its end.
+        The file contains no MAVLink, which is known only at its end.
     """
     return scan_tlog(path, FrameScanner(wanted), chunk_bytes)
 
 
 def scan_tlog(path: Path, scanner: FrameScanner, chunk_bytes: int = CHUNK_BYTES) -> Iterator[list[Columns]]:
-    """Stream a log through the caller's scanner, for the sake of the scanner's statistics."""
+    """Stream a log through the caller's scanner, which collects statistics."""
     size = 0
     with path.open("rb") as file:
         while chunk := file.read(chunk_bytes):

@@ -1,4 +1,4 @@
-"""Access to the file of a log: refused where unreadable, unpacked where packed (gzip, zip)."""
+"""Access to a log's file: refused if unreadable, unpacked if packed (gzip, zip)."""
 
 import gzip
 import stat
@@ -15,14 +15,14 @@ from advisor.words.problems import UnusableInputError
 LARGEST_UNPACKED_BYTES = (1 << 32) - 1
 """Largest log that is unpacked, bytes. Autopilots write to FAT32 cards, on which no file is larger."""
 MOST_TIMES = 100
-"""Largest ratio of a log's size to that of its packed file. Logs of this project's vehicles shrink to a half
-up to a tenth, and a log of a vehicle that stands still to a fiftieth."""
+"""Largest ratio of a log's size to the size of its packed file. This project's logs are packed to between a
+half and a tenth, and a standing vehicle's log to a fiftieth."""
 _SMALL_BYTES = 64_000_000
-"""Size up to which no ratio is too large, bytes."""
+"""Size of a log up to which any ratio is accepted, bytes."""
 _MOST_MEMBERS = 1000
-"""Most files of an archive that are examined."""
+"""Largest number of an archive's files that are examined."""
 _NAMED = 5
-"""Most logs of an archive that a sentence names."""
+"""Largest number of an archive's logs that a sentence names."""
 _GZIP, _ZIP = b"\x1f\x8b", b"PK\x03\x04"
 _OTHER_FILES = {
     stat.S_ISDIR: ("not_a_file", "is a folder", "Give the log file inside it."),
@@ -73,8 +73,8 @@ def unpacked(path: Path, beginning: bytes) -> Iterator[Path]:
     Raises
     ------
     UnusableInputError
-        An archive is damaged or encrypted, or holds no log, several, or one beyond
-        ``LARGEST_UNPACKED_BYTES`` or ``MOST_TIMES`` the packed file.
+        An archive is damaged or encrypted, contains no or several logs, or a log beyond
+        ``LARGEST_UNPACKED_BYTES`` or ``MOST_TIMES``.
     """
     if not beginning.startswith((_GZIP, _ZIP)):
         yield path
@@ -116,7 +116,7 @@ def _damaged(path: Path) -> UnusableInputError:
 
 
 def _copy(packed: IO[bytes] | gzip.GzipFile, name: str, packed_bytes: int, to: Path) -> Path:
-    """Unpack a log to a file, after its beginning has shown a log."""
+    """Unpack a log to a file, after its beginning was recognised as a log."""
     beginning = packed.read(BEGINNING_BYTES)
     if recognised(beginning) is None:
         raise UnusableInputError.of([refusal(f"{name}, unpacked,", beginning)])

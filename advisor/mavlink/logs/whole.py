@@ -1,7 +1,8 @@
-"""A log known as a whole: which of its vehicles flew, and its parameters, count from its first message.
+"""A log known as a whole: the flown vehicle and its parameters apply from the first message.
 
-Ground stations write PARAM_VALUE when their download is complete, some only after landing. A vehicle that is
-heard first may stand idle. A link cannot know these facts earlier. A file can.
+Ground stations write PARAM_VALUE after a download, sometimes only after landing. The first vehicle in a log
+may have stood idle. A link cannot know the flown vehicle and its parameters from the start. A reader of a
+file can.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -23,26 +24,26 @@ from advisor.words.printable import printable
 from advisor.words.problems import UnusableInputError
 
 _STATE = ("PARAM_VALUE", MESSAGE)
-"""Messages that state parameters: one by one, and as a file."""
+"""Messages that state parameters, one by one or as a file."""
 
 
 def read_whole_log(
     path: Path, others: Sequence[Path] = (), scanner: FrameScanner | None = None
 ) -> Iterator[list[Columns]]:
-    """Stream the messages of a log, those that tell of the whole log in front of the others.
+    """Stream the messages of a log, with those about the whole log first.
 
-    In front stands the first value of each parameter of the servo outputs. The heartbeat of the vehicle that
-    flew stands there too, where another vehicle is heard first.
+    The first messages are the first value of each servo output parameter. The heartbeat of the flown vehicle
+    is also first if another vehicle appears before it.
 
     Parameters
     ----------
     path
         Log of any kind, as in :func:`advisor.mavlink.logs.logs.open_log`.
     others
-        Other logs of the campaign, the nearest first. The first of them that states parameters lends these to
-        a log without any.
+        Other logs of the campaign, the nearest first. The first other log with parameters supplies them to a
+        log without any.
     scanner
-        Scanner for a tlog, for the sake of its statistics.
+        Scanner for a tlog, whose statistics the caller uses.
 
     Raises
     ------
@@ -70,9 +71,9 @@ def read_whole_log(
 
 
 def _flew_though_heard_later(batches: Iterable[Sequence[Columns]]) -> Columns | None:
-    """Return the first heartbeat of the vehicle with wings that alone was armed.
+    """Return the first heartbeat of the winged vehicle that alone was armed.
 
-    None where the first vehicle heard was armed, or several others were.
+    None if the first vehicle was armed, or several others were.
     """
     first: dict[Sender, Columns] = {}
     armed: set[Sender] = set()
@@ -119,7 +120,7 @@ def _lent(others: Sequence[Path]) -> tuple[Path | None, list[Columns]]:
 
 
 def _in_front(first: Sequence[Columns], known: Sequence[Columns], notes: Sequence[str]) -> list[Columns]:
-    """Return messages, and notes on them, in front of the first messages of a log."""
+    """Return known messages and notes about them, before the first messages of a log."""
     begins = min(int(c.order[0]) for c in first)
     began_s = min(float(c.arrival_s[0]) for c in first)
     place = begins - sum(map(len, known)) - len(notes)

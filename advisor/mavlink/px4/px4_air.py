@@ -20,8 +20,8 @@ from advisor.mavlink.px4.px4_topics import (
 from advisor.mavlink.records.equivalent import air_data, latest
 
 _SOURCES = ("airspeed_source", "selected_airspeed_index")
-"""Fields of AirspeedValidated.msg with the source, since 1.15 and before. The
-values 1 to 3 number a sensor, 0 is ground speed minus wind, 4 a synthetic speed, -1 none."""
+"""Fields of AirspeedValidated.msg with the source of the air speed, since 1.15 and before. The values 1 to 3
+number a sensor, 0 is ground speed minus wind, 4 a synthetic speed, -1 none."""
 _SENSORS = (1, 2, 3)
 _CALIBRATED, _INDICATED = "calibrated_airspeed_m_s", "indicated_airspeed_m_s"
 _TRUE = "true_airspeed_m_s"
@@ -38,7 +38,7 @@ Series = tuple[IntArray, FloatArray]
 
 
 def air(topics: Topics) -> tuple[list[TimedMessages], list[str]]:
-    """Return VFR_HUD and WIND_COV, and sentences on the source of the air speed."""
+    """Return VFR_HUD and WIND_COV, and sentences about the source of the air speed."""
     speed, said = _airspeed(topics)
     found = {"climb": _climb(topics), "throttle": _throttle(topics)}
     records = [{"time_usec": one[0], name: one[1]} for name, one in found.items() if one is not None]
@@ -51,7 +51,7 @@ def air(topics: Topics) -> tuple[list[TimedMessages], list[str]]:
 
 
 def _airspeed(topics: Topics) -> tuple[Speed | None, list[str]]:
-    """Return the faster of the validated air speed and its sensor's, while the autopilot accepts a sensor."""
+    """Return the faster one of the validated air speed and its sensor's, while a sensor is valid."""
     validated, raw = first(topics, "airspeed_validated"), topics.get("airspeed", [])
     measured = [] if validated is None else [samples_of(validated, _is_measured(validated))]
     sensor = _joined(
@@ -81,7 +81,7 @@ def _is_measured(validated: Topic) -> BoolArray:
 
 
 def _is_believed(sensor: Topic, number: int, validated: Topic | None) -> BoolArray:
-    """Return whether the autopilot uses this sensor number at each sample; without the field, sensor 1."""
+    """Return whether the autopilot uses this sensor number at each sample; sensor 1 without the field."""
     good = np.isfinite(sensor[_INDICATED])
     if validated is None:
         return good & (number == 1)
@@ -101,8 +101,7 @@ def _joined(topics: Sequence[Topic]) -> Topic | None:
 
 
 def _calibrated(speed: Topic, validated: Topic | None) -> Speed:
-    """Return the calibrated air speed, a sensor's indicated speed times the validator's scale, with the true
-    one of the same samples."""
+    """Return the calibrated air speed (indicated speed times the validator's scale), with the true one."""
     scale = 1.0 if _CALIBRATED in speed else _scale(validated)
     fields = {"airspeed": _CALIBRATED if _CALIBRATED in speed else _INDICATED, "true_airspeed": _TRUE}
     found = {

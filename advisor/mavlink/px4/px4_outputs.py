@@ -1,10 +1,10 @@
 """Servo outputs of a PX4 log: SERVO_OUTPUT_RAW from outputs, servos or the pitch command.
 
 PX4 publishes the outputs of each driver as an instance of ``actuator_outputs``, in the order in which the
-drivers started. Only the movements show which instance belongs to PWM_MAIN, and which to PWM_AUX.
+drivers started. Only the outputs' movements show which instance belongs to PWM_MAIN, and which to PWM_AUX.
 
-PX4 before 1.13 mixes its outputs by files that no log holds. The outputs are linear in the commands, so that
-least squares of each output on the commands gives the mixer.
+PX4 before 1.13 mixes its outputs by files that no log contains. The outputs are linear in the commands, so
+that least squares of each output on the commands gives the mixer.
 """
 
 from collections.abc import Mapping, Sequence
@@ -37,17 +37,18 @@ from advisor.mavlink.px4.px4_topics import (
 
 @dataclass(frozen=True, slots=True)
 class Outputs:
-    """The outputs, and findings about them."""
+    """Servo outputs of a log, with findings about them."""
 
     messages: Sequence[TimedMessages]
     found: Mapping[str, float]
-    """Findings in the form of parameters."""
+    """Findings about the outputs in the form of parameters."""
     said: Sequence[str] = ()
-    """Sentences for the user on the source of the outputs."""
+    """Sentences for the user about the source of the outputs."""
 
 
 def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
-    """Return the outputs by the parameters that describe them, else by agreement with the pitch command."""
+    """Return the outputs from the parameters that describe them, else from agreement with the pitch
+    command."""
     moving = _moving(topics.get("actuator_outputs", []))
     if any(role.surface for role in px4_wiring(parameters).roles.values()):
         return _of_surfaces(topics, moving, parameters)
@@ -64,7 +65,7 @@ def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
 
 
 def _of_surfaces(topics: Topics, moving: Sequence[Topic], parameters: Mapping[str, float]) -> Outputs:
-    """Return the outputs from the fastest of outputs, servo commands and torque set point.
+    """Return the outputs from the fastest of outputs, servo commands and torque demand.
 
     By default PX4 logs outputs and servos every 100 ms, and the torque set point every 20 ms. The control
     allocation of the surfaces gives the servo commands from the torque.
@@ -101,7 +102,7 @@ def _allocated(torque: Topic, parameters: Mapping[str, float]) -> Topic:
 
 
 def _moving(instances: Sequence[Topic]) -> list[Topic]:
-    """Return the instances in which any output moves; all where none does."""
+    """Return the instances in which any output moves; all if none moves."""
     moving = [topic for topic in instances if any(_moves(topic, k) for k in OUTPUTS)]
     return moving or list(instances)
 
@@ -116,7 +117,8 @@ def _varies(values: FloatArray) -> bool:
 
 
 def _assigned(instances: Sequence[Topic], parameters: Mapping[str, float]) -> dict[int, Topic]:
-    """Return instances by the group's number, from 0, whose functions agree best with the moving outputs."""
+    """Return the instance of each output group, from 0, whose functions agree best with the moving
+    outputs."""
     agreements = []
     for bank, group in enumerate(banks(parameters) or ["PWM_MAIN"]):
         used = {k for k in OUTPUTS if parameters.get(f"{group}_FUNC{k}")}
@@ -158,11 +160,11 @@ def _pulses(port: int, at: IntArray, pulses: Mapping[int, FloatArray]) -> TimedM
 
 
 _FOLLOWS = 0.5
-"""Least share of an output's movement, without the other commands' part, that the pitch command must explain.
-At 10 Hz two topics catch different moments of each step and keep about 0.8."""
+"""Least share of an output's movement that the pitch command must explain, after removal of other commands.
+At 10 Hz two topics sample different moments of each step and share about 0.8."""
 _SMALLER = 0.3
-"""Least effect of pitch on an output, as a share of the largest effect on any output. A smaller effect is a
-mixer's trim, such as flaps that compensate."""
+"""Least effect of pitch on an output, over the largest effect on any output. A smaller effect belongs to a
+mixer's trim, such as compensating flaps."""
 _LEAST_SAMPLES = 20
 
 
@@ -174,12 +176,12 @@ class Command:
     """Name of the topic."""
     topic: Topic
     axes: Mapping[str, FloatArray]
-    """Roll, pitch, yaw and, where the topic has one, throttle; shape (n,). Positive pitch lifts the nose."""
+    """Shape (n,) each: roll, pitch, yaw and, if in the topic, throttle. Positive pitch raises the nose."""
 
 
 def pitch_commands(topics: Topics) -> list[Command]:
-    """Return the topics with the commands, the preferred first. For a VTOL aircraft, the topic of the wing
-    comes last."""
+    """Return the topics with the commands, the preferred first. For a VTOL aircraft, the wing's topic is
+    last."""
     found = []
     for topic in topics.get("actuator_controls_0", []):
         axes = dict(zip(("roll", "pitch", "yaw", "throttle"), vector(topic, "control", 4), strict=True))
@@ -191,7 +193,8 @@ def pitch_commands(topics: Topics) -> list[Command]:
 
 
 def followers(outputs: Topic, command: Command) -> dict[int, float]:
-    """Return the outputs that follow the pitch command: number from 1 to 1.0, or to -1.0 for the opposite."""
+    """Return 1.0 for each output that follows the pitch command, -1.0 for the opposite, by the output's
+    number."""
     at, known = published_us(outputs), published_us(command.topic)
     told = {name: np.interp(at, known, values) for name, values in command.axes.items()}
     inside = (at >= known[0]) & (at <= known[-1]) & np.all(np.isfinite([*told.values()]), axis=0)

@@ -1,4 +1,4 @@
-"""Topics of a PX4 log: instances, stamps, and the choice among topics with one quantity.
+"""Topics of a PX4 log: instances, stamps, and the choice among topics of one quantity.
 
 Topics and fields are those of PX4's message definitions (msg/*.msg).
 """
@@ -35,11 +35,12 @@ TOPICS: dict[str, set[str]] = {
     "wind": {"windspeed_north", "windspeed_east"},
     "wind_estimate": {"windspeed_north", "windspeed_east"},
 }
-"""Topic to its necessary fields. A topic without these fields (another version) counts as missing."""
+"""Necessary fields of each topic, by the topic's name. A topic without its necessary fields (another version)
+counts as missing."""
 
 ENOUGH_HZ = 25.0
-"""Least rate at which the preferred topic is used although another topic is faster, 1/s: twelve samples in a
-short period of 2 Hz. PX4's filtered rates come at 50 Hz by default, its raw gyro at 200 Hz."""
+"""Least rate at which the preferred topic is used although another is faster, 1/s. PX4's filtered rates come
+at 50 Hz by default, its raw gyro at 200 Hz."""
 
 Topic = Mapping[str, NDArray[Any]]
 Topics = Mapping[str, Sequence[Topic]]
@@ -56,7 +57,7 @@ class TimedMessages:
 
 
 def topics_of(log: Any) -> dict[str, list[Topic]]:
-    """Return the instances of each topic with the necessary fields, in the order of time."""
+    """Return the instances of each topic with its necessary fields, in order of time."""
     topics: dict[str, list[Topic]] = {}
     for data in sorted(log.data_list, key=lambda data: (data.name, data.multi_id)):
         if {"timestamp"} | TOPICS[data.name] <= data.data.keys() and len(data.data["timestamp"]):
@@ -68,7 +69,7 @@ def topics_of(log: Any) -> dict[str, list[Topic]]:
 
 
 def _wide(values: NDArray[Any]) -> NDArray[Any]:
-    """Return floating-point values in double precision. Damaged values raise no warning here."""
+    """Return floating-point values in double precision. Damaged values cause no warning here."""
     return values.astype(np.float64) if values.dtype.kind == "f" else values
 
 
@@ -83,7 +84,7 @@ def published_us(topic: Topic) -> IntArray:
 
 
 def sampled_us(topic: Topic) -> IntArray:
-    """Return the times of the sensor's reading where the topic has them, else the times of publication."""
+    """Return the times of the sensor's reading if the topic has them, else those of publication."""
     published = published_us(topic)
     if "timestamp_sample" not in topic:
         return published
@@ -97,12 +98,12 @@ def vector(topic: Topic, name: str, size: int) -> FloatArray:
 
 
 def samples_of(topic: Topic, which: NDArray[np.bool_]) -> Topic:
-    """Return some samples of a topic."""
+    """Return the samples of a topic that ``which`` selects."""
     return {name: values[which] for name, values in topic.items()}
 
 
 def rate_hz(topic: Topic) -> float:
-    """Return samples per second in the typical interval; 0 with fewer than two samples."""
+    """Return the sampling rate from the typical interval, Hz; 0 with fewer than two samples."""
     if len(topic["timestamp"]) < 2:
         return 0.0
     return 1e6 / max(float(np.median(np.diff(published_us(topic)))), 1.0)
@@ -114,7 +115,7 @@ def best(candidates: Iterable[Topic | None]) -> Topic | None:
     Parameters
     ----------
     candidates
-        Topics that hold one quantity, the preferred first.
+        Topics of one quantity, the preferred first.
     """
     found = [topic for topic in candidates if topic is not None]
     fast = [topic for topic in found if rate_hz(topic) >= ENOUGH_HZ]

@@ -37,8 +37,8 @@ _MODES = {
     21: (_POSITION, 1),
     22: (_AUTO, 10),
 }
-"""vehicle_status.nav_state to main and sub mode of PX4's custom_mode (px4_custom_mode.h). All other states
-are automatic."""
+"""Main and sub mode of PX4's custom_mode for each vehicle_status.nav_state (px4_custom_mode.h). All other
+states are automatic."""
 _KEY_BYTES = 10
 
 
@@ -52,7 +52,7 @@ def unix_time_base_s(topics: Topics) -> float:
 
 
 def heartbeat(topics: Topics, parameters: Mapping[str, Any], start_us: int) -> TimedMessages:
-    """Return a heartbeat before everything else, to make the vehicle known, then one at each status."""
+    """Return a heartbeat before all other messages, then one at each status."""
     status = first(topics, "vehicle_status")
     at, states = np.array([start_us]), np.zeros(1, np.int64)
     if status is not None:
@@ -79,14 +79,14 @@ def vtol_states(topics: Topics) -> Iterator[TimedMessages]:
 
 
 def _on_rotors(status: Topic) -> NDArray[np.bool_]:
-    """Return whether rotors carry the vehicle, by vehicle_type or by the older is_rotary_wing."""
+    """Return whether rotors carry the vehicle, from vehicle_type or from the older is_rotary_wing."""
     if "is_rotary_wing" in status:
         return np.asarray(status["is_rotary_wing"] > 0)
     return np.asarray(status.get("vehicle_type", np.zeros(len(status["timestamp"]))) == _ROTARY_WING)
 
 
 def _mav_type(parameters: Mapping[str, Any], status: Topic | None) -> int:
-    """Return MAV_TYPE from the parameters, else from vehicle_status.
+    """Return MAV_TYPE from the parameters, or else from vehicle_status.
 
     A VTOL aircraft reports rotary wing in hover, although it has an elevator.
     """
@@ -105,7 +105,7 @@ def parameters_of(log: Any) -> dict[str, float]:
 
 
 def dropouts(log: Any) -> list[str]:
-    """Return a sentence on the times in which the logger could not write; empty without such a time."""
+    """Return a sentence about times in which the logger could not write; empty without such a time."""
     lasted_s = [dropout.duration * 1e-3 for dropout in log.dropouts]
     if not lasted_s:
         return []
@@ -121,7 +121,7 @@ def stated(log: Any, further: Mapping[str, float], start_us: int) -> Iterator[Ti
     Parameters
     ----------
     further
-        Findings of the reader, in the form of parameters.
+        Findings of the log reader in the form of parameters.
     """
     initial = parameters_of(log)
     rows = [(start_us, name, value) for name, value in (initial | dict(further)).items()]
@@ -153,7 +153,7 @@ def remarks(said: Sequence[str], start_us: int) -> Iterator[TimedMessages]:
 
 
 def _said(rows: Sequence[tuple[int, int, bytes]]) -> Iterator[TimedMessages]:
-    """Yield the time in us, severity and text."""
+    """Yield STATUSTEXT messages from rows of time in us, severity and text."""
     if rows:
         fields: dict[str, ArrayLike] = {
             "severity": np.array([level for _, level, _ in rows]),
@@ -163,7 +163,7 @@ def _said(rows: Sequence[tuple[int, int, bytes]]) -> Iterator[TimedMessages]:
 
 
 def version(log: Any, start_us: int) -> Iterator[TimedMessages]:
-    """Yield AUTOPILOT_VERSION, where the log states a release."""
+    """Yield AUTOPILOT_VERSION if the log states a release."""
     release = log.msg_info_dict.get("ver_sw_release")
     if isinstance(release, int):
         yield TimedMessages("AUTOPILOT_VERSION", np.array([start_us]), {"flight_sw_version": release})

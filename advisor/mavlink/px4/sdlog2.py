@@ -1,7 +1,7 @@
 """PX4's log before ULog (``.px4log``, "sdlog2"): DataFlash's container with PX4's own records.
 
-Records state no time. A TIME record precedes all records of one round of the logger (PX4, sdlog2_messages.h
-of 2013 to 2016). Angles and rates are in rad, accelerations in m/s².
+Records of this log have no time. A TIME record precedes all records of one round of the logger (PX4,
+sdlog2_messages.h of 2013 to 2016). Angles and rates are in rad, accelerations in m/s².
 """
 
 from collections.abc import Iterator, Mapping
@@ -32,11 +32,10 @@ SDLOG2_RECORDS: dict[str, set[str]] = {
     "PARM": {"Name", "Value"},
     "STAT": {"MainState"},
 }
-"""Record to its necessary fields."""
+"""Necessary fields of each record, by the record's name."""
 _PX4 = 12  # MAV_AUTOPILOT
 _MAIN_MODES = {0: 1, 1: 2, 2: 3, 6: 5, 7: 6, 8: 7}
-"""STAT.MainState to the main mode of PX4's custom_mode: manual, altitude, position, acro, offboard,
-stabilised. Any other state is automatic."""
+"""Main mode of PX4's custom_mode for each STAT.MainState. Any other state is an automatic mode."""
 _AUTO = 4
 
 
@@ -46,7 +45,7 @@ def is_sdlog2(tables: Mapping[str, RecordTable]) -> bool:
 
 
 class Sdlog2Messages:
-    """Converts the records to the messages that telemetry would have carried.
+    """Conversion of the records to the messages that telemetry would have carried.
 
     Parameters
     ----------
@@ -113,7 +112,7 @@ class Sdlog2Messages:
         return message(name, self._system, table.order, arrival_s, fields, "sdlog2")
 
     def _heartbeat(self) -> Columns:
-        """Return a heartbeat before everything else, to make the vehicle known, then one at each status."""
+        """Return a heartbeat before all other messages, then one at each status."""
         order, states, time_us = np.zeros(1, np.int64), np.zeros(1, np.int64), np.zeros(1, np.int64)
         if "STAT" in self._tables:
             stat = self._tables["STAT"]

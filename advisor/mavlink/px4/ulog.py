@@ -37,12 +37,12 @@ _RATES = ("rollspeed", "pitchspeed", "yawspeed")
 
 
 def motion(topics: Topics, is_turned: bool = False) -> Iterator[TimedMessages]:
-    """Yield attitude, specific force, static pressure and height, where the log has their values.
+    """Yield attitude, specific force, static pressure and height, if the log has their values.
 
     Parameters
     ----------
     is_turned
-        Whether the board is mounted turned, so that the axes of a raw sensor are not the body's.
+        Whether the board is mounted rotated, so that a raw sensor's axes differ from the body's.
     """
     yield from _attitude(topics)
     yield from _highres_imu(topics, is_turned)
@@ -104,10 +104,10 @@ MAGIC = b"ULog\x01\x12\x35"
 
 
 class WholeFile(io.BufferedReader):
-    """A file in which a read beyond the end fails, unless nothing is left.
+    """A file in which a read beyond the end fails.
 
-    Where damaged definitions lead pyulog 1.3 beyond the end, pyulog steps back by the bytes it wanted to
-    read, not by those it got. The search of pyulog would then never end.
+    Without this failure, pyulog 1.3 steps back by the bytes it wanted to read, not by those it got. Its
+    search in a damaged file would then never end.
     """
 
     def read(self, size: int | None = -1, /) -> bytes:
@@ -125,14 +125,14 @@ def read_ulog(path: Path, wanted: Iterable[str] | None = None, starts_at: int = 
     ----------
     path
     wanted
-        Names of the messages to return. Default: all.
+        Names of the messages to return. None for all messages.
     starts_at
-        Bytes of the file in front of the log.
+        Number of bytes in the file before the log.
 
     Raises
     ------
     UnusableInputError
-        The file holds neither attitude, sensors, nor outputs.
+        The file contains neither attitude, sensors, nor outputs.
     """
     from pyulog import ULog  # here, for no other command needs to wait for its import
 

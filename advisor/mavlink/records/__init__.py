@@ -1,1 +1,1 @@
-"""Records of an autopilot's own log, and the messages that they are equal to."""
+"""Records of an autopilot's own log, and the equivalent messages."""

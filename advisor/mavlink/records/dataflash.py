@@ -49,9 +49,9 @@ class RecordTable:
     """All records of one type, in the order of the file."""
 
     order: IntArray
-    """Shape (n,). Position of each record in the file, bytes."""
+    """Shape (n,): position of each record in the file, bytes."""
     fields: dict[str, NDArray[Any]]
-    """Field name to shape (n,), in the units of the log."""
+    """Values of each field, shape (n,), in the units of the log, by the field's name."""
 
     def __len__(self) -> int:
         return len(self.order)
@@ -62,7 +62,7 @@ class RecordTable:
         return np.asarray(self.fields["TimeUS"], dtype=np.int64)
 
     def first_instance(self) -> "RecordTable":
-        """Return the records of the first of several sensors or estimators of one kind."""
+        """Return the records of the first sensor or estimator, if there are several of one kind."""
         for name in ("I", "C"):
             if name in self.fields:
                 return self[self.fields[name] == 0]

@@ -1,9 +1,9 @@
-"""Messages as the vehicle would have sent them, from logs with the autopilot's own records.
+"""Messages that are equivalent to the records in an autopilot's own log.
 
 Autopilots log angles, rates, outputs and air data as separate records, each at its own time. Records of a
-log become messages of a telemetry link, so that all later code has one path. A message holds only values of
-its record. Missing and infinite values are NaN in a floating-point field, and zero otherwise. Nothing is
-interpolated.
+log become messages of a telemetry link, so that all later code has one path. A message contains only values
+of its own record. Missing and infinite values are NaN in a floating-point field, and zero otherwise. Nothing
+is interpolated.
 """
 
 from collections.abc import Mapping
@@ -40,11 +40,11 @@ def message(
     order, arrival_s : shape (n,)
         Arrival index and time of each message, in the order of the fields.
     fields : mapping
-        Field name to shape (n,), or a scalar for all, in the units of the definition. Integers
-        are cut to the size of the field, as a vehicle's counters wrap. Texts, floating-point
+        Values of each field, shape (n,) or a scalar for all, in the units of the definition, by name.
+        Integers are cut to the size of the field, because a vehicle's counters wrap. Texts, floating-point
         values and fields that the definition lacks (a stamp) are unchanged.
     carrier : Carrier
-        The kind of log.
+        Kind of log from which the messages come.
     """
     n = len(order)
     layout = DEFINITIONS[name].layout
@@ -69,12 +69,12 @@ def message(
 
 
 def side_by_side(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Return fields of several records, each in rows of its own, with NaN for fields that a record lacks.
+    """Return the fields of several records in separate rows, with NaN for fields that a record lacks.
 
     Parameters
     ----------
     records
-        Field name to shape (n_k,) of record k. Every record holds the stamps.
+        Values of each field of record k, shape (n_k,), by the field's name. Every record contains the stamps.
     """
     rows = [len(next(iter(record.values()))) for record in records]
     return {
@@ -97,14 +97,14 @@ def system_id(parameter: object) -> int:
 
 
 def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:
-    """Return the newest of ``values`` before each place ``at``, as the vehicle knew it then.
+    """Return the newest of ``values`` before each index ``at``.
 
     Parameters
     ----------
     at : shape (n,)
-        Arrival indices asked for.
+        Arrival indices at which values are needed.
     order, values : shape (m,)
-        Arrival indices, rising, and the values that arrived.
+        Rising arrival indices, and the values that arrived there.
 
     Returns
     -------

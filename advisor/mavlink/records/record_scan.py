@@ -1,7 +1,7 @@
-"""Records of an ArduPilot log in its bytes, window by window, so that no file must fit into memory.
+"""Records in the bytes of an ArduPilot log, window by window, so that no file must fit into memory.
 
-A record is two bytes of header, a type, and its fields. Records carry no checksum. A record counts only when
-another header, or the end of the file, follows right behind.
+A record is two bytes of header, a type, and its fields. Records carry no checksum. A record is accepted only
+if another header, or the end of the file, follows directly.
 """
 
 from collections.abc import Iterator
@@ -20,7 +20,8 @@ FMT = 0x80
 """Type of the records that define the other types."""
 FMT_LENGTH = 89
 WINDOW_BYTES = 4 << 20
-"""Bytes of a file that are looked at together. Records that are read take six times as much memory."""
+"""Number of bytes of a file that are processed together. Records that are read need six times as much
+memory."""
 
 Bytes = NDArray[np.uint8]
 
@@ -54,7 +55,7 @@ def windows(path: Path) -> Iterator[Window]:
 
 
 def known_lengths() -> IntArray:
-    """Return the length of a record of each type before anything is read, shape (256,); 0: unknown."""
+    """Return the record length of each type before any definition is read, shape (256,); 0 if unknown."""
     lengths = np.zeros(256, dtype=np.int64)
     lengths[FMT] = FMT_LENGTH
     return lengths
@@ -76,14 +77,14 @@ def gather(stream: Bytes, places: IntArray, rows: Bytes) -> None:
 
 @kernel()
 def scan_records(stream: Bytes, starts: IntArray, lengths: IntArray, is_last: bool) -> tuple[int, int]:
-    """Find the records.
+    """Find the records in a stream of bytes.
 
     Parameters
     ----------
     stream
         Bytes of the file.
     starts
-        Filled with the positions of the records.
+        Array that receives the positions of the records.
     lengths : shape (256,)
         Length of a record of each type; FMT records change them.
     is_last

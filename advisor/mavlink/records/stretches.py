@@ -14,8 +14,8 @@ from advisor.mavlink.records.dataflash import DEFINITION_LAYOUT, RecordTable, la
 from advisor.mavlink.records.record_scan import FMT, FMT_LENGTH, Window, bodies, windows
 
 STRETCH_WINDOWS = 4
-"""Length of a stretch in windows, 16 MB of a file. All its records become messages together, which take some
-four times the memory."""
+"""Length of a stretch in windows, 16 MB of a file. All records of a stretch become messages together, which
+need about four times the memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,19 +37,19 @@ def read_stretches(
     undivided: Collection[str] = (),
     length: float = STRETCH_WINDOWS,
 ) -> Iterator[Stretch]:
-    """Yield the records of the named types, stretch by stretch, for each log that was joined into the file.
+    """Yield the records of the named types, stretch by stretch, for each log in the file.
 
-    Two logs may number their types differently. A type without records is left out. Memory holds only
-    records of the named types, with the fields that ``is_read`` names.
+    Two logs may number their types differently. A type without records is omitted. Memory contains only
+    records of the named types, with the fields that ``is_read`` selects.
 
     Parameters
     ----------
     kept
         Types whose records stay in all later stretches of their log.
     undivided
-        Types that make a log one stretch.
+        Types with which a log is read as one stretch.
     length
-        Length of a stretch in windows of the file. A window before and a window after it come along.
+        Length of a stretch in windows of the file. One more window before and one after it are included.
     """
     collected = _Collected(frozenset(names), is_read, frozenset(kept))
     before = 0
@@ -62,7 +62,7 @@ def read_stretches(
 
 
 class _Growing:
-    """An array that grows at its end, where the system moves its pages instead of copying them."""
+    """An array that grows at its end, for which the system moves pages instead of copying."""
 
     def __init__(self) -> None:
         self._values: NDArray[Any] = np.empty(0)
@@ -85,10 +85,9 @@ class _Growing:
 
 
 class _Collected:
-    """Records of the wanted types of one log, until definitions show that another log begins.
+    """Records of one log's wanted types, until definitions show that another log begins.
 
-    Definitions stand in runs. One that redefines a type is the first of another log, together with the rest
-    of its run.
+    Definitions come in groups. If a definition redefines a type, its whole group belongs to another log.
     """
 
     def __init__(self, wanted: frozenset[str], is_read: Callable[[str], bool], kept: frozenset[str]) -> None:
@@ -104,7 +103,7 @@ class _Collected:
         self._begins = -math.inf
 
     def take(self, window: Window) -> Iterator[Stretch]:
-        """Take the next records; yield the last stretch of each log that ends among them."""
+        """Take the next records, and yield the last stretch of each log that ends there."""
         stream, starts, offset = window
         types = stream[starts + 2]
         done = 0
@@ -130,7 +129,7 @@ class _Collected:
     def cut(self, ends: int, keep_from: int) -> Stretch:
         """Return the stretch before a position in the file, together with all later records so far.
 
-        Records at least at ``keep_from``, and those of the types to keep, come again in the next stretch.
+        Records from ``keep_from``, and those of the types to keep, are repeated in the next stretch.
         """
         begins, self._begins = self._begins, ends
         return Stretch(self._tables(keep_from), begins, ends)
@@ -141,7 +140,8 @@ class _Collected:
         return Stretch(tables, begins, math.inf)
 
     def _end_run(self) -> Iterator[Stretch]:
-        """Take the definitions of a run that is over; yield the last stretch of a log that ends earlier."""
+        """Process a finished group of definitions, and yield the last stretch of a log that ends before
+        it."""
         run, self._run = self._run, []
         is_another = False
         for definition in run:
@@ -186,7 +186,7 @@ class _Collected:
             )
 
     def _tables(self, keep_from: float = math.inf) -> dict[str, RecordTable]:
-        """Return the collected records, and keep copies of the records that come again."""
+        """Return the collected records, and keep copies of the records that are repeated."""
         tables: dict[str, RecordTable] = {}
         for number, name, layout, divisors in self._defined():
             if layout is None or name not in self._wanted:

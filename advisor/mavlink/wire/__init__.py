@@ -1,1 +1,1 @@
-"""Frames on the wire: layouts, checksums, signatures, and the compiled scan."""
+"""Frames in transmission: layouts, checksums, signatures, and the compiled scan."""

@@ -1,13 +1,13 @@
-"""Classification of packets: repeats of a second path are dropped, losses and late packets counted.
+"""Classification of packets: repeats by a second path are dropped, and losses and late packets counted.
 
-Two radios, a router's loop or a duplicated output bring packets twice, the second time up to `REPEAT_US`
-later. A repeat has source, sequence number, message and checksum of an earlier packet. A single repeat proves
-no second path: sequence numbers return after 256 packets, and heartbeats are all alike. `_RUN` repeats in a
-row prove one.
+Two radios, a router's loop or a duplicated output deliver packets twice, up to `REPEAT_US` apart. A repeat
+has source, sequence number, message and checksum of an earlier packet. A single repeat proves no second path,
+because sequence numbers recur and heartbeats are alike. A number of `_RUN` successive repeats proves a second
+path.
 
-A late path also brings packets that the first path has lost. Such a packet comes among repeats and continues
-their sequence numbers. When the path is late by more than `LATE_US`, the packet is dropped, because a message
-without a time stamp would count as new. Once the first path is silent, the late path's packets count as new.
+A late path also delivers packets that the first path lost. Such a packet arrives among repeats and continues
+their sequence numbers. If the path is late by more than `LATE_US`, the packet is dropped. When the first path
+is silent, the late path's packets count as new.
 """
 
 import numpy as np
@@ -18,21 +18,22 @@ from advisor.process.compiled import kernel
 Ints = NDArray[np.int64]
 
 REPEAT_US = 18_000_000
-"""Longest time after which a packet may repeat an earlier one, us. Radios and routers hold packets up to 15
-s."""
+"""Longest time between a packet and its repeat, us. Radios and routers delay packets by up to 15 s."""
 LATE_US = 2_000_000
-"""Lateness of a path, us, above which it brings nothing but repeats. Channels accept samples up to this
+"""Delay of a path, us, above which only its repeats are recognised. Channels accept samples up to this
 age."""
 _PATH_US = 2_000_000
-"""Time after its last packet for which a path is remembered, us. A heartbeat comes once a second."""
+"""Time after a path's last packet for which the path is remembered, us. A heartbeat comes once a second."""
 _RUN = 8
-"""Repeats in a row that prove a second path. One heartbeat in 256 after a loss repeats by chance."""
+"""Number of successive repeats that prove a second path. One heartbeat in 256 after a loss repeats by
+chance."""
 _STEADY_US = 1_000_000
-"""Largest change of a path's lateness from one packet to the next, us. A larger change shows another path."""
+"""Largest change of a path's delay between two packets, us. A larger change belongs to another path."""
 _STEP = 16
-"""Largest step of sequence numbers to a path's next packet, with short losses among them."""
+"""Largest step of sequence numbers between a path's packets, including short losses."""
 _MOST_NEW = 64
-"""Most packets in a row that only a late path brings. More new packets make the late path the first path."""
+"""Largest number of successive packets that only a late path delivers. With more new packets the late path
+becomes the first path."""
 _BACK = 192
 """Least step of sequence numbers (modulo 256) that shows a packet out of order."""
 
@@ -49,14 +50,14 @@ SENDER_COLUMNS = 12
 _MARK, _AT_US, _BEFORE = range(3)
 PACKET_COLUMNS = 3
 PACKETS = 1 << 15
-"""Number of packets remembered: those of ``REPEAT_US`` at 1800 a second."""
+"""Number of remembered packets: those of ``REPEAT_US`` at 1800 per second."""
 COUNT = 256
 """Entry of ``newest`` with the number of packets so far. One entry for each sequence number is before it."""
 
 
 @kernel()
 def _heard_ago(packets: Ints, newest: Ints, sequence: int, mark: int, now_us: int) -> int:
-    """Return the age of a packet's earlier copy, us; -1: none within ``REPEAT_US``."""
+    """Return the age of a packet's earlier copy, us; -1 without a copy within ``REPEAT_US``."""
     number = newest[sequence]
     while number > newest[COUNT] - PACKETS and number > 0:
         row = number % PACKETS
@@ -79,8 +80,8 @@ def _has_path(senders: Ints, source: int, now_us: int) -> bool:
 def _is_heard_again(
     senders: Ints, packets: Ints, newest: Ints, source: int, sequence: int, mark: int, now_us: int
 ) -> bool:
-    """Return whether a packet repeats an earlier one. The state of the second path then moves to the
-    repeated packet.
+    """Return whether a packet repeats an earlier one. If so, the state of the second path moves to this
+    packet.
 
     Without a second path, a message that a vehicle sends again with its next sequence number is new.
     """
@@ -102,7 +103,7 @@ def _is_heard_again(
 
 @kernel()
 def _is_overtaken(senders: Ints, source: int, sequence: int, now_us: int) -> bool:
-    """Return whether a new packet came by the late path, after younger ones by the first path."""
+    """Return whether a new packet came by the late path, after later packets by the first path."""
     if senders[source, _ECHO_RUN] < _RUN or not _has_path(senders, source, now_us):
         return False
     ahead = (sequence - senders[source, NEWEST] - 1) & 0xFF
@@ -121,12 +122,12 @@ def _is_overtaken(senders: Ints, source: int, sequence: int, now_us: int) -> boo
 def weigh(
     senders: Ints, packets: Ints, newest: Ints, source: int, sequence: int, mark: int, now_us: int
 ) -> bool:
-    """Count one packet; return whether the packet is new.
+    """Count one packet, and return whether the packet is new.
 
     Parameters
     ----------
     senders : shape (65536, SENDER_COLUMNS)
-        State of each sender; changed.
+        State of each sender, which is changed.
     packets, newest : shape (PACKETS, PACKET_COLUMNS), (COUNT + 1,)
         Newest packets, and the index of the newest packet of each sequence number; changed.
     source, sequence, mark, now_us

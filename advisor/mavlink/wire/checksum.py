@@ -21,7 +21,7 @@ TABLE = np.array(_table(), dtype=np.int64)
 """Remainder of each byte under the reversed polynomial 0x8408."""
 
 AFTER = np.array([TABLE, *np.empty((3, 256), dtype=np.int64)])
-"""Shape (4, 256): remainder of each byte with 0, 1, 2 and 3 zero bytes behind it.
+"""Shape (4, 256): remainder of each byte followed by 0, 1, 2 and 3 zero bytes.
 
 Four bytes then take one step ("slicing-by-4", Kounavis and Berry 2005).
 """
@@ -38,7 +38,7 @@ _MIRRORED = bytes(int(f"{byte:08b}"[::-1], 2) for byte in range(256))
 def crc16(data: bytes, crc: int = INITIAL) -> int:
     """Return the checksum of ``data``, continued from ``crc``.
 
-    ``binascii.crc_hqx`` has this polynomial, with the bits of bytes and remainder in the opposite order.
+    ``binascii.crc_hqx`` has this polynomial, with the bits of bytes and remainder reversed.
     """
     return _mirrored(crc_hqx(data.translate(_MIRRORED), _mirrored(crc)))
 

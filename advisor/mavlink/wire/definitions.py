@@ -1,4 +1,4 @@
-"""The MAVLink messages that the advisor reads: ids, fields, layouts on the wire.
+"""MAVLink messages that the advisor reads: ids, fields, and layouts in the frame.
 
 One line for each message, from the MAVLink definitions (common.xml, ardupilotmega.xml): ``NAME id: type
 field, ... + extension fields of MAVLink 2``. The order on the wire and the seed of the checksum follow from

@@ -20,50 +20,49 @@ _SOURCES = 1 << 16
 
 @dataclass(frozen=True, slots=True)
 class Received:
-    """Counts of one sender's frames, by their sequence numbers and bytes."""
+    """Counts of one sender's frames, from their sequence numbers and bytes."""
 
     frames: int = 0
-    """Good frames, each counted once."""
+    """Number of good frames, each counted once."""
     lost: int = 0
-    """Frames missing by their sequence numbers."""
+    """Number of frames missing in the sequence numbers."""
     late: int = 0
-    """Frames that came after a younger one."""
+    """Number of frames that arrived after a later one."""
     repeated: int = 0
-    """Frames that a second path brought again. No repeated frame counts."""
+    """Number of frames that a second path repeated. Repeated frames are not counted in ``frames``."""
     repeated_after_s: float = math.nan
     """Mean delay of a repeat after the first copy, s."""
 
     @property
     def repeated_percent(self) -> float:
-        """Share of the frames that came twice."""
+        """Share of the frames that arrived twice, per cent."""
         return 100.0 * self.repeated / self.frames if self.frames else 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class ScanStatistics:
-    """Counts of a stream up to the last byte taken."""
+    """Counts of a stream up to its last processed byte."""
 
     frames: int
-    """Good frames of any message."""
+    """Number of good frames of any message."""
     known_frames: int
-    """Good frames of messages with a definition, whose checksum is therefore proven."""
+    """Number of good frames of defined messages, whose checksum is therefore verified."""
     damaged: int
-    """Places where a good frame was due and none was found."""
+    """Number of places where a good frame was expected and not found."""
     skipped_bytes: int
-    """Bytes outside all good frames and time stamps."""
+    """Number of bytes outside all good frames and time stamps."""
     senders: Mapping[tuple[int, int], Received]
     """Counts of each sender's frames, by (system, component)."""
     refused: Mapping[SignatureVerdict, int]
-    """Frames of wanted messages refused for their signature, by verdict; empty without a key."""
+    """Number of wanted messages' frames refused for their signature, by verdict; empty without a key."""
 
 
 class FrameScanner:
-    """Finds MAVLink 1 and 2 frames in a stream of tlog records and decodes the wanted ones.
+    """Scanner that finds MAVLink 1 and 2 frames in tlog records, and decodes the wanted ones.
 
-    The stream is a row of records, each with 8 bytes of big-endian microseconds since 1970 and one frame. The
-    stream may be cut into pieces anywhere: the columns of all feeds together do not depend on the cuts. A
-    frame counts when its checksum is right. Everything else is skipped, and so are repeats by a second path
-    (`advisor.mavlink.wire.arrivals`).
+    Each record has 8 bytes of big-endian microseconds since 1970 and one frame. The stream may be cut
+    anywhere: the columns of all feeds together do not depend on the cuts. A frame with a right checksum is
+    accepted. Other bytes are skipped, and so are repeats by a second path (`advisor.mavlink.wire.arrivals`).
 
     Parameters
     ----------
@@ -76,7 +75,7 @@ class FrameScanner:
     Raises
     ------
     KeyError
-        For a wanted message that has no definition.
+        A wanted message has no definition.
     """
 
     def __init__(self, wanted: Iterable[str] | None = None, key: bytes | None = None) -> None:
@@ -99,18 +98,17 @@ class FrameScanner:
         self._offset = 0
 
     def feed(self, data: bytes) -> list[Columns]:
-        """Take the next bytes of the stream; return the messages that they complete.
+        """Process the next bytes of the stream, and return the messages that they complete.
 
         Returns
         -------
         list of Columns
-            One for each message and sender; ``order`` is where the frame begins in the
-            stream, in bytes.
+            One column set per message and sender; ``order`` is the frame's position in the stream, bytes.
         """
         return self._scan(self._tail + data, final=False)
 
     def close(self) -> list[Columns]:
-        """Take the end of the stream; return the messages that the last bytes still hold."""
+        """Process the end of the stream, and return the messages in the last bytes."""
         return self._scan(self._tail, final=True)
 
     @property
@@ -161,7 +159,7 @@ class FrameScanner:
         return False
 
     def _columns(self, stream: NDArray[np.uint8], found: NDArray[np.int64]) -> list[Columns]:
-        """Sort the frames found by message and sender, keep their order, and decode them."""
+        """Sort the found frames by message and sender, keep their order, and decode them."""
         if not len(found):
             return []
         sender = found[:, kernel.KIND] * _SOURCES + found[:, kernel.SOURCE]

@@ -1,4 +1,4 @@
-"""Cuts whole MAVLink frames out of the bytes from a socket or a serial line."""
+"""Cutter of whole MAVLink frames from the bytes of a socket or a serial line."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -14,13 +14,13 @@ SIGNED = 0x01
 SIGNATURE_LENGTH = 13
 LONGEST_FRAME = 12 + 255 + SIGNATURE_LENGTH
 CRC_EXTRA: Mapping[int, int] = {number: message.crc_extra for number, message in dialect.mavlink_map.items()}
-"""Message id to the checksum's seed, for every message that the advisor knows."""
+"""Seed of the checksum for every known message, by message id."""
 
 _SEED_REMAINDERS = frozenset(TABLE.tolist())
 
 
 class Frame(NamedTuple):
-    """One frame as on the wire."""
+    """One frame as transmitted."""
 
     raw: bytes
     message_id: int
@@ -37,12 +37,12 @@ class Frame(NamedTuple):
 
 
 class FrameCutter:
-    """Finds frames in a stream of bytes that starts anywhere and may hold garbage.
+    """Cutter of frames from a stream of bytes that starts anywhere and may contain garbage.
 
-    A frame of a known message must pass its checksum. The MAVLink serialisation guide defines it as
-    CRC-16/MCRF4XX over everything after the magic byte and the definition's CRC_EXTRA. For a frame of an
-    unknown message, some CRC_EXTRA gives any checksum in one case of 256. A frame of an unknown message is
-    accepted only right after a good frame, and followed by another frame or by nothing.
+    A frame of a known message must pass its checksum. The MAVLink serialisation guide defines the checksum as
+    CRC-16/MCRF4XX over all after the magic byte, and CRC_EXTRA. For an unknown message, one of 256 random
+    checksums fits some CRC_EXTRA. A frame of an unknown message is accepted only right after a good frame,
+    and followed by another frame or by nothing.
     """
 
     def __init__(self, crc_extra: Mapping[int, int]) -> None:
@@ -50,12 +50,12 @@ class FrameCutter:
         self._rest = b""
         self._in_step = True
         self.bad_crc = 0
-        """Frames with a wrong checksum."""
+        """Number of frames with a wrong checksum."""
         self.garbage_bytes = 0
-        """Bytes outside any frame."""
+        """Number of bytes outside any frame."""
 
     def feed(self, data: bytes) -> list[Frame]:
-        """Take the next bytes; return the frames that they complete."""
+        """Process the next bytes, and return the frames that they complete."""
         buffer = self._rest + data if self._rest else data
         frames = []
         i, n = 0, len(buffer)
@@ -77,7 +77,7 @@ class FrameCutter:
         return frames
 
     def _skip(self, buffer: bytes, i: int) -> int:
-        """Give up the byte at ``i``; return the next place where a frame may start."""
+        """Drop the byte at ``i``, and return the next place where a frame may start."""
         v1, v2 = buffer.find(MAGIC_V1, i + 1), buffer.find(MAGIC_V2, i + 1)
         found = [k for k in (v1, v2) if k >= 0]
         following = min(found) if found else len(buffer)

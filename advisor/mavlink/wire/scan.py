@@ -1,9 +1,9 @@
-"""The inner loop of the frame scanner, compiled.
+"""Compiled inner loop of the frame scanner.
 
-A stream is a row of records: 8 bytes of time stamp, then one frame. ``scan`` steps from record to record.
-Where a good frame is due and missing, the scanner looks at every byte for the next frame. A decision never
-depends on the length of the stream at hand. Where bytes are missing the function stops and returns the place
-to go on. Each good frame passes `arrivals`, which skips a packet that a second path repeats.
+A stream is a sequence of records: 8 bytes of time stamp, then one frame. ``scan`` steps from record to
+record. If an expected good frame is missing, the scanner tests every byte for the next frame. No decision
+depends on the length of the available stream. If bytes are missing, the function stops and returns the place
+to continue. Each good frame passes `arrivals`, which skips a packet that a second path repeats.
 """
 
 import numpy as np
@@ -61,7 +61,7 @@ def _frame_length(stream: Bytes, at: int, final: bool, seeds: Ints) -> int:
 
     ``seeds`` holds the CRC_EXTRA of each message id, -1 for an unknown one. The checksum of an unknown
     message fits some seed for one in 256 of the possible remainders. An unknown frame is skipped as a whole
-    where another frame begins right behind.
+    if another frame follows directly.
     """
     n = len(stream)
     short = _NONE if final else _WAIT
@@ -121,20 +121,20 @@ def scan(
     newest: Ints,
     found: Ints,
 ) -> tuple[int, int]:
-    """Find the good frames of a stretch of stream.
+    """Find the good frames in a part of the stream.
 
     Parameters
     ----------
     stream : shape (n,)
-        Bytes at hand, beginning at the end of the last frame (or 8 bytes before the place reached).
+        Available bytes, from the end of the last frame (or 8 bytes before the reached place).
     final : bool
-        Whether the stream ends here, so that an incomplete frame at the end is garbage.
+        Whether the stream ends here, so that an incomplete last frame is garbage.
     kinds, seeds : shape (largest known id + 1,)
-        For each message id the caller's number of a wanted message or -1, and its CRC_EXTRA or -1.
+        Caller's number of each wanted message or -1, and its CRC_EXTRA or -1, by message id.
     state : shape (STATE_ENTRIES,)
-        State, kept from call to call.
+        State that is kept from call to call.
     senders, packets, newest
-        State, kept from call to call, see `advisor.mavlink.wire.arrivals`. The first is indexed by
+        State that is kept from call to call, see `advisor.mavlink.wire.arrivals`. The first is indexed by
         ``system << 8 | component``.
     found : shape (at least n // 8 + 1, FOUND_COLUMNS)
         Table that receives one row for each wanted frame.
@@ -142,7 +142,7 @@ def scan(
     Returns
     -------
     rows : int
-        Rows of ``found`` in use.
+        Number of rows of ``found`` in use.
     keep : int
         Index of the first byte that the next call needs again.
     """
@@ -201,7 +201,7 @@ def scan(
 
 @kernel()
 def copy_payloads(stream: Bytes, starts: Ints, payloads: Bytes) -> None:
-    """Copy the payload of each frame into its row. Zeros that MAVLink 2 cut off stay zeros.
+    """Copy the payload of each frame into its row. Zeros that MAVLink 2 cut off remain zeros.
 
     Parameters
     ----------
@@ -209,7 +209,7 @@ def copy_payloads(stream: Bytes, starts: Ints, payloads: Bytes) -> None:
     starts : shape (m,)
         Positions of the frames.
     payloads : shape (m, size)
-        Zeros on entry.
+        Array of zeros for the payloads.
     """
     m, size = payloads.shape
     for row in range(m):

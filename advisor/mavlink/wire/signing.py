@@ -1,13 +1,13 @@
-"""MAVLink 2 message signing: which frames are accepted.
+"""MAVLink 2 message signing: the acceptance of frames.
 
 Source: MAVLink guide, "Message signing". The last 13 bytes of a signed frame are a link id, a time stamp and
 a signature. The time stamp has 48 bits, in 10 us since 2015-01-01, and only rises. The signature is the first
 48 bits of SHA-256 over key, frame, link id and time.
 
-By the guide, a new stream is refused when its time lies more than a minute behind the local one. An autopilot
-without GPS counts on from the time it stored last, which may lie months behind this host's clock. The host's
-clock does not count: each sender's time is compared with the newest time of that sender. Frames recorded
-before this session can be replayed until their sender is heard.
+By the guide, a new stream is refused if its time is more than a minute behind the local time. An autopilot
+without GPS continues from its last stored time, which may be months behind. The host's clock is not used:
+each sender's time is compared with that sender's newest time. Frames recorded before this session can be
+replayed until their sender is heard.
 """
 
 import hashlib
@@ -21,7 +21,7 @@ from advisor.words.problems import ConfigurationError
 KEY_LENGTH = 32
 EPOCH_2015_S = 1_420_070_400
 RADIO_STATUS = 109
-"""Message that the radios send, which hold no key and never sign."""
+"""Message of the radios, which have no key and never sign."""
 
 _NEW_STREAM_MAY_LAG = 6_000_000
 """Largest delay of a new stream behind its sender's other streams: one minute, in 10 us (MAVLink guide)."""
@@ -32,8 +32,8 @@ SignatureVerdict = Literal["ok", "unsigned", "forged", "replayed"]
 def read_key(path: Path) -> bytes:
     """Return the key in a file: 32 bytes unchanged, anything else as a passphrase.
 
-    A passphrase is hashed with SHA-256 after removal of the line end. Mission Planner and MAVProxy do so too,
-    so that one passphrase gives one key everywhere.
+    A passphrase is hashed with SHA-256 after removal of the line end. Mission Planner and MAVProxy do the
+    same, so that one passphrase gives one key everywhere.
 
     Raises
     ------
@@ -60,12 +60,12 @@ def signing_time(unix_s: float) -> int:
 
 
 class SignatureCheck:
-    """Judges frame after frame, and remembers the newest time of every stream against replays.
+    """Check of one frame after another, which remembers every stream's newest time against replays.
 
     Parameters
     ----------
     key
-        32 bytes.
+        Signing key of 32 bytes.
     """
 
     def __init__(self, key: bytes) -> None:
@@ -78,8 +78,8 @@ class SignatureCheck:
     def verdict(self, frame: bytes) -> SignatureVerdict:
         """Return the verdict on one whole frame.
 
-        A time is remembered only after its signature was found good. Otherwise one forged frame from the
-        future would silence the real sender.
+        A time is remembered only after its signature was verified. Otherwise one forged frame from the future
+        would silence the real sender.
         """
         if frame[0] != 0xFD or not frame[2] & 0x01:
             return "unsigned"

@@ -1,6 +1,6 @@
-"""The formats of logs: one module for each, which makes its ``FORMAT``.
+"""Formats of logs, with one module for each format.
 
-A new module is found by itself.
+A new module in this folder is added automatically.
 """
 
 from collections.abc import Iterator
@@ -16,8 +16,8 @@ def _found() -> Iterator[LogFormat]:
 
 
 FORMATS: tuple[LogFormat, ...] = tuple(sorted(_found(), key=lambda one: (one.has_magic, one.ending)))
-"""Every format, telemetry first, as people name them."""
+"""All formats, telemetry first, in the order of the user's sentence."""
 ENDINGS: tuple[str, ...] = tuple(one.ending for one in FORMATS)
-"""Usual endings of logs."""
+"""Usual file endings of logs."""
 GIVE = f"Give {', '.join(one.given for one in FORMATS[:-1])} or {FORMATS[-1].given}."
-"""Sentence on the logs that can be read."""
+"""Sentence that lists the readable logs."""

@@ -8,7 +8,8 @@ from advisor.mavlink.records import dataflash, record_scan
 from advisor.words.problems import Problem
 
 _TEXT_LOG = re.compile(rb"^FMT, ?\d+, ?\d+, ?\w+, ?\w+, ?\w+", re.MULTILINE)
-"""A definition of records as text. Ground stations write a few lines about the vehicle before the first."""
+"""Pattern of a record definition as text. Ground stations write a few lines about the vehicle before the
+first."""
 
 
 def _begins_at(beginning: bytes) -> int | None:
