@@ -58,7 +58,8 @@ def fitted(estimate: Estimate | None) -> dict[str, Any]:
 
 
 def parameters(estimate: object) -> dict[str, Any] | None:
-    """Return every parameter as ``{value, std, std_cr}``. An unidentifiable one has None and the reason."""
+    """Return every parameter as ``{value, std, std_cr}``. An unidentifiable parameter has None as value, and
+    the reason."""
     if not isinstance(estimate, Estimate):
         return None
     return {
@@ -72,7 +73,7 @@ def parameters(estimate: object) -> dict[str, Any] | None:
 
 
 def with_intervals(estimate: Estimate) -> dict[str, Any]:
-    """Return every parameter with its 95 % interval, ``ci95``: None where it has none."""
+    """Return every parameter with its 95 % interval ``ci95``, None if unknown."""
     document: dict[str, Any] = {}
     for name, entry in (parameters(estimate) or {}).items():
         ci95 = None

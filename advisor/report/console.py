@@ -1,4 +1,4 @@
-"""The console that tables and screens of text are printed on."""
+"""Console for tables and screens of text."""
 
 from typing import Any
 
@@ -11,8 +11,8 @@ from advisor.words.ascii_output import plain
 class PlainConsole(Console):
     """Console on standard output that shows text literally, as names in files and vehicles may have brackets.
 
-    In an encoding other than Unicode, cells are spelled in ASCII before their widths are taken, so that
-    columns stay straight.
+    Without Unicode, cells are spelled in ASCII before their widths are measured, so that columns stay
+    aligned.
 
     Parameters
     ----------
@@ -24,5 +24,5 @@ class PlainConsole(Console):
         super().__init__(highlight=False, markup=False, emoji=False, soft_wrap=soft_wrap)
 
     def render_str(self, text: str, **options: Any) -> Text:
-        """Make text of a cell or line given as a string."""
+        """Return the text of a cell or line given as a string."""
         return super().render_str(plain(text) if self.options.ascii_only else text, **options)

@@ -26,20 +26,20 @@ def analysis_document(
     left_out: Mapping[int, Sequence[Problem]] = MappingProxyType({}),
     notes: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Build the document of ``advisor analyze --json``.
+    """Return the document of ``advisor analyze --json``.
 
     Parameters
     ----------
     state
-        Campaign at the end of the logs. None when no log could be read.
+        Campaign at the end of the logs. None if no log could be read.
     files
-        Names of the logs, as given, flight by flight.
+        Names of the logs as the user gave them, flight by flight.
     aircraft
         Aircraft with reference data for non-dimensional coefficients.
     left_out
-        Reasons for which logs do not count, by flight. ``usable`` is false when no log counts.
+        Reasons why logs are not used, by flight. ``usable`` is false if no log is used.
     notes
-        Sentences on the series of logs.
+        Sentences about the series of logs.
     """
     several = len(files) > 1
     read = [*state.elevator_notes, *state.reader_notes, *state.mark_notes] if state else []
@@ -72,7 +72,7 @@ def analysis_document(
 
 
 def _plan(plan: CrewPlan | None) -> dict[str, Any] | None:
-    """Return the plan of both axes; None where only one of them has been flown."""
+    """Return the plan of both axes; None if only one axis was flown."""
     if plan is None:
         return None
     return {**picked(plan, "sentence"), "done": list(plan.done), "open": list(plan.open), "next": plan.advice}
@@ -136,12 +136,12 @@ def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
 
 
 def instruments(estimate: Estimate | None) -> dict[str, Any]:
-    """Return parameters of the instruments that were estimated with the derivatives, by name."""
+    """Return the instrument parameters that were estimated with the derivatives, by name."""
     return {x.name: picked(x, "value std") for x in (estimate.instruments if estimate else ())}
 
 
 def instrument_document(found: InstrumentFinding) -> dict[str, Any]:
-    """Return one finding on an instrument."""
+    """Return the document part about one instrument finding."""
     return {
         **picked(found, "code channel quantity stated contradicts used text fix"),
         "found": picked(found, "value std"),

@@ -1,4 +1,4 @@
-"""A campaign without a screen: each verdict as a line of text, as it comes."""
+"""A campaign without a screen: each verdict is printed as a line of text."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -29,17 +29,17 @@ def follow(
 ) -> CampaignState:
     """Feed a campaign to the end of a stream and print every verdict.
 
-    A log often begins with slow streams, which the crew has mended before the flight. An alarm about a log
-    is therefore printed only after its data have served once.
+    A log often begins with slow streams, which the crew corrects before the flight. An alarm about a log is
+    therefore printed only after its data have been usable once.
 
     Parameters
     ----------
     batches
-        Messages in order of arrival. Empty batches are pauses.
+        Messages in order of arrival. Empty batches represent pauses.
     say
-        Takes one line of text.
+        Function that takes one line of text.
     of_log
-        Whether the stream is a log, in which nothing can be mended any more.
+        Whether the stream is a log, in which nothing can be corrected.
     """
     begun = not of_log
     for columns in batches:
@@ -83,7 +83,7 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
 
 
 def _say_decision(verdict: FlightTestVerdict, plan: CrewPlan | None, say: Callable[[str], object]) -> None:
-    """Say stop or continue, and the next input: those of both axes once one of them is complete."""
+    """Print stop or continue, and the next input, for both axes once one is complete."""
     if plan is not None and plan.done:
         say(f"    {plan.announced}")
         say(f"    {plan.advice}")

@@ -1,4 +1,4 @@
-"""Causes of the gap: ranking with sizes, confusions, effects that the flight cannot show, and reasons."""
+"""Causes of the gap: ranking with sizes, similar effects, undetectable effects, and reasons."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -18,12 +18,12 @@ from advisor.report.facts.reasons import in_percent, weighed
 from advisor.report.facts.sizes import marked, sizes_of
 
 _LIKELY = 0.01
-"""Probability below which alternatives share one line."""
+"""Probability below which alternatives are joined in one line."""
 PRESENT = "●"
 
 
 def ranking(causes: Sequence[Cause], before: float) -> Iterator[RenderableType]:
-    """Yield the causes as a table, the unlikely ones in a line, then every confusion as a sentence.
+    """Yield the causes as a table, the unlikely ones in one line, and sentences about similar effects.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def ranking(causes: Sequence[Cause], before: float) -> Iterator[RenderableType]:
 
 
 def confusion_sentence(c: Cause) -> str:
-    """Return a sentence on effects that look alike here, and on the way to distinguish them."""
+    """Return a sentence about effects that look alike, and the way to distinguish them."""
     others = [spelled(name) for name in c.cannot_be_told_from]
     listed = others[0] if len(others) == 1 else f"{', '.join(others[:-1])} or {others[-1]}"
     way = f" To tell them apart, {c.tell_apart_by}." if c.tell_apart_by else ""
@@ -52,7 +52,7 @@ def confusion_sentence(c: Cause) -> str:
 
 
 def unseen(effects: Sequence[Unseen]) -> Table:
-    """Return the effects that the flight cannot show, with the data that would show them, by reason."""
+    """Return the undetectable effects with the data that would show them, grouped by reason."""
     table = Table.grid(padding=(0, 2))
     table.add_column(max_width=26)
     table.add_column()
@@ -87,7 +87,7 @@ def _table(causes: Sequence[Cause], before: float) -> Table:
 
 
 def why_of(d: Weighed) -> Iterator[RenderableType]:
-    """Yield the answer against its strongest rival, then every statistic with its limit."""
+    """Yield the evidence against the answer's strongest rival, then every statistic with its limit."""
     if d.answer is not None:
         *reasons, total = weighed((reason.nats, reason.sentence) for reason in d.why)
         lines = [Text(f"{nats:>6s}  {said}") for nats, said in reasons]
@@ -103,7 +103,7 @@ _SAID: Mapping[str, str] = {
     "decided": "its probability is {value} (at least {limit})",
     "likelihood": "it raises the log likelihood of the flight by {value} nats (at least {limit})",
 }
-"""Name of a decision to its sentence."""
+"""Sentence about each kind of decision, by its name."""
 
 
 def decision_in_words(decision: Decision) -> str:

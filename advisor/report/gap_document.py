@@ -36,9 +36,9 @@ def gap_document(
     improved_model: str | None = None,
     failed: Sequence[FailedPart] = (),
 ) -> dict[str, Any]:
-    """Build the document of ``advisor gap --json``; without a diagnosis it holds the problems alone.
+    """Return the document of ``advisor gap --json``; without a diagnosis it contains only problems.
 
-    A log whose diagnosis a fault of the advisor ended (``failed``) is usable.
+    A log whose diagnosis failed because of a program error (``failed``) is still usable.
     """
     document: dict[str, Any] = {
         "schema": SCHEMA,
@@ -88,7 +88,7 @@ def gap_document(
 
 
 def weighed_document(d: Weighed) -> dict[str, Any]:
-    """Return the probabilities of all alternatives, their evidence, and the reasons for the answer."""
+    """Return the document part with the alternatives' probabilities, their evidence, and the reasons."""
     answers = answers_of(d.evidence)
     return {
         "how_sure": how_sure(answers),
@@ -107,7 +107,7 @@ def weighed_document(d: Weighed) -> dict[str, Any]:
 
 
 def _of_the_simulator(d: Diagnosis) -> dict[str, Any]:
-    """Return what the simulator is, how it trims, and how its channels qualify."""
+    """Return the document part about the simulator: description, trim and qualification."""
     found = d.in_simulator
     return {
         "simulator": found and found.simulator,
@@ -117,7 +117,7 @@ def _of_the_simulator(d: Diagnosis) -> dict[str, Any]:
 
 
 def changed_document(one: ComparedDerivative) -> dict[str, Any]:
-    """Return a derivative of the simulator and of the flight."""
+    """Return the document part about one derivative, with the simulator's and the flight's value."""
     return {
         "text": changed(one),
         "derivative": one.name,
@@ -129,7 +129,7 @@ def changed_document(one: ComparedDerivative) -> dict[str, Any]:
 
 
 def traces_document(traces: Sequence[Trace]) -> list[dict[str, Any]]:
-    """Return the part ``traces``: the curves of every output and manoeuvre, SI."""
+    """Return the document part ``traces``: the curves of every output and manoeuvre, SI."""
     return [
         {
             **picked(trace, "number channel t"),
@@ -140,7 +140,7 @@ def traces_document(traces: Sequence[Trace]) -> list[dict[str, Any]]:
 
 
 def _as_logged(samples: FloatArray) -> list[float]:
-    """Return samples with the digits that a log keeps."""
+    """Return samples rounded to the digits that a log stores."""
     return [float(str(value)) for value in samples.astype(np.float32)]
 
 

@@ -1,4 +1,4 @@
-"""Size of the gap in phases, frequencies and manoeuvres, along the worst one, and measures of fidelity."""
+"""Size of the gap by phase, frequency and manoeuvre, the worst manoeuvre, and fidelity measures."""
 
 from collections.abc import Iterator, Sequence
 from itertools import zip_longest
@@ -20,11 +20,11 @@ _LEGEND = (
     "Band: q ±2 deg/s, θ ±1.5 deg, a_z ±0.10 g."
 )
 _BESIDE_BARS = 34
-"""Columns used by the letters before the bars and the numbers behind them."""
+"""Number of columns for the letters before the bars and the numbers after them."""
 
 
 def errors(d: Diagnosis, width: int) -> Text:
-    """Return the largest error along the manoeuvre with the largest gap, with one scale for each channel."""
+    """Return the largest errors during the manoeuvre with the largest gap, with one scale per channel."""
     worst = worst_maneuver(d)
     lines = [line for t in d.traces if t.number == worst for line in _pair(t, max(width - _BESIDE_BARS, 10))]
     return Text("\n".join(lines) or "no traces", no_wrap=True, overflow="crop")
@@ -36,9 +36,9 @@ def worst_maneuver(d: Diagnosis) -> int:
 
 
 def peaks(traces: Sequence[Trace]) -> str:
-    """Return the largest errors in an engineer's units: ``peak error of q 10 → 0.7 deg/s, of α 3 → 0.4 deg``.
+    """Return the largest errors in units for engineers: ``peak error of q 10 → 0.7 deg/s, of α 3 → 0.4 deg``.
 
-    Every held-out manoeuvre counts.
+    The errors are taken over all held-out manoeuvres.
     """
     said = []
     for channel in dict.fromkeys(t.channel for t in traces):
@@ -52,7 +52,7 @@ def peaks(traces: Sequence[Trace]) -> str:
 
 
 def yardsticks(d: Diagnosis) -> Iterator[RenderableType]:
-    """Yield gap, Theil's coefficient with its parts, R² and the share inside the qualification's band."""
+    """Yield gap, Theil's coefficient with its parts, R² and the share within the qualification tolerance."""
     yield Text("fidelity on held-out manoeuvres, before → after", style="bold")
     yield _yardsticks(d)
     yield Text(_LEGEND, style="dim")
@@ -98,13 +98,13 @@ def _bars(error: FloatArray, top: float, width: int) -> str:
 _BAR = 12
 _EIGHTHS = "▏▎▍▌▋▊▉"
 _AS_LOUD_AS_NOISE = 1.0
-"""Least gap that fills a bar. A smaller gap must not look large."""
+"""Least gap for a full bar. A smaller gap must not look large."""
 _LEFT = 38
-"""Columns for the text left of the bars."""
+"""Number of columns for the text left of the bars."""
 
 
 def whereabouts(gap: Gap) -> Text:
-    """Return phases next to frequencies, then every manoeuvre before and after, with bars in proportion."""
+    """Return phases and frequencies side by side, then every manoeuvre before and after, with bars."""
     lines = [*_beside(list(_phases(gap)), list(_bands(gap))), "", *_maneuvers(gap)]
     return Text("\n".join(lines), no_wrap=True, overflow="crop")
 

@@ -29,13 +29,13 @@ _NO_ALPHA = (
     "climb rate and air speed, at 10 Hz."
 )
 _ALIKE = 2
-"""Number of confusions that are printed. JSON has all of them."""
+"""Number of similar effects that are printed. JSON contains all similar effects."""
 
 
 def print_foresight(
     aircraft: Aircraft, plan: str, rate_hz: float, amplitude_deg: float, without: str, as_json: bool
 ) -> int:
-    """Print the smallest detectable size and the confusions of every effect; return exit code 0.
+    """Print the smallest detectable size and the similar effects of every effect, and return exit code 0.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def print_foresight(
 
 
 class ForesightScreen:
-    """Detectable sizes, ways to distinguish similar effects, and effects that the plan cannot show."""
+    """Screen of detectable sizes, ways to distinguish similar effects, and undetectable effects."""
 
     def __init__(self, title: str, found: Sequence[Foreseen], notes: Sequence[str] = ()) -> None:
         self.title, self.found, self.notes = title, found, notes
@@ -84,7 +84,7 @@ class ForesightScreen:
 
 
 def size_of(f: Foreseen) -> str:
-    """Return the smallest detectable size, with a unit for people."""
+    """Return the smallest detectable size with a unit for people."""
     factor, unit = in_units(f.parameter)
     size = abs(factor * f.smallest)
     if f.share is not None:
@@ -108,7 +108,7 @@ def _table(shown: Sequence[Foreseen]) -> Table:
 
 
 def _ways(found: Sequence[Foreseen]) -> list[tuple[str, str]]:
-    """Return each pair of similar effects once, with the way to distinguish them."""
+    """Return each pair of similar effects once, with the way to distinguish both."""
     ways: dict[frozenset[str], tuple[str, str]] = {}
     for f in found:
         twins = [name for name, cosine in f.confused_with if cosine > CONFUSED_AT]
@@ -136,7 +136,7 @@ def _noise() -> str:
 
 
 def _whole(x: float) -> str:
-    """Return a number with two digits; with all of them before the decimal point."""
+    """Return a number with two digits, or with all digits before the decimal point."""
     return f"{x:.0f}" if x >= 100.0 else f"{x:.2g}"
 
 

@@ -1,4 +1,4 @@
-"""The diagnosis on a terminal: answer, place, causes and steps; on request also its course and its limits."""
+"""Diagnosis on a terminal: answer, place, causes and steps; on request also its details."""
 
 import shlex
 from collections.abc import Iterator, Sequence
@@ -23,7 +23,7 @@ from advisor.report.gap_simulator import simulated
 from advisor.report.gap_steps import GapStep
 
 WIDEST = 120
-"""Columns beyond which lines become harder to read."""
+"""Largest number of columns at which lines are easy to read."""
 _PICTURE = (
     (
         ("input", "command → surface"),
@@ -38,11 +38,11 @@ _AS_GOOD = "100 % elsewhere: the data alone can hardly distinguish the two block
 _ROUNDS_TO_ALL = 0.995
 _BAR = 40
 _SPEED = "airspeed_variation"
-"""Effect that is no step where the simulator already contains the measured speed."""
+"""Effect that is no step if the simulator already uses the measured speed."""
 
 
 class GapScreen:
-    """Diagnosis for an engineer, readable without colour and at 80 columns."""
+    """Screen of a diagnosis for an engineer, readable without colour and at 80 columns."""
 
     def __init__(
         self,
@@ -93,7 +93,7 @@ class GapScreen:
             yield Text(self._more(), style="dim")
 
     def _course(self) -> Iterator[RenderableType]:
-        """Yield the gap by phase, band and manoeuvre, and as effects are added."""
+        """Yield the gap by phase, band and manoeuvre, and after each added effect."""
         d = self.diagnosis
         yield Panel(whereabouts(d.gap), title="where in the flight", title_align="left")
         added = [step for step in d.waterfall if step != (_SPEED, d.gap.before)]
@@ -102,7 +102,7 @@ class GapScreen:
             yield Panel(_waterfall(d.gap.before, added), title=title, title_align="left")
 
     def _errors(self, width: int) -> Iterator[RenderableType]:
-        """Yield the error in the worst manoeuvre, and the fidelity by channel."""
+        """Yield the error in the worst manoeuvre, and the fidelity measures by channel."""
         d = self.diagnosis
         title = f"error in manoeuvre {worst_maneuver(d)}, the one with the largest gap (its size, no sign)"
         yield ""
@@ -120,7 +120,7 @@ class GapScreen:
             yield unseen(self.diagnosis.cannot_see)
 
     def _more(self) -> str:
-        """Return the line on what is not shown."""
+        """Return the line about the parts that are not shown."""
         notes, hidden = _notes(self.diagnosis), self.diagnosis.cannot_see
         return (
             f"--all adds the gap in time and by manoeuvre, the fidelity by channel, {len(notes)} notes and "
@@ -129,7 +129,7 @@ class GapScreen:
 
 
 def _answer(d: Diagnosis) -> Iterator[Text]:
-    """Yield the sentence, the numbers that differ, the errors in an engineer's units, and the limits."""
+    """Yield the sentence, the differing derivatives, the errors in an engineer's units, and the limits."""
     yield Text(d.sentence)
     if sure := how_sure(answers_of(d.evidence)):
         yield Text(sure)
@@ -147,7 +147,8 @@ def _notes(d: Diagnosis) -> list[str]:
 
 
 def _numbered(steps: Sequence[GapStep], width: int) -> Iterator[Text]:
-    """Yield each step with its command. No blank follows a backslash, which a shell would take for a word."""
+    """Yield each step with its command line. No blank follows a backslash, which a shell would take for a
+    word."""
     for number, step in enumerate(steps, start=1):
         mark = f"{number}."
         yield _hanging(mark, step.text, width)
@@ -158,7 +159,7 @@ def _numbered(steps: Sequence[GapStep], width: int) -> Iterator[Text]:
 
 
 def command_lines(command: str, width: int) -> list[str]:
-    """Return a command line in lines that a shell takes as one, as wide as the terminal where words allow."""
+    """Return a command in shell lines, as wide as the terminal if words allow."""
     lines, words = [""], list(map(shlex.quote, shlex.split(command)))
     for word, value in zip(words, [*words[1:], ""], strict=True):
         # An option stays with its value.
@@ -171,7 +172,7 @@ def command_lines(command: str, width: int) -> list[str]:
 
 
 def _hanging(mark: str, text: str, width: int) -> Text:
-    """Return a text that is aligned behind a mark."""
+    """Return a text with a hanging indent after a mark."""
     behind = " " * len(f"{mark} ")
     return Text(fill(f"{mark} {text}", width, subsequent_indent=behind, break_on_hyphens=False))
 
@@ -188,7 +189,7 @@ def _numbers(d: Diagnosis) -> Text:
 
 
 def _picture(d: Diagnosis) -> Iterator[RenderableType]:
-    """Yield the simulator as blocks: the guilty one between arrows, others named, and scores of the rest."""
+    """Yield the simulator as blocks, with the gap's block between arrows and scores of the others."""
     table = Table.grid(expand=True, padding=(0, 1))
     guilty = d.where.block if d.verdict in ("effect", "unknown") else ""
     named = {c.block for c in d.causes if c.present} - {guilty}

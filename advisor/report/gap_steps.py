@@ -1,4 +1,4 @@
-"""The end of a diagnosis: three steps to take, with the commands that take them."""
+"""Next steps of a diagnosis: three steps, each with its command."""
 
 import shlex
 from collections.abc import Sequence
@@ -19,16 +19,16 @@ from advisor.words.certainty import Answers, doubt_of
 
 _FLY = "fly as many manoeuvres again, with another time unit and another amplitude"
 _TELLS = 0.1
-"""Words: part of the log odds, nats, below which the fit of as many manoeuvres again says nothing."""
+"""Words: log odds of the fit, nats, below which a repetition of the manoeuvres decides nothing."""
 
 
 @dataclass(frozen=True, slots=True)
 class GapStep:
-    """One thing to do after a diagnosis."""
+    """One step to take after a diagnosis."""
 
     text: str
     command: str = ""
-    """Command line that does the step; empty where no command does."""
+    """Command line for the step; empty without a command."""
 
 
 def next_steps(
@@ -39,20 +39,20 @@ def next_steps(
     options: Sequence[str] = (),
     written: str | None = None,
 ) -> list[GapStep]:
-    """Return what to put into the simulator, how to prove the change, and what excludes the rival.
+    """Return the steps: a change of the simulator, its proof, and a test against the rival.
 
     Parameters
     ----------
     logs
-        Logs of the diagnosis, as given.
+        Logs of the diagnosis as the user gave them.
     aircraft_file
-        Aircraft file, as given; None without one.
+        Aircraft file as the user gave it; None without one.
     simulator
-        Specification of the simulator; None where the aircraft file's model is the simulator.
+        Specification of the simulator; None if the aircraft file's model is the simulator.
     options
-        Options that say how the logs were read, as given.
+        Options about the reading of the logs, as the user gave them.
     written
-        File of the improved simulator that is there already: no step writes it again.
+        File of the improved simulator that already exists, so that no step writes it.
     """
     found = []
     answers = answers_of(d.evidence)
@@ -76,9 +76,9 @@ def next_steps(
 def _improvement(
     better: str, aircraft_file: str | None, simulator: str | None
 ) -> tuple[list[str], list[str], str]:
-    """Return the options that write the improved simulator, those that fly it, and words on formats.
+    """Return the options that write and that fly the improved simulator, and words about formats.
 
-    A simulator other than the aircraft file and JSBSim reads no file of ours: its owner changes it.
+    A simulator other than the aircraft file and JSBSim reads no exported file, so its owner changes it.
     """
     aircraft = ["--aircraft", aircraft_file] if aircraft_file else []
     kind, _, _ = (simulator or "linear").partition(":")
@@ -94,10 +94,9 @@ def _improvement(
 
 
 def to_decide(answers: Answers, way: str = "", why: Sequence[Contribution] = ()) -> GapStep:
-    """Return the flight that separates the two likeliest answers, with the probability that it would reach.
+    """Return the flight that separates the two likeliest answers, with the expected probability.
 
-    Evidence adds up over manoeuvres: as many manoeuvres again as were flown bring the fit's part of the log
-    odds once more.
+    Evidence adds up, so an equal number of manoeuvres would add the fit's log odds once more.
     """
     (ours, _), (other, _) = answers[:2]
     step = f"To separate {ours} from {other}: {way or _FLY}."
@@ -112,14 +111,14 @@ def to_decide(answers: Answers, way: str = "", why: Sequence[Contribution] = ())
 
 
 def _way_of(d: Diagnosis) -> str:
-    """Return what distinguishes the two likeliest effects; empty where one is none, or no way is known."""
+    """Return the measurement that distinguishes the two likeliest effects; empty if none is known."""
     shares = ((one.alternative, one.probability) for one in d.evidence)
     answer, rival = (alternative for alternative, _ in together(shares)[:2])
     return way_to_distinguish(answer.name, rival.name) if answer.is_effect and rival.is_effect else ""
 
 
 def _to_put(d: Diagnosis) -> str:
-    """Return the effects and derivatives that the improved simulator has; empty where nothing is to put."""
+    """Return the effects and derivatives to change in the improved simulator; empty if there are none."""
     if not d.improves:
         return ""
     effects = [f"{spelled(c.effect)} {', '.join(sizes_of(c.parameters))}" for c in d.causes if c.present]
@@ -128,7 +127,7 @@ def _to_put(d: Diagnosis) -> str:
 
 
 def _against_the_rival(d: Diagnosis) -> str:
-    """Return what distinguishes the answer from an effect that looks alike, or shows what is hidden."""
+    """Return the measurement that distinguishes the answer from a similar effect, or shows a hidden one."""
     telling = next((c for c in d.causes if c.present and c.cannot_be_told_from and c.tell_apart_by), None)
     if telling is not None:
         return f"To exclude {_rivals(telling)}: {telling.tell_apart_by}."

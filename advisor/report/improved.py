@@ -1,4 +1,4 @@
-"""The improved simulator as a file: the aircraft file with the flight's findings."""
+"""Improved simulator as a file: the aircraft file with the flight's results."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, replace
@@ -16,7 +16,7 @@ from advisor.words.plain import plain
 
 
 def improved_file(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, Any]:
-    """Return the aircraft file with the fitted model and the effects found in it."""
+    """Return the aircraft file with the fitted model and the effects found."""
     flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, diagnosis.effects))
     speed = diagnosis.reference_airspeed_m_s
     if speed is not None and diagnosis.air is not None:
@@ -33,7 +33,7 @@ def file_content(
 ) -> dict[str, Any]:
     """Return an aircraft file with other derivatives, at an air speed as read, and with other effects.
 
-    Derivatives of roll and yaw that ``model`` lacks stay as they are.
+    Derivatives of roll and yaw that ``model`` lacks are unchanged.
     """
     content: dict[str, Any] = {"name": f"{aircraft.name}, improved"}
     kept = replace(aircraft, name=Aircraft().name, model={}, effects={}, simulator=None)
@@ -72,7 +72,7 @@ def text_of(content: Mapping[str, Any]) -> str:
 
 
 def improved_name(diagnosis: Diagnosis, aircraft_file: str | None) -> str:
-    """Return the name ``<aircraft>-with-<effect>.yaml``."""
+    """Return the file name ``<aircraft>-with-<effect>.yaml``."""
     stem = Path(aircraft_file).stem if aircraft_file is not None else "aircraft"
     first = next((one.effect for one in diagnosis.causes if one.present), "fitted-model")
     return f"{stem}-with-{first.replace('_', '-')}.yaml"

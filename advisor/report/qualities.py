@@ -1,4 +1,4 @@
-"""Flying qualities of both axes, and coefficients: for the documents, and as lines and rows for people."""
+"""Flying qualities of both axes, and coefficients, for documents and for text."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
@@ -31,7 +31,7 @@ NAMES: Mapping[str, str] = {
     "static_margin": "static margin",
     "neutral_point": "neutral point",
 }
-"""Quality to its name for people."""
+"""Name of each quality for people."""
 
 
 def qualities_of(state: CampaignState, reference: Reference) -> FlyingQualities | None:
@@ -59,7 +59,8 @@ def reference_speed(state: CampaignState) -> str:
 
 
 def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
-    """Return the part ``flying_qualities`` of ``advisor.analyze/1``. Each quality is given with its unit."""
+    """Return the document part ``flying_qualities`` of ``advisor.analyze/1``. Each quality is given with its
+    unit."""
     if found is None:
         return None
     return {
@@ -97,7 +98,7 @@ def level_document(found: LevelFound) -> dict[str, Any]:
 
 
 def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient]) -> Iterator[str]:
-    """Yield flying qualities and coefficients, one on each line, with half the 95 % interval."""
+    """Yield flying qualities and coefficients, one per line, with the 95 % half-width."""
     source = f"Flying qualities at {_speeds(found)}"
     yield f"{source}:"
     for name, one in found.qualities.items():
@@ -131,14 +132,14 @@ MODES: Mapping[str, tuple[str, str]] = {
     "roll_time_constant": ("roll time constant", "s"),
     "spiral_pole": ("spiral pole", "1/s"),
 }
-"""Field of `LateralModes` to its name for people and its unit."""
+"""Name and unit for people of each field of `LateralModes`."""
 MODE_NAMES = {"dutch_roll": "Dutch roll", "roll": "roll", "spiral": "spiral"}
 OPTIONAL = frozenset({"Y_p", "Y_r", "Y_delta_a"})
-"""Derivatives that count as zero where the aircraft file states the others: a few per cent everywhere."""
+"""Derivatives that are taken as zero if the aircraft file states the others."""
 
 
 def mode_facts(state: LateralState) -> list[Fact]:
-    """Return frequency, damping, time constant and pole of the modes that the joint estimate tells."""
+    """Return frequency, damping, time constant and pole of the modes in the joint estimate."""
     modes, source = state.model.modes if state.model else None, joint_source(state)
     told = ((one, named) for name, named in MODES.items() if (one := getattr(modes, name, None)) is not None)
     return [fact_of(name, source, one.value, one.std, unit) for one, (name, unit) in told]
@@ -150,7 +151,7 @@ def levels_of(state: LateralState) -> tuple[LateralLevels, ...]:
 
 
 def levels_document(found: tuple[LateralLevels, ...]) -> dict[str, Any] | None:
-    """Return the part ``levels`` of the block ``lateral``; None without a level."""
+    """Return the document part ``levels`` of the block ``lateral``; None without a level."""
     if not found:
         return None
     by_class: dict[str, dict[str, Any]] = {group: {} for group in GROUPS}
@@ -165,9 +166,9 @@ def levels_document(found: tuple[LateralLevels, ...]) -> dict[str, Any] | None:
 
 
 def tests_of(state: LateralState, aircraft: Aircraft) -> tuple[LateralTest, ...]:
-    """Return the tests of the aircraft file's model against the joint estimate; empty without either.
+    """Return the qualification tests of the file's model against the joint estimate; empty without either.
 
-    The file must state every derivative but those of ``OPTIONAL``.
+    The file must state every derivative except those of ``OPTIONAL``.
     """
     model = state.model
     stated = {name: aircraft.model[name] for name in SIDE_PARAMETERS if name in aircraft.model}
@@ -192,7 +193,7 @@ def tests_document(tests: tuple[LateralTest, ...]) -> list[dict[str, Any]]:
 
 
 def trim_of(joined: Sequence[Maneuver], airspeed_m_s: float) -> Trim:
-    """Return the mean attitude of the manoeuvres; level flight where no angle of attack was recorded."""
+    """Return the mean attitude of the manoeuvres; level flight without an angle of attack."""
     theta = _mean(joined, "theta", 0.0)
     return Trim(airspeed_m_s, _mean(joined, "alpha", theta), theta)
 
@@ -203,7 +204,7 @@ def _mean(joined: Sequence[Maneuver], name: str, otherwise: float) -> float:
 
 
 def _step(rolled: list[JudgedManeuver]) -> tuple[float, float]:
-    """Return size and length of the largest step of the aileron that was flown, rad and s."""
+    """Return size and duration of the largest flown aileron step, rad and s."""
     steps = [
         (abs(level), after - onset)
         for one in rolled

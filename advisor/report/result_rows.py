@@ -1,4 +1,4 @@
-"""Rows of results, one model for terminal, page and panes: manoeuvres, channels and messages."""
+"""Rows of results for terminal, page and panes: manoeuvres, channels and messages."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -24,8 +24,7 @@ from advisor.words.plain import picked, plain
 
 
 def side_gap_lines(found: SideGap) -> Iterator[str]:
-    """Yield the sentence, the causes, each stated derivative with that of the flight, instruments, and the
-    gap."""
+    """Yield the sentence, the causes, each stated derivative with the flight's, instruments, and the gap."""
     yield f"{_title(found)}: {found.sentence}"
     if found.diagnosis is not None and found.verdict is not None:
         yield f"  {how_sure(found.diagnosis.answers)}"
@@ -44,14 +43,14 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
 
 
 def _title(found: SideGap) -> str:
-    """Return the title over the answer."""
+    """Return the title above the answer."""
     return title_of_verdict(
         found.verdict or "untested", found.diagnosis.answers if found.diagnosis is not None else ()
     )
 
 
 def _to_decide(found: SideDiagnosis | None) -> GapStep | None:
-    """Return the flight that separates the two likeliest answers; None where one is decided."""
+    """Return the flight that separates the two likeliest answers; None for a decided answer."""
     if found is None or is_decided(found.answers):
         return None
     named = {one.named: one.cause.effect for one in found.causes}
@@ -60,7 +59,7 @@ def _to_decide(found: SideDiagnosis | None) -> GapStep | None:
 
 
 def _diagnosis_lines(found: SideDiagnosis) -> Iterator[str]:
-    """Yield each likely effect with its size and the errors that it removes."""
+    """Yield each likely effect with its size and with the errors that it removes."""
     for one in found.causes:
         if one.cause.probability >= LIKELY:
             sizes = "; ".join(sizes_of(one.cause.parameters))
@@ -78,7 +77,7 @@ def _diagnosis_lines(found: SideDiagnosis) -> Iterator[str]:
 
 
 def whole_document(found: SideGap) -> dict[str, Any]:
-    """Return ``advisor.gap/1`` of roll and yaw alone; its other blocks are empty."""
+    """Return the document ``advisor.gap/1`` of roll and yaw alone, with its other blocks empty."""
     failed = found.diagnosis.failed if found.diagnosis is not None else ()
     return gap_document(None, failed=failed) | {"usable": True, "lateral": side_gap_document(found)}
 
@@ -125,8 +124,7 @@ def _of_maneuvers(found: SideGap) -> dict[str, Any]:
 
 
 def _diagnosis_document(found: SideDiagnosis | None) -> dict[str, Any]:
-    """Return the probabilities, the causes and the largest errors, rad/s; without a diagnosis only their
-    keys."""
+    """Return probabilities, causes and largest errors, rad/s; without a diagnosis only the keys."""
     if found is None:
         return {
             **weighed_document(Weighed()), "where": None, "causes": [], "waterfall": [], "peaks": None,

@@ -1,4 +1,4 @@
-"""Findings of ``advisor simulator check`` as text and as a document."""
+"""Results of ``advisor simulator check`` as text and as a document."""
 
 from collections.abc import Iterator
 from math import degrees, isfinite, tau
@@ -31,7 +31,7 @@ def document(found: CheckedSimulator) -> dict[str, Any]:
 
 
 def lines(found: CheckedSimulator) -> Iterator[str]:
-    """Yield the findings, a line each."""
+    """Yield the results of the check, one per line."""
     yield f"{found.simulator} at {found.airspeed_m_s:.4g} m/s true air speed, {found.height_m:.0f} m"
     controls = "".join(f", {name} {_control(name, value)}" for name, value in found.trim.items())
     yield f"trim        α {degrees(found.alpha_rad):+.2f} deg{controls}"

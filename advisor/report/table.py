@@ -7,15 +7,15 @@ from rich import table as console
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Table of cells as text. The first row names the columns."""
+    """Table of text cells. The first row names the columns."""
 
     name: str
-    """Anchor of the table in the page."""
+    """Anchor of the table within the page."""
     caption: str
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     numbers: frozenset[int] = frozenset()
-    """Columns with numbers, counted from 0."""
+    """Indices of the columns with numbers, from 0."""
     anchored: bool = False
     """Whether each row is an anchor in the page: the table's name, a hyphen and the row's first cell."""
 

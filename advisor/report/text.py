@@ -1,4 +1,4 @@
-"""The analysis as text for people: stop or continue first, angles in degrees, a sentence for each verdict."""
+"""Analysis as text for people: stop or continue first, angles in degrees, a sentence for each verdict."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
@@ -25,7 +25,7 @@ def activity_line(activity: Activity) -> str:
 
 
 def instrument_lines(found: Iterable[InstrumentFinding]) -> list[str]:
-    """Return each contradiction of an instrument with its remedy."""
+    """Return one line for each instrument contradiction, with its remedy."""
     return [f"{'!' if f.used else '✗'} {f.sentence}. -> {f.fix}." for f in found if f.contradicts]
 
 
@@ -39,7 +39,7 @@ def caution_lines(maneuvers: Sequence[JudgedManeuver]) -> list[str]:
 
 
 class AnalysisText:
-    """Text of the whole analysis; rich prints it at the width of the terminal, without unwanted colour."""
+    """Text of the whole analysis, printed at the width of the terminal, without unwanted colour."""
 
     def __init__(
         self,
@@ -53,7 +53,7 @@ class AnalysisText:
         self.every_movement, self.pitch = every_movement, pitch
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the decisions on both axes first, then what they rest on."""
+        """Yield the decisions on both axes first, then the results behind them."""
         for line in decisions(self.state, pitch=self.pitch):
             yield Text(line, style="" if line.startswith(INDENT) else "bold")
         yield Text()
@@ -104,7 +104,7 @@ class AnalysisText:
             yield from map(Text, side_quality_lines(side, self.aircraft))
 
     def _movements(self) -> Iterator[Text]:
-        """Yield the manoeuvres and, on request, all other elevator movements, in the order of time."""
+        """Yield the manoeuvres and, on request, all other elevator movements, in order of time."""
         lines = []
         for judged in self.state.maneuvers:
             maneuver = judged.maneuver

@@ -15,7 +15,7 @@ SIDECAR = "columns.json"
 def write_csv(data: Dataset, folder: Path) -> None:
     """Write a dataset as ``TABLE.csv``, ``record_N/grid.csv`` and ``record_N/CHANNEL.csv``.
 
-    Numbers have enough digits to restore the float64. A missing value is an empty field.
+    Numbers have enough digits to restore the float64 value. A missing value is an empty field.
     """
     files = {f"{table.name}.csv": table for table in data.tables}
     for recording in data.recordings:

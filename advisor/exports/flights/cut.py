@@ -16,8 +16,8 @@ from advisor.mavlink.wire.scan import STAMP_BYTES
 from advisor.words.problems import ConfigurationError
 
 BEFORE = {"HEARTBEAT": (), "AUTOPILOT_VERSION": (), "PARAM_VALUE": ("param_id",)}
-"""Message, of which the last one before the stretch is needed, to the fields that distinguish its values. The
-messages give identity, mode and parameters."""
+"""Key fields of each message whose last value before the stretch is needed, by the message's name. These
+messages give identity, mode and parameters of the vehicle."""
 
 
 def cut_tlog(log: Path, first: int, last: int) -> bytes:

@@ -1,4 +1,4 @@
-"""Findings of the flights as tables: manoeuvres with verdicts, estimates, residuals."""
+"""Results of the flights as tables: manoeuvres with verdicts, estimates, residuals."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -19,7 +19,7 @@ from advisor.words.quantities import SIDE_PARAMETERS
 PARAMETER_UNITS = dict(
     zip(PARAMETERS, ("rad/s", "1/s", "1", "1/s", "rad/s^2", "1/s^2", "1/s", "1/s^2"), strict=True)
 )
-"""SI units of θ, Eqs. (1)-(3)."""
+"""SI units of the eight parameters θ, Eqs. (1)-(3)."""
 SIDE_UNITS = {name: quantity.unit.replace("²", "^2") for name, quantity in SIDE_PARAMETERS.items()}
 """SI units of the derivatives of roll and yaw."""
 JOINT = 0
@@ -33,24 +33,24 @@ _MEASURES = {
 
 
 class _Axis(NamedTuple):
-    """Findings of one axis."""
+    """Results of one axis for the tables."""
 
     judged: Sequence[JudgedManeuver]
     model: Estimate | None
     units: Mapping[str, str]
-    """Parameter to its SI unit."""
+    """SI unit of each parameter, by its name."""
     outputs: Sequence[str]
     prefix: str = ""
-    """Beginning of the names of the axis's tables."""
+    """Beginning of the axis' table names."""
 
 
 def findings(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> Iterator[FlightTable]:
-    """Yield the tables of pitch, and those of roll and yaw where a manoeuvre of them was flown.
+    """Yield the tables of pitch, and those of roll and yaw if a lateral manoeuvre was flown.
 
     Parameters
     ----------
     record_of
-        (Flight, power-on), each counted from 0, to the number of the record.
+        Number of each record by (flight, power-on), both counted from 0.
     """
     axes = [_Axis(state.maneuvers, state.model, PARAMETER_UNITS, OUTPUTS)]
     side = state.lateral
@@ -145,9 +145,9 @@ def _estimates(axis: _Axis) -> FlightTable:
 
 
 def _told(e: Estimate, name: str, values: str, of: tuple[int, ...]) -> float | None:
-    """Return an attribute of one parameter of an estimate; None where the estimate does not tell it.
+    """Return an attribute of one parameter of an estimate; None for an unidentifiable parameter.
 
-    An instrument has a value and a standard deviation only.
+    An instrument has only a value and a standard deviation.
     """
     if name in e.names:
         return None if name in e.not_identifiable else getattr(e, values)[(e.names.index(name), *of)]
@@ -162,7 +162,8 @@ def _unit_of(name: str) -> str:
 
 
 def _residuals(axis: _Axis, record_of: Mapping[tuple[int, int], int]) -> Iterator[FlightTable]:
-    """Yield a table for each output: measured, fitted and residual of accepted manoeuvres, at own stamps."""
+    """Yield a table per output with measured, fitted and residual values of accepted manoeuvres, at own
+    stamps."""
     accepted = [(one.maneuver, e) for one in axis.judged if one.verdict.accepted and (e := _estimate(one))]
     for output in axis.outputs:
         fits = [(maneuver, e.fits[0][output]) for maneuver, e in accepted if output in e.fits[0]]
@@ -200,7 +201,7 @@ def _records(
 
 
 def _measures(output: str, fits: Sequence[ChannelFit | None]) -> list[Column]:
-    """Return the columns with measures of an output's fit."""
+    """Return the columns with the fit measures of an output."""
     return [
         Column(
             f"{measure}_{output}",

@@ -1,4 +1,4 @@
-"""Formats of an export by name, each imported only on use."""
+"""Formats of an export by name, each imported only when used."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -20,7 +20,7 @@ WRITERS = {
     "mat": ("mat_file", "write_mat"),
     "mcap": ("mcap_files", "write_mcap"),
 }
-"""Format to the module of its writer and the writer's name."""
+"""Module and function of each format's writer, by the format's name."""
 FORMATS = (*WRITERS, *NAMES)
 """Formats of a flight's data, then those of its model."""
 _NEEDS = {"parquet": "pyarrow", "mcap": "mcap"}
@@ -48,8 +48,8 @@ def parse_formats(text: str) -> tuple[str, ...]:
 
 
 def write_formats(data: "Dataset", folder: Path, formats: Sequence[str]) -> tuple[FailedPart, ...]:
-    """Write a dataset in several formats into a folder, with a layout for PlotJuggler where it reads the
-    format. Return the formats that a fault ended."""
+    """Write a dataset in several formats into a folder, with a PlotJuggler layout if it reads the format.
+    Return the formats whose writer failed."""
     from advisor.exports.flights.plotjuggler import write_layouts
 
     failed = []

@@ -1,4 +1,4 @@
-"""Which stretch of a log is one manoeuvre's, and whether the cut log still holds the manoeuvre."""
+"""Stretch of a log that belongs to one manoeuvre, and a check that the cut log still contains it."""
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.whole_flights import WholeFlights
@@ -10,9 +10,9 @@ from advisor.mavlink.wire.frames import FrameScanner
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 LEAD_S = 10.0
-"""Flight before the record: best rates are counted over ten seconds."""
+"""Length of flight before the record, s, because best rates are counted over ten seconds."""
 AFTER_S = 5.0
-"""Flight after the record: a heartbeat, and every channel, has arrived."""
+"""Length of flight after the record, s, within which a heartbeat and every channel arrive."""
 
 
 def log_of_maneuver(
@@ -20,19 +20,20 @@ def log_of_maneuver(
 ) -> bytes:
     """Return the bytes of a tlog in which ``advisor analyze`` finds one manoeuvre.
 
-    The stretch begins ``LEAD_S`` before the record and ends ``AFTER_S`` after it, or at the neighbours.
+    The stretch begins ``LEAD_S`` before the record and ends ``AFTER_S`` after it, or at the neighbouring
+    manoeuvres.
 
     Parameters
     ----------
     number
-        Of the manoeuvre, as ``advisor analyze`` counts on the same logs.
+        Number of the manoeuvre, as ``advisor analyze`` counts on these logs.
     target_system
-        System id of the vehicle; None: the first one heard.
+        System id of the vehicle; None for the first one that sends.
 
     Raises
     ------
     ConfigurationError
-        There is no such manoeuvre, or its log is no tlog.
+        The manoeuvre does not exist, or its log is no tlog.
     UnusableInputError
         The manoeuvre cannot be found in its stretch alone.
     """
@@ -65,7 +66,7 @@ def _stretch(maneuver: Maneuver, every: list[Maneuver]) -> tuple[float, float]:
 
 
 def _finds(data: bytes, maneuver: Maneuver, aircraft: Aircraft, target_system: int | None) -> bool:
-    """Return whether the cut log holds the manoeuvre, sample by sample."""
+    """Return whether the cut log contains the manoeuvre, sample by sample."""
     scanner, stream = FrameScanner(), FlightStream(aircraft, target_system)
     events = stream.feed([*scanner.feed(data), *scanner.close()]) + stream.finish()
     return any(isinstance(event, ManeuverFlown) and are_one(event.maneuver, maneuver) for event in events)

@@ -17,7 +17,7 @@ def write_mat(data: Dataset, folder: Path) -> None:
     ``about``.
 
     A struct has a vector for each column, and ``units`` and ``meanings`` with equal field names. Texts are
-    cells. ``about`` is a JSON document on the logs.
+    cells. ``about`` is a JSON document about the logs.
     """
     content: dict[str, Any] = {table.name: _struct(table) for table in data.tables}
     for recording in data.recordings:

@@ -14,14 +14,14 @@ from advisor.exports.flights.table import Column, Dataset, FlightTable, Recordin
 
 _TYPES = {"f": "number", "i": "integer", "b": "boolean", "U": "string"}
 _TIMES = {"maneuvers": "end_boot_s"}
-"""Column with the stamps of a table's messages, for tables without ``t_boot_s``."""
+"""Column with the message times of each table without ``t_boot_s``."""
 
 
 def write_mcap(data: Dataset, folder: Path) -> None:
     """Write a dataset as ``record_N.mcap``: a topic for each channel, ``/maneuvers``, ``/residuals_OUTPUT``.
 
     The time of a message is the vehicle's time since boot, in ns. The estimates follow at the end of the last
-    record, one message for each parameter. The schemas hold units and meanings. Unknown numbers are null.
+    record, one message for each parameter. The schemas contain units and meanings. Unknown numbers are null.
     """
     for number, recording in enumerate(data.recordings, start=1):
         tables = [*recording.channels, *(_of_record(t, number) for t in data.tables if _is_of_record(t))]

@@ -12,7 +12,8 @@ from advisor.exports.flights.table import Dataset, FlightTable
 def write_parquet(data: Dataset, folder: Path) -> None:
     """Write a dataset as ``TABLE.parquet``, ``record_N/grid.parquet`` and ``record_N/CHANNEL.parquet``.
 
-    The fields' metadata hold ``unit`` and ``about``, the schema's ``advisor`` a JSON document on the logs.
+    The fields' metadata contain ``unit`` and ``about``; the schema's ``advisor`` is a JSON document about the
+    logs.
     """
     for table in data.tables:
         _write(table, data, folder / f"{table.name}.parquet")

@@ -12,7 +12,7 @@ _LOADERS = {
     "csv": ("DataLoad CSV", {"default": _COMMA, "parameters": _COMMA}),
     "parquet": ("DataLoad Parquet", {"default": {"prevTimestamp": "t_boot_s", "radioIndexChecked": "0"}}),
 }
-"""PlotJuggler's reader of each file ending, and where older and newer releases seek the times."""
+"""PlotJuggler's reader of each file ending, and the places where its releases seek the times."""
 _COLORS = ("#1f77b4", "#d62728")
 
 

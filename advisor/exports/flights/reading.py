@@ -1,4 +1,4 @@
-"""The dataset of an export: whole flights as tables."""
+"""Dataset of an export: whole flights as tables."""
 
 import hashlib
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from advisor.flight.signals.record import ALL_UNITS, Channel
 
 
 def dataset(flights: WholeFlights) -> Dataset:
-    """Return everything that an export holds, as tables."""
+    """Return all data of an export as tables."""
     record_of = {
         (flight, one.boot): number for number, (flight, one) in enumerate(flights.power_ons, start=1)
     }
@@ -78,7 +78,7 @@ def _channels(flights: WholeFlights) -> FlightTable:
 
 
 def sha256(path: Path) -> str:
-    """Return the SHA-256 of a file, in hexadecimal digits."""
+    """Return the SHA-256 hash of a file, in hexadecimal digits."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
@@ -88,11 +88,11 @@ GRID = (
     " fastest channel); linear between a channel's stamps; nothing outside them and in gaps longer than"
     f" {GAP_S:g} s and {MANY_INTERVALS:g} median intervals"
 )
-"""Description of the grid, and of the interpolation onto the grid."""
+"""Description of the time grid, and of the interpolation onto it."""
 
 
 def on_one_grid(channels: Mapping[str, Channel]) -> FlightTable:
-    """Return all channels at the times of ``GRID``; without rows where no channel has two samples."""
+    """Return all channels at the times of ``GRID``; no rows if every channel has fewer than two samples."""
     t = grid_times(channels)
     columns = [
         Column(name, on_grid(c, t), ALL_UNITS[name], f"{name} from {c.source}")
@@ -103,7 +103,7 @@ def on_one_grid(channels: Mapping[str, Channel]) -> FlightTable:
 
 
 def grid_times(channels: Mapping[str, Channel]) -> FloatArray:
-    """Return the times of the grid, shape (n,), s since power-on."""
+    """Return the times of the common grid, shape (n,), s since power-on."""
     paced = {name: c for name, c in channels.items() if len(c) > 1}
     if not paced:
         return np.empty(0)

@@ -1,4 +1,4 @@
-"""A set of files that appears as a whole: written under temporary names, then renamed."""
+"""A set of files that appears at once: written under temporary names, then renamed."""
 
 import os
 import shutil
@@ -12,21 +12,22 @@ from advisor.words.problems import ConfigurationError
 
 @contextmanager
 def staged(folder: Path, inputs: Sequence[Path] = ()) -> Iterator[Path]:
-    """Yield a temporary folder. Files of the block get their names below ``folder`` when the block succeeds.
+    """Yield a temporary folder. Files written in the block are moved below ``folder`` when the block
+    succeeds.
 
-    Files with equal names are replaced. After any failure, everything below ``folder`` is unchanged.
+    Existing files of equal name are replaced. After any failure, everything below ``folder`` is unchanged.
 
     Parameters
     ----------
     folder
-        Folder for the files, made where missing.
+        Folder for the files, which is created if missing.
     inputs
         Files that must not be replaced.
 
     Raises
     ------
     ConfigurationError
-        The folder cannot be made or written to, or a file would replace an input.
+        The folder cannot be created or written to, or a file would replace an input.
     """
     made = _missing(folder)
     try:
@@ -63,7 +64,7 @@ def _publish(stage: Path, folder: Path, inputs: Sequence[Path]) -> None:
 
 
 def refuse_inputs(targets: Sequence[Path], inputs: Sequence[Path]) -> None:
-    """Refuse to write over an input.
+    """Refuse to overwrite an input file.
 
     Raises
     ------
@@ -77,7 +78,7 @@ def refuse_inputs(targets: Sequence[Path], inputs: Sequence[Path]) -> None:
 
 
 def _missing(folder: Path) -> list[Path]:
-    """Return the folders that must be made, the innermost first."""
+    """Return the missing folders to be created, the innermost first."""
     return [path for path in (folder, *folder.parents) if not path.exists()]
 
 

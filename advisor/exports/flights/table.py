@@ -1,4 +1,4 @@
-"""Tables with names, units and meanings, from which every format of an export is written."""
+"""Tables with names, units and meanings, from which every export format is written."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -19,7 +19,7 @@ class Column:
     unit: str
     """SI unit, such as ``rad/s``; ``1`` for a pure number; empty without a quantity."""
     about: str
-    """Meaning of the column, one sentence."""
+    """Meaning of the column in one sentence."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class FlightTable:
     name: str
     """Name of the file or variable, without an ending."""
     about: str
-    """Meaning of a row, one sentence."""
+    """Meaning of a table row in one sentence."""
     columns: tuple[Column, ...]
 
     def __len__(self) -> int:
@@ -42,14 +42,14 @@ class FlightTable:
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """One power-on of the vehicle in one log, whose times are on one clock."""
+    """One power-on of the vehicle in one log, with all times on one clock."""
 
     name: str
-    """``record_1``, ``record_2``, ... in the order of flying."""
+    """Name of the record, ``record_1``, ``record_2``, ... in the order of flying."""
     channels: tuple[FlightTable, ...]
     """A table for each channel, at its own stamps: ``t_boot_s`` and a column with the channel's name."""
     grid: FlightTable
-    """All channels on one grid of times: ``t_boot_s`` and a column for each channel."""
+    """Table of all channels at common times: ``t_boot_s`` and a column for each channel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,9 +58,9 @@ class Dataset:
 
     recordings: tuple[Recording, ...]
     tables: tuple[FlightTable, ...]
-    """Findings: ``channels``, ``maneuvers``, ``estimates``, ``residuals_OUTPUT``."""
+    """Tables of results: ``channels``, ``maneuvers``, ``estimates``, ``residuals_OUTPUT``."""
     about: Mapping[str, Any] = field(default_factory=dict)
-    """Origin of the numbers for JSON: version, logs with their SHA-256, grid, notes."""
+    """Origin of the data for JSON: version, logs with their SHA-256, grid, notes."""
 
     def table(self, name: str) -> FlightTable:
         """Return one of ``tables`` by name."""
@@ -78,7 +78,7 @@ def counts(values: Sequence[int]) -> NDArray[np.int64]:
 
 
 def truths(values: Sequence[bool]) -> NDArray[np.bool_]:
-    """Return truths as a column's values, shape (n,)."""
+    """Return truth values as a column's values, shape (n,)."""
     return np.array(list(values), dtype=np.bool_)
 
 

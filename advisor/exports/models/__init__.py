@@ -1,1 +1,1 @@
-"""The improvement from a diagnosis, in the formats of other simulators."""
+"""Improvement of a simulator from a diagnosis, in the formats of other programs."""

@@ -1,4 +1,4 @@
-"""The model for other programs: both axes, as flown or as a diagnosis improved them; its aircraft file."""
+"""Model of both axes for other programs, as flown or as a diagnosis improved it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -35,19 +35,20 @@ from advisor.words.quantiles import NORMAL_95
 
 @dataclass(frozen=True)
 class SideModel:
-    """Roll and yaw for other programs."""
+    """Model of roll and yaw for other programs."""
 
     values: Mapping[str, Value]
     """Derivatives that are known, by the names of ``SIDE_PARAMETERS``."""
     untold: Mapping[str, str]
-    """Each unknown derivative, with the reason for which the flight does not tell the derivative."""
+    """Reason why the flight does not determine a derivative, by the derivative's name."""
     trim: Trim
-    """Trimmed flight. The air speed of the trim is of the kind that ``air`` knows."""
+    """Trimmed flight condition of the lateral model. The trim's air speed is of the kind that ``air``
+    states."""
     air: AirData = STILL_AIR
     servos: Mapping[str, ExportedServo] = field(default_factory=dict)
     """Servo of the aileron and of the rudder."""
     flown: bool = True
-    """Whether a flight tells the derivatives; otherwise they are the aircraft file's."""
+    """Whether the derivatives come from a flight instead of the aircraft file."""
 
     @property
     def true_airspeed_m_s(self) -> float:
@@ -56,16 +57,16 @@ class SideModel:
 
     @property
     def zeros(self) -> tuple[str, ...]:
-        """Known derivatives that are not told from zero."""
+        """Known derivatives that do not differ significantly from zero."""
         return tuple(name for name, value in self.values.items() if not is_told(value))
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """Derivatives that other programs do not get, as sentences."""
+        """Sentences about derivatives that are not exported."""
         return (*(f"{p}: {reason}" for p, reason in self.untold.items()), *map(zero_said, self.zeros))
 
     def number(self, parameter: str) -> float:
-        """Return a derivative for other programs; 0 where not told from zero, or not known."""
+        """Return a derivative for other programs; 0 if insignificant or unknown."""
         found = self.values.get(parameter)
         return found.value if found is not None and is_told(found) else 0.0
 
@@ -75,22 +76,22 @@ class SideModel:
         return np.array([self.number(name) for name in SIDE_PARAMETERS])
 
     def half(self, parameter: str) -> float:
-        """Return half of the 95 % interval of a known derivative."""
+        """Return the half-width of a known derivative's 95 % interval."""
         return NORMAL_95 * self.values[parameter].std
 
 
 @dataclass(frozen=True)
 class FlownModel:
-    """Pitch, roll and yaw of a flight. None for an axis without an estimate."""
+    """Models of pitch, roll and yaw from a flight. None for an axis without an estimate."""
 
     aircraft: Aircraft
-    """The aircraft file with its own servos and with the user's simulator."""
+    """Aircraft file with its own servos and with the user's simulator."""
     pitch: Improvement | None
     side: SideModel | None
     diagnosis: Diagnosis | None = None
     """Diagnosis that improved the pitch axis."""
     unchanged: bool = False
-    """Whether a diagnosis found no cause and no wrong number."""
+    """Whether a diagnosis found neither a cause nor a wrong derivative."""
 
     @property
     def name(self) -> str:
@@ -104,7 +105,7 @@ def flown_model(state: CampaignState, aircraft: Aircraft) -> FlownModel:
     Raises
     ------
     ConfigurationError
-        No manoeuvre of either axis is accepted, or their derivatives are not told.
+        No manoeuvre of either axis is accepted, or none determines the derivatives.
     """
     found = _in_one_air(FlownModel(aircraft, _pitch(state, aircraft), side_flown(state.lateral, aircraft)))
     if found.pitch is None and found.side is None:
@@ -116,7 +117,7 @@ def flown_model(state: CampaignState, aircraft: Aircraft) -> FlownModel:
 
 
 def improved_model(diagnosis: Diagnosis, aircraft: Aircraft, side: SideModel | None) -> FlownModel:
-    """Return the model that a diagnosis of pitch improved, next to that of roll and yaw.
+    """Return the pitch model that a diagnosis improved, together with the roll and yaw model.
 
     Raises
     ------
@@ -129,7 +130,7 @@ def improved_model(diagnosis: Diagnosis, aircraft: Aircraft, side: SideModel | N
 
 
 def _in_one_air(model: FlownModel) -> FlownModel:
-    """Return the model with one ratio of true to read air speed: the elevator's fit tells it best."""
+    """Return the model with one ratio of true to read air speed, that of the elevator's fit."""
     pitch, side = model.pitch, model.side
     if pitch is None or side is None:
         return model
@@ -165,7 +166,7 @@ def _lag_of(estimate: Estimate, aircraft: Aircraft) -> float:
 
 
 def side_flown(lateral: LateralState | None, aircraft: Aircraft) -> SideModel | None:
-    """Return roll and yaw as the accepted manoeuvres tell them; None where they tell no force."""
+    """Return the roll and yaw model from the accepted manoeuvres; None if they determine no force."""
     model = lateral.model if lateral is not None else None
     if lateral is None or model is None or model.airspeed_m_s is None:
         return None
@@ -177,7 +178,7 @@ def side_flown(lateral: LateralState | None, aircraft: Aircraft) -> SideModel | 
 
 
 def side_of(found: LateralEstimate, trim: Trim, air: AirData, aircraft: Aircraft) -> SideModel:
-    """Return roll and yaw of an estimate, with the air speed and the servos that its fit found."""
+    """Return the roll and yaw model of an estimate, with the air speed and servos from its fit."""
     told = zip(SIDE_PARAMETERS, found.theta.tolist(), found.std.tolist(), strict=True)
     excess, _ = found.nuisances.get("airspeed_excess", (0.0, 0.0))
     return SideModel(
@@ -196,7 +197,7 @@ def _servo(found: LateralEstimate, control: str, aircraft: Aircraft) -> Exported
 
 
 def _side_of_file(pitch: Improvement) -> SideModel | None:
-    """Return roll and yaw of the aircraft file, at the air speed of the pitch model; None without any."""
+    """Return the roll and yaw model of the aircraft file at the pitch model's air speed; None without one."""
     values = {name: Value(pitch.prior[name], 0.0) for name in SIDE_PARAMETERS if name in pitch.prior}
     if not values:
         return None
@@ -234,7 +235,7 @@ def file_of(model: FlownModel) -> dict[str, Any]:
 
 
 def _with_servos(aircraft: Aircraft, side: SideModel | None) -> Aircraft:
-    """Return the aircraft with the lag and the delay of each servo of roll and yaw that are known."""
+    """Return the aircraft with the known lag and delay of each roll and yaw servo."""
     changed: dict[str, Any] = {}
     for name, servo in (side.servos if side is not None else {}).items():
         control = getattr(aircraft, name)
@@ -249,6 +250,6 @@ def _known(found: float, stated: float | None) -> float | None:
 
 
 def _at(side: SideModel, faster: float) -> Mapping[str, float]:
-    """Return the derivatives of roll and yaw at another air speed, ``faster`` times theirs."""
+    """Return the roll and yaw derivatives at an air speed ``faster`` times that of the model."""
     powers = {term.name: term.power for term in LATERAL.shared}
     return {name: float(f"{value.value * faster ** powers[name]:.6g}") for name, value in side.values.items()}

@@ -1,4 +1,4 @@
-"""Pitch for every format: the model found, the prior model, the servo, and other effects."""
+"""Pitch model for every format: the estimated model, the prior model, the servo, and other effects."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -19,21 +19,21 @@ from advisor.words.quantiles import NORMAL_95
 
 @dataclass(frozen=True)
 class ExportedServo:
-    """Delay, then lag, then limits of the surface; zero or None for an absent one."""
+    """Servo with delay, then lag, then limits of the surface; zero or None for a missing part."""
 
     delay_s: float = 0.0
     lag_s: float = 0.0
-    """Delay with which the surface follows a ramp of the command, s. Negative: quicker than the simulator's
-    own servo."""
+    """Delay of the surface behind a ramp of the command, s. A negative value means quicker than the
+    simulator's own servo."""
     damping: float | None = None
-    """Damping of a second-order lag with ω = 2·damping/lag_s. None: a first-order lag."""
+    """Damping ratio of a second-order lag with ω = 2·damping/lag_s. None for a first-order lag."""
     rate_rad_s: float | None = None
     play_rad: float = 0.0
-    """Whole width of the linkage's backlash."""
+    """Full width of the linkage's play, rad."""
     deadband_rad: float = 0.0
-    """Whole width of the dead band."""
+    """Full width of the dead band, rad."""
     neutral_rad: float = 0.0
-    """Deflection in the middle of the dead band."""
+    """Deflection at the centre of the dead band, rad."""
 
     @property
     def is_quick(self) -> bool:
@@ -41,7 +41,7 @@ class ExportedServo:
         return self == ExportedServo()
 
     def lines(self) -> list[str]:
-        """Return each property with its number and unit, for people."""
+        """Return each property of the servo with its value and unit, for people."""
         said = {
             f"delay {self.delay_s:.4g} s": self.delay_s,
             f"lag {self.lag_s:.4g} s": self.lag_s,
@@ -54,7 +54,7 @@ class ExportedServo:
 
 
 def servo_of(control: Elevator | SideControl, effects: Mapping[str, Mapping[str, float]]) -> ExportedServo:
-    """Return the servo of the aircraft file, with the further effects found."""
+    """Return the servo of the aircraft file, combined with the effects found."""
     found = {"delay_s": control.delay_s or 0.0, "lag_s": control.lag_s or 0.0}
     for effect, sizes in effects.items():
         for key, (part, factor) in EFFECTS[effect].servo.items():
@@ -64,7 +64,7 @@ def servo_of(control: Elevator | SideControl, effects: Mapping[str, Mapping[str,
 
 
 SLOPES = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
-"""The derivatives among the eight parameters."""
+"""Names of the derivatives among the eight parameters."""
 REFERENCE_KEYS = ("mass_kg", "wing_area_m2", "chord_m", "iyy_kg_m2")
 STILL_AIR = AirData(SEA_LEVEL_DENSITY_KG_M3, "sea level", "true")
 """Air of a model without a flight."""
@@ -77,15 +77,15 @@ def is_told(value: Value) -> bool:
 
 @dataclass(frozen=True)
 class Improvement:
-    """The improved simulator, independent of any format."""
+    """Improved simulator's pitch model, independent of any format."""
 
     name: str
     model: Mapping[str, Value]
-    """The eight parameters at ``airspeed_m_s``, SI."""
+    """Values of the eight parameters at ``airspeed_m_s``, SI."""
     prior: Mapping[str, float]
-    """Prior model of the simulator: any of the eight parameters, none where unknown."""
+    """Prior values of the simulator's parameters, as far as known."""
     airspeed_m_s: float
-    """Air speed of the derivatives, of the kind that ``air`` knows, m/s."""
+    """Air speed of the derivatives, m/s, of the kind that ``air`` states."""
     servo: ExportedServo
     """Delay, lag and limits between command and surface."""
     effects: Mapping[str, Mapping[str, float]]
@@ -101,16 +101,16 @@ class Improvement:
 
     @property
     def air_note(self) -> str:
-        """Sentences on the density and the air speed of the coefficients."""
+        """Sentences about the density and the air speed of the coefficients."""
         return air_note(self.air)
 
     @property
     def untold(self) -> tuple[str, ...]:
-        """Derivatives that are not told from zero, as sentences."""
+        """Sentences about derivatives that do not differ significantly from zero."""
         return tuple(zero_said(name) for name in SLOPES if not is_told(self.model[name]))
 
     def number(self, parameter: str) -> float:
-        """Return a parameter for other programs: a derivative that is not told from zero is zero."""
+        """Return a parameter for other programs, with an insignificant derivative as zero."""
         found = self.model[parameter]
         return found.value if parameter not in SLOPES or is_told(found) else 0.0
 
@@ -120,19 +120,20 @@ class Improvement:
         return found.value - NORMAL_95 * found.std, found.value + NORMAL_95 * found.std
 
     def differs(self, parameter: str, prior: float) -> bool:
-        """Return whether the flight contradicts a prior value, which then lies outside the 95 % interval."""
+        """Return whether the 95 % interval of a parameter excludes a prior value."""
         low, high = self.interval95(parameter)
         return not low <= prior <= high
 
     def coefficients(self) -> Mapping[str, Coefficient]:
-        """Return the eight non-dimensional coefficients, per radian. C_L_0 and C_m_0 hold at zero angles.
+        """Return the eight non-dimensional coefficients, per radian. C_L_0 and C_m_0 are values at zero
+        angles.
 
         C_L_0 follows from Z_0 = g/V - q̄·S·C_L0/(m·V), without the part of the thrust in the lift direction.
 
         Raises
         ------
         ConfigurationError
-            A quantity of ``reference`` is missing. The message names the quantity.
+            A required quantity of ``reference`` is missing. The error message names the missing quantity.
         """
         require_reference(self.reference, REFERENCE_KEYS)
         scale = scales(self.airspeed_m_s, self.reference, self.air)
@@ -155,7 +156,7 @@ def improvement_of(diagnosis: Diagnosis, aircraft: Aircraft) -> Improvement:
     Raises
     ------
     ConfigurationError
-        The diagnosis has no air speed, without which no derivative can be exported.
+        The diagnosis has no air speed, which every derivative's export needs.
     """
     if diagnosis.reference_airspeed_m_s is None:
         raise ConfigurationError(
@@ -176,7 +177,7 @@ def improvement_of(diagnosis: Diagnosis, aircraft: Aircraft) -> Improvement:
 
 
 def air_note(air: AirData) -> str:
-    """Return the sentences on a density and on the kind of an air speed."""
+    """Return the sentences about a density and the kind of an air speed."""
     height = air.height_m
     unknown = "sea level, as the log has no height"
     where = unknown if height is None else f"{height:.0f} m, by the air flown in"
@@ -195,7 +196,7 @@ def require_reference(reference: Reference, keys: tuple[str, ...]) -> None:
     Raises
     ------
     ConfigurationError
-        Keys of ``reference`` are missing. The message names them.
+        Keys of ``reference`` are missing. The error message names the missing keys.
     """
     missing = missing_reference(reference, keys)
     if missing:
@@ -206,5 +207,5 @@ def require_reference(reference: Reference, keys: tuple[str, ...]) -> None:
 
 
 def missing_reference(reference: Reference, keys: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the keys that an aircraft file leaves open."""
+    """Return the keys that an aircraft file does not state."""
     return tuple(key for key in keys if getattr(reference, key) is None)

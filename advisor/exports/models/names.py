@@ -1,4 +1,3 @@
-"""Names of the formats in which a model is exported, for options and messages, without importing the
-formats."""
+"""Names of the model export formats for options and messages, without imports of the formats."""
 
 NAMES = ("jsbsim", "ardupilot", "sdf", "matlab", "aircraft")

@@ -1,4 +1,4 @@
-"""``advisor gap --prove`` in pitch: the improved simulator on manoeuvres that no fit has used."""
+"""Proof of ``advisor gap --prove`` in pitch: the improved simulator on manoeuvres that no fit has used."""
 
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -37,24 +37,23 @@ def prove(
     prior: FieldPrior = FIELD,
     whole: Compared | None = None,
 ) -> Proof:
-    """Improve the simulator by some manoeuvres, and fly others.
+    """Return the proof of a simulator improved by some manoeuvres and tested on others.
 
-    Where these manoeuvres alone name no correction, that of the whole flight is flown, with sizes fitted to
-    these manoeuvres alone.
+    If the fitted manoeuvres give no correction, that of the whole flight is tested, with refitted sizes.
 
     Parameters
     ----------
     flown
         Manoeuvres of the diagnosis.
     fresh
-        Manoeuvres of other logs; None keeps the last third of ``flown`` apart.
+        Manoeuvres of other logs; None to hold out the last third of ``flown``.
     whole
         Comparison of ``flown``.
 
     Raises
     ------
     UnusableInputError
-        There are too few manoeuvres, nothing was improved, or the simulator does not fly.
+        There are too few manoeuvres, no improvement was found, or the simulator does not fly.
     """
     fitted, kept = flown, fresh
     if kept is None:
@@ -62,7 +61,7 @@ def prove(
         fitted, kept = replace(flown, maneuvers=list(some)), replace(flown, maneuvers=list(last))
 
     def compared(some: GapFlights, simulator: Aircraft, k: int) -> Compared:
-        """Return one of the three comparisons."""
+        """Return one of the three comparisons of a proof."""
         opened = named_simulator(simulator, target_system)
         try:
             return compare_flown(
@@ -103,7 +102,7 @@ def prove(
 
 
 def stays_of(proof: Proof, found: Diagnosis, given: Mapping[str, float]) -> Diagnosis:
-    """Return a diagnosis without the parts that were taken back, which its sentence names.
+    """Return a diagnosis without the withdrawn parts, which its sentence names.
 
     Parameters
     ----------
@@ -123,7 +122,7 @@ def stays_of(proof: Proof, found: Diagnosis, given: Mapping[str, float]) -> Diag
 
 
 def as_it_ended(found: Diagnosis, maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Diagnosis:
-    """Return a finding with its changes in flight as other numbers: those of the last manoeuvre of its fit.
+    """Return a diagnosis with changes in flight replaced by the derivatives of its last fitted manoeuvre.
 
     Later manoeuvres of the flight begin with the changed aircraft.
     """
@@ -141,7 +140,7 @@ def as_it_ended(found: Diagnosis, maneuvers: Sequence[Maneuver], aircraft: Aircr
 
 
 def without(found: Diagnosis, part: str, given: Mapping[str, float]) -> Diagnosis:
-    """Return a finding without one of its effects, or with the numbers of the simulator as given."""
+    """Return a diagnosis without one effect, or with the derivatives of the simulator as given."""
     if part == NUMBERS:
         own = {name: replace(one, value=given.get(name, one.value)) for name, one in found.model.items()}
         return replace(found, model=own, derivatives=())
@@ -160,7 +159,8 @@ def named(found: Diagnosis) -> list[str]:
 def _improved(
     found: Diagnosis, against: Aircraft, aircraft: Aircraft, folder: Path
 ) -> tuple[Aircraft, tuple[str, ...]]:
-    """Return the aircraft file with the improved simulator, and the parts that the simulator cannot take."""
+    """Return the aircraft file with the improved simulator, and the parts that the simulator does not
+    support."""
     kind, _, _ = (aircraft.simulator or "linear").partition(":")
     if kind == "linear":
         better = parse_aircraft(file_of(FlownModel(against, None, None, found)))

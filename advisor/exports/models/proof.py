@@ -1,8 +1,8 @@
-"""The improved simulator on manoeuvres that no fit has used: the gap before and after, and a second answer.
+"""Test of the improved simulator on unused manoeuvres: the gap before and after, and a second answer.
 
-Without logs of their own, the last third of the manoeuvres is kept apart. The other manoeuvres improve the
-simulator, as ``--out`` and ``--export`` do. One walk decides for both axes which parts of the improvement
-stay. Each axis flies the manoeuvres kept apart (``ImprovedAxis``).
+Without further logs, the last third of the manoeuvres is held out. The other manoeuvres improve the
+simulator, as ``--out`` and ``--export`` do. One procedure decides for both axes which parts of the
+improvement are kept. Each axis simulates the held-out manoeuvres (``ImprovedAxis``).
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -14,47 +14,46 @@ from advisor.simulators.taken_back import taken_back_said, unused
 from advisor.words.problems import UnusableInputError
 
 NUMBERS = "the fitted numbers"
-"""Name of the fitted numbers among the parts of an improvement."""
+"""Name of the fitted derivatives as one part of an improvement."""
 LEAST_KEPT, LEAST_FITTED = 2, 3
-"""Least number of manoeuvres that are kept apart, and that the improvement is fitted to: one names no
-effect, and a search holds one out."""
+"""Least number of held-out manoeuvres, and least number of manoeuvres for the fit."""
 
 
 @dataclass(frozen=True)
 class Kept:
-    """The manoeuvres kept apart, next to one simulator."""
+    """Held-out manoeuvres compared with one simulator."""
 
     gap: float
-    """Mean over channels and manoeuvres of the mean square over the floor's square, minus 1."""
+    """Mean gap over channels and manoeuvres: mean square error over the floor's square, minus 1."""
     by_maneuver: Mapping[int, float]
-    """Manoeuvre number to gap."""
+    """Gap of each held-out manoeuvre, by manoeuvre number."""
     floor: Mapping[str, float]
     answer: Callable[[], tuple[str | None, str]]
-    """Function that returns the verdict on this simulator, and its sentence."""
+    """Function that returns the verdict on the simulator, and its sentence."""
     not_carried: tuple[str, ...] = ()
-    """Parts of the improvement that the simulator cannot take."""
+    """Parts of the improvement that the simulator does not support."""
 
 
 @dataclass(frozen=True)
 class ImprovedAxis:
-    """The simulator of one axis, which some manoeuvres improved."""
+    """Simulator of one axis that some manoeuvres improved."""
 
     first: str
-    """Answer of the manoeuvres that improved the simulator: a verdict, or the effects."""
+    """Answer from the fitted manoeuvres: a verdict, or the effects."""
     parts: tuple[str, ...]
-    """Parts of the improvement: effects, then the fitted numbers."""
+    """Parts of the improvement: effects, then the fitted derivatives."""
     fewer: Sequence[tuple[str, ...]]
-    """Sets of parts that may be taken back while others stay."""
+    """Sets of parts that may be withdrawn while others are kept."""
     flown: Callable[[tuple[str, ...]], Kept]
-    """Function that flies the improved simulator without some parts; without all, the simulator as given."""
+    """Function that simulates the held-out manoeuvres without some parts; without all, as given."""
     alone: str = ""
-    """Sentence of the fitted manoeuvres alone, where they name no correction: that of all manoeuvres was
-    flown. Empty otherwise."""
+    """Sentence from the fitted manoeuvres alone, if they give no correction and all manoeuvres' one was used.
+    Empty otherwise."""
 
 
 @dataclass(frozen=True)
 class Proof:
-    """The gap of manoeuvres that no fit has used."""
+    """Gap on manoeuvres that no fit has used, before and after the improvement."""
 
     maneuvers: tuple[int, ...]
     before: float
@@ -62,30 +61,30 @@ class Proof:
     after: float
     """Gap of the improved simulator."""
     floor: Mapping[str, float]
-    """Standard deviation of the residual where nothing was flown, by channel, in the channel's SI unit."""
+    """Standard deviation of the residual in quiet stretches, by channel, SI."""
     by_maneuver: tuple[tuple[int, float, float], ...]
-    """Manoeuvre number, gap before, gap after."""
+    """Number of each held-out manoeuvre, with its gap before and after."""
     first: str
     second: str | None
     """Verdict on the improved simulator."""
     sentence: str
     """Sentence of the verdict on the improved simulator."""
     not_carried: tuple[str, ...] = ()
-    """Parts of the improvement that the simulator cannot take."""
+    """Parts of the improvement that the simulator does not support."""
     taken_back: tuple[str, ...] = ()
-    """Parts of the improvement with which the gap does not fall: effects, or the fitted numbers."""
+    """Parts of the improvement that do not lower the gap: effects, or the fitted derivatives."""
     gap_with_them: float | None = None
-    """Gap with these parts; None where nothing was taken back."""
+    """Gap with the withdrawn parts; None if nothing was withdrawn."""
     alone: str = ""
 
     @property
     def is_closed(self) -> bool:
-        """Whether the second answer leaves nothing to add but numbers."""
+        """Whether the second answer leaves at most derivatives to correct."""
         return self.second in ("none", "parameters")
 
     @property
     def taken_back_said(self) -> str:
-        """Sentence on the parts that were taken back; empty where all stay."""
+        """Sentence about the withdrawn parts; empty if all are kept."""
         if self.gap_with_them is None:
             return ""
         parts = [spelled(one) for one in self.taken_back]
@@ -93,7 +92,7 @@ class Proof:
 
 
 def proved(axis: ImprovedAxis) -> Proof:
-    """Return the gap of the manoeuvres kept apart, with the parts of the improvement that do not raise it."""
+    """Return the gap on held-out manoeuvres, with the improvement's parts that do not raise it."""
     before, every = axis.flown(axis.parts), axis.flown(())
     after = every
     taken: tuple[str, ...] = ()
@@ -126,7 +125,7 @@ def lines_of(proof: Proof) -> Iterator[str]:
 
 
 def parted(maneuvers: Sequence[Maneuver]) -> tuple[Sequence[Maneuver], Sequence[Maneuver]]:
-    """Return the manoeuvres of the fit, and the last third.
+    """Return the manoeuvres for the fit, and the held-out last third.
 
     Raises
     ------
@@ -145,12 +144,12 @@ def parted(maneuvers: Sequence[Maneuver]) -> tuple[Sequence[Maneuver], Sequence[
 
 
 def refuse_unimproved(improves: bool, sentence: str, count: int) -> None:
-    """Refuse to prove what improves nothing.
+    """Refuse a proof without an improvement.
 
     Raises
     ------
     UnusableInputError
-        The fit names no cause and no wrong number.
+        The fit gives no cause and no wrong derivative.
     """
     if not improves:
         raise UnusableInputError(
@@ -161,7 +160,7 @@ def refuse_unimproved(improves: bool, sentence: str, count: int) -> None:
 
 
 def document(proof: Proof) -> dict[str, object]:
-    """Return the value of ``proof`` in the document."""
+    """Return the value of the key ``proof`` in the document."""
     return {
         "maneuvers": list(proof.maneuvers),
         "before": proof.before,

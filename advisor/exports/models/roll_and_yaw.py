@@ -1,4 +1,4 @@
-"""Roll and yaw for other programs, from logs and from a diagnosis of them."""
+"""Roll and yaw model for other programs, from logs and from their diagnosis."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -30,9 +30,9 @@ def side_of_logs(
     marks: Sequence[Mark] = (),
     no_marks: bool = False,
 ) -> SideModel | None:
-    """Return roll and yaw as the accepted manoeuvres of logs tell them; None where they tell none.
+    """Return the roll and yaw model from accepted manoeuvres in logs; None if they determine none.
 
-    The whole campaign is judged only where aileron or rudder were flown.
+    The whole campaign is analysed only if aileron or rudder were flown.
     """
     try:
         if not any(_flies_roll_or_yaw(log, aircraft, target_system, marks) for log in logs):
@@ -52,9 +52,9 @@ def _flies_roll_or_yaw(
 
 
 def improved_side(compared: SideCompared) -> FlownModel:
-    """Return both axes of a flight whose roll and yaw were diagnosed, with the servos that were found.
+    """Return both axes' models after a diagnosis of roll and yaw, including the servos found.
 
-    Derivatives are estimated anew behind a servo that the diagnosis changed.
+    Derivatives are estimated again with a servo that the diagnosis changed.
     """
     aircraft, state = compared.aircraft, compared.state
     model = flown_model(state, aircraft)

@@ -1,4 +1,5 @@
-"""``advisor gap --axis lateral --prove``: roll and yaw improved, on manoeuvres that no fit has used."""
+"""Proof of ``advisor gap --axis lateral --prove``: improved roll and yaw on manoeuvres that no fit has
+used."""
 
 import tempfile
 from collections.abc import Sequence
@@ -43,19 +44,19 @@ def prove_side(
     prior: FieldPrior = FIELD,
     progress: Progress = lambda *_: None,
 ) -> Proof:
-    """Improve roll and yaw of the simulator by some manoeuvres, and fly others.
+    """Return the proof of roll and yaw improved by some manoeuvres and tested on others.
 
     Parameters
     ----------
     compared
         The comparison of the whole flight.
     fresh
-        Manoeuvres of other logs; None keeps the last third apart.
+        Manoeuvres of other logs; None to hold out the last third.
 
     Raises
     ------
     UnusableInputError
-        There are too few manoeuvres, nothing was improved, or the fit does not fly every control.
+        There are too few manoeuvres, no improvement was found, or the fitted manoeuvres lack a control.
     """
     fitted, kept = (compared.maneuvers, fresh) if fresh is not None else parted(compared.maneuvers)
     fitted, against = beside_simulator(fitted, compared.aircraft, progress)
@@ -97,14 +98,15 @@ def _improved(
     fitted: Sequence[Maneuver],
     folder: Path,
 ) -> tuple[Aircraft, tuple[str, ...]]:
-    """Return the aircraft file with the improved simulator, and the parts that the simulator cannot take.
+    """Return the aircraft file with the improved simulator, and the parts that the simulator does not
+    support.
 
     Parameters
     ----------
     found
-        Estimate behind ``servos``.
+        Estimate with the servos of ``servos``.
     against, servos
-        The aircraft file of the surrogate, and that with the servos that were found.
+        Aircraft file of the surrogate, and the file with the servos found.
     """
     given = compared.aircraft
     kind, _, _ = (given.simulator or "linear").partition(":")
@@ -141,9 +143,9 @@ def _ahead(given: SideControl, against: SideControl, found: SideControl) -> Side
 
 
 def stays_of_side(compared: SideCompared, proof: Proof | None) -> SideCompared:
-    """Return a comparison without the parts that a proof took back, which its sentence names.
+    """Return a comparison without the parts that a proof withdrew, which its sentence names.
 
-    The probability of an effect goes to the numbers, where they stay, or else to the unknown in its place.
+    The effect's probability goes to the derivatives if they are kept, else to an effect without a name.
     """
     gap, d = compared.gap, compared.gap.diagnosis
     if proof is None or proof.gap_with_them is None or d is None or d.answer is None:
@@ -163,8 +165,7 @@ def stays_of_side(compared: SideCompared, proof: Proof | None) -> SideCompared:
 
 
 def _gap(maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: FloatArray) -> float:
-    """Return the mean over outputs of the mean square of the error over that of the noise, minus 1, at least
-    0."""
+    """Return the mean gap over outputs: mean square error over that of the noise, minus 1, at least 0."""
     fits = predicted_lateral(maneuver, model, aircraft, theta)
     if isinstance(fits, NoEstimate):
         return 0.0
@@ -172,5 +173,5 @@ def _gap(maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: 
 
 
 def _flown(found: _Found | NoEstimate) -> _Found:
-    """Return an answer, or refuse manoeuvres that gave none."""
+    """Return an estimate, or refuse manoeuvres that give none."""
     return answered(found, "Fly aileron and rudder in both parts of the flight.", "--prove: ")

@@ -1,4 +1,4 @@
-"""From an order for a file to the file: its format, its needs, and the one place that writes."""
+"""Execution of an export order: format, requirements, and the writing of the file."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -19,30 +19,30 @@ NOTHING = "there is nothing to improve"
 
 @dataclass(frozen=True)
 class ExportOrder:
-    """One requested file."""
+    """Order for one export file."""
 
     format: str
     file: Path
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """The file, and those that the format writes next to it."""
+        """Ordered file, and all files that the format writes next to it."""
         return format_named(self.format).files(self.file)
 
 
 @dataclass(frozen=True)
 class ExportOutcome:
-    """Result of an order."""
+    """Result of one export order."""
 
     order: ExportOrder
     left_out: tuple[str, ...] = ()
-    """Parts of the model that the format does not carry."""
+    """Parts of the model that the format does not support."""
     problem: str = ""
-    """Reason for which the file was not written; empty for a written file."""
+    """Reason why the file was not written; empty for a written file."""
 
 
 def order_of(text: str) -> ExportOrder:
-    """Read ``FORMAT:FILE``.
+    """Return the order in ``FORMAT:FILE``.
 
     Raises
     ------
@@ -58,18 +58,18 @@ def order_of(text: str) -> ExportOrder:
 
 
 def refuse(order: ExportOrder, aircraft: Aircraft, axis: AxisAsked) -> None:
-    """Refuse, before the analysis, an order that could not be carried out after it.
+    """Refuse, before the analysis, an export that would fail afterwards.
 
     Raises
     ------
     ConfigurationError
-        The aircraft file lacks what the format needs, or the file's ending fits no content.
+        The aircraft file lacks required keys, or the file's ending is not supported.
     """
     format_named(order.format).refuse(order.file, aircraft, axis)
 
 
 def carry_out(orders: Sequence[ExportOrder], model: FlownModel) -> list[ExportOutcome]:
-    """Write each file as a whole. The failure of one file does not hinder the others."""
+    """Write each ordered file atomically. The failure of one file does not affect the others."""
     return [_outcome(order, partial(_carried_out, order, model)) for order in orders]
 
 
@@ -95,12 +95,12 @@ def _carried_out(order: ExportOrder, model: FlownModel) -> ExportOutcome:
 
 
 def refuse_models(names: Sequence[str], folder: Path, aircraft: Aircraft) -> None:
-    """Refuse, before the analysis, formats that could not be written after it.
+    """Refuse, before the analysis, formats that could not be written afterwards.
 
     Raises
     ------
     ConfigurationError
-        The aircraft file lacks what a format needs.
+        The aircraft file lacks keys that a format requires.
     """
     for order in _orders(names, folder):
         refuse(order, aircraft, "both")
@@ -109,7 +109,7 @@ def refuse_models(names: Sequence[str], folder: Path, aircraft: Aircraft) -> Non
 def write_models(
     names: Sequence[str], folder: Path, state: CampaignState, aircraft: Aircraft
 ) -> Iterator[str]:
-    """Write the model of a flight; yield what a format does not carry, or why there is no file."""
+    """Write the model of a flight, and yield sentences about unsupported parts or missing files."""
     try:
         outcomes = carry_out(list(_orders(names, folder)), flown_model(state, aircraft))
     except ConfigurationError as error:

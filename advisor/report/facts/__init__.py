@@ -1,1 +1,1 @@
-"""The one owner of each number and sentence of a flight that several faces state: faces paint facts."""
+"""Facts: each number and sentence that several screens and pages state, made in one place."""

@@ -1,4 +1,4 @@
-"""Stop or continue and the next input, as terminal, page and announcements write them."""
+"""Stop or continue and the next input, as text for terminal, page and announcements."""
 
 from collections.abc import Iterator
 
@@ -6,11 +6,11 @@ from advisor.campaign.state import CampaignState, LateralState
 from advisor.decision.verdict import FlightTestVerdict
 
 INDENT = "  "
-"""Beginning of the lines with the next input."""
+"""Indentation of the lines about the next input."""
 
 
 def stop_line(verdict: FlightTestVerdict) -> str:
-    """Return stop or continue, with the criterion and its limit."""
+    """Return the line with stop or continue, the criterion and its limit."""
     mark = "■" if verdict.decision == "stop" else "▶"
     return f"{mark} {verdict.sentence}"
 
@@ -24,7 +24,7 @@ def next_line(verdict: FlightTestVerdict) -> str:
 
 
 def decisions(state: CampaignState, *, pitch: bool = True) -> Iterator[str]:
-    """Yield stop or continue of each axis, with the next input: one input where both axes are tested."""
+    """Yield stop or continue of each axis, with one next input if both axes are tested."""
     plan = state.plan if pitch else None
     if pitch:
         yield stop_line(state.flight_test)

@@ -1,4 +1,4 @@
-"""Parameters and instruments of an estimate as facts, in the unit for people."""
+"""Parameters and instruments of an estimate as facts, in units for people."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -19,12 +19,12 @@ _QUANTITIES = {**PITCH, **SIDE}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EstimatedParameter(Fact):
-    """One parameter of an estimate, next to the aircraft file's value."""
+    """One parameter of an estimate, with the aircraft file's value."""
 
     half_if_white: float = nan
-    """Half of the 95 % interval by the Cramér-Rao bound; NaN without a value."""
+    """Half-width of the 95 % interval from the Cramér-Rao bound; NaN without a value."""
     prior: float | None = None
-    """Value of the aircraft file's model; None where the file has none."""
+    """Value of the aircraft file's model; None without one."""
 
     @property
     def prior_cell(self) -> str:
@@ -33,7 +33,7 @@ class EstimatedParameter(Fact):
 
     @property
     def off_by(self) -> float | None:
-        """Distance of the file's value from the estimate in standard deviations."""
+        """Distance of the file's value from the estimate, in standard deviations."""
         if self.prior is None or not self.is_known:
             return None
         return abs(self.value - self.prior) / self.half * NORMAL_95
@@ -42,7 +42,7 @@ class EstimatedParameter(Fact):
 def estimated_parameter(
     name: str, source: str, estimate: object, prior: Mapping[str, float]
 ) -> EstimatedParameter:
-    """Return one parameter of an estimate against the aircraft file's model, which may lack it."""
+    """Return one parameter of an estimate with the aircraft file's value, if any."""
     quantity, stated = _QUANTITIES[name], prior.get(name)
     known = None if stated is None else stated * quantity.factor
     named = EstimatedParameter(name=quantity.symbol, source=source, unit=quantity.unit, prior=known)
@@ -60,17 +60,17 @@ def estimated_parameter(
 
 
 def joint_source(state: CampaignState | LateralState) -> str:
-    """Return the source of the joint estimate of an axis, for the head of a table."""
+    """Return the name of an axis' joint estimate, for the head of a table."""
     return f"Joint estimate from manoeuvres {', '.join(map(str, state.estimate_from))}"
 
 
 def of_all(name: str, state: CampaignState | LateralState, prior: Mapping[str, float]) -> EstimatedParameter:
-    """Return one parameter of the joint estimate of an axis."""
+    """Return one parameter of a joint estimate of an axis."""
     return estimated_parameter(name, joint_source(state), state.model, prior)
 
 
 def of_one(name: str, judged: JudgedManeuver | None, prior: Mapping[str, float]) -> EstimatedParameter:
-    """Return one parameter of a manoeuvre alone; without numbers where there is no manoeuvre."""
+    """Return one parameter of a single manoeuvre; without numbers if there is no manoeuvre."""
     if judged is None:
         return estimated_parameter(name, "no manoeuvre", None, prior)
     return estimated_parameter(
@@ -79,7 +79,7 @@ def of_one(name: str, judged: JudgedManeuver | None, prior: Mapping[str, float])
 
 
 def untold(estimate: Estimate) -> list[str]:
-    """Return one sentence for each reason why derivatives, and modes of roll and yaw, are not told."""
+    """Return one sentence for each reason why derivatives or modes are undetermined."""
     found: dict[str, list[str]] = {}
     for name, reason in estimate.not_identifiable.items():
         found.setdefault(reason, []).append(symbol(name))
@@ -91,7 +91,7 @@ def untold(estimate: Estimate) -> list[str]:
 def instrument_facts(state: CampaignState) -> list[tuple[Fact, str]]:
     """Return the nuisance parameters of the joint estimate, each with the aircraft file's value or a dash.
 
-    Without a vane the place is that of a vane which would read like the angle of attack.
+    Without a vane, the place is that of a vane with equal readings.
     """
     if state.model is None:
         return []
@@ -116,4 +116,4 @@ _INSTRUMENTS: Mapping[str, tuple[str, str, float]] = {
     "accelerometer_arm_m": ("accelerometer ahead of the centre of gravity", "m", 1.0),
     "steady_moment_rad": ("steady moment, as elevator", "deg", DEG),
 }
-"""Instrument parameter to its name, unit and factor from SI."""
+"""Name, unit and factor from SI of each instrument parameter."""

@@ -1,4 +1,4 @@
-"""A number of a flight as every face states it: name, source, value, 95 % interval, unit, sentence."""
+"""A number of a flight as it is stated everywhere: name, source, value, 95 % interval, unit, sentence."""
 
 from dataclasses import dataclass
 from math import isfinite, nan
@@ -9,20 +9,20 @@ from advisor.words.quantiles import NORMAL_95
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fact:
-    """One number, in the unit for people."""
+    """One number about a flight, in the unit for people."""
 
     name: str
     """Symbol or name for people: ``M_α``, ``Dutch roll ζ``."""
     source: str
-    """Origin of the number, as a heading: ``Joint estimate from manoeuvres 1, 2``. Two facts of
-    one name and one source are one number."""
+    """Origin of the number as a heading: ``Joint estimate from manoeuvres 1, 2``. Facts with equal name and
+    source are one number."""
     value: float = nan
-    """NaN where the flight does not tell the number."""
+    """Value of the number; NaN if the flight does not determine it."""
     half: float = nan
-    """Half of the 95 % interval, corrected for coloured residuals; NaN without a value."""
+    """Half-width of the 95 % interval, corrected for coloured residuals; NaN without a value."""
     unit: str = ""
     reason: str = ""
-    """Reason for which the flight does not tell the number."""
+    """Reason why the flight does not determine the number."""
 
     @property
     def is_known(self) -> bool:
@@ -36,15 +36,15 @@ class Fact:
 
     @property
     def cell(self) -> str:
-        """Value with half its 95 % interval: ``−48.3 ± 2.1``."""
+        """Value with the half-width of its 95 % interval: ``−48.3 ± 2.1``."""
         return with_half(self.value, self.half) if self.is_known else "–"
 
     @property
     def sentence(self) -> str:
-        """Value with half its 95 % interval and its unit: ``−48.3 ± 2.1 1/s²``."""
+        """Value with the half-width of its 95 % interval and its unit: ``−48.3 ± 2.1 1/s²``."""
         return f"{self.cell} {self.unit.removesuffix('1')}".rstrip()
 
 
 def fact_of(name: str, source: str, value: float, std: float, unit: str = "", factor: float = 1.0) -> Fact:
-    """Return a number with its interval from value and standard deviation in SI; ``factor`` leaves SI."""
+    """Return a fact from value and standard deviation in SI; ``factor`` converts from SI."""
     return Fact(name=name, source=source, value=factor * value, half=NORMAL_95 * factor * std, unit=unit)

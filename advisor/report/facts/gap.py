@@ -1,4 +1,4 @@
-"""Sentences on a gap: its size, its shrink, its place, and the derivatives that differ."""
+"""Sentences about a gap: its size, its shrink, its place, and the derivatives that differ."""
 
 from collections.abc import Sequence
 
@@ -11,11 +11,11 @@ from advisor.words.quantities import CHANNELS, PARAMETERS, SIDE_PARAMETERS
 
 _QUANTITIES = {**PARAMETERS, **SIDE_PARAMETERS}
 _WORTH_SAYING = 0.005
-"""Share of a gap that rounds to 0 %, so that the sentence leaves the share out."""
+"""Share of a gap below which the sentence omits the share, because it rounds to 0 %."""
 
 
 def size_of_gap(d: Diagnosis) -> str:
-    """Return the gap of the simulator as given and with the findings: ``gap 119 → 0.116 times ...``."""
+    """Return the gap of the simulator as given and after the corrections: ``gap 119 → 0.116 times ...``."""
     before, after = short(d.gap.before), short(d.gap.after)
     if d.verdict == "untested":
         return f"what the fitted model leaves: {after} times the noise floor's power"
@@ -25,7 +25,7 @@ def size_of_gap(d: Diagnosis) -> str:
 
 
 def shrink_said(shrink: Shrink) -> str:
-    """Return by how much the gap shrinks, with the 95 % interval and the held-out manoeuvres."""
+    """Return the sentence about the gap's shrink, with the 95 % interval and the held-out manoeuvres."""
     low, high = shrink.ci95_percent
     return (
         f"{shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out "
@@ -34,14 +34,14 @@ def shrink_said(shrink: Shrink) -> str:
 
 
 def where_said(d: Diagnosis) -> str:
-    """Return the place of a gap: ``in the lift, 93 % of the gap``. The shrink, where there is one, is the
-    share that a reader needs."""
+    """Return the place of a gap: ``in the lift, 93 % of the gap``. With a shrink, its share is stated
+    instead."""
     says = d.shrink is None and d.where.share >= _WORTH_SAYING
     return f"{place(d.where.block)}{f', {100 * d.where.share:.0f} % of the gap' if says else ''}"
 
 
 def grown_said(d: Diagnosis) -> str:
-    """Return the channels and manoeuvres whose gap has grown; empty where none has."""
+    """Return the channels and manoeuvres whose gap has grown; empty if none has grown."""
     given, left = d.gap.by_channel, d.gap.by_channel_after
     channels = [CHANNELS[name].symbol for name, after in left.items() if has_grown(after, given[name])]
     numbers = [number for number, before, after in d.gap.by_maneuver if has_grown(after, before)]
@@ -59,7 +59,8 @@ def counted(numbers: Sequence[int]) -> str:
 
 
 def changed(one: ComparedDerivative) -> str:
-    """Return one derivative: the simulator's value, the flight's with half its 95 % interval, the change."""
+    """Return the text of one derivative: the simulator's value, the flight's with its error, and the
+    change."""
     quantity = _QUANTITIES[one.name]
     given, found, half = (quantity.factor * x for x in (one.given, one.found.value, one.half))
     share = ""
@@ -70,14 +71,14 @@ def changed(one: ComparedDerivative) -> str:
 
 
 def changes(derivatives: Sequence[ComparedDerivative]) -> list[str]:
-    """Return a line for each derivative that differs, then one with those that agree."""
+    """Return a line for each derivative that differs, then a line with the agreeing ones."""
     agree = [_QUANTITIES[one.name].symbol for one in derivatives if not one.differs]
     lines = [changed(one) for one in derivatives if one.differs]
     return [*lines, *([f"{', '.join(agree)} agree{'s' if len(agree) == 1 else ''}"] if agree else [])]
 
 
 def heading(d: Weighed) -> str:
-    """Return the heading of the reasons; empty without reasons."""
+    """Return the heading above the reasons for a diagnosis; empty without reasons."""
     if d.answer is None or not d.why:
         return ""
     stated = {one.alternative.label: in_words(one.alternative) for one in d.evidence}

@@ -1,18 +1,18 @@
-"""How sure the answer of a diagnosis is, and what speaks for it: sentences for every face."""
+"""Sentences about the certainty of a diagnosis' answer, and about the evidence for it."""
 
 import math
 from collections.abc import Iterable
 
 _SAYABLE_NATS = 12.0
-"""Log odds, nats, above which odds are no longer written as a number: 160,000 to 1."""
+"""Log odds, nats, above which odds are not written as a number: 160,000 to 1."""
 _NOTHING = 0.005
-"""Probability that rounds to 0 %, so that its row says nothing."""
+"""Probability below which a row is omitted, because it rounds to 0 %."""
 _MOST = 4
-"""Most alternatives of one sentence."""
+"""Largest number of alternatives in one sentence."""
 
 
 def is_shown(probability: float) -> bool:
-    """Return whether a probability is more than 0 % when it is rounded to per cent."""
+    """Return whether a probability rounds to more than 0 %."""
     return probability >= _NOTHING
 
 
@@ -24,12 +24,12 @@ def in_percent(probability: float) -> str:
 
 
 def how_sure(alternatives: Iterable[tuple[str, float]]) -> str:
-    """Return a sentence with the likeliest alternatives; empty without probabilities.
+    """Return a sentence about the likeliest alternatives; empty without probabilities.
 
     Parameters
     ----------
     alternatives
-        Alternative in words, and its probability; likeliest first.
+        Alternatives in words with their probabilities, likeliest first.
     """
     shown = [f"{words} {in_percent(p)}" for words, p in alternatives if is_shown(p)]
     if not shown:
@@ -39,7 +39,7 @@ def how_sure(alternatives: Iterable[tuple[str, float]]) -> str:
 
 
 def weighed(reasons: Iterable[tuple[float, str]]) -> list[tuple[str, str]]:
-    """Return the reasons with their nats as text, and a last row with the sum and the odds.
+    """Return the reasons with their nats as text, then a row with the sum and the odds.
 
     A reason of 0.0 nats has no row.
     """

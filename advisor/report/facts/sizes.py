@@ -18,14 +18,15 @@ _ENDINGS = {
     "_s": (1e3, "ms"),
     "_m": (1.0, "m"),
 }
-"""Ending of a parameter's name to its factor from SI and its unit. The longest fitting ending counts."""
+"""Factor from SI and unit for people, by the ending of a parameter's name. The longest matching ending
+applies."""
 _OWN_UNITS = {"at_s": (1.0, "s"), "over_s": (1.0, "s"), "omega_rad_s": (0.5 / math.pi, "Hz")}
-"""Parameters whose unit for people is not that of their ending."""
+"""Parameters whose unit for people does not follow from the name's ending."""
 _LEAST, _ROUNDING = 1e-3, 1e-9
-"""Gap too small for a number, and gap that is only rounding."""
+"""Gap below which no number is written, and gap that is only rounding."""
 _SHARES = frozenset({"scale", "step", "inertia", "change", "share", "damping", "lift_h", "airspeed_excess"})
 _ICE = frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e"})
-"""Changes of derivatives, as a share of each derivative."""
+"""Names of ice parameters, which are relative changes of derivatives."""
 _OF_DERIVATIVES = {
     "Z_alpha2": "s⁻¹rad⁻¹", "Z_alpha3": "s⁻¹rad⁻²", "Z_h": "s⁻¹",
     "M_alpha2": "s⁻²rad⁻¹", "M_alpha3": "s⁻²rad⁻²", "M_delta2": "s⁻²rad⁻¹", "M_delta3": "s⁻²rad⁻²",
@@ -38,9 +39,9 @@ _SYMBOLS = {
     "M_throttle": "M_throttle", "M_h": "M_h", "Z_h": "Z_h", "omega_rad_s": "frequency",
     "skew_s": "lateness", **{name: PARAMETERS[name].symbol for name in _ICE},
 }  # fmt: skip
-"""Parameter to its name for people, where the spelling of the aircraft file is none."""
+"""Name for people of each parameter whose file spelling is unsuitable."""
 _SIGNED = frozenset({"scale", "step", "inertia", "change", "skew_s", "bias_rad", "bias_rad_s", *_ICE})
-"""Parameters whose sign matters to the reader."""
+"""Parameters whose sign is stated."""
 
 
 _IN_WORDS = {
@@ -49,32 +50,32 @@ _IN_WORDS = {
     "with_attitude": "the attitude, too",
     "stability_only": "of the stability alone",
 }
-"""Parameters that only state a fact."""
+"""Words for each parameter that only states a fact."""
 
 
 def short(x: float) -> str:
-    """Return three digits, never in powers of ten up to thousands or for a negligible number."""
+    """Return a number with three digits, without powers of ten up to thousands."""
     if abs(x) < _LEAST:
         return "0" if abs(x) < _ROUNDING else "<0.001"
     return f"{x:,.0f}" if 1e3 <= abs(x) < 1e7 else f"{x:.3g}"
 
 
 WORSE = "▲"
-"""Mark of a gap that is larger than before."""
+"""Mark of a gap that has grown."""
 
 
 def before_after(before: float, after: float) -> str:
-    """Return ``6.1 → 0.09``; with a mark where the gap has grown."""
+    """Return two gaps as ``6.1 → 0.09``, with a mark if the gap has grown."""
     return f"{short(before)} → {marked(after, before)}"
 
 
 def marked(after: float, before: float) -> str:
-    """Return a gap with the findings; with a mark where the gap has grown."""
+    """Return the gap after the corrections, with a mark if the gap has grown."""
     return f"{short(after)} {WORSE}" if has_grown(after, before) else short(after)
 
 
 def has_grown(after: float, before: float) -> bool:
-    """Return whether a gap is larger than before by more than its digits hide."""
+    """Return whether a gap has visibly grown in its printed digits."""
     return after > before and short(after) != short(before)
 
 
@@ -93,7 +94,7 @@ def in_units(parameter: str) -> tuple[float, str]:
 
 
 def with_error(parameter: str, value: Value) -> str:
-    """Return ``30 ± 12 ms``: the size with half its 95 % interval, with digits by the interval."""
+    """Return a size with the half-width of its 95 % interval: ``30 ± 12 ms``."""
     factor, unit = in_units(parameter)
     number, half = factor * value.value, abs(factor * NORMAL_95 * value.std)
     plus = "+" if parameter in _SIGNED and number > 0.0 else ""
@@ -103,7 +104,7 @@ def with_error(parameter: str, value: Value) -> str:
 
 
 def sizes_of(parameters: Mapping[str, Value]) -> list[str]:
-    """Return every parameter of a cause, one on each line, with its name only where there are several."""
+    """Return the lines of a cause's parameters, with names if there are several."""
     words = [text for name, text in _IN_WORDS.items() if name in parameters]
     shown = {name: with_error(name, value) for name, value in parameters.items() if name not in _IN_WORDS}
     if len(shown) == 1:
@@ -112,7 +113,7 @@ def sizes_of(parameters: Mapping[str, Value]) -> list[str]:
 
 
 def named(parameter: str) -> str:
-    """Return a parameter's name for people, without its unit."""
+    """Return the name of a parameter for people, without its unit."""
     if parameter in _SYMBOLS:
         return _SYMBOLS[parameter]
     for ending in _ENDINGS:

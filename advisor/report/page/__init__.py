@@ -1,1 +1,1 @@
-"""The page of a flight: one self-contained document for people who were not there."""
+"""Page of a flight: one self-contained document for readers who were not there."""

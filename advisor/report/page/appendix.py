@@ -1,4 +1,4 @@
-"""The end of the page: quality of the telemetry, assumptions, and the origin of everything."""
+"""End of the page: quality of the telemetry, assumptions, and origin of the data."""
 
 from collections.abc import Iterator
 
@@ -9,7 +9,7 @@ from advisor.report.table import Table
 
 
 def telemetry(content: Content) -> Section:
-    """Return the doctor's verdict, limits with their remedies, and rates of the messages, log by log."""
+    """Return the doctor's verdict, limits with their remedies, and message rates, log by log."""
     return Section("telemetry", "Telemetry", tuple(_by_log(content)))
 
 
@@ -23,7 +23,7 @@ def _by_log(content: Content) -> Iterator[Block]:
 
 
 def assumptions(content: Content) -> Section:
-    """Return notes on reading and estimate, then the sources of the channels."""
+    """Return notes about reading and estimate, then the sources of the channels."""
     return Section("assumptions", "What was assumed", tuple(_assumed(content)))
 
 
@@ -37,7 +37,7 @@ def _assumed(content: Content) -> Iterator[Block]:
 
 
 def provenance(content: Content) -> Section:
-    """Return the section on hashes, versions and the command that repeats the page."""
+    """Return the section with hashes, versions and the command that repeats the page."""
     origin = content.origin
     return Section(
         "origin",

@@ -32,21 +32,21 @@ class Figure:
     """Description of the picture, also for readers who cannot see it."""
     size: Literal["wide", "half", "third", "quarter", "sixth"] = "wide"
     narrow: Callable[[], str] | None = None
-    """Draws the picture for a phone, where the broad one would be too small to read."""
+    """Function that draws the picture for a phone, where the broad one would be unreadable."""
     layers: tuple[str, ...] = ()
-    """Channels that the reader can lay over the picture, one at a time."""
+    """Channels that the reader can show over the picture, one at a time."""
 
 
 @dataclass(frozen=True, slots=True)
 class Gallery:
-    """Figures that stand side by side where there is room."""
+    """Figures that are placed side by side if there is room."""
 
     figures: tuple[Figure, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Verbatim:
-    """Text to be copied literally."""
+    """Text for literal copying."""
 
     text: str
 
@@ -59,7 +59,7 @@ class Section:
     """A part of the page under one heading."""
 
     name: str
-    """Anchor of the section in the page."""
+    """Anchor of the section within the page."""
     title: str
     blocks: tuple[Block, ...]
 

@@ -1,4 +1,4 @@
-"""Data of a page: the campaign at its end, its documents, and the origin of everything."""
+"""Data of a page: the campaign at its end, its documents, and the origin of the data."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ Document = Mapping[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Origin of a page."""
+    """Origin of a page's data."""
 
     files: Mapping[str, str]
-    """Given name of each input file to its SHA-256, logs first."""
+    """SHA-256 of each input file, by its given name, logs first."""
     versions: Mapping[str, str]
-    """Program or library to its version."""
+    """Version of each program or library, by its name."""
     command: str
     """Command line that repeats the page."""
 
@@ -28,18 +28,18 @@ class Content:
     """All data of a page."""
 
     state: CampaignState
-    """Campaign at its end, for the curves."""
+    """Campaign at its end, as the source of the curves."""
     analysis: Document
-    """``advisor.analyze/1``, for the numbers."""
+    """Document ``advisor.analyze/1``, as the source of the numbers."""
     names: tuple[str, ...]
     """Name of each log, flight by flight."""
     aircraft: Aircraft
     power_ons: tuple[tuple[int, PowerOn], ...]
-    """Every power-on, whole, with the number of its flight, 0 for the first."""
+    """Every power-on with all data, and the number of its flight, 0 for the first."""
     doctor: tuple[Document, ...]
-    """``advisor.doctor/1`` of each log."""
+    """Document ``advisor.doctor/1`` of each log."""
     gap: Document | None
-    """``advisor.gap/1``, where requested."""
+    """Document ``advisor.gap/1``; None unless requested."""
     origin: Origin
     begun: tuple[str, ...] = ()
     """Date and time at which each log began."""

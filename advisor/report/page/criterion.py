@@ -14,7 +14,7 @@ from advisor.report.page.drawing import BLACK, BLUE, log_ticks, picture
 from advisor.report.table import Table
 
 _NEWEST = 12
-"""Most rows of the table of values. The figures show the whole course."""
+"""Largest number of rows in the table of values. The figures show the whole course."""
 _EXPLAINED = (
     "The rules continuous and separate compare the scatter of the newest estimates with a limit (Eq. 12). "
     "The rule information compares errors with the tolerances of the aircraft file (100 %: met). "
@@ -87,7 +87,7 @@ def _paint(drawing: Drawing, one: Mapping[str, Any], limit: float) -> None:
 
 
 def _range(values: Sequence[float]) -> tuple[float, float]:
-    """Return the ends of the axis: all values with room around, and a factor of ten at least."""
+    """Return the ends of the axis: all values with a margin, and at least a factor of ten."""
     low, high = 0.6 * min(values), 1.8 * max(values)
     widen = max(1.0, sqrt(10.0 * low / high))
     return low / widen, high * widen

@@ -40,13 +40,13 @@ _STYLE: Any = {
     "path.simplify_threshold": 0.2,
 }
 _MOST_TICKS = 8
-"""Most labels of a logarithmic axis."""
+"""Largest number of labels on a logarithmic axis."""
 _SERIES = ((1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0), (1.0, 2.0, 5.0), (1.0,))
-"""Labels within a decade, the densest first."""
+"""Tick values within a decade, the densest series first."""
 LAYER = "layer-"
-"""Beginning of the name of a layer, which the page shows only when the reader chooses it."""
+"""Beginning of a layer's name, which the page shows only if the reader chooses it."""
 _DPI = 150
-"""Dots per inch of a picture in dots: sharp on a screen of twice the usual density."""
+"""Resolution of a raster picture, dots per inch: sharp on a screen of twice the usual density."""
 Shown = TypeVarTuple("Shown")
 _NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 
@@ -58,12 +58,12 @@ def picture(
     paint: Callable[[Drawing, *Shown], None],
     *shown: *Shown,
 ) -> Callable[[], str]:
-    """Return a picture that is drawn on demand, with the parameters of :func:`draw`."""
+    """Return a function that draws a picture on demand, with the parameters of :func:`draw`."""
     return lambda: _drawn(name, lambda: draw(name, width_in, height_in, paint, *shown))
 
 
 def _drawn(name: str, draw_it: Callable[[], str]) -> str:
-    """Return a picture, or in its place the sentence on the fault that ended it."""
+    """Return a picture, or a sentence about the error that prevented it."""
     made = attempt(f"picture {name}", draw_it)
     return f'<p class="note">{escape(str(made.problem))}</p>' if isinstance(made, FailedPart) else made
 
@@ -75,7 +75,7 @@ def save(
     paint: Callable[[Drawing, *Shown], None],
     *shown: *Shown,
 ) -> None:
-    """Draw a figure into a file, whose ending names the format: svg or png.
+    """Draw a figure into a file, in the format of the file's ending: svg or png.
 
     Raises
     ------
@@ -98,14 +98,14 @@ def draw(
     paint: Callable[[Drawing, *Shown], None],
     *shown: *Shown,
 ) -> str:
-    """Draw a figure as an SVG element.
+    """Return a figure as an SVG element.
 
     Parameters
     ----------
     name
-        Name of the figure in its page, which makes the ids within the picture unique.
+        Name of the figure in its page, which makes its ids unique.
     paint
-        Draws axes and lines on the empty figure.
+        Function that draws axes and lines on the empty figure.
     shown
         Further arguments of ``paint``.
     """
@@ -119,7 +119,7 @@ def draw(
 
 
 def log_ticks(low: float, high: float) -> list[float]:
-    """Return ticks of a logarithmic axis: the densest series that does not crowd the axis."""
+    """Return ticks of a logarithmic axis: the densest series without crowding."""
     decades = range(floor(log10(low)), ceil(log10(high)) + 1)
     ticks: list[float] = []
     for series in _SERIES:
@@ -130,9 +130,9 @@ def log_ticks(low: float, high: float) -> list[float]:
 
 
 def _inline(svg: str, width_in: float) -> str:
-    """Return the SVG element alone, as wide as its place allows.
+    """Return the SVG element alone, with the width of its place.
 
-    Layers become classes, which several pictures of a page share. Of the ids only those referred to stay.
+    Layers become classes, which several pictures of a page share. Only ids that are referred to are kept.
     """
     element = svg[svg.index("<svg") :].strip()
     element = re.sub(r' (width|height)="[\d.]+pt"', "", element, count=2)

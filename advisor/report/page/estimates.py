@@ -1,4 +1,4 @@
-"""The estimates with their intervals: joint estimate against the file's model, and each manoeuvre."""
+"""Estimates with their intervals: joint estimate with the file's model, and each manoeuvre."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -14,15 +14,15 @@ from advisor.report.table import Table
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 
 _MOST_LABELS = 16
-"""Most labels of a forest plot. With more manoeuvres every second one is named, or fewer."""
+"""Largest number of labels in a forest plot. With more manoeuvres every second one is named, or fewer."""
 _NARROW = "±\N{NO-BREAK SPACE}"
-"""Cells of a narrow table have one place for a line break, before the interval."""
+"""Separator in cells of a narrow table, with one place for a line break."""
 _TALLEST_IN = 3.2
-"""Greatest height of a forest plot, inches, so that thirty manoeuvres fill no page."""
+"""Largest height of a forest plot, inches, so that thirty manoeuvres do not fill a page."""
 
 
 def estimates(content: Content) -> Section:
-    """Return the joint estimate as a table, a forest plot a parameter, then the table of manoeuvres."""
+    """Return the joint estimate as a table, a forest plot per parameter, then the table of manoeuvres."""
     return Section("estimates", "Estimates", tuple(_blocks(content)))
 
 

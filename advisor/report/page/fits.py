@@ -1,4 +1,4 @@
-"""Measured and fitted response of each accepted manoeuvre: input and outputs over one time axis."""
+"""Measured and fitted response of each accepted manoeuvre: inputs and outputs over one time axis."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from statistics import fmean
@@ -23,16 +23,17 @@ _EXPLAINED = (
     "A pattern in the residual shows an effect that the model lacks."
 )
 _SMALL = ("alpha", "q")
-"""Outputs of a small picture."""
+"""Outputs in a small picture."""
 
 _FEW = 8
-"""Most small pictures that stand four across. More stand six across, so that thirty fill one page."""
+"""Largest number of small pictures in rows of four. More pictures are in rows of six, so that thirty fill one
+page."""
 Size = Literal["quarter", "sixth"]
 Fitted = tuple[JudgedManeuver, Estimate]
 
 
 def fits(content: Content) -> Section:
-    """Return the best and the worst fit large, then all others small."""
+    """Return the best and the worst fit as large pictures, then all others as small ones."""
     return Section("fits", "Measured against fitted", tuple(_blocks(content)))
 
 
@@ -56,7 +57,7 @@ def _blocks(content: Content) -> Iterator[Block]:
 
 
 def by_fit(fitted: Iterable[Fitted]) -> list[Fitted]:
-    """Return manoeuvres in the order of the mean share of the motion that their fit explains."""
+    """Return the manoeuvres sorted by the mean share of the motion that their fit explains."""
     return sorted(fitted, key=lambda one: fmean(fit.r2 for fit in one[1].fits[0].values()))
 
 

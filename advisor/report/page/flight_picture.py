@@ -1,4 +1,4 @@
-"""The flight in one picture: channels, flight modes, the manoeuvres of both axes, and layers of choice."""
+"""Picture of the flight: channels, flight modes, manoeuvres of both axes, and selectable layers."""
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
@@ -29,15 +29,15 @@ _OF_PITCH, _OF_SIDE, _OF_BOTH = (
     ("aileron", "rudder", "p", "r"),
     ("airspeed", "height"),
 )
-"""Channels by the axis that was tested, from above."""
+"""Channels of the picture for each tested axis, from the top."""
 _BINS, _LAYER_BINS = 500, 120
-"""Stretches of a drawn channel, and of one that is laid over the picture."""
+"""Number of stretches of a drawn channel, and of a channel shown as a layer."""
 _BAND = 0.3
-"""Height of the row of flight modes over that of a channel."""
+"""Height of the row of flight modes, relative to that of a channel."""
 _MODES = ("#dbe5ef", "#f1e3c8", "#eadcea", "#e4e4e4", "#f5dad4", "#d5ebe9")
-"""Colours of the flight modes in the order in which they came."""
+"""Colours of the flight modes in their order of appearance."""
 _LETTER_IN, _SCALE_IN, _OUTSIDE_IN = 0.062, 0.5, 1.0
-"""Width of a letter of a mode's name, of a layer's scale, and of all that is outside the axes, inches."""
+"""Width of a letter in a mode's name, of a layer's scale, and of the margins, inches."""
 _EXPLAINED = (
     "Elevator δe (trailing edge down positive), aileron δa, rudder δr, angle of attack α, rates p, q, r. Air "
     "speed V is as logged, height h above take-off. Shaded: manoeuvres with their numbers (R: roll and yaw), "
@@ -47,7 +47,7 @@ _EXPLAINED = (
 
 
 def flight_picture(content: Content) -> Section | None:
-    """Return a picture of each power-on that holds a manoeuvre; None without one."""
+    """Return a picture of each power-on with a manoeuvre; None without one."""
     drawn = tuple(_blocks(content))
     return Section("flight", "The flight in one picture", drawn) if drawn else None
 
@@ -104,7 +104,7 @@ def _paint(drawing: Drawing, power_on: PowerOn, judged: Sequence[Sequence[Judged
 
 
 def _lay_out(drawing: Drawing) -> None:
-    """Give every row its place, with room for the scale of a layer on the right."""
+    """Place all rows, with room for a layer's scale on the right."""
     engine = drawing.get_layout_engine()
     if isinstance(engine, ConstrainedLayoutEngine):
         engine.set(rect=(0.0, 0.0, 1.0 - _SCALE_IN / drawing.get_figwidth(), 1.0))
@@ -120,7 +120,7 @@ def _curve(axes: Axes, channel: Channel, bins: int, **look: Any) -> None:
 
 
 def _number(rows: Sequence[Axes], shown: Sequence[str], judged: Sequence[Sequence[JudgedManeuver]]) -> None:
-    """Write the number of each manoeuvre above its axis's first row, as a link to the row of its table."""
+    """Write the number of each manoeuvre above its axis' first row, as a link to its table row."""
     for axis, own, flown in (("", _OF_PITCH, judged[0]), ("R", _OF_SIDE, judged[1])):
         top = rows[next((k for k, name in enumerate(shown) if name in own), 0)]
         for one in flown:
@@ -175,7 +175,7 @@ def _mark(axes: Axes, judged: Sequence[JudgedManeuver]) -> None:
 
 
 def _as_judged(channel: Channel, judged: Sequence[JudgedManeuver]) -> Channel:
-    """Return the elevator with the sign of the manoeuvres, where only they showed the sign."""
+    """Return the elevator with the sign of the manoeuvres, if only they determined the sign."""
     flown = [j.maneuver.channels["elevator"] for j in judged if "elevator" in j.maneuver.channels]
     alike = sum(
         float(np.dot(e.y - e.y.mean(), np.interp(e.t, channel.t, channel.y) - channel.y.mean()))
@@ -187,12 +187,12 @@ def _as_judged(channel: Channel, judged: Sequence[JudgedManeuver]) -> Channel:
 
 
 def thinned(channel: Channel, bins: int) -> tuple[FloatArray, FloatArray]:
-    """Return times and values that draw an equal line: lowest and highest of each bin, and breaks in gaps.
+    """Return times and values that draw an equal curve from the extremes of each bin, with breaks in gaps.
 
     Parameters
     ----------
     bins
-        Stretches of equal numbers of samples.
+        Number of stretches with equal numbers of samples.
     """
     t, y = channel.t, channel.y
     if len(t) > 2 * bins:

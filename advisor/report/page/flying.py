@@ -1,4 +1,4 @@
-"""Flying qualities and coefficients, and the short period among the levels of MIL-F-8785C."""
+"""Flying qualities and coefficients, and the short period in the level charts of MIL-F-8785C."""
 
 from collections.abc import Callable, Iterator, Mapping
 from math import inf
@@ -69,17 +69,17 @@ def _cell(name: str, one: Document) -> str:
 
 
 _FILLS = ("#c6dbef", "#e1ecf7", "#f3f7fb")
-"""Colours of Levels 1 to 3, the best the darkest."""
+"""Colours of Levels 1 to 3, the darkest for Level 1."""
 _LINES: tuple[Literal["-", "--", ":"], ...] = ("-", "--", ":")
 """Styles of the bounds of Levels 1 to 3, so that a print without colour shows them."""
 _ROOM = 2.0
-"""Factor from the short period to the ends of the axes at least, so that bounds next to it are seen."""
+"""Least factor from the short period to the ends of the axes, so that nearby bounds are visible."""
 _WIDTH_IN, _HEIGHT_IN = 7.4, 2.6
 _PHONE_IN, _OF_A_PANEL_IN = 3.8, 2.4
 
 
 def flying_chart(found: Document) -> Figure | None:
-    """Return the chart; None where frequency, n/α, damping or their covariance are missing."""
+    """Return the chart; None if frequency, n/α, damping or their covariance are missing."""
     if found["correlation"] is None or "damping" not in found:
         return None
     return Figure(
@@ -92,7 +92,7 @@ def flying_chart(found: Document) -> Figure | None:
 
 
 def _drawn(name: str, found: Document, *, across: bool) -> Callable[[], str]:
-    """Return the chart with its panels in a row, or one above the other."""
+    """Return the chart with its panels in a row, or stacked."""
     panels = len(CATEGORIES) + 1
     size = (_WIDTH_IN, _HEIGHT_IN) if across else (_PHONE_IN, _OF_A_PANEL_IN * panels)
     return picture(name, *size, _paint, found, across)
@@ -101,7 +101,7 @@ def _drawn(name: str, found: Document, *, across: bool) -> Callable[[], str]:
 def ellipse(found: Document) -> tuple[FloatArray, FloatArray]:
     """Return n/α and ω_n along the joint 95 % region, each of shape (n,).
 
-    The region is an ellipse in the logarithms, whose errors are the relative errors: both stay positive.
+    The region is an ellipse in the logarithms, so both values stay positive.
     """
     load, frequency = found["n_alpha"], found["natural_frequency"]
     across, up = (one["std"] / one["value"] for one in (load, frequency))

@@ -1,4 +1,4 @@
-"""The sim-to-real gap, where requested: verdict, size, steps, causes."""
+"""Section about the sim-to-real gap, if requested: verdict, size, steps, causes."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -19,13 +19,13 @@ from advisor.words.quantities import CHANNELS
 
 _DEFINED = "The gap is the mean square of the simulator's error over that of the noise floor, minus 1: "
 _GLANCE = 4
-"""Channels side by side, so that the picture has room on the first page of A4."""
+"""Number of channels side by side, so that the picture fits on the first page of A4."""
 _LINEAR = 10.0
 """Largest gap on a linear axis."""
 
 
 def gap(content: Content) -> Section | None:
-    """Return the diagnosis; None where none was requested."""
+    """Return the section about the diagnosis; None unless requested."""
     if content.gap is None:
         return None
     return Section("gap", "Sim-to-real gap", tuple(_blocks(content.gap)))
@@ -93,7 +93,7 @@ def _blocks(found: Document) -> Iterator[Block]:
 
 
 def glance(document: Document) -> Iterator[Block]:
-    """Yield the answer, and the picture of the manoeuvre with the largest gap where there are curves."""
+    """Yield the answer, and the picture of the manoeuvre with the largest gap if there are curves."""
     yield from answer(document)
     found = document.get("lateral") or document
     if found["traces"]:
@@ -102,7 +102,7 @@ def glance(document: Document) -> Iterator[Block]:
 
 
 def answer(found: Document) -> Iterator[Block]:
-    """Yield the sentence, how sure it is, and what limits it."""
+    """Yield the sentence of the answer, its certainty, and its limits."""
     side = found.get("lateral")
     told, axis = (found, "") if side is None else (side, "Roll and yaw. ")
     yield Paragraph(f"{axis}{told['title']}: {told['sentence']}", "verdict")
@@ -112,7 +112,7 @@ def answer(found: Document) -> Iterator[Block]:
 
 
 def shown_causes(found: Document) -> list[Mapping[str, Any]]:
-    """Return the causes with a row: part of the improved simulator, or of a probability above 0 %."""
+    """Return the causes with a table row: part of the improved simulator, or of a probability above 0 %."""
     return [cause for cause in found["causes"] if cause["in_model"] or is_shown(cause["probability"])]
 
 

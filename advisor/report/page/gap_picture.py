@@ -1,4 +1,4 @@
-"""The gap as a picture: the worst manoeuvre measured and simulated, its residuals, all manoeuvres small."""
+"""Picture of the gap: the worst manoeuvre measured and simulated, its residuals, and all manoeuvres small."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -14,20 +14,20 @@ from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import CHANNELS
 
 _ACROSS = 2
-"""Channels side by side in a picture for a close look; a picture for a glance has all in one row."""
+"""Number of channels side by side in a detailed picture; an overview has all in one row."""
 _SMALL_ACROSS, _SMALL_ON_A_PHONE = 7, 3
-"""Small pictures side by side."""
+"""Number of small pictures side by side, on a page and on a phone."""
 _WIDTH_IN, _ON_A_PHONE_IN = 7.4, 3.8
 _OF_A_CHANNEL_IN, _OF_THE_SMALL_IN = 2.4, 1.1
 """Heights of a row of channels and of a row of small pictures, inches."""
 _CURVES_IN, _RESIDUALS_IN, _SMALL_IN = 1.25, 0.5, 0.7
-"""Heights of the axes within such rows, inches."""
+"""Heights of the axes for curves, residuals and small pictures, inches."""
 _LEFT_IN, _LABEL_IN, _RIGHT_IN = 0.62, 0.42, 0.06
-"""Room left of axes, distance of the label within, and room at the right edge, inches."""
+"""Left margin of the axes, distance of the label, and right margin, inches."""
 _LEGEND_IN, _TITLE_IN = 0.35, 0.25
-"""Room for the legend, and for the numbers over the small pictures, inches."""
+"""Height of the legend, and of the numbers above the small pictures, inches."""
 _SHOWN_SMALL = ("q", "p")
-"""Channel of the small pictures, the first that is there: one that moves in every manoeuvre."""
+"""Channels for the small pictures, of which the first available one is used."""
 
 Trace = Mapping[str, Any]
 
@@ -42,7 +42,7 @@ def caption(found: Document) -> str:
 
 
 def gap_picture(name: str, found: Document, across: int) -> Callable[[], str]:
-    """Return the picture for a page, with so many channels side by side."""
+    """Return the picture for a page, with ``across`` channels side by side."""
     return picture(name, *_size_in(found, across), _paint, found, across)
 
 
@@ -57,7 +57,7 @@ def _size_in(found: Document, across: int) -> tuple[float, float]:
 
 
 def _small_across(across: int) -> int:
-    """Return how many small pictures stand side by side; a phone has one channel across."""
+    """Return the number of small pictures side by side; a phone has one channel per row."""
     return _SMALL_ACROSS if across > 1 else _SMALL_ON_A_PHONE
 
 
@@ -84,9 +84,9 @@ def write_gap_picture(found: Document, path: Path) -> None:
 
 
 def _paint(drawing: Drawing, found: Document, across: int) -> None:
-    """Draw the worst manoeuvre channel by channel over all manoeuvres small.
+    """Draw the worst manoeuvre channel by channel, above small pictures of all manoeuvres.
 
-    Every axis has its place in inches: a layout that is solved differs in the last digit from run to run.
+    Every axis has a fixed place in inches, because a computed layout would differ in the last digit.
     """
     drawing.set_layout_engine("none")
     number, traces = worst(found), found["traces"]
@@ -120,7 +120,7 @@ def _axes(drawing: Drawing, place: tuple[float, float, float, float], shared: Ax
 def _paint_channel(
     drawing: Drawing, trace: Trace, floor: Mapping[str, float], place: tuple[float, float, float]
 ) -> None:
-    """Draw one channel over its residuals; ``place`` has left, top and width in inches."""
+    """Draw one channel above its residuals; ``place`` is left, top and width in inches."""
     left, top, width = place
     inside = left + _LEFT_IN, width - _LEFT_IN
     curves = _axes(drawing, (inside[0], top, inside[1], _CURVES_IN))
@@ -154,7 +154,7 @@ def _paint_small(
     *,
     worst: bool,
 ) -> Axes:
-    """Draw a rate of one manoeuvre; return the axes whose scale all small pictures share."""
+    """Draw a rate of one manoeuvre, and return the axes whose scale all small pictures share."""
     axes = _axes(drawing, place, shared)
     quantity = CHANNELS[trace["channel"]]
     t, measured, before, after = _arrays(trace, quantity.factor)

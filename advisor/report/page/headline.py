@@ -1,4 +1,4 @@
-"""The first page: what was flown, the verdict, the eight numbers, and the gap in one sentence and picture."""
+"""First page: flights, verdict, the eight parameters, and the gap in one sentence and picture."""
 
 from collections.abc import Iterator
 
@@ -12,7 +12,7 @@ from advisor.report.table import Table
 
 
 def headline(content: Content) -> Section:
-    """Return what was flown, the decision with its evidence, the estimates, and the gap."""
+    """Return the section with flights, decision and evidence, estimates, and gap."""
     return Section("verdict", "Verdict", tuple(_blocks(content)))
 
 
@@ -44,7 +44,7 @@ def _blocks(content: Content) -> Iterator[Block]:
 
 
 def _flown(content: Content) -> Table:
-    """Return the flights with date, duration, vehicle and firmware, the aircraft and its mass."""
+    """Return the table of flights with date, duration, vehicle and firmware, aircraft and mass."""
     mass = content.aircraft.reference.mass_kg
     weighs = "mass not given" if mass is None else f"{mass:g} kg"
     rows = []

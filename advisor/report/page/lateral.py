@@ -101,11 +101,11 @@ _EXPLAINED = (
     "where it rolls to the left, the rudder where it yaws to the left."
 )
 _MOST = 6
-"""Most pictures: the manoeuvres that are explained worst and best are among them."""
+"""Largest number of fit pictures, which include the worst and the best fit."""
 
 
 def lateral_fits(state: LateralState) -> Iterator[Block]:
-    """Return the fits of the accepted manoeuvres: the worst and the best one, then others as room allows."""
+    """Yield the fits of the accepted manoeuvres: the worst, the best, then others."""
     found = ((one, one.estimate) for one in state.maneuvers if one.verdict.accepted)
     in_order = by_fit((one, e) for one, e in found if isinstance(e, LateralEstimate))
     if in_order:

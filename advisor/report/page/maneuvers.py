@@ -11,12 +11,12 @@ from advisor.words.vehicle_time import CLOCK, clock
 
 _HYPHEN, _SPACE = "\N{NON-BREAKING HYPHEN}", "\N{NO-BREAK SPACE}"
 ANCHORS = {"": "maneuver-list", "R": "lateral-maneuvers"}
-"""Letter in front of a manoeuvre's number to the table that lists the manoeuvre: R for roll and yaw."""
+"""Table that lists a manoeuvre, by the letter before its number: R for roll and yaw."""
 HEAD = ("no.", "start", "input", "mode", "verdict", "why")
 
 
 def maneuvers(content: Content) -> Section:
-    """Return a table with a row for each manoeuvre, then cautions that do not reject a manoeuvre."""
+    """Return a table with a row for each manoeuvre, then cautions that reject no manoeuvre."""
     found = content.analysis["maneuvers"]
     rows = tuple(maneuver_row(maneuver, several=len(content.names) > 1) for maneuver in found)
     table = Table(
@@ -27,7 +27,7 @@ def maneuvers(content: Content) -> Section:
 
 
 def maneuver_row(maneuver: Mapping[str, Any], *, several: bool) -> tuple[str, ...]:
-    """Return number, start, input, mode, verdict and sentence of a manoeuvre; its log among several."""
+    """Return number, start, input, mode, verdict and sentence of a manoeuvre, and its log among several."""
     accepted = maneuver["verdict"] == "accepted"
     why = [maneuver["sentence"], *(f"note: {note}" for note in maneuver.get("notes", ()))]
     if maneuver.get("excluded_because") is not None:

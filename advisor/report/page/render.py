@@ -32,7 +32,7 @@ _PARTS = (
 )  # fmt: skip
 
 _OF_PITCH = frozenset({estimates, criterion, flying, maneuvers, fits, prediction})
-"""Parts that the page of a flight without a test input of the elevator leaves out."""
+"""Parts of the page that a flight without an elevator test input lacks."""
 
 
 def sections(content: Content) -> list[Section]:
@@ -42,7 +42,7 @@ def sections(content: Content) -> list[Section]:
 
 
 def _made(part: Callable[[Content], Section | None], content: Content) -> Section | None:
-    """Return a section, or in its place the sentence on the fault that ended it."""
+    """Return a section, or a sentence about the error that prevented it."""
     name = part.__name__
     made = attempt(f"page, {name.replace('_', ' ')}", partial(part, content))
     if not isinstance(made, FailedPart):

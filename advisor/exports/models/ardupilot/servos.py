@@ -18,26 +18,26 @@ from advisor.words.problems import ConfigurationError
 
 NEUTRAL_US, HALF_TRAVEL_US = 1500.0, 500.0
 OUTPUTS = {"aileron": 1, "elevator": 2, "rudder": 4}
-"""Control to the servo output from which ArduPilot's plane reads it."""
+"""Servo output from which ArduPilot's plane reads each control."""
 FUNCTIONS = {"aileron": 4, "elevator": 19, "rudder": 21}
-"""Control to the value of SERVOn_FUNCTION that moves it."""
+"""Value of SERVOn_FUNCTION for each control."""
 
 
 @dataclass(frozen=True)
 class Travel:
-    """Line through the ends of a calibration."""
+    """Straight line through the end points of a calibration."""
 
     neutral_rad: float
-    """Deflection at 1500 us."""
+    """Deflection at 1500 us, rad."""
     per_half_rad: float
-    """Change of the deflection per 500 us."""
+    """Change of the deflection per 500 us, rad."""
     low_us: float
     high_us: float
-    """Ends of the calibration."""
+    """Pulse widths at both ends of the calibration, us."""
 
     @property
     def trim_us(self) -> float:
-        """Pulse width without a deflection, within the ends."""
+        """Pulse width at zero deflection, within the ends, us."""
         at = NEUTRAL_US - HALF_TRAVEL_US * self.neutral_rad / self.per_half_rad
         return min(max(at, self.low_us), self.high_us)
 
@@ -68,12 +68,12 @@ def travel_of(aircraft: Aircraft, control: str) -> Travel:
 
 
 def calibrated(aircraft: Aircraft) -> list[str]:
-    """Return the controls that have a calibration."""
+    """Return the controls with a calibration in the aircraft file."""
     return [name for name in ("elevator", *LATERAL.inputs) if _calibrations(aircraft, name)]
 
 
 def _calibrations(aircraft: Aircraft, control: str) -> list[tuple[float, Pairs]]:
-    """Return the weighted calibrations of a control."""
+    """Return the calibrations of a control's outputs, with their weights."""
     stated = getattr(aircraft, control)
     if stated.calibration:
         return [(1.0, stated.calibration)]
@@ -81,9 +81,9 @@ def _calibrations(aircraft: Aircraft, control: str) -> list[tuple[float, Pairs]]
 
 
 SERVO_TRAVEL_DEG = 45.0
-"""Deflection that ArduPilot's servo model takes for full travel, deg."""
+"""Deflection for full travel in ArduPilot's servo model, deg."""
 _RIGHT = {"elevator": "M_delta_e", "aileron": "L_delta_a", "rudder": "N_delta_r"}
-"""Control to the derivative that tells its direction."""
+"""Derivative whose sign gives the direction of each control."""
 
 
 def parameters_text(model: FlownModel) -> Exported:
@@ -109,13 +109,13 @@ def parameters_text(model: FlownModel) -> Exported:
 
 
 def _servos(model: FlownModel) -> dict[str, ExportedServo]:
-    """Return the servo of each control that is known, the elevator's first."""
+    """Return the servo of each control with a known model, the elevator's first."""
     pitch = {"elevator": model.pitch.servo} if model.pitch is not None else {}
     return pitch | (dict(model.side.servos) if model.side is not None else {})
 
 
 def _outputs(model: FlownModel) -> Iterator[tuple[str, float]]:
-    """Yield function, direction and ends of each output with a calibration."""
+    """Yield function, direction and end points of each output with a calibration."""
     known = {n: v.value for n, v in (model.pitch.model if model.pitch is not None else {}).items()}
     if model.side is not None:
         known |= {n: v.value for n, v in model.side.values.items()}
@@ -131,10 +131,10 @@ def _outputs(model: FlownModel) -> Iterator[tuple[str, float]]:
 
 
 def _motion(servo: ExportedServo, model: FlownModel, control: str) -> Iterator[tuple[str, float]]:
-    """Yield lag, delay and rate.
+    """Yield the parameters of a servo's lag, delay and rate.
 
     Alone, ``SIM_SERVO_SPEED`` is the time constant of a first-order lag. With a delay or a filter, it becomes
-    a rate limit. The lag then becomes a Butterworth filter of two poles with an equal delay of a ramp.
+    a rate limit. The lag then becomes a two-pole Butterworth filter with equal delay of a ramp.
     """
     lag_s = max(servo.lag_s, 0.0)
     speed, delay, cutoff = lag_s, servo.delay_s, 0.0

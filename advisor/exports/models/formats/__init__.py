@@ -1,4 +1,4 @@
-"""Formats of a model, one object a file, each imported only on use."""
+"""Formats of a model, with one class per file, each imported only when used."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -12,28 +12,28 @@ from advisor.exports.models.flown import FlownModel
 from advisor.words.problems import ConfigurationError
 
 AxisAsked = Literal["pitch", "lateral", "both"]
-"""Axis that a command answers for: a diagnosis of one, or the analysis of both."""
+"""Axes that a command exports: one axis of a diagnosis, or both axes of an analysis."""
 
 
 class ModelFormat(ABC):
-    """A format of another program. A new one is a subclass in a file of its own."""
+    """Format of another program for a model. A new format is a subclass in a separate file."""
 
     suffix: str
-    """Usual ending of its files."""
+    """Usual ending of the format's files."""
     needs_a_finding = False
-    """Whether nothing is written where a diagnosis found nothing."""
+    """Whether no file is written if a diagnosis found nothing."""
 
     def files(self, file: Path) -> tuple[Path, ...]:
-        """Return the ordered file, and those that are written next to it."""
+        """Return the ordered file, and all files that the format writes next to it."""
         return (file,)
 
     def refuse(self, file: Path, aircraft: Aircraft, axis: AxisAsked) -> None:  # noqa: B027 - may be empty
-        """Refuse, before the analysis, an order that could not be carried out after it.
+        """Refuse, before the analysis, an export that would fail afterwards.
 
         Raises
         ------
         ConfigurationError
-            The aircraft file lacks what the format needs, or the file's ending fits no content.
+            The aircraft file lacks required keys, or the file's ending is not supported.
         """
 
     @abstractmethod
@@ -48,18 +48,18 @@ class ModelFormat(ABC):
 
 
 def format_named(name: str) -> ModelFormat:
-    """Return the format of a name of ``advisor.exports.models.names.NAMES``."""
+    """Return the format with a name in ``advisor.exports.models.names.NAMES``."""
     found: ModelFormat = import_module(f"advisor.exports.models.formats.{name}_format").FORMAT
     return found
 
 
 def refuse_lacking(lacking: Sequence[Sequence[str]], name: str) -> None:
-    """Refuse an aircraft file that lacks keys for every one of several axes.
+    """Refuse an aircraft file that lacks required keys for every axis.
 
     Raises
     ------
     ConfigurationError
-        No axis is without missing keys. The message names the fewest.
+        Every axis has missing keys. The error message names the shortest list of missing keys.
     """
     if all(lacking):
         missing = min(lacking, key=len)

@@ -1,4 +1,4 @@
-"""``aircraft``: the aircraft file with the findings of the flight."""
+"""Format ``aircraft``: the aircraft file with the results of the flight."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from advisor.exports.models.formats import ModelFormat
 
 
 class AircraftFormat(ModelFormat):
-    """A file that ``advisor`` and ``python -m sim`` load."""
+    """Aircraft file that ``advisor`` and ``python -m sim`` load."""
 
     suffix = ".yaml"
     needs_a_finding = True

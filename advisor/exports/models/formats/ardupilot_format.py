@@ -1,4 +1,4 @@
-"""``ardupilot``: coefficients of the built-in plane and, next to them, parameters of its servos.
+"""Format ``ardupilot``: coefficients of the built-in plane, and a file with its servo parameters.
 
 ArduPilot's plane in the loop reads the keys by ``--model plane:FILE.json``, and keeps its own numbers for
 missing keys. Its conventions, from its source (``libraries/SITL/SIM_Plane``):
@@ -9,7 +9,8 @@ missing keys. Its conventions, from its source (``libraries/SITL/SIM_Plane``):
   with the products of inertia inside fit as they are, c_l_b = L_β/(q̄·S·b);
 - rates are made dimensionless by c/(2·V) and b/(2·V), as in ``advisor.oem.coefficients``;
 - the sideslip is positive with wind from the right;
-- ``CGOffset`` moves the forces off the centre of gravity: it is zero, as the derivatives are about it.
+- ``CGOffset`` moves the forces from the centre of gravity; it is zero, because the derivatives refer to that
+point.
 
 The file is read from its first brace, and lines behind ``#`` are comments (``AP_JSON``).
 """
@@ -31,23 +32,23 @@ from advisor.exports.models.improvement import REFERENCE_KEYS, Improvement, air_
 from advisor.words.problems import ConfigurationError
 
 MASS_KG = 2.0
-"""Mass of ArduPilot's plane, kg."""
+"""Fixed mass by which ArduPilot's plane divides its forces, kg."""
 OWN_DRAG, OWN_OSWALD = 0.1, 0.9
-"""Drag without lift and Oswald's factor of ArduPilot's own plane (``skywalker_2013``). The flight tells
-neither drag nor Oswald's factor, so the user's aircraft keeps both."""
+"""Zero-lift drag and Oswald factor of ArduPilot's own plane (``skywalker_2013``). The flight determines
+neither drag nor Oswald factor, so the defaults are kept."""
 SIDE_KEYS = ("wing_area_m2", "span_m")
 FACTORS = {"beta": "b", "p": "p", "r": "r", "delta_a": "deltaa", "delta_r": "deltar"}
-"""Factor of a derivative to the spelling of ArduPilot's keys."""
+"""ArduPilot's spelling of each factor of a derivative."""
 _CONTROLS = {"delta_a": "aileron", "delta_r": "rudder"}
 FIRST_VERSION = "4.7"
-"""First ArduPlane that reads such a file (ArduPilot's pull request 29809, April 2025)."""
+"""First ArduPlane version that reads a file of coefficients (ArduPilot's pull request 29809, April 2025)."""
 LOADED = "Loaded plane aero coefficients from"
-"""Line that ArduPlane prints where it has read the file."""
+"""Beginning of ArduPlane's message after it has read the file."""
 FRAME_WORDS = (
     "-heavy", "-jet", "-sr75", "-revthrust", "-elevon", "-vtail", "-dspoilers", "-redundant", "-elevrev",
     "-catapult", "-bungee", "-throw", "-tailsitter", "-steering", "-3d", "-ice", "-soaring",
 )  # fmt: skip
-"""Words that change ArduPilot's plane wherever they stand in the name of the model, its file included."""
+"""Words that change ArduPilot's plane if they occur in the model's name or file name."""
 
 AXES = {"pitch": "pitch", "lateral": "roll and yaw"}
 Keys = dict[str, float | list[float]]
@@ -59,7 +60,7 @@ class Part(NamedTuple):
     keys: Keys
     notes: Sequence[str]
     left: Sequence[str]
-    """Known numbers and effects that the file does not carry."""
+    """Derivatives and effects that the file does not contain."""
 
 
 def plane_text(model: FlownModel, file_name: str) -> Exported:
@@ -170,7 +171,7 @@ def _side(side: SideModel, aircraft: Aircraft) -> Part:
 
 
 def lacking(aircraft: Aircraft) -> Mapping[str, list[str]]:
-    """Return for each axis the keys of the aircraft file that its coefficients lack."""
+    """Return the missing keys of the aircraft file for each axis' coefficients."""
     reference: Reference = aircraft.reference
     known = calibrated(aircraft)
     return {
@@ -186,18 +187,18 @@ def lacking(aircraft: Aircraft) -> Mapping[str, list[str]]:
 
 
 PARAMETERS = ".parm"
-"""Ending of the file of parameters that stands next to the coefficients."""
+"""Ending of the parameter file that is written next to the coefficients."""
 ENDINGS = (PARAMETERS, ".param")
 """Endings of ArduPilot's parameter files."""
 
 
 class ArduPilotFormat(ModelFormat):
-    """``.json`` with ``.parm`` next to it, or ``.parm`` alone."""
+    """Format with ``.json`` and a ``.parm`` next to it, or ``.parm`` alone."""
 
     suffix = ".json"
 
     def files(self, file: Path) -> tuple[Path, ...]:
-        """Return the ordered file, and that of the servos next to coefficients."""
+        """Return the ordered file, and the servo parameter file next to coefficients."""
         return (file, file.with_suffix(PARAMETERS)) if file.suffix == self.suffix else (file,)
 
     def refuse(self, file: Path, aircraft: Aircraft, axis: AxisAsked) -> None:

@@ -1,13 +1,13 @@
-"""``jsbsim``: a copy of the user's own JSBSim aircraft, corrected in both axes.
+"""Format ``jsbsim``: a copy of the user's own JSBSim aircraft, corrected in both axes.
 
-A derivative is corrected where its 95 % interval excludes the prior value. The prior is the aircraft file's
-``model``, else the derivatives of the JSBSim aircraft. The aircraft's own terms are multiplied by a factor.
-A function is added where there is no term or where the terms do not reach the value. A function also
-replaces a factor that would turn the sign.
+A derivative is corrected if its 95 % interval excludes the prior value. The prior value comes from the
+aircraft file's ``model``, else from the JSBSim aircraft. The JSBSim aircraft's own terms for a derivative are
+multiplied by a factor. A function is added if there is no term, or if scaled terms do not reach the value. A
+function also replaces a factor that would change a sign.
 
-The curves of effects are those of the aircraft file. Squares and cubes are of α or of the elevator; a
-moment is by the rate of α. The terms count from ``about_rad`` or else from the trim. All are proportional to
-the dynamic pressure.
+The nonlinear functions of effects are those of the aircraft file. Their squares and cubes are of α or of the
+elevator, and one moment depends on α̇. These terms are relative to ``about_rad``, or else to the trim. All
+terms are proportional to the dynamic pressure.
 """
 
 import math
@@ -39,12 +39,12 @@ from advisor.words.problems import ConfigurationError
 
 
 def aircraft_text(improvement: Improvement, model: Model) -> Exported:
-    """Return the corrected aircraft, measured at the speed and height flown, or at sea level where unknown.
+    """Return the corrected aircraft, measured at the flown speed and height, or at sea level if unknown.
 
     Raises
     ------
     ConfigurationError
-        The aircraft does not load or trim at the speed flown, or cannot be corrected.
+        The aircraft does not load or trim at the flown speed, or cannot be corrected.
     """
     content, name = model.file.read_bytes(), model.file.name
     root = parse(content, name)
@@ -85,7 +85,7 @@ def aircraft_text(improvement: Improvement, model: Model) -> Exported:
 
 
 def _left_out(improvement: Improvement, surface: str) -> list[str]:
-    """Return the parts of servo and derivatives that the aircraft cannot carry."""
+    """Return the parts of servo and derivatives that the aircraft does not support."""
     servo = improvement.servo
     left = ["a lag below the model's own"] if servo.lag_s < 0.0 else []
     if servo.damping and servo.lag_s > 0.0:
@@ -100,9 +100,10 @@ def _left_out(improvement: Improvement, surface: str) -> list[str]:
 def _targets(
     improvement: Improvement, first: Slopes, terms: Mapping[str, Sequence[str]], per_rad: float | None
 ) -> dict[str, float]:
-    """Return the derivative to its target: contradicted derivatives, and moments that lift changes move.
+    """Return the target value of each contradicted derivative, and of moments that lift changes affect.
 
-    ``per_rad`` is the number of units of the elevator's property in a radian. None: the property is no angle.
+    ``per_rad`` is the number of the elevator property's units per radian. None if the elevator's property is
+    no angle.
     """
     found = {}
     for parameter in SLOPES:
@@ -119,7 +120,7 @@ def _targets(
 
 
 def _note(improvement: Improvement, first: Slopes, targets: Mapping[str, float]) -> str:
-    """Return the comment at the top: the changes, and the condition in which they hold."""
+    """Return the comment at the top: the changes, and the flight condition in which they are valid."""
     changed = [f"{p} {first.derivatives[p]:.4g} becomes {target:.4g}" for p, target in targets.items()]
     servo = improvement.servo.lines() or ["as it was"]
     return (
@@ -131,14 +132,14 @@ def _note(improvement: Improvement, first: Slopes, targets: Mapping[str, float])
 def functions_of(
     effects: Mapping[str, Mapping[str, float]], slopes: Slopes, surface: str
 ) -> tuple[list[AddedFunction], list[str]]:
-    """Return the functions, and the names of the effects that the functions carry completely.
+    """Return the functions for effects, and the names of completely represented effects.
 
     Parameters
     ----------
     effects
         Effects of the aircraft file.
     slopes
-        Slopes of the aircraft that receives the functions.
+        Slopes of the aircraft to which the functions are added.
     surface
         Property of the elevator's position.
     """
@@ -176,13 +177,13 @@ def functions_of(
 
 
 class JsbsimFormat(ModelFormat):
-    """The aircraft that ``simulator: jsbsim:MODEL`` names."""
+    """The JSBSim aircraft of ``simulator: jsbsim:MODEL``, corrected."""
 
     suffix = ".xml"
     needs_a_finding = True
 
     def refuse(self, file: Path, aircraft: Aircraft, axis: AxisAsked) -> None:
-        """Refuse an aircraft file without a JSBSim aircraft, and to replace that aircraft."""
+        """Refuse an aircraft file without a JSBSim aircraft, and the replacement of that aircraft."""
         if file.resolve() == _model(aircraft).file:
             raise ConfigurationError(
                 f"--export jsbsim: {file} is the simulator's own aircraft; name another file."

@@ -1,4 +1,4 @@
-"""``matlab``: a script for MATLAB and Octave with A, B, C, D of both axes, and intervals of all parameters.
+"""Format ``matlab``: a MATLAB and Octave script with A, B, C, D of both axes, and all intervals.
 
     x = [α; q],  u = δe,  y = [α; q; a_z],  all departures from trim
     x = [β; p; r; φ],  u = [δa; δr],  y = [p; r; φ; a_y; β],  all departures from level flight
@@ -27,7 +27,7 @@ from advisor.words.quantities import SIDE_PARAMETERS as QUANTITIES
 
 
 class MatlabFormat(ModelFormat):
-    """A script that needs nothing."""
+    """A script without dependencies."""
 
     suffix = ".m"
 
@@ -89,7 +89,7 @@ def _side_text(name: str, side: SideModel) -> str:
 
 
 def script_text(improvement: Improvement) -> Exported:
-    """Return the script. The script needs no toolbox, and leaves its variables in the workspace."""
+    """Return the script. The script needs no toolbox, and sets variables in the workspace."""
     m = {name: improvement.number(name) for name in PARAMETERS}
     speed, servo = improvement.true_airspeed_m_s, improvement.servo
     head = commented(
@@ -128,7 +128,7 @@ def script_text(improvement: Improvement) -> Exported:
 
 
 def _valued(path: str, found: Value, unit: str) -> list[str]:
-    """Return the statements of a parameter: value, and the ends of its 95 % interval."""
+    """Return the script's statements for a parameter: value, and both ends of its 95 % interval."""
     half = NORMAL_95 * found.std
     return [
         f"{path}.value = {found.value:.8g};  % {unit}",

@@ -1,16 +1,16 @@
-"""``sdf``: Gazebo's plugins of lift, drag and side force.
+"""Format ``sdf``: Gazebo plugins for lift, drag and side force.
 
 Pitch has two ``gz::sim::systems::LiftDrag`` plugins, a wing and a tail.
 A LiftDrag surface has lift C = cla·(a0 + α) + control_joint_rad_to_cl·δ at its centre of pressure. There the
 surface meets the air that the rotation moves. A surface has no damping of its own, and Gazebo's source resets
-the moment of ``cma`` to zero. Two surfaces of the wing's area S need neither. The wing (w) lies at the centre
-of gravity, and the tail (t) at the distance x ahead of it (x is negative).
+the moment of ``cma`` to zero. Two surfaces of wing area S do not need damping and ``cma``. The wing (w) lies
+at the centre of gravity, and the tail (t) at the distance x ahead of it (x is negative).
 
     C_Lα = a_w + a_t        C_mα = a_t·x/c        C_mq = -2·a_t·x²/c²        C_mδe = e·x/c
 
-So x = -c·C_mq/(2·C_mα), a_t = C_mα·c/x, a_w = C_Lα - a_t and e = C_mδe·c/x. The zero-lift angles follow from
-C_L0 = a_w·a0_w + a_t·a0_t and C_m0 = a_t·a0_t·x/c. The resulting C_Lδe = e and C_Lq = -2·C_mα may differ from
-the estimates.
+The plugin values are x = -c·C_mq/(2·C_mα), a_t = C_mα·c/x, a_w = C_Lα - a_t and e = C_mδe·c/x. The zero-lift
+angles follow from C_L0 = a_w·a0_w + a_t·a0_t and C_m0 = a_t·a0_t·x/c. The resulting C_Lδe = e and C_Lq =
+-2·C_mα may differ from the estimates.
 
 Roll and yaw have one ``gz::sim::systems::AdvancedLiftDrag`` plugin without lift and pitching moment.
 Its conventions, from its source (``src/systems/advanced_lift_drag``):
@@ -37,7 +37,7 @@ from advisor.words.problems import ConfigurationError
 
 
 class SdfFormat(ModelFormat):
-    """Plugins for a ``<model>``."""
+    """Gazebo plugins for a ``<model>`` element."""
 
     suffix = ".sdf"
 
@@ -55,12 +55,12 @@ FORMAT = SdfFormat()
 
 
 def plugins_text(model: FlownModel) -> Exported:
-    """Return the plugins of all known axes, to be put into a ``<model>``.
+    """Return the plugins of all known axes, for a ``<model>`` element.
 
     Raises
     ------
     ConfigurationError
-        Reference data are missing for every known axis, or no tail has such derivatives.
+        Reference data are missing for every known axis, or no tail gives these derivatives.
     """
     reference = model.aircraft.reference
     missing = lacking(reference)
@@ -86,7 +86,7 @@ def _why_not(axis: str, known: bool, missing: Sequence[str]) -> str:
 
 
 def lacking(reference: Reference) -> Mapping[str, tuple[str, ...]]:
-    """Return for each axis the keys of ``reference`` that its plugins lack."""
+    """Return the keys of ``reference`` that each axis' plugins lack."""
     return {
         "pitch": missing_reference(reference, REFERENCE_KEYS),
         "lateral": missing_reference(reference, SIDE_KEYS),
@@ -99,7 +99,7 @@ def block_text(improvement: Improvement) -> Exported:
     Raises
     ------
     ConfigurationError
-        Reference data are missing, or no tail behind the centre of gravity has such derivatives.
+        Reference data are missing, or no tail behind the centre of gravity gives these derivatives.
     """
     c = {name: one.value for name, one in improvement.coefficients().items()}
     reference = improvement.reference
@@ -154,9 +154,9 @@ def _plugin(numbers: dict[str, float], ahead_m: float, joint: dict[str, str]) ->
 SIDE_KEYS = ("mass_kg", "wing_area_m2", "span_m", "ixx_kg_m2", "izz_kg_m2")
 JOINTS = {"delta_a": "aileron_joint", "delta_r": "rudder_joint"}
 _NO_STALL_RAD = 1.5
-"""Angle of attack at which the plugin adds a flat plate's lift, rad: beyond every flight."""
+"""Angle of attack above which the plugin adds a flat plate's lift, rad, beyond all flight."""
 _ANY_EFFICIENCY = 0.9
-"""Factor of the induced drag, which is zero without lift. The plugin divides by it."""
+"""Factor of the induced drag, which is zero without lift. The plugin divides by the factor."""
 
 Triple = tuple[float, float, float]
 """Coefficients of side force, roll and yaw."""

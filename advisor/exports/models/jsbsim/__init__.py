@@ -1,1 +1,1 @@
-"""A corrected copy of the user's JSBSim aircraft."""
+"""Corrected copy of the user's JSBSim aircraft."""

@@ -1,7 +1,7 @@
-"""Numbers in a corrected aircraft that set its derivatives, and their search.
+"""Values in a corrected aircraft that set its derivatives, and their search.
 
-Lift acts on the pitching moment by its arm, and a term moves the trim. The aircraft is corrected and
-measured in turn until each derivative has its target value.
+A lift term also changes the pitching moment by its arm, and any term changes the trim. The aircraft is
+corrected and measured repeatedly until each derivative has its target value.
 """
 
 import math
@@ -12,28 +12,28 @@ from advisor.exports.models.jsbsim.slopes import COLUMNS, Slopes
 from advisor.exports.models.jsbsim.source import AXES, PLAIN, AddedFunction, Factor
 
 ROUNDS = 8
-"""Number of rounds in which the numbers settle. Each round of corrections divides the derivatives' error by
-ten or more."""
+"""Largest number of rounds for the search. Each round of corrections divides the derivatives' error by ten or
+more."""
 WITHIN = 1e-3
-"""Relative error of a derivative at which the corrected aircraft counts as settled."""
+"""Relative error of a derivative below which the search has converged."""
 
 
 @dataclass(frozen=True)
 class Knob:
-    """One number in the corrected aircraft that moves one derivative."""
+    """One value in the corrected aircraft that changes one derivative."""
 
     parameter: str
     change: Factor | AddedFunction
     gain: float
-    """Change of the derivative by the number."""
+    """Change of the derivative per unit of the value."""
 
     def turned(self, missing: float) -> "Knob":
-        """Return the knob with the number that adds the missing part of the derivative."""
+        """Return the knob with its value changed to add the missing part of the derivative."""
         return replace(self, change=replace(self.change, value=self.change.value + missing / self.gain))
 
 
 def knob_for(parameter: str, terms: Sequence[str], first: Slopes, surface: str) -> Knob:
-    """Return a knob that changes nothing yet."""
+    """Return a knob with a value that changes nothing."""
     axis, variable = AXES[parameter[0]], parameter[2:]
     per_force = first.per_force(parameter[0])
     share = per_force * sum(first.shares[name][COLUMNS.index(variable)] for name in terms)
@@ -45,7 +45,8 @@ def knob_for(parameter: str, terms: Sequence[str], first: Slopes, surface: str) 
 
 
 def _turned(knob: Knob, missing: float, first: Slopes, surface: str) -> Knob:
-    """Return the knob turned by the missing part. A factor below zero becomes an added function."""
+    """Return the knob changed by the missing part of its derivative. A factor below zero becomes an added
+    function."""
     turned = knob.turned(missing)
     if isinstance(turned.change, AddedFunction) or turned.change.value > 0.0:
         return turned
@@ -60,18 +61,18 @@ def settled(
     surface: str,
     measured: Callable[[Sequence[Knob]], Slopes],
 ) -> tuple[list[Knob], Slopes]:
-    """Turn the knobs until the aircraft has its target derivatives, or ``ROUNDS`` are over.
+    """Change the knobs until the aircraft has its target derivatives, for at most ``ROUNDS`` rounds.
 
     Parameters
     ----------
     first
-        Slopes of the aircraft before any correction, measured with the given knobs.
+        Slopes of the aircraft before any correction, and slopes with the given knobs.
     targets
-        Derivative to its value, one for each knob.
+        Target value of each derivative, one per knob.
     surface
         Property of the elevator's position.
     measured
-        Measures the aircraft with given knobs.
+        Function that measures the aircraft with given knobs.
     """
     now, turned = first, list(knobs)
     for _ in range(ROUNDS):

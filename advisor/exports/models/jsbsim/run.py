@@ -56,29 +56,29 @@ def model_of(what: str) -> Model:
 
 
 def measure(content: bytes, model: Model, asked: Request) -> Slopes:
-    """Return the slopes of the short period of a content, loaded as the aircraft.
+    """Return the short-period slopes of an aircraft text, loaded in place of the aircraft.
 
     Raises
     ------
     ConfigurationError
-        As ``_answered``.
+        Errors as for ``_answered``.
     """
     return Slopes(**_answered("slopes", content, model, asdict(asked)))
 
 
 def measure_side(content: bytes, model: Model, asked: SideRequest) -> SideSlopes:
-    """Return the slopes of roll and yaw of a content, loaded as the aircraft.
+    """Return the roll and yaw slopes of an aircraft text, loaded in place of the aircraft.
 
     Raises
     ------
     ConfigurationError
-        As ``_answered``.
+        Errors as for ``_answered``.
     """
     return SideSlopes(**_answered("side_slopes", content, model, asdict(asked)))
 
 
 def _answered(module: str, content: bytes, model: Model, asked: dict[str, Any]) -> dict[str, Any]:
-    """Load a content as the aircraft, with the files that it includes, and measure it.
+    """Load an aircraft text with its included files, and return its measurement.
 
     Raises
     ------

@@ -1,9 +1,9 @@
-"""Copy of the user's JSBSim aircraft with the derivatives of roll and yaw as flown.
+"""Copy of the user's JSBSim aircraft with the flown roll and yaw derivatives.
 
-A derivative is corrected where the 95 % interval of the estimate excludes the value of the aircraft. The
-difference is added as a function of β, p, r, aileron or rudder. Each function is in proportion to the dynamic
-pressure, and a function of p or r also to b/(2·V). At the controls' neutral such a function changes no trim.
-A side force acts on roll and yaw by its arm, so that the aircraft is corrected and measured in turn.
+A derivative is corrected if the 95 % interval of the estimate excludes the aircraft's value. The difference
+is added as a function of β, p, r, aileron or rudder. Each function is proportional to the dynamic pressure,
+and for p or r also to b/(2·V). With neutral controls such a function changes no trim. A side force also acts
+on roll and yaw by its arm, so correction and measurement are repeated.
 """
 
 import xml.etree.ElementTree as ET
@@ -27,12 +27,12 @@ AXES = {"Y": "SIDE", "L": "ROLL", "N": "YAW"}
 
 
 def side_text(name: str, side: SideModel, model: Model, content: bytes) -> Exported:
-    """Return the corrected aircraft, measured at the speed and height flown.
+    """Return the corrected aircraft, measured at the flown speed and height.
 
     Parameters
     ----------
     content
-        Text of the aircraft, whose pitch may be corrected already.
+        Text of the aircraft, with pitch possibly corrected already.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def _require_axes(root: ET.Element, name: str) -> None:
 
 
 def _targets(side: SideModel, own: SideSlopes) -> dict[str, float]:
-    """Return each derivative as the aircraft must have it, per unit of its properties."""
+    """Return the target of each derivative, per unit of the aircraft's properties."""
     wanted = dict(own.derivatives)
     for name, value in side.values.items():
         sign = own.signs.get(name[2:], 1.0)
@@ -85,7 +85,7 @@ def _targets(side: SideModel, own: SideSlopes) -> dict[str, float]:
 
 
 def _loads(missing: Mapping[str, float], own: SideSlopes) -> dict[str, float]:
-    """Return by derivative the value of the function that adds what is missing, lbs or lbs·ft."""
+    """Return the value of each derivative's additional function, lbs or lbs·ft."""
     moments = np.linalg.inv(np.array(own.turning))
     found: dict[str, float] = {}
     for variable in VARIABLES:

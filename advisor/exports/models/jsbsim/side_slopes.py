@@ -20,14 +20,14 @@ VARIABLES = {
     "delta_a": "fcs/left-aileron-pos-rad",
     "delta_r": "fcs/rudder-pos-rad",
 }
-"""Variable of roll and yaw to the property that represents it."""
+"""Property that represents each variable of roll and yaw."""
 _SIZES = (0.01, 0.05, 0.05, 0.1, 0.1)
 """Perturbations of β, p and r in rad and rad/s, and of the commands of aileron and rudder (-1 to 1)."""
 
 
 @dataclass(frozen=True)
 class SideRequest:
-    """Condition in which a JSBSim aircraft is measured."""
+    """Flight condition in which a JSBSim aircraft is measured."""
 
     airspeed_m_s: float
     height_m: float
@@ -38,21 +38,21 @@ class SideSlopes:
     """Measured slopes of roll and yaw in one condition."""
 
     derivatives: dict[str, float]
-    """The fifteen derivatives in SI. Derivatives by a control are per radian of the control's property."""
+    """Fifteen lateral derivatives, SI. Derivatives by a control are per radian of the control's property."""
     signs: dict[str, float]
-    """Control to the sign of its property. The sign is positive where a positive property turns to the
-    left."""
+    """Sign of each control's property, by the control's name. The sign is positive if a positive property
+    turns to the left."""
     turning: list[list[float]]
-    """(2, 2) roll and yaw acceleration by roll and yaw moment, 1/(slug·ft²)."""
+    """Shape (2, 2): roll and yaw acceleration per roll and yaw moment, 1/(slug·ft²)."""
     momentum: float
     """Mass times speed, slug·ft/s."""
     pressure_psf: float
     span_time_s: float
-    """b/(2·V), by which rates become dimensionless."""
+    """Time b/(2·V) that makes rates dimensionless, s."""
 
 
 def side_measured(fdm: Any, asked: SideRequest) -> SideSlopes:
-    """Perturb a loaded aircraft about its trim.
+    """Return the slopes of a loaded aircraft from perturbations about its trim.
 
     Raises
     ------

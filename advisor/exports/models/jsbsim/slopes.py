@@ -1,9 +1,9 @@
-"""Derivatives of a JSBSim aircraft, and the share of each of its terms, by small perturbations.
+"""Derivatives of a JSBSim aircraft, and each term's share of them, from small perturbations.
 
-The module runs in a separate process (``python -m``), because JSBSim writes on stdout and may end its
-process. The states are held while the forces settle, so that no derivative is mixed with motion. α̇ and q̇
-respond to α, q and elevator with all dependent terms. The terms of α̇ count into the derivatives of α and q,
-as in a flight.
+The module runs in a separate process (``python -m``), because JSBSim writes on stdout and may abort. The
+states are fixed while the forces settle, so that motion does not affect a derivative. α̇ and q̇ respond to α,
+q and elevator with all dependent terms. The terms of α̇ are part of the derivatives of α and q, as in a
+flight.
 """
 
 import json
@@ -17,18 +17,18 @@ import numpy as np
 
 FOOT_M = 0.3048
 SEA_FLOOR_FT = -10000.0
-"""Height of the ground, ft: so low that there is no ground effect."""
+"""Height of the ground, ft, so low that there is no ground effect."""
 GUESS = 0.6
-"""Throttle with which JSBSim's trim begins."""
+"""Throttle at which JSBSim's trim begins."""
 FULL_TRIM = 1
 """JSBSim's number for trimming all axes in straight flight."""
 STEPS = 300
-"""Number of calls in which forces, and a servo of the model, come to rest."""
+"""Number of calls after which forces and servos have settled."""
 SIZES = (0.004, 0.01, 0.02)
 """Perturbations of α (rad), q (rad/s) and the elevator's command (-1 to 1)."""
 _ROUNDS, _AT_REST = 30, 1e-7
 _FLAT = 1e-6
-"""Z_alpha without any lift, 1/s, which is only rounding."""
+"""Z_alpha of an aircraft without lift, 1/s, which is only rounding."""
 
 
 COLUMNS = ("alpha", "q", "delta_e")
@@ -37,7 +37,7 @@ COLUMNS = ("alpha", "q", "delta_e")
 
 @dataclass(frozen=True)
 class Request:
-    """Condition and quantities to measure on a JSBSim aircraft."""
+    """Flight condition, and quantities to measure on a JSBSim aircraft."""
 
     names: list[str]
     """Functions whose shares are requested."""
@@ -46,7 +46,7 @@ class Request:
     airspeed_m_s: float
     height_m: float
     powered: bool = True
-    """Whether JSBSim's trim finds the throttle. False: the throttle is closed."""
+    """Whether JSBSim's trim finds the throttle. False for a closed throttle."""
 
 
 @dataclass(frozen=True)
@@ -54,20 +54,21 @@ class Slopes:
     """Measured slopes of a JSBSim aircraft in one condition."""
 
     derivatives: dict[str, float]
-    """The six derivatives in SI. Derivatives by the elevator are per unit of the elevator's property."""
+    """Six short-period derivatives, SI. Derivatives by the elevator are per unit of the elevator's
+    property."""
     shares: dict[str, list[float]]
-    """Function of the model to its slopes by α, q and elevator, lbs or lbs·ft."""
+    """Slopes of each model function by α, q and elevator, lbs or lbs·ft."""
     trim: dict[str, float]
-    """``alpha``, ``q`` and ``delta_e`` of the trim."""
+    """Values of ``alpha``, ``q`` and ``delta_e`` in the trim."""
     pressure_psf: float
     momentum: float
     """Mass times speed, slug·ft/s."""
     inertia: float
     """I_yy, slug·ft²."""
     chord_time_s: float
-    """c/(2·V), by which rates become dimensionless."""
+    """Time c/(2·V) that makes rates dimensionless, s."""
     powered: bool
-    """Whether JSBSim's trim found a throttle that holds the speed."""
+    """Whether JSBSim's trim found a throttle for steady speed."""
 
     def per_force(self, letter: str) -> float:
         """Return the change of α̇ (``Z``) by a lift of 1 lb, or of q̇ (``M``) by a moment of 1 lb·ft."""
@@ -75,12 +76,12 @@ class Slopes:
 
 
 def measured(fdm: Any, asked: Request) -> Slopes:
-    """Trim the lift and the moment of a loaded aircraft, and perturb it there.
+    """Return the slopes of a loaded aircraft at its trim in lift and moment.
 
     Raises
     ------
     ArithmeticError
-        No angle of attack and no elevator hold the aircraft in this condition, or its lift does not grow.
+        No angle of attack and elevator balance the aircraft in this condition, or its lift does not grow.
     """
     fdm["ic/terrain-elevation-ft"] = SEA_FLOOR_FT
     fdm["ic/h-sl-ft"] = asked.height_m / FOOT_M
@@ -94,7 +95,7 @@ def measured(fdm: Any, asked: Request) -> Slopes:
     fdm.suspend_integration()
 
     def respond(alpha: float, q: float, command: float) -> tuple[Any, Any]:
-        """Return the variables as they came out, and α̇, q̇ and every term."""
+        """Return the resulting variables, with α̇, q̇ and every term."""
         fdm["ic/alpha-rad"], fdm["ic/q-rad_sec"] = alpha, q
         fdm["fcs/elevator-cmd-norm"] = command
         fdm.run_ic()
@@ -145,7 +146,7 @@ def measured(fdm: Any, asked: Request) -> Slopes:
 
 
 def _finds_its_throttle(fdm: Any) -> bool:
-    """Trim by JSBSim for the throttle's sake; a glider, and an engine that is too weak, has none."""
+    """Return whether JSBSim's trim finds a throttle; a glider and a weak engine have none."""
     try:
         fdm["simulation/do_simple_trim"] = FULL_TRIM
     except RuntimeError:
@@ -161,7 +162,7 @@ def answer(measure: Callable[[Any, dict[str, Any]], Any]) -> None:
     Parameters
     ----------
     measure
-        Measures a loaded aircraft under the request, and returns a data class.
+        Function that measures a loaded aircraft for a request, and returns a dataclass.
     """
     told = json.load(sys.stdin)
     foreign = told.pop("foreign")

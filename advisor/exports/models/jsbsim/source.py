@@ -1,7 +1,7 @@
 """Text of a JSBSim aircraft: parsed, and written with corrected coefficients and a servo.
 
 The terms of the axes LIFT and PITCH are classified by the properties that they depend on. The first property
-found decides, in the order of pitch rate, rate of α, elevator, α.
+in the order of pitch rate, rate of α, elevator and α decides.
 """
 
 import re
@@ -19,10 +19,11 @@ VARIABLES = {
     "delta_e": re.compile(r"fcs/elevator-pos-(rad|deg|norm)"),
     "alpha": re.compile(r"aero/alpha-(rad|deg)"),
 }
-"""Variable of the short period to the properties that represent it, in the order of testing."""
+"""Pattern of the properties for each variable of the short period, in the order of testing."""
 AXES = {"Z": "LIFT", "M": "PITCH"}
 SURFACES = {"fcs/elevator-pos-rad": 1.0, "fcs/elevator-pos-deg": 57.29577951308232}
-"""Property of the surface to its number of units in a radian. The position from -1 to 1 has none."""
+"""Number of units per radian of each surface property. The normalised position from -1 to 1 has no such
+number."""
 PLAIN = {"alpha": "aero/alpha-rad", "q": "velocities/q-aero-rad_sec", "delta_e": "fcs/elevator-pos-rad"}
 
 
@@ -36,7 +37,7 @@ class AddedFunction:
     """Value of the function for a dynamic pressure of 1 psf and a power of 1, lbs or lbs·ft."""
     property: str
     about: float = 0.0
-    """Value of the property from which the variable counts."""
+    """Value of the property at which the variable is zero."""
     power: int = 1
     further: str = ""
     """Further property of JSBSim that multiplies the function of a force or moment."""
@@ -44,7 +45,7 @@ class AddedFunction:
 
 @dataclass(frozen=True)
 class Factor:
-    """A factor on terms of an axis."""
+    """A factor on some terms of an axis."""
 
     parameter: str
     axis: str
@@ -53,12 +54,12 @@ class Factor:
 
 
 def parse(content: bytes, name: str) -> ET.Element:
-    """Read a JSBSim aircraft with its comments.
+    """Return the XML tree of a JSBSim aircraft, with its comments.
 
     Raises
     ------
     ConfigurationError
-        The content is no XML, or another XML than an aircraft of JSBSim with LIFT and PITCH.
+        The content is no XML, or no JSBSim aircraft with LIFT and PITCH.
     """
     try:
         root = ET.fromstring(content, ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))
@@ -76,7 +77,7 @@ def parse(content: bytes, name: str) -> ET.Element:
 
 
 def terms_of(root: ET.Element) -> Mapping[str, tuple[str, ...]]:
-    """Return each derivative with the names of the model's functions that make it, in the file's order."""
+    """Return the names of the model's functions for each derivative, in the file's order."""
     found: dict[str, tuple[str, ...]] = {}
     for letter, axis in AXES.items():
         for function in _functions(root, axis):
@@ -89,7 +90,7 @@ def terms_of(root: ET.Element) -> Mapping[str, tuple[str, ...]]:
 
 
 def surface_of(root: ET.Element) -> str:
-    """Return the property of the elevator's position that the pitching moment depends on."""
+    """Return the elevator's position property on which the pitching moment depends."""
     for function in _functions(root, "PITCH"):
         for text in _properties(function):
             if VARIABLES["delta_e"].fullmatch(text):
@@ -100,7 +101,7 @@ def surface_of(root: ET.Element) -> str:
 def corrected(
     content: bytes, name: str, changes: Sequence[Factor | AddedFunction], servo: ExportedServo, note: str
 ) -> str:
-    """Return the aircraft's text with all changes made and the servo behind the elevator's command.
+    """Return the aircraft's text with all changes, and with the servo after the elevator's command.
 
     Raises
     ------
@@ -173,8 +174,7 @@ def _function(added: AddedFunction) -> ET.Element:
 
 
 def _insert(servo: ExportedServo, root: ET.Element) -> None:
-    """Add JSBSim's actuator in a channel of its own, after everything that moves the elevator, from and to
-    one property."""
+    """Add JSBSim's actuator in a separate channel, after all components that move the elevator."""
     surface = surface_of(root)
     unit = SURFACES.get(surface)
     bounded = servo.rate_rad_s or servo.play_rad or servo.deadband_rad
