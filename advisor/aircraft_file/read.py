@@ -162,7 +162,7 @@ _MOST_LISTED = 20
 _MOST_POINTS = 500
 """Most points of a calibration: one for every second microsecond of a servo's travel."""
 _LONGEST_WINDOW = 50
-"""Largest window of Eq. (12), in manoeuvres: more than any flight has."""
+"""Largest window of Eq. (12), in manoeuvres, above the number in any flight."""
 _OUTPUTS = 32
 """Number of servo outputs that SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS can carry."""
 _LONGEST_STEP_S = 0.1

@@ -21,7 +21,7 @@ class Draft:
     head: list[str] = field(default_factory=list)
     """Sentences for the head of the file."""
     values: dict[str, Any] = field(default_factory=dict)
-    """Path of a key to its value. ``elevator.outputs`` replaces output and calibration."""
+    """Value of each key, by the key's path. ``elevator.outputs`` replaces output and calibration."""
     comments: dict[str, str] = field(default_factory=dict)
     """Path of a key to the source of its value, or to the known facts in place of a value."""
     examples: dict[str, str] = field(default_factory=dict)

@@ -44,7 +44,7 @@ class Calls:
         Raises
         ------
         RefusedError
-            The command fails or takes too long.
+            The advisor's command fails or takes too long.
         """
         code, _, said = await self._run(arguments)
         if code:

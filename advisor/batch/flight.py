@@ -78,7 +78,7 @@ class Analyzed:
 
     @property
     def maneuvers(self) -> list[dict[str, Any]]:
-        """Manoeuvres of the elevator, then those of aileron and rudder, as the document has them."""
+        """Manoeuvres of the elevator, then those of aileron and rudder, from the document."""
         return [*self.document["maneuvers"], *self.lateral.get("maneuvers", ())]
 
     @property

@@ -110,7 +110,7 @@ def tables_of(flights: Sequence[Analyzed]) -> Dataset:
 
 
 def is_whole(result: Analyzed) -> bool:
-    """Return whether a stored result has everything that the tables show. Another advisor may have written
+    """Return whether a stored result contains all data of the tables. Another advisor may have written
     another shape."""
     try:
         tables_of([result])

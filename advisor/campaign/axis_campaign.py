@@ -1,4 +1,4 @@
-"""One axis of a campaign: its manoeuvres, their verdicts, and what a hand decides on them."""
+"""The campaign of one axis: its manoeuvres, their verdicts, and the engineer's decisions on them."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -20,14 +20,14 @@ from advisor.process.parts import FailedPart, Parts
 
 @dataclass(slots=True)
 class Flown:
-    """A manoeuvre, its examination, and what an engineer noted on it."""
+    """A manoeuvre, its examination, and the engineer's notes on the manoeuvre."""
 
     maneuver: Maneuver
     examined: CandidateManeuver
     notes: tuple[str, ...]
 
     def exclude(self, because: str | None) -> None:
-        """Exclude the manoeuvre for a reason; None: the manoeuvre counts."""
+        """Exclude the manoeuvre for a reason; None includes the manoeuvre."""
         self.examined = replace(self.examined, excluded_because=because)
 
     def judged(self, verdict: ManeuverVerdict) -> JudgedManeuver:
@@ -39,18 +39,18 @@ class Flown:
 
 
 class AxisCampaign(ABC):
-    """Judges the manoeuvres of one axis, and decides whether its test may stop.
+    """Judges the manoeuvres of one axis, and decides whether the test of this axis may stop.
 
     Parameters
     ----------
     axis
-        Name of the axis in the names of its parts.
+        Name of the axis, as it stands in the names of parts that may fail.
     aircraft
         The crew's aircraft file.
     plan
-        Plan by which the axis is judged.
+        Flight-test plan by which the axis is judged.
     parts
-        Makes manoeuvres, verdicts and the joint estimate, each of which may fail alone.
+        Computes manoeuvres, verdicts and the joint estimate, each of which may fail separately.
     """
 
     def __init__(self, axis: str, aircraft: Aircraft, plan: CampaignPlan, parts: Parts) -> None:
@@ -65,18 +65,18 @@ class AxisCampaign(ABC):
         self.judged: tuple[JudgedManeuver, ...] = ()
         """Manoeuvres in the order flown, each with its estimate and verdict."""
         self.flight_test = self._decided((), ())
-        """Whether the test may stop, and the next manoeuvre."""
+        """Decision whether the test may stop, with the next manoeuvre."""
 
     @abstractmethod
     def _decided(self, history: Sequence[CandidateManeuver], heard: Sequence[Heard]) -> FlightTestVerdict:
-        """Return whether the test may stop, from examined and ``judged`` manoeuvres."""
+        """Return whether the test may stop, from the examined and the ``judged`` manoeuvres."""
 
     def decide(self) -> None:
-        """Judge all manoeuvres, and decide anew whether to stop."""
+        """Judge all manoeuvres, and decide again whether to stop."""
         self._judge()
 
     def exclude(self, number: int, because: str | None) -> None:
-        """Exclude a manoeuvre from every decision for a reason; None: include the manoeuvre again."""
+        """Exclude a manoeuvre from every decision for a reason; None includes the manoeuvre again."""
         self._of(number).exclude(because)
         self.decide()
 
@@ -86,7 +86,7 @@ class AxisCampaign(ABC):
         self._judge()
 
     def finish(self) -> None:
-        """Take the end of the flight, after which the joint estimate is over all accepted manoeuvres."""
+        """End the flight, and estimate all accepted manoeuvres together."""
         self._ended = True
         self.decide()
 
@@ -105,13 +105,13 @@ class AxisCampaign(ABC):
         return next(judged for judged in self.judged if judged.maneuver.number == number)
 
     def _add(self, maneuver: Maneuver, examined: CandidateManeuver, by_hand: ByHand) -> None:
-        """Take a manoeuvre that has just been flown, with what a hand has decided on it."""
+        """Add a manoeuvre that has just been flown, with the engineer's decisions on it."""
         flown = Flown(maneuver, examined, by_hand.notes_on(maneuver))
         flown.exclude(by_hand.excluded_because(maneuver))
         self._flown.append(flown)
 
     def _hear(self) -> None:
-        """Keep what the crew hears after the newest manoeuvre."""
+        """Record the criteria that are announced to the crew after the newest manoeuvre."""
         usable = [i for i, one in enumerate(self._flown) if one.examined.usable]
         self._heard.append(Heard.of(self.flight_test, usable))
 
@@ -128,16 +128,18 @@ class AxisCampaign(ABC):
 
     @property
     def _still_heard(self) -> Sequence[Heard]:
-        """Criteria that the crew has heard; none after an exclusion by hand, which decides all anew."""
+        """Criteria that were announced to the crew; none after an exclusion by hand, which repeats every
+        decision."""
         excluded = any(one.examined.excluded_because is not None for one in self._flown)
         return () if excluded else self._heard
 
     def _judge(self) -> None:
-        """Judge the manoeuvres and the flight test; leave all unjudged where a fault ends that."""
+        """Judge the manoeuvres and the flight test; after a numerical fault all manoeuvres remain without a
+        verdict."""
         self._parts.make(f"{self._axis}, verdicts", self._judged, self._unjudged)
 
     def _judged(self) -> None:
-        """Judge the manoeuvres and the flight test from the examinations."""
+        """Judge the manoeuvres and the flight test from the examinations of the manoeuvres."""
         history = self._examinations
         verdicts = judge_campaign(history, self._plan, self._course)
         self.judged = tuple(
@@ -146,7 +148,7 @@ class AxisCampaign(ABC):
         self.flight_test = self._decided(history, self._still_heard)
 
     def _unjudged(self, part: FailedPart) -> None:
-        """Accept no manoeuvre, and go on."""
+        """Accept no manoeuvre after a failed part, and continue."""
         why = objection(part)
         verdict = ManeuverVerdict(False, why.text, (why,), {})
         self.judged = tuple(one.judged(verdict) for one in self._flown)

@@ -40,19 +40,19 @@ from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock
 
 _OF: Mapping[AxisName, str] = {"pitch": "", "lateral": "roll and yaw, "}
-"""Axis to the words before the number of its manoeuvre."""
+"""Words before the number of a manoeuvre, by the name of its axis."""
 _TEST_OF: Mapping[AxisName, str] = {"pitch": "", "lateral": "roll and yaw: "}
-"""Axis to the words before the decision on its test."""
+"""Words before the decision on a test, by the name of its axis."""
 
 
 @dataclass(frozen=True, slots=True)
 class ManeuverJudged:
-    """A manoeuvre was estimated and judged, and the flight test was decided anew."""
+    """A manoeuvre was estimated and judged, and the flight test was decided again."""
 
     judged: JudgedManeuver
     flight_test: FlightTestVerdict
     plan: CrewPlan | None = None
-    """Plan of both axes; None where only one of them has been flown."""
+    """Plan of both axes; None if only one axis has been flown."""
     axis: AxisName = "pitch"
 
 
@@ -103,7 +103,7 @@ class Campaign:
         self._tell = tell
         self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names, lateral)
         self.by_hand = by_hand
-        """All decisions by hand so far."""
+        """The engineer's decisions by hand so far."""
         self._to_remark = list(by_hand.remarks)
         self._mark_notes: tuple[str, ...] = ()
         self._reader_notes: tuple[str, ...] = ()
@@ -113,13 +113,14 @@ class Campaign:
         self._settling = Settling() if settle else None
 
     def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
-        """Take the next messages, in order of arrival. The result does not depend on the batches."""
+        """Process the next messages, in order of arrival. The result does not depend on how the messages are
+        grouped."""
         told = self._take(self._flights.feed(columns))
         self._repeat_remarks()
         return told
 
     def finish(self) -> list[CampaignEvent]:
-        """Take the end of the stream: a manoeuvre that lacks only its quiet end still counts."""
+        """End the stream: a manoeuvre without only its quiet end is still used."""
         if self._stream.marks.by_hand_since_s is not None:
             self.end_maneuver()
         told = self._take(self._flights.finish())
@@ -181,7 +182,7 @@ class Campaign:
         )
 
     def _settled(self, flying: Maneuver | None, model: Estimate | None) -> Settled | None:
-        """Return the estimate of the manoeuvre being flown, for live faces."""
+        """Return the estimate of the manoeuvre that is being flown, for live displays."""
         settling = self._settling
         if settling is None:
             return None
@@ -194,7 +195,7 @@ class Campaign:
     def _contradictions(
         self, model: Estimate | None, side: LateralEstimate | None
     ) -> tuple[InstrumentFinding, ...]:
-        """Return the contradictions of the instruments, by the motion and by the fits."""
+        """Return the contradictions of the instruments, from the motion and from the fits."""
         maneuvers = (*self._elevator.maneuvers, *self._side_maneuvers)
         by_motion = together(maneuvers, self._stream.instruments)
         found = with_fit(by_motion, model, self._elevator.estimates, self._aircraft)
@@ -202,19 +203,19 @@ class Campaign:
 
     @property
     def power_on(self) -> tuple[int, int]:
-        """Flight and power-on of the newest message, each counted from 0."""
+        """Number of the flight and of the power-on of the newest message, each from 0."""
         return self._flights.flight, self._stream.boot
 
     @property
     def serves(self) -> bool:
-        """Whether the present data are known to serve."""
+        """Whether the present data are known to be sufficient."""
         return self._stream.serves
 
     @property
     def problems(self) -> list[Problem]:
         """Reasons for which the stream so far cannot be used; empty for a usable stream.
 
-        Manoeuvres of aileron and rudder need none of the elevator's.
+        Manoeuvres of aileron and rudder do not need the elevator's messages.
         """
         found = self._flights.problems()
         if self._lateral is None or not self._lateral.maneuvers:
@@ -222,7 +223,7 @@ class Campaign:
         return [problem for problem in found if problem.code not in OF_ELEVATOR]
 
     def exclude(self, number: int, because: str, axis: AxisName = "pitch") -> None:
-        """Exclude a manoeuvre of an axis from every decision, and decide anew on all later manoeuvres."""
+        """Exclude a manoeuvre of an axis from every decision, and decide again on all later manoeuvres."""
         self._decide_by_hand(number, because, axis)
 
     def include(self, number: int, axis: AxisName = "pitch") -> None:
@@ -237,7 +238,8 @@ class Campaign:
         self._journal.write(f"mark: {text}", self._stream.now_s)
 
     def begin_maneuver(self) -> None:
-        """Begin a manoeuvre's mark at the newest vehicle time. A mark that is already open is dropped."""
+        """Begin the mark of a manoeuvre at the newest vehicle time. A mark that is already open is
+        deleted."""
         if not math.isfinite(self._now_s):
             self._journal.write("nothing can be marked before the vehicle's clock is heard")
             return
@@ -245,7 +247,8 @@ class Campaign:
         self._journal.write("a manoeuvre is marked from here", self._stream.now_s)
 
     def end_maneuver(self) -> None:
-        """End the mark at the newest vehicle time. The manoeuvre is judged when all of it has arrived."""
+        """End the open mark at the newest vehicle time. The marked manoeuvre is judged when all its data have
+        arrived."""
         ended = self._stream.marks.end_by_hand(self._now_s)
         if isinstance(ended, Notice):
             self._journal.write(ended.text, self._stream.now_s)
@@ -254,7 +257,7 @@ class Campaign:
         self._journal.write(f"a manoeuvre is marked from {clock(ended.start_s)} to here", self._stream.now_s)
 
     def log(self, sentence: str) -> None:
-        """Write a sentence from outside, such as what a link reports, into the event log."""
+        """Write a sentence from outside the campaign, such as a link's report, into the event log."""
         self._journal.write(sentence, self._stream.now_s)
 
     def note(self, number: int, text: str, axis: AxisName = "pitch") -> None:
@@ -304,7 +307,8 @@ class Campaign:
     def _judge(
         self, half: ElevatorCampaign | LateralCampaign, maneuver: Maneuver, axis: AxisName
     ) -> ManeuverJudged:
-        """Judge a manoeuvre that has just been flown, and write its verdict and the flight test's."""
+        """Judge a manoeuvre that has just been flown, and log its verdict and the decision on the flight
+        test."""
         half.take(maneuver, self.by_hand)
         span, judged = maneuver.span, half.judged[-1]
         which = f", {span.kind}" if axis == "lateral" else ""
@@ -315,25 +319,26 @@ class Campaign:
 
     @property
     def _plan(self) -> CrewPlan | None:
-        """Plan of both axes; None where only one of them has been flown."""
+        """Plan of both axes; None if only one axis has been flown."""
         if self._lateral is None or not self._lateral.maneuvers or not self._elevator.judged:
             return None
         return crew_plan(self._elevator.flight_test, self._lateral.flight_test)
 
     @property
     def _side_maneuvers(self) -> tuple[Maneuver, ...]:
-        """Lateral manoeuvres, where they were asked for."""
+        """Lateral manoeuvres, if they were requested."""
         return self._lateral.maneuvers if self._lateral is not None else ()
 
     def _note_down(self, notice: Notice) -> None:
-        """Keep the notices about marks and about the reader for the report."""
+        """Keep notices about marks and about the reader for the report."""
         if notice.code in MARK_NOTICES:
             self._mark_notes += (notice.text,)
         if notice.code == READER_NOTICE:
             self._reader_notes += (notice.text,)
 
     def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
-        """Take a manoeuvre that came twice: the better record counts, and an exclusion of either holds."""
+        """Handle a manoeuvre that arrived twice: the better record is used, and an exclusion of either
+        remains."""
         maneuver = event.maneuver
         where = f" in {self._flights.name}" if self._flights.name else ""
         better = "; this record holds more and takes the place" if event.takes_place else ""
@@ -354,7 +359,7 @@ class Campaign:
         ]
 
     def _count_anew(self, event: ElevatorRescaled) -> list[CampaignEvent]:
-        """Count earlier manoeuvres by a limit that is heard late, so that no two scales are pooled."""
+        """Scale earlier manoeuvres by an elevator limit that arrived late, so that all use one scale."""
         again = recount(self._elevator.maneuvers, event)
         if again.notice is None:
             return []
@@ -365,16 +370,16 @@ class Campaign:
 
     @property
     def _stream(self) -> FlightStream:
-        """Stream of the current flight."""
+        """Message stream of the current flight."""
         return self._flights.stream
 
     @property
     def _now_s(self) -> float:
-        """Newest vehicle time, s, rounded to the millisecond as the file of decisions keeps it."""
+        """Newest vehicle time, s, rounded to the millisecond as in the file of decisions."""
         return round(self._stream.now_s, 3)
 
     def _repeat_remarks(self) -> None:
-        """Write earlier remarks into the event log, each at its time."""
+        """Write earlier remarks into the event log, each at its own time."""
         now = (self._flights.flight, self._stream.boot, self._stream.now_s)
         for remark in [r for r in self._to_remark if (r.flight, r.boot, r.at_s) <= now]:
             self._to_remark.remove(remark)

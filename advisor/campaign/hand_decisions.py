@@ -1,6 +1,6 @@
-"""Decisions by hand on the flights of a campaign: marks, exclusions, notes, remarks.
+"""The engineer's decisions by hand on the flights of a campaign: marks, exclusions, notes, remarks.
 
-Each decision is bound to vehicle time and not to a manoeuvre's number, because a mark moves the numbers.
+Each decision refers to vehicle time instead of a manoeuvre's number, because a mark changes the numbers.
 """
 
 from collections.abc import Callable, Sequence
@@ -14,18 +14,18 @@ from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """A sentence on one moment of the flight."""
+    """The engineer's sentence on one moment of the flight."""
 
     at_s: float
-    """Vehicle time, s since boot."""
+    """Vehicle time of the remark, s since boot."""
     text: str
     boot: int = 0
-    """Number of the power-on, 0 for the first in the log."""
+    """Number of the power-on, 0 for the first power-on in the log."""
     flight: int = 0
-    """Number of the campaign's log or link, 0 for the first."""
+    """Number of the log or link in the campaign, 0 for the first."""
 
     def concerns(self, maneuver: Maneuver) -> bool:
-        """Return whether the moment lies in a manoeuvre, including its lead-in."""
+        """Return whether the remark's moment lies in a manoeuvre, including the manoeuvre's lead-in."""
         span = maneuver.span
         here = (self.flight, self.boot) == maneuver.power_on
         return here and span.start_s - LEAD_IN_S <= self.at_s < span.end_s
@@ -33,19 +33,19 @@ class Remark:
 
 @dataclass(frozen=True, slots=True)
 class ByHand:
-    """All decisions by hand, in the order in which they were made."""
+    """The engineer's decisions by hand, in the order in which they were made."""
 
     marks: tuple[Mark, ...] = ()
-    """Stretches that the engineer marked as manoeuvres."""
+    """Time intervals that the engineer marked as manoeuvres."""
     excluded: tuple[Remark, ...] = ()
     """Manoeuvres excluded from every decision, each with the reason."""
     notes: tuple[Remark, ...] = ()
-    """Notes on manoeuvres."""
+    """The engineer's notes on manoeuvres."""
     remarks: tuple[Remark, ...] = ()
-    """Moments marked in the event log."""
+    """Moments of the flight that are marked in the event log."""
 
     def excluded_because(self, maneuver: Maneuver) -> str | None:
-        """Return the reason for which a manoeuvre is excluded; None for a manoeuvre that counts."""
+        """Return the reason for which a manoeuvre is excluded; None for an included manoeuvre."""
         return next((r.text for r in self.excluded if r.concerns(maneuver)), None)
 
     def notes_on(self, maneuver: Maneuver) -> tuple[str, ...]:
@@ -53,43 +53,44 @@ class ByHand:
         return tuple(r.text for r in self.notes if r.concerns(maneuver))
 
     def excluding(self, maneuver: Maneuver, because: str | None) -> "ByHand":
-        """Return the decisions with a manoeuvre excluded for a reason, or included again for None."""
+        """Return the decisions with a manoeuvre excluded for a reason, or included again if the reason is
+        None."""
         others = tuple(r for r in self.excluded if not r.concerns(maneuver))
         added = () if because is None else (_on(maneuver, because),)
         return replace(self, excluded=(*others, *added))
 
     def noting(self, maneuver: Maneuver, text: str) -> "ByHand":
-        """Return the decisions with a further note on a manoeuvre."""
+        """Return the decisions with one more note on a manoeuvre."""
         return replace(self, notes=(*self.notes, _on(maneuver, text)))
 
     def remarking(self, remark: Remark) -> "ByHand":
-        """Return the decisions with a further moment marked in the event log."""
+        """Return the decisions with one more moment marked in the event log."""
         return replace(self, remarks=(*self.remarks, remark))
 
     def marking(self, mark: Mark) -> "ByHand":
-        """Return the decisions with a further mark."""
+        """Return the decisions with one more marked manoeuvre."""
         return replace(self, marks=(*self.marks, mark))
 
     def on_flight(self, flight: int) -> "ByHand":
-        """Return the decisions on one log or link, as if it were the only one."""
+        """Return the decisions on one log or link, numbered as if it were the only one."""
         return self._each(lambda one: [replace(one, flight=0)] if one.flight == flight else [])
 
     def as_flight(self, flight: int) -> "ByHand":
-        """Return the decisions on a log or link that is read alone, as those on a flight of a campaign."""
+        """Return the decisions on a single log or link, numbered as a flight of a campaign."""
         return self._each(lambda one: [replace(one, flight=flight)])
 
     def _each(self, changed: Callable[[Any], list[Any]]) -> "ByHand":
-        """Return the decisions with ``changed`` applied to each of them."""
+        """Return the decisions after ``changed`` was applied to each list of them."""
         sections = (self.marks, self.excluded, self.notes, self.remarks)
         return ByHand(*(tuple(new for one in section for new in changed(one)) for section in sections))
 
 
 NOTHING = ByHand()
-"""Decisions by hand where there are none."""
+"""Empty decisions by hand."""
 
 
 def on_all(decided: Sequence[ByHand]) -> ByHand:
-    """Return the decisions on all logs of a campaign, from those on each log."""
+    """Return the decisions on all logs of a campaign, from the decisions on each log."""
     flights = [one.as_flight(flight) for flight, one in enumerate(decided)]
     return ByHand(
         tuple(mark for one in flights for mark in one.marks),

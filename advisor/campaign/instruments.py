@@ -1,4 +1,5 @@
-"""Contradictions of the instruments over a campaign. All manoeuvres of a power-on share their instruments."""
+"""Contradictions of the instruments over all manoeuvres of a campaign. All manoeuvres of a power-on share
+their instruments."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -15,9 +16,9 @@ from advisor.words.quantities import symbol
 
 
 def as_known_by(maneuver: Maneuver, newest: Maneuver) -> Maneuver:
-    """Return an earlier manoeuvre with what a later one of its power-on tells; unchanged without news.
+    """Return an earlier manoeuvre with the contradictions that a later one of its power-on shows.
 
-    A contradiction that only later manoeuvres show was not removed from the earlier one's channels.
+    A contradiction that only later manoeuvres show was not removed from the earlier manoeuvre's channels.
     """
     removed = {f.code for f in maneuver.findings if f.used}
     told = tuple(f if f.code in removed else replace(f, used=False) for f in newest.findings)
@@ -29,7 +30,7 @@ def as_known_by(maneuver: Maneuver, newest: Maneuver) -> Maneuver:
 def together(
     maneuvers: Iterable[Maneuver], before_flying: Iterable[InstrumentFinding]
 ) -> tuple[InstrumentFinding, ...]:
-    """Return each contradiction once, as the newest manoeuvre that shows it tells it."""
+    """Return each contradiction once, with the values from the newest manoeuvre that shows it."""
     found = {f.code: f for f in before_flying}
     for maneuver in maneuvers:
         frozen = (d.finding for d in maneuver.distrusts if d.left_out or d.stops)
@@ -43,12 +44,13 @@ def with_fit(
     single: Iterable[Estimate | NoEstimate],
     aircraft: Aircraft,
 ) -> tuple[InstrumentFinding, ...]:
-    """Return the findings of the motion, then those of the fit on properties that the motion leaves open.
+    """Return the findings of the motion, then the fit's findings on properties that the motion does not
+    determine.
 
     Parameters
     ----------
     by_motion
-        Findings without aerodynamics.
+        Findings from the motion alone, without aerodynamics.
     model
         Joint estimate over the accepted manoeuvres. The estimate's findings are in use.
     single
@@ -67,11 +69,11 @@ def with_fit(
 
 
 def side_signs(model: LateralEstimate | None, aircraft: Aircraft) -> tuple[InstrumentFinding, ...]:
-    """Return in which direction a positive aileron rolls and a positive rudder yaws, where the motion tells.
+    """Return in which direction positive aileron rolls and positive rudder yaws, if the motion determines it.
 
-    The definition is left. Without a calibration nothing states the direction; the derivatives then have the
-    sign that the parameters of the outputs give. The channels keep the log's sign where the motion
-    contradicts that sign.
+    By definition a positive deflection is to the left. Without a calibration nothing states the direction;
+    the derivatives then have the sign that the parameters of the outputs give. The channels keep the log's
+    sign where the motion contradicts that sign.
     """
     found = []
     for control, name, moves in (("aileron", "L_delta_a", "rolls"), ("rudder", "N_delta_r", "yaws")):

@@ -1,9 +1,9 @@
-"""The joint estimate over the accepted manoeuvres, computed on request.
+"""The joint estimate of the accepted manoeuvres, computed on request.
 
-The work of a joint estimate grows with the number of manoeuvres. Of all decisions, only the servo's lag needs
-the joint estimate. During the flight only the newest manoeuvres are estimated together, so that the
-two-hundredth verdict comes as soon as the seventh. At the end all accepted manoeuvres are estimated together,
-from the data alone.
+The computing time of a joint estimate grows with the number of manoeuvres. Of all decisions, only the
+decision on the servo's lag needs the joint estimate. During the flight only the newest manoeuvres are
+estimated together, so that the two-hundredth verdict comes as soon as the seventh. At the end of the flight
+all accepted manoeuvres are estimated together, from the data alone.
 """
 
 from collections.abc import Sequence
@@ -16,25 +16,25 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import Fit, fit_jointly
 
 NEWEST = 7
-"""Number of newest accepted manoeuvres that are estimated together during the flight: a whole campaign of the
-paper. The seven manoeuvres of ``logs/arduplane-calm.tlog`` give the servo's lag to 5 %. Each further
+"""Number of newest accepted manoeuvres in the joint estimate during the flight: a whole campaign of the
+paper. The seven manoeuvres of ``logs/arduplane-calm.tlog`` determine the servo's lag to 5 %. Each further
 manoeuvre in the joint estimate takes some 0.1 s of processor time at every verdict."""
 
 
 @dataclass(slots=True)
 class _Joint:
-    """One joint fit, and the estimate from it once that was asked for."""
+    """One joint fit of manoeuvres, and its estimate if requested."""
 
     maneuvers: tuple[Maneuver, ...]
     tells_lag: bool
     """Whether the servo's lag is a parameter of the fit."""
     _fit: Fit | None
-    """Fit until its estimate is asked for."""
+    """The joint fit until its estimate is requested."""
     _found: Estimate | None = None
 
     @classmethod
     def of(cls, maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> "_Joint":
-        """Fit manoeuvres jointly."""
+        """Fit several manoeuvres jointly."""
         fit = fit_jointly(maneuvers, aircraft)
         if isinstance(fit, NoEstimate):
             return cls(tuple(maneuvers), False, None)
@@ -48,7 +48,7 @@ class _Joint:
 
 
 class Together:
-    """Estimates manoeuvres jointly and keeps the newest result.
+    """Estimates manoeuvres jointly and keeps the newest joint estimate.
 
     Parameters
     ----------
@@ -62,21 +62,19 @@ class Together:
         self._group: tuple[tuple[Maneuver, ...], bool] = ((), False)
 
     def estimate(self, maneuvers: Sequence[Maneuver]) -> Estimate | None:
-        """Return the joint estimate over manoeuvres; None without manoeuvres."""
+        """Return the joint estimate of manoeuvres; None without manoeuvres."""
         return self._of(maneuvers).estimate()
 
     def of_lag(self, maneuvers: Sequence[Maneuver]) -> Estimate | None:
-        """Return the joint estimate over manoeuvres that tell the servo's lag; None where they tell none.
+        """Return the joint estimate of manoeuvres that determine the servo's lag; None if they do not.
 
-        The joint fit shows whether the lag is told; the estimate from the fit takes a quarter of the fit's
-        time.
+        The joint fit shows whether the lag is determined; its estimate takes a quarter of the fit's time.
         """
         joint = self._of(maneuvers)
         return joint.estimate() if joint.tells_lag else None
 
     def of_lag_so_far(self, accepted: Sequence[Maneuver]) -> Estimate | None:
-        """Return the joint estimate over the newest manoeuvres that tell the servo's lag; None where they
-        tell none.
+        """Return the joint estimate of the newest manoeuvres that determine the servo's lag; None if none do.
 
         Accepted manoeuvres are asked for a lag in groups of ``NEWEST``. Where the newest whole group tells
         none, the next group is waited for.

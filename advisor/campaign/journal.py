@@ -20,21 +20,21 @@ from advisor.words.vehicle_time import CLOCK, clock
 
 
 class EventLog:
-    """Collects sentences and drops the oldest.
+    """Collects the sentences of the event log and deletes the oldest.
 
     Parameters
     ----------
     kept
-        Number of sentences that are kept.
+        Largest number of sentences in the event log.
     """
 
     def __init__(self, kept: int) -> None:
         self._lines: deque[str] = deque(maxlen=kept)
         self.lines: tuple[str, ...] = ()
-        """Oldest first; the same object until something is added."""
+        """Sentences of the event log, oldest first; the same object until a sentence is added."""
 
     def add(self, sentences: Iterable[str]) -> None:
-        """Take further sentences."""
+        """Add sentences to the event log."""
         further = list(sentences)
         if further:
             self._lines.extend(further)
@@ -42,19 +42,19 @@ class EventLog:
 
 
 KEPT = 1000
-"""Number of sentences kept, 0.1 kB each: enough for some hundred manoeuvres."""
+"""Largest number of sentences in the event log, 0.1 kB each: enough for some hundred manoeuvres."""
 WIDTH = 7
-"""Characters of a time: 999 minutes."""
+"""Width of a sentence's time, in characters: enough for 999 minutes."""
 _LATE_S = 1.0
-"""Least delay of a sentence behind its event, s, at which the sentence names the event's time. The stamps of
-messages of one moment differ by less."""
+"""Least delay of a sentence after its event, s, at which the sentence states the event's time. Stamps of
+simultaneous messages differ by less than this delay."""
 
 
 class Journal:
-    """Writes sentences with their times, which never run backwards within one power-on.
+    """Writes sentences with their times, which never decrease within one power-on.
 
-    A sentence stands at the time of its event, or at the newest earlier time where that is later. Where the
-    vehicle's clock restarts, a sentence says so.
+    The time of a sentence is that of its event, or the newest earlier time if that is later. A restart of the
+    vehicle's clock is reported by a sentence.
     """
 
     def __init__(self) -> None:
@@ -65,16 +65,16 @@ class Journal:
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """The newest sentences, oldest first."""
+        """The newest sentences of the event log, oldest first."""
         return self._log.lines
 
     def write(self, text: str, at_s: float = nan) -> None:
-        """Write a sentence.
+        """Write a sentence into the event log.
 
         Parameters
         ----------
         text
-            One line.
+            Sentence of one line.
         at_s
             Vehicle time of the event, s since power-on. NaN: the newest time so far.
         """
@@ -83,11 +83,11 @@ class Journal:
         self._log.add([f"{clock(self._newest_s):>{WIDTH}}  {when}{text}"])
 
     def write_of_past(self, text: str, at_s: float) -> None:
-        """Write a sentence that names the time of its event itself; the event was over at ``at_s``."""
+        """Write a sentence that states the time of its event itself; the event ended at ``at_s``."""
         self.write(text, max(at_s, self._newest_s))
 
     def take(self, event: FlightEvent) -> None:
-        """Write the sentence of an event of the flight; events without one are left to the campaign."""
+        """Write the sentence of a flight event; the campaign handles events without a sentence."""
         match event:
             case ModeChanged(mode, at_s):
                 self.write(f"mode {mode}", at_s)
@@ -112,12 +112,12 @@ class Journal:
                 )
 
     def _begin(self, text: str) -> None:
-        """Begin another clock, whose times may be smaller; ``text`` says so."""
+        """Begin a new clock, whose times may be smaller; ``text`` reports this."""
         self._newest_s = -inf
         self.write(text)
 
     def _say(self, said: VehicleSaid) -> None:
-        """Write a vehicle's text, once where the vehicle repeats it word for word."""
+        """Write a vehicle's text, once if the vehicle repeats the text exactly."""
         last, self._last_said = self._last_said, said
         if last is not None and (said.text, said.system, said.component) == (
             last.text,

@@ -1,4 +1,4 @@
-"""Limits of the elevator that arrive after manoeuvres, which are judged anew or named as left out."""
+"""Elevator limits that arrive after manoeuvres, which are then judged again or reported as omitted."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,17 +9,17 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 
 @dataclass(frozen=True, slots=True)
 class Recount:
-    """Effect of a limit that is heard late on the manoeuvres before."""
+    """Effect of a late elevator limit on the earlier manoeuvres."""
 
     anew: tuple[Maneuver, ...]
-    """Manoeuvres whose pulses are counted by the limit heard."""
+    """Manoeuvres whose pulses are scaled by the late limit."""
     lost: tuple[int, ...]
-    """Numbers of manoeuvres whose pulses do not follow from their deflections."""
+    """Numbers of manoeuvres whose pulses cannot be derived from their deflections."""
     heard: str
 
     @property
     def notice(self) -> Notice | None:
-        """Sentence for the user; None where no manoeuvre is concerned."""
+        """Sentence for the user; None if the late limit changes no manoeuvre."""
         said = []
         if self.anew:
             said.append(f"manoeuvres {_listed([m.number for m in self.anew])} are counted anew with it")
@@ -29,9 +29,9 @@ class Recount:
 
 
 def recount(maneuvers: Sequence[Maneuver], event: ElevatorRescaled) -> Recount:
-    """Return what a limit that is heard late means for the manoeuvres of its log or link.
+    """Return the effect of a late elevator limit on the manoeuvres of its log or link.
 
-    A manoeuvre that was not on the former scale keeps its own scale, because its vehicle had other settings.
+    A manoeuvre without the former scale keeps its own scale, because its vehicle had other settings.
     """
     before, after = event.before.scale, event.after.scale
     anew, lost = [], []

@@ -13,21 +13,22 @@ from advisor.oem.instruments import knows_the_lag
 from advisor.oem.known_instruments import FoundInstruments, found_of, with_found
 
 CONTRADICTS = 3.0
-"""Difference between two estimates of a derivative, in standard deviations, that counts as contradiction."""
+"""Difference between two estimates of a derivative, in standard deviations, above which they contradict each
+other."""
 MUCH_SURER = 1.5
-"""Ratio of standard deviations above which the surer value replaces the one in use."""
+"""Ratio of standard deviations above which the more certain value replaces the value in use."""
 
 
 def may_learn(aircraft: Aircraft, all_of_them: bool) -> bool:
-    """Return whether a joint estimate may improve the knowledge of the instruments.
+    """Return whether a joint estimate may improve the values of the instruments.
 
     Parameters
     ----------
     aircraft
-        The crew's aircraft, with instruments that were identified before.
+        The crew's aircraft, with instruments that were identified earlier.
     all_of_them
-        Whether the joint estimate is made from all accepted manoeuvres. The newest alone do not improve what
-        is known already.
+        Whether the joint estimate uses all accepted manoeuvres. The newest alone do not improve what is known
+        already.
     """
     return found_of(aircraft) is None or all_of_them
 
@@ -35,12 +36,12 @@ def may_learn(aircraft: Aircraft, all_of_them: bool) -> bool:
 def learnt(
     aircraft: Aircraft, model: Estimate | None, *, one_power_on: bool = True, exactly: bool = False
 ) -> Aircraft:
-    """Return the aircraft with the instruments that the joint estimate tells; unchanged without news.
+    """Return the aircraft with the instruments from the joint estimate; unchanged without new values.
 
     Parameters
     ----------
     aircraft
-        The crew's aircraft, with what was identified before.
+        The crew's aircraft, with instruments that were identified earlier.
     model
         Joint estimate over the accepted manoeuvres, made with the crew's aircraft.
     one_power_on
@@ -64,7 +65,7 @@ def learnt(
 
 
 def _is_no_news(used: FoundInstruments, found: FoundInstruments) -> bool:
-    """Return whether values in use lie within the new standard deviations, and are about as certain."""
+    """Return whether the values in use lie within the new standard deviations, and are similarly certain."""
     if used.names != found.names:
         return False
     near = np.abs(found.values - used.values) <= found.std
@@ -72,13 +73,13 @@ def _is_no_news(used: FoundInstruments, found: FoundInstruments) -> bool:
 
 
 def of_another_power_on(aircraft: Aircraft) -> Aircraft:
-    """Return what is known of an aircraft before any manoeuvre of a power-on: no delay of the command."""
+    """Return the aircraft before any manoeuvre of a power-on: with the delay of the command unknown."""
     found = found_of(aircraft)
     return aircraft if found is None else with_found(aircraft, found.without("command_delay_s"))
 
 
 def lag_said(aircraft: Aircraft) -> str:
-    """Return the event log's sentence about the lag that every estimate uses now; empty without a lag."""
+    """Return the event log's sentence on the lag that every estimate uses now; empty without a lag."""
     found, stated = found_of(aircraft), aircraft.elevator.lag_s
     lag_s = None if found is None else found.value("servo_lag_s")
     if found is None or lag_s is None:

@@ -1,8 +1,8 @@
 """The running estimate of the manoeuvre being flown: when its numbers may be read, and when further response
 adds nothing.
 
-A fit of half an input explains the data so far with wrong numbers and narrow intervals. Numbers are shown
-only after the input is over, the servo is known, and the estimate agrees with the manoeuvres before.
+A fit of half an input explains the data so far with wrong values and narrow intervals. Numbers are shown only
+after the input is over, the servo is known, and the estimate agrees with the manoeuvres before.
 """
 
 from collections import deque
@@ -20,30 +20,31 @@ from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.following import Follower
 
 REFRESH_S = 0.2
-"""Vehicle time between two estimates, s. Readers do not follow numbers that change faster."""
+"""Vehicle time between two running estimates, s. Readers cannot read numbers that change faster."""
 SPAN_S = 0.5
-"""Further response over which the standard deviations are compared, s."""
+"""Additional response time over which the standard deviations are compared, s."""
 GAIN = 0.01
-"""Least relative improvement of any standard deviation over ``SPAN_S`` that is worth waiting for."""
+"""Least relative improvement of any standard deviation over ``SPAN_S`` that justifies more response time."""
 SHOWN = ("Z_alpha", "M_alpha", "M_q", "M_delta_e")
-"""Derivatives that screens show while a manoeuvre is being flown."""
+"""Derivatives that screens show during a manoeuvre."""
 AGREES_BELOW = float(chdtri(len(SHOWN), 0.05))
-"""Largest squared distance from the joint estimate, in standard deviations, that chance exceeds in 5 %."""
+"""Largest squared distance from the joint estimate, in standard deviations, that chance exceeds in 5 % of
+cases."""
 
 
 @dataclass(frozen=True, slots=True)
 class Settled:
-    """State of the running manoeuvre's estimate."""
+    """State of the running estimate of a manoeuvre."""
 
     estimate: Estimate
     readable: bool
-    """Whether its numbers may be shown."""
+    """Whether the estimate's numbers may be shown."""
     enough: str | None
-    """Advice to recover, set when further free response would add nothing."""
+    """Advice to recover, given when more free response would not improve the estimate."""
 
 
 class Settling:
-    """Estimates again while the manoeuvre being flown grows."""
+    """Repeats the estimate of a manoeuvre while the manoeuvre is being flown."""
 
     def __init__(self) -> None:
         self._follower: Follower | None = None
@@ -54,7 +55,7 @@ class Settling:
         self._settled: Settled | None = None
 
     def follow(self, flying: Maneuver | None, aircraft: Aircraft, model: Estimate | None) -> Settled | None:
-        """Return the estimate from the data so far; None without one.
+        """Return the estimate from the data so far; None if there is none.
 
         Parameters
         ----------
@@ -97,9 +98,10 @@ class Settling:
 
 
 def agrees(estimate: Estimate, model: Estimate | None) -> bool:
-    """Return whether an estimate agrees with the joint estimate within both errors; True without one.
+    """Return whether an estimate agrees with the joint estimate within both errors; True without a joint
+    estimate.
 
-    The distance is that of the derivatives that screens show, at the joint estimate's air speed.
+    The distance uses the derivatives that screens show, at the joint estimate's air speed.
     """
     if model is None:
         return True

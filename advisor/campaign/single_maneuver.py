@@ -1,4 +1,4 @@
-"""One manoeuvre on its own: its estimate, objections to it, and cautions for its verdict."""
+"""One manoeuvre alone: its estimate, the objections to it, and the cautions for its verdict."""
 
 import math
 
@@ -30,22 +30,22 @@ def assess(maneuver: Maneuver, aircraft: Aircraft) -> CandidateManeuver:
 
 
 def failed(maneuver: Maneuver, part: FailedPart) -> CandidateManeuver:
-    """Return a manoeuvre whose estimate or examination a fault of the advisor ended."""
+    """Return a manoeuvre whose estimate or examination was ended by a fault of the advisor."""
     return CandidateManeuver(untold(part), (objection(part),), maneuver=maneuver)
 
 
 def untold(part: FailedPart) -> NoEstimate:
-    """Return the missing estimate of a part that a fault of the advisor ended."""
+    """Return the missing estimate of a part that was ended by a fault of the advisor."""
     return NoEstimate(INTERNAL, str(part.problem))
 
 
 def objection(part: FailedPart) -> Reason:
-    """Return the reason against a manoeuvre that a fault of the advisor leaves unjudged."""
+    """Return the reason against a manoeuvre that has no verdict because of a fault of the advisor."""
     return Reason(INTERNAL, str(part.problem), math.nan, math.nan)
 
 
 def _servo(estimated: Estimate | NoEstimate, aircraft: Aircraft) -> Servo:
-    """Return the servo of the estimate: given by the crew, or identified from the record."""
+    """Return the servo of the estimate, from the aircraft file or identified from the record."""
     lag_s = aircraft.elevator.lag_s or 0.0
     if isinstance(estimated, Estimate):
         lag_s = estimated.servo_lag_s
@@ -53,7 +53,7 @@ def _servo(estimated: Estimate | NoEstimate, aircraft: Aircraft) -> Servo:
 
 
 def cautions_of(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: Aircraft) -> list[str]:
-    """Return cautions for the reader of an estimate. Cautions have no effect on the verdict."""
+    """Return cautions for the reader of an estimate. These cautions have no effect on the verdict."""
     cautions = list(maneuver.data_notes)
     if maneuver.span.closed_by in MARKED.values():
         cautions.append(maneuver.span.closed_by)
@@ -74,13 +74,13 @@ def cautions_of(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: 
 
 
 def _shows(estimated: Estimate, gust_rad: float) -> bool:
-    """Return whether gusts differ from zero in the digits that people read."""
+    """Return whether the gusts differ from zero in the digits that people read."""
     size = math.degrees(gust_rad) if estimated.airspeed_m_s is None else gust_rad * estimated.airspeed_m_s
     return round(size, 1) > 0.0
 
 
 def _uncertain_alpha(maneuver: Maneuver, estimated: Estimate, aircraft: Aircraft) -> list[str]:
-    """Return doubts of the kinematics about the angle of attack that the fit does not allow for."""
+    """Return doubts about the angle of attack that the fit does not consider, from kinematics."""
     if estimated.instrument("vane_arm_m") or estimated.instrument("alpha_delay_s"):
         return []
     check = check_alpha(

@@ -1,4 +1,5 @@
-"""State of a campaign at one moment, frozen, for screens, texts and documents: both axes, whole flight."""
+"""Frozen state of a campaign at one moment, for screens, texts and documents, with both axes and the whole
+flight."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -22,53 +23,54 @@ from advisor.process.parts import FailedPart
 from advisor.words.problems import Problem
 
 AxisName = Literal["pitch", "lateral"]
-"""Axis of a manoeuvre: each axis numbers its manoeuvres from 1."""
+"""Axis of a manoeuvre; the manoeuvres of each axis are numbered from 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class JudgedManeuver:
-    """One manoeuvre, its estimate and the verdict on it."""
+    """One manoeuvre, its estimate and its verdict."""
 
     maneuver: Maneuver
     estimate: Estimate | NoEstimate
     verdict: ManeuverVerdict
     excluded_because: str | None = None
-    """Reason for which an engineer excluded the manoeuvre; None: the manoeuvre counts."""
+    """Reason for which an engineer excluded the manoeuvre; None: the manoeuvre is included."""
     notes: tuple[str, ...] = ()
     """Notes of the engineer on the manoeuvre."""
 
 
 @dataclass(frozen=True, slots=True)
 class LateralState:
-    """State of the lateral half of a campaign."""
+    """State of the lateral campaign."""
 
     maneuvers: tuple[JudgedManeuver, ...]
     flight_test: FlightTestVerdict
     model: LateralEstimate | None
-    """Joint estimate: over the newest accepted manoeuvres in flight, over all of them after the end."""
+    """Joint estimate of the newest accepted manoeuvres in flight, of all accepted ones after the end."""
     estimate_from: tuple[int, ...]
-    """Numbers of the manoeuvres that ``model`` is made from."""
+    """Numbers of the manoeuvres in the joint estimate ``model``."""
 
 
 OF_ELEVATOR = frozenset({"no_maneuver", "no_elevator", "no_alpha"})
-"""Codes of problems that concern the elevator's axis alone."""
+"""Codes of problems that affect only the elevator's axis."""
 
 
 _EVERY_S = 1.0
-"""Vehicle time between two pictures, s. A picture of many minutes does not change sooner."""
+"""Vehicle time between two pictures of the whole flight, s. A picture of many minutes does not visibly change
+sooner."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WholeFlight:
-    """Channels and modes of the power-on being heard."""
+    """Channels and flight modes of the current power-on."""
 
     courses: Mapping[str, Course] = field(default_factory=dict)
     modes: tuple[tuple[float, str], ...] = ()
-    """Vehicle time at which each mode began, s since boot, and its name."""
+    """Start of each flight mode, in vehicle time, s since boot, with the mode's name."""
 
 
 class WholeFlights:
-    """Keeps the picture of the present power-on, and renews it from time to time."""
+    """Keeps the picture of the current power-on, and renews it at intervals."""
 
     def __init__(self) -> None:
         self._newest = WholeFlight()
@@ -77,7 +79,7 @@ class WholeFlights:
         self._modes: tuple[tuple[float, str], ...] = ()
 
     def change_mode(self, power_on: tuple[int, int], at_s: float, mode: str) -> None:
-        """Take a change of the flight mode at a vehicle time, s; NaN before the clock is heard."""
+        """Record a change of the flight mode at a vehicle time, s; NaN before the clock is received."""
         if power_on != self._power_on:
             self._power_on, self._modes = power_on, ()
         self._modes = (*self._modes, (at_s if isfinite(at_s) else 0.0, mode))
@@ -85,7 +87,7 @@ class WholeFlights:
     def now(
         self, power_on: tuple[int, int], now_s: float, courses: Callable[[], Mapping[str, Course]]
     ) -> WholeFlight:
-        """Return the picture; the identical object while it is not renewed."""
+        """Return the picture of the flight; the identical object until the picture is renewed."""
         if self._at is not None and self._at[0] == power_on and now_s < self._at[1] + _EVERY_S:
             return self._newest
         if isfinite(now_s):
@@ -100,67 +102,68 @@ class CampaignState:
     """State of a campaign after its newest sample."""
 
     vehicle: Vehicle | None
-    """Vehicle that is heard. None before the first heartbeat."""
+    """Vehicle whose messages are read. None before the first heartbeat."""
     now_s: float
     """Vehicle time of the newest sample, seconds since boot."""
     duration_s: float
-    """Vehicle time heard so far, over all power-ons, s."""
+    """Vehicle time received so far, over all power-ons, s."""
     mode: str
     channels: Mapping[str, ChannelStatus]
     maneuvers: tuple[JudgedManeuver, ...]
     flight_test: FlightTestVerdict
     model: Estimate | None
-    """Joint estimate: over the newest accepted manoeuvres in flight, over all of them after the end."""
+    """Joint estimate of the newest accepted manoeuvres in flight, of all accepted ones after the end."""
     flying: Maneuver | None = None
-    """Manoeuvre being flown, up to the newest sample. None between manoeuvres."""
+    """Manoeuvre that is being flown, up to the newest sample. None between manoeuvres."""
     marking_since_s: float | None = None
-    """Begin of an open mark by hand, s since boot. None without an open mark."""
+    """Start of an open mark by hand, s since boot. None without an open mark."""
     settling: Estimate | None = None
-    """Estimate from the manoeuvre being flown, refreshed as the manoeuvre grows."""
+    """Estimate from the manoeuvre that is being flown, repeated as the manoeuvre grows."""
     readable: bool = False
     """Whether the numbers of ``settling`` may be shown: the input is over, the servo is known, and they agree
     with ``model``."""
     enough: str | None = None
-    """Advice to recover, set when further free response would add nothing."""
+    """Advice to recover, given when more free response would not improve the estimate."""
     estimate_from: tuple[int, ...] = ()
-    """Numbers of the manoeuvres that ``model`` is made from."""
+    """Numbers of the manoeuvres in the joint estimate ``model``."""
     elevator_notes: tuple[str, ...] = ()
     """Assumptions about the elevator's scale and sign, as sentences."""
     reader_notes: tuple[str, ...] = ()
     """Choices and omissions of the log's reader, as sentences."""
     elevator_guess: Guess | None = None
-    """Guess of the elevator's output, while no parameter states the output."""
+    """Guess of the elevator's output channel, if no parameter states the channel."""
     other_vehicles: tuple[int, ...] = ()
-    """System ids of the other vehicles on the link, rising."""
+    """System ids of the other vehicles on the link, in rising order."""
     no_data: tuple[Problem, ...] = ()
-    """Reasons for which the present data cannot serve; empty while they can."""
+    """Reasons for which the present data are insufficient; empty for sufficient data."""
     whole_flight: WholeFlight = field(default_factory=WholeFlight)
-    """The power-on being heard, as one picture."""
+    """The current power-on, as one picture of the whole flight."""
     serves: bool = True
-    """Whether the present data are known to serve. False before the first judgement of the stream."""
+    """Whether the present data are known to be sufficient. False before the data are judged for the first
+    time."""
     instruments: tuple[InstrumentFinding, ...] = ()
     """Contradictions of the instruments."""
     mark_notes: tuple[str, ...] = ()
     """Marks that could not be used, each with its reason."""
     notices: tuple[str, ...] = ()
-    """Newest sentences for the event log with the vehicle's time, oldest first."""
+    """Newest sentences of the event log with the vehicle's time, oldest first."""
     flight: int = 0
-    """Number of the log or link being heard, 0 for the first."""
+    """Number of the current log or link, 0 for the first."""
     boot: int = 0
     """Number of the vehicle's power-on in this log or link, 0 for the first."""
     flights: tuple[FlightHeard, ...] = ()
-    """Every log and link so far. The one being heard is the last."""
+    """Every log and link so far. The last entry is the current log or link."""
     lateral: LateralState | None = None
-    """Lateral half of the campaign. None where roll and yaw were not asked for."""
+    """State of the lateral campaign. None if roll and yaw were not requested."""
     activity: tuple[Activity, ...] = ()
-    """Movements of the elevator that were no test inputs, oldest first. Similar ones in a row are one
+    """Elevator movements that were no test inputs, oldest first. Consecutive similar movements are one
     entry."""
     failed: tuple[FailedPart, ...] = ()
-    """Parts that a fault of the advisor ended."""
+    """Parts that were ended by a fault of the advisor."""
 
     @property
     def plan(self) -> CrewPlan | None:
-        """Plan of both axes; None where only one of them has been flown."""
+        """Plan of both axes; None if only one axis has been flown."""
         side = self.lateral
         if side is None or not side.maneuvers or not self.maneuvers:
             return None
@@ -168,7 +171,7 @@ class CampaignState:
 
     @property
     def lateral_alone(self) -> LateralState | None:
-        """The lateral half, where it alone has accepted manoeuvres; else None."""
+        """The lateral state if only the lateral axes have accepted manoeuvres; else None."""
         side = self.lateral
         if side is None or any(one.verdict.accepted for one in self.maneuvers):
             return None
@@ -176,7 +179,7 @@ class CampaignState:
 
     @property
     def progress(self) -> str:
-        """How long the manoeuvre being flown lasts so far, and how long its forerunners lasted; empty between
+        """Duration of the current manoeuvre so far, with the duration of earlier ones; empty between
         manoeuvres."""
         if self.flying is None:
             return ""

@@ -1,4 +1,4 @@
-"""Questions on the terminal whose answers make an aircraft file, each checked by the file's own reader."""
+"""Questions on the terminal whose answers make an aircraft file; the file's reader checks each answer."""
 
 from typing import Any
 

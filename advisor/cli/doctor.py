@@ -95,7 +95,7 @@ def _first_obstacle(findings: "Examination | None") -> Problem | None:
 
 
 def examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Examination":
-    """Examine the telemetry of a log.
+    """Return the examination of a log's telemetry.
 
     Raises
     ------

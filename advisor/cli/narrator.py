@@ -164,7 +164,7 @@ def narrate_here(
     Raises
     ------
     UnusableInputError
-        The source can never serve, or has ended without anything to judge.
+        The source can never be used, or has ended without anything to judge.
     """
     from advisor.report.follow import follow
 

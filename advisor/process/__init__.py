@@ -1,1 +1,1 @@
-"""The process of the program: start, signals, compiled functions, files, tasks."""
+"""The advisor's process: start, signals, compiled functions, files, tasks."""

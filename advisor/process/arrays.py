@@ -1,6 +1,6 @@
-"""Types of the arrays that every room passes on.
+"""Types of the arrays that all packages of the advisor exchange.
 
-The types stand apart from flight data, so that compiled functions import nothing else of the package.
+The types have their own module, so that compiled functions import nothing else of the package.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Files that are always whole, old or new, even where power fails or the disk is full."""
+"""Files that are always complete, old or new, even after a power failure or on a full disk."""
 
 import os
 import secrets
@@ -10,7 +10,7 @@ _ONLY_NEW |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Write a file under a temporary name, then give the file its name; a text in UTF-8.
+    """Write a file under a temporary name, then rename the file; a text is written in UTF-8.
 
     In a folder that others can write to, nobody can foresee the temporary name, and a link that lies there
     is not followed. A link of the final name is replaced, and its target stays as it is.

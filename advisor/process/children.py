@@ -1,4 +1,4 @@
-"""Children of this process: none of them imports a module from the folder in which it is started.
+"""Child processes of this process, none of which imports a module from the current folder.
 
 ``python -m`` and the spawn method of `multiprocessing` put the current folder first on the path of modules. A
 folder of logs may hold any file: a ``queue.py`` or ``socket.py`` there would replace Python's own module.
@@ -10,14 +10,14 @@ from multiprocessing.context import SpawnContext, SpawnProcess
 
 
 class _Child(SpawnProcess):
-    """Child that is ended by a signal that it cannot ignore.
+    """Child process that ends on a signal that it cannot ignore.
 
     A pool whose worker has died calls ``terminate`` on the others and waits for them (Python 3.12 and later).
-    Children of this program ignore SIGTERM, which is their parent's.
+    Child processes of this program ignore SIGTERM, because their parent handles it.
     """
 
     def terminate(self) -> None:
-        """End the child at once."""
+        """End the child process immediately."""
         self.kill()
 
 
@@ -32,13 +32,13 @@ def python_module(module: str) -> list[str]:
 
 
 def spawning() -> SpawnContext:
-    """Return the context of `multiprocessing` that starts new interpreters."""
+    """Return the `multiprocessing` context that starts new interpreters."""
     keep_current_folder_out()
     return _Spawning()
 
 
 def keep_current_folder_out() -> None:
-    """Let no child that this process starts look for modules in the current folder.
+    """Prevent child processes from searching for modules in the current folder.
 
     `multiprocessing` passes on neither an option nor an environment of our own, but children inherit this
     process's environment (Python, ``PYTHONSAFEPATH``).

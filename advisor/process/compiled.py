@@ -1,4 +1,4 @@
-"""Compiled functions on disk, recompiled after any change of the text that they were compiled from.
+"""Compiled functions on disk, compiled again after any change of their source text.
 
 Numba freezes into a kernel's machine code the functions that the kernel calls and the constants that it
 reads. Numba's own cache depends only on the text of the kernel's file, so that stale machine code would
@@ -32,7 +32,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def kernel(**options: Any) -> Callable[[Function], Function]:
-    """Compile a function at its first call, and keep the machine code on disk where a folder allows.
+    """Compile a function at its first call, and keep the machine code on disk if a folder allows this.
 
     Numba keeps machine code in ``NUMBA_CACHE_DIR``, next to the module, or in the user's own cache:
     the first that can be written to. Without such a folder each process compiles for itself.
@@ -65,7 +65,7 @@ def key_of(module: str) -> str:
     Parameters
     ----------
     module
-        Name of a module that is imported, or is being imported below its own imports.
+        Name of a module that is being imported, directly or by another module's imports.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def key_of(module: str) -> str:
 
 @cache
 def _imports_of(module: str) -> tuple[str, ...]:
-    """Return the modules of the package that the top level of a module's text imports."""
+    """Return the package's modules that the top level of a module's text imports."""
     named = []
     for node in ast.parse(_text_of(module)).body:
         if isinstance(node, ast.Import):

@@ -1,6 +1,6 @@
-"""The first run on a machine: all kernels are compiled before work begins, with a line of progress.
+"""The first run on a machine: all numba kernels are compiled before the work, with a line of progress.
 
-``python -m advisor.process.first_run`` does so when installing.
+``python -m advisor.process.first_run`` compiles all kernels during an installation.
 """
 
 import os
@@ -15,7 +15,7 @@ from pathlib import Path
 
 Tell = Callable[[str], None]
 Stages = Mapping[str, Callable[[], None]]
-"""Name of compiled code to the function that compiles the code."""
+"""Function that compiles a kernel, by the kernel's name."""
 
 
 def _called(module: str, function: str) -> Callable[[], None]:
@@ -32,13 +32,13 @@ KERNELS: Stages = {
 def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
     """Compile every kernel, unless this version was compiled on this machine before.
 
-    A mark in the folder of the machine code records the compilation. A kernel whose source changes is
-    compiled anew at its next call, with the mark or without.
+    A file in the folder of the machine code records the compilation. A kernel with changed source is compiled
+    again at its next call, with this file or without.
 
     Parameters
     ----------
     tell
-        Takes each sentence about the progress.
+        Called with each sentence about the progress.
     stages
         Kernels to compile. Default: all that commands call.
     """
@@ -63,7 +63,8 @@ def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
 
 
 def _folder() -> Path | None:
-    """Return numba's folder for machine code, in which a mark says that all is compiled; None without one."""
+    """Return numba's folder for machine code, where a file records the compilation; None without such a
+    folder."""
     from platformdirs import user_cache_path
 
     given = os.environ.get("NUMBA_CACHE_DIR")
@@ -74,13 +75,13 @@ def _folder() -> Path | None:
 
 
 def _writable(folder: Path) -> bool:
-    """Return whether files can be made in a folder, or the folder in the nearest parent that exists."""
+    """Return whether files can be written into a folder, or into its nearest existing parent."""
     nearest = next(one for one in (folder, *folder.parents) if one.exists())
     return nearest.is_dir() and os.access(nearest, os.W_OK)
 
 
 def _key(stages: Stages) -> str:
-    """Return a hash of versions, machine and folder, on which machine code depends too."""
+    """Return a hash of the versions, the machine and the folder that determine the machine code."""
     parts = (version("numba"), _own_version(), sys.version, platform.machine(), __file__, *stages)
     return sha256("\0".join(parts).encode()).hexdigest()[:16]
 

@@ -6,10 +6,11 @@ _PACKAGE = Path(__file__).parents[1]
 _INSTALLED = (_PACKAGE.parent / "inflight_sim").is_dir()
 
 SIMULATOR = "inflight_sim" if _INSTALLED else "sim"
-"""Name of the simulator's package. A wheel leaves the name ``sim`` to other programs."""
+"""Name of the simulator's package. A wheel does not use the package name ``sim``, which other programs may
+need."""
 SAMPLES = _PACKAGE / "sample" if _INSTALLED else _PACKAGE.parent / "logs"
 """Folder with the sample flight."""
 SAMPLE = "arduplane-calm"
-"""Name of the sample flight's log and of its aircraft file, without their endings."""
+"""Name of the sample flight's log and of its aircraft file, without their file endings."""
 SLOW_SAMPLE = "arduplane-default-rates"
-"""Name of the log with which the tutorial begins, without its ending: its streams are too slow."""
+"""Name of the tutorial's first log, without its file ending: its message streams are too slow."""

@@ -1,9 +1,9 @@
-"""Ctrl-C and other signals: the program ends with one sentence, at once or in order.
+"""Ctrl-C and other signals: the program ends with one sentence, immediately or after closing its files.
 
-An exception that a signal raises is printed and lost where a library calls back from C. Outside the advisor's
-own code the exception leaves a traceback. Ctrl-C ends the process. While a recording or a screen is
-open, a signal raises :class:`Interrupted` instead, which closes both. A busy computer may take long for that.
-A second Ctrl-C ends the process at once.
+A signal's exception is printed and lost if a library is calling back from C. Outside the advisor's own code
+the exception prints a traceback. Ctrl-C ends the process. While a recording or a screen is open, a signal
+raises :class:`Interrupted` instead, which closes both. A busy computer may take long for that. A second
+Ctrl-C ends the process at once.
 """
 
 import os
@@ -16,19 +16,19 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 
 _LOST_AFTER_S = 1.0
-"""Time after which an exception that nothing handles counts as lost, s. A lost exception is raised again."""
+"""Time after which an exception without a handler is considered lost, s. A lost exception is raised again."""
 _ONE_PRESS_S = 0.3
-"""Longest time between two signals of one Ctrl-C, s: ``timeout`` signals a program and then its group. No
-user presses the keys twice that fast."""
+"""Longest time between two signals of one Ctrl-C, s: ``timeout`` signals a program and then its process
+group. No user presses the keys twice within this time."""
 STOPPED = "Stopped."
-"""Sentence for the user where nothing else is to be said."""
+"""Sentence for the user if there is nothing else to report."""
 _KINDS = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )  # Windows has no SIGHUP
 
 
 class Interrupted(KeyboardInterrupt):
-    """A signal has ended the work in order; ``str`` gives the sentence for the user."""
+    """A signal has ended the work after closing its files; ``str`` returns the sentence for the user."""
 
     def __init__(self, sentence: str, code: int) -> None:
         super().__init__(sentence)
@@ -37,13 +37,14 @@ class Interrupted(KeyboardInterrupt):
 
 
 def hung_up(error: BaseException | None) -> bool:
-    """Return whether the terminal went away: its window was closed, or its network connection was lost."""
+    """Return whether the terminal has disappeared: its window was closed, or its network connection was
+    lost."""
     hang_up = getattr(signal, "SIGHUP", None)
     return isinstance(error, Interrupted) and hang_up is not None and error.code == 128 + hang_up
 
 
 def end_at_once() -> None:
-    """Let Ctrl-C end the process with one sentence and exit code 130, at any later moment."""
+    """Let Ctrl-C end the process with one sentence and exit code 130, after this call."""
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, _end_process)
 
@@ -52,12 +53,12 @@ def end_at_once() -> None:
 def in_order(sentence: Callable[[], str] = lambda: STOPPED) -> Iterator[None]:
     """Let Ctrl-C, SIGTERM and SIGHUP raise :class:`Interrupted` within the block, once.
 
-    An ignored signal, as under ``nohup``, stays ignored. A block within another block adds nothing.
+    An ignored signal, as under ``nohup``, stays ignored. A block within another block has no further effect.
 
     Parameters
     ----------
     sentence
-        Gives the sentence for the user when a signal comes.
+        Returns the sentence for the user when a signal comes.
     """
     before = {kind: signal.getsignal(kind) for kind in _KINDS}
     heard = [kind for kind, handler in before.items() if handler is not signal.SIG_IGN]
@@ -90,7 +91,7 @@ class _OrderlyEnd:
     def __init__(self, sentence: Callable[[], str]) -> None:
         self._sentence = sentence
         self.raised: Interrupted | None = None
-        """The exception that the first signal has raised."""
+        """The exception that was raised at the first signal."""
         self._since_s = 0.0
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
@@ -106,7 +107,8 @@ class _OrderlyEnd:
             _say_and_exit(str(self.raised), self.raised.code)
 
     def settle(self) -> None:
-        """Stop the alarm. An alarm after the end of Python's handlers would kill the process."""
+        """Stop the timer that checks for a lost exception. A timer signal after the end of Python's signal
+        handlers would kill the process."""
         if self.raised is not None and hasattr(signal, "SIGALRM"):
             signal.setitimer(signal.ITIMER_REAL, 0.0)
             signal.signal(signal.SIGALRM, self._alarm)
@@ -121,7 +123,7 @@ class _OrderlyEnd:
 
 
 def ignore() -> None:
-    """Ignore every signal; another process receives the signal and ends this process in order."""
+    """Ignore every signal; another process receives the signal and ends this process."""
     for kind in _KINDS:
         signal.signal(kind, signal.SIG_IGN)
 
@@ -131,7 +133,7 @@ def _end_process(number: int, frame: FrameType | None) -> None:
 
 
 def _write_unless_interrupted(lost: "sys.UnraisableHookArgs") -> None:
-    """Write an exception that a callback from C has lost, unless a signal raised the exception."""
+    """Print an exception that a callback from C has lost, unless a signal raised the exception."""
     if not isinstance(lost.exc_value, Interrupted):
         sys.__unraisablehook__(lost)
 

@@ -1,7 +1,7 @@
-"""Liveness of a process that works for this one, measured by the messages that come from it.
+"""Liveness of another process that works for this process, measured by the age of its messages.
 
-A process can hang without dying: stopped, swapped out, at a disk that does not answer, in a loop without an
-end. No exception tells of that. The supervisor therefore measures the age of the newest message.
+A process can hang without ending: stopped, swapped out, waiting for a disk, or in an endless loop. No
+exception reports a process that hangs. The supervisor therefore measures the age of the newest message.
 """
 
 from collections.abc import Callable
@@ -14,42 +14,43 @@ from types import TracebackType
 from typing import Self
 
 OLD_AFTER_S = 3.0
-"""Age of the newest report, s, above which the crew reads that it is old. Reports come every 0.1 s, and an
-estimate of seven manoeuvres together delays one by up to 2 s on a laptop."""
+"""Age of the newest report, s, above which the crew is informed that the report is old. Reports come every
+0.1 s; a joint estimate of seven manoeuvres delays one by up to 2 s on a laptop."""
 ENDED_AFTER_S = 20.0
 """Age of the newest report, s, above which a process is ended and started again. The longest estimate in
-flight takes a tenth of this. The limit doubles with each end, so that a slow computer comes to its result."""
+flight takes a tenth of this time. The limit doubles with each restart, so that a slow computer can finish."""
 START_S = 60.0
-"""Time to the first report, s, above which a process is ended. Libraries load within 10 s, and compiled
-functions that no folder keeps are compiled within this time. Patience holds as long."""
+"""Longest time to a process's first report, s; a later process is ended. Libraries load within 10 s, and
+functions without stored machine code are compiled within this time. A patient watch waits equally long for a
+report."""
 _LOOK_EVERY_S = 0.5
 
 
 @dataclass(frozen=True, slots=True)
 class Beat:
-    """Message of a process that has nothing else to say."""
+    """Message of a process that has nothing else to report."""
 
     busy: bool
-    """Whether the process reads what has been recorded so far, which may take long."""
+    """Whether the process is reading the earlier recording, which may take long."""
     behind_s: float = 0.0
-    """Backlog of the process as it knows it, s."""
+    """Backlog of the process, as the process itself estimates it, s."""
     read_to_s: float = nan
-    """Host time of the newest record that the process was given, seconds since 1970."""
+    """Host time of the newest record that the process received, seconds since 1970."""
 
 
 class Watch:
     """Measures the age of a process's newest message while the context is open.
 
-    An interval between two looks counts at most twice its planned length. While this process was stopped
-    itself, or the computer slept, nobody else was late.
+    An interval between two checks is limited to twice its planned length. While this process was stopped or
+    the computer slept, the other process was not late.
 
     Parameters
     ----------
     process
-        Process that is watched.
+        Process whose messages are watched.
     tell
-        Called with the age, s, at every look at which the newest message is old. The calls come from a thread
-        of the watch.
+        Called with the message's age, s, at every check at which the newest message is old. The calls come
+        from a thread of the watch.
     earlier_ends
         Number of processes that were ended for the same work before. None: this process is never ended.
     """
@@ -65,7 +66,8 @@ class Watch:
         self._over = Event()
         self._thread = Thread(target=self._run, name="watch", daemon=True)
         self.ended_after_s: float | None = None
-        """Age of the newest message, s, at which the process was ended. None: the process was not ended."""
+        """Age of the newest message, s, at which the process was ended. None: the watch has not ended the
+        process."""
 
     def __enter__(self) -> Self:
         self._thread.start()
@@ -78,22 +80,22 @@ class Watch:
         self._thread.join()
 
     def heard(self, patient: bool = False) -> None:
-        """Take note of a message.
+        """Record the arrival of a message.
 
         Parameters
         ----------
         patient
-            Whether the process reads what has been recorded so far, which may take long.
+            Whether the process is reading the earlier recording, which may take long.
         """
         self._limit_s = START_S if patient else ENDED_AFTER_S
         self._messages += 1
 
     def rest(self) -> None:
-        """Watch no longer: the process has done its work and waits for requests."""
+        """End the watch while the process waits for requests."""
         self._over.set()
 
     def hurry(self) -> None:
-        """End the process where it does not end by itself within ``OLD_AFTER_S``."""
+        """End the process if it does not end by itself within ``OLD_AFTER_S``."""
         self._hurries = True
 
     def _run(self) -> None:
@@ -112,7 +114,7 @@ class Watch:
 
     @property
     def _end_s(self) -> float:
-        """Age of the newest message at which the process is ended, s."""
+        """Age of the newest message at which the watched process is ended, s."""
         if self._hurries:
             return OLD_AFTER_S
         return inf if self._slower is None else self._limit_s * self._slower

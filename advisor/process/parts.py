@@ -1,7 +1,7 @@
-"""Parts of an answer that may fail alone: a manoeuvre, an axis, an effect, a pane, a picture, an export.
+"""Parts of an answer that may fail separately: a manoeuvre, an axis, an effect, a pane, a picture, an export.
 
-A numerical fault inside a part is a value with its reason. The rest of the answer stands, and every face
-names the part that is missing.
+A numerical fault inside a part becomes a value with the fault's reason. The rest of the answer remains valid,
+and every display names the missing part.
 """
 
 import os
@@ -15,9 +15,10 @@ import numpy as np
 from advisor.words.problems import Problem
 
 FAULTS = (np.linalg.LinAlgError, ZeroDivisionError, FloatingPointError, OverflowError, IndexError)
-"""Errors of numbers that end one part. Every other error is no matter of numbers and ends the program."""
+"""Numerical errors that end one part of an answer. Every other error is not numerical and ends the
+program."""
 INTERNAL = "internal"
-"""Code of a part that failed by a fault of the advisor."""
+"""Problem code of a part that failed by a fault of the advisor."""
 _Made = TypeVar("_Made")
 
 
@@ -26,34 +27,34 @@ class FailedPart:
     """A part of an answer that a numerical fault of the advisor ended."""
 
     part: str
-    """Name of the part, as in ``lateral, manoeuvre 3``."""
+    """Name of the failed part, such as ``lateral, manoeuvre 3``."""
     reason: str
-    """Kind and message of the fault."""
+    """Type and message of the numerical fault."""
     trace: str = field(default="", compare=False, repr=False)
-    """Traceback of the fault."""
+    """Traceback of the numerical fault."""
 
     @property
     def problem(self) -> Problem:
-        """Sentence on the missing part, with the next step."""
+        """Sentence on the missing part, with the user's next step."""
         text = f"A fault of the advisor, not yours, ended this part: {self.part} ({self.reason})."
         fix = "The rest of the answer stands. Set ADVISOR_TRACEBACK=1 to see where, and please report it."
         return Problem(INTERNAL, text, fix)
 
     @property
     def entry(self) -> dict[str, str]:
-        """Entry of ``problems`` in a JSON document."""
+        """Entry of the failed part under ``problems`` in a JSON document."""
         problem = self.problem
         return {"code": problem.code, "part": self.part, "text": problem.text, "fix": problem.fix}
 
     @property
     def sentence(self) -> str:
-        """Sentence for people, and the traceback where ``ADVISOR_TRACEBACK`` asks for one."""
+        """Sentence for people, with the traceback if ``ADVISOR_TRACEBACK`` requests it."""
         wanted = self.trace and os.environ.get("ADVISOR_TRACEBACK")
         return f"{self.problem}\n{self.trace}" if wanted else str(self.problem)
 
 
 def attempt(part: str, work: Callable[[], _Made]) -> _Made | FailedPart:
-    """Return what ``work`` makes, or why a numerical fault ended the part."""
+    """Return the result of ``work``, or the failed part if a numerical fault ended the work."""
     try:
         return work()
     except FAULTS as fault:
@@ -61,7 +62,7 @@ def attempt(part: str, work: Callable[[], _Made]) -> _Made | FailedPart:
 
 
 class Parts:
-    """Makes the parts of one answer, and keeps those that failed.
+    """Computes the parts of one answer, and keeps a list of the failed parts.
 
     Parameters
     ----------
@@ -83,7 +84,7 @@ class Parts:
         return self.make(part, work, lambda failed: None)
 
     def make(self, part: str, work: Callable[[], _Made], instead: Callable[[FailedPart], _Made]) -> _Made:
-        """Return what ``work`` makes; what ``instead`` makes of the failure where a fault ends the part."""
+        """Return the result of ``work``, or the result of ``instead`` if a numerical fault ended the part."""
         made = attempt(part, work)
         if not isinstance(made, FailedPart):
             self._failed.pop(part, None)

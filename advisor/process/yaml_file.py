@@ -1,4 +1,5 @@
-"""YAML for settings: plain text, flat, each key once. Any other form is refused with one sentence."""
+"""YAML for settings: plain text, without references, each key once. Any other form of YAML is refused with
+one sentence."""
 
 from collections.abc import Hashable
 from pathlib import Path
@@ -10,12 +11,12 @@ from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
 
 _MOST_BYTES = 256 * 1024
-"""Largest file, bytes. A settings file holds a few kB, and the limit keeps reading below a second."""
+"""Largest file, bytes. A settings file has a few kB, and the limit keeps the reading time below a second."""
 _MOST_VALUES = 20_000
-"""Most values, lists and sections together. A thousand decisions by hand on one log have 8,000. Ten times as
-many would take seconds to check."""
+"""Largest number of values, lists and sections together. A file with a thousand decisions by hand on one log
+has 8,000 values. A check of ten times as many values would take seconds."""
 _DEEPEST = 32
-"""Deepest nesting of sections. The advisor's own files need six."""
+"""Deepest nesting of sections in a settings file. The advisor's own files need six levels."""
 
 _Parser: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
@@ -28,7 +29,7 @@ def read_yaml(path: Path, mend: str = "See the example in the README.") -> Any:
     path
         File to read.
     mend
-        Sentence with the remedy for a file that is refused.
+        Sentence with the remedy for a refused file.
 
     Raises
     ------
@@ -67,7 +68,7 @@ class _Refused(Exception):  # noqa: N818 (a reason, told by the caller)
 
 
 def _look_over(text: str) -> None:
-    """Refuse the forms that overflow a recursive reader, before anything is built."""
+    """Refuse the YAML forms that overflow a recursive reader, before any object is built."""
     depth = values = 0
     for event in yaml.parse(text, Loader=_Parser):
         values += isinstance(event, yaml.ScalarEvent | yaml.CollectionStartEvent)
@@ -87,10 +88,10 @@ def _look_over(text: str) -> None:
 
 
 class _Loader(_Parser):  # type: ignore[misc]
-    """Safe loader that refuses a key that a section repeats."""
+    """Safe YAML loader that refuses a repeated key of a section."""
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
-        """Build one section.
+        """Build one section of the settings.
 
         Raises
         ------
@@ -108,7 +109,7 @@ class _Loader(_Parser):  # type: ignore[misc]
         return section
 
     def construct_text(self, node: Any) -> str:
-        """Build a text that can be shown. An escape in quotes may stand for any control character."""
+        """Build a text that can be displayed. An escape in quotes may stand for any control character."""
         return "\n".join(map(printable, self.construct_scalar(node).split("\n")))
 
 

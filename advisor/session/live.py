@@ -53,7 +53,7 @@ class LinkLike(Protocol):
 
 
 class LinkSource:
-    """Reads a link. The source ends only when the far end has finished.
+    """Reads a link. The source ends when the sender has finished.
 
     Parameters
     ----------

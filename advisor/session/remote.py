@@ -25,7 +25,7 @@ Request = tuple[str, tuple[object, ...]]
 """Name of a method of `Conducting`, and its arguments."""
 
 _ENOUGH: Request = ("", ())
-"""Empty request, which ends the thread that passes requests on."""
+"""Empty request, which ends the thread that sends requests to the other process."""
 
 
 @dataclass(frozen=True, slots=True)

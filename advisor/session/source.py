@@ -99,7 +99,7 @@ class Playback:
     duration_s: float
     """Length of the replay on that scale, s."""
     hurrying: bool = False
-    """Whether the replay hurries to a position, whatever its tempo."""
+    """Whether the replay is playing to a position as fast as possible."""
 
 
 @runtime_checkable

@@ -26,7 +26,7 @@ class View:
     title: str
     """Name of the source."""
     tempo: Tempo | None = None
-    """Tempo of a replay. None on a live link."""
+    """Tempo of a replay: its speed, and whether it is paused. None on a live link."""
     log: tuple[str, ...] = ()
     """Sentences of the event log, oldest first."""
     problems: tuple[Problem, ...] = ()

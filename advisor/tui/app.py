@@ -56,7 +56,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
     title : str
         Name of the source.
     tempo : Tempo, optional
-        Start settings of a replay. None: the source is no replay.
+        Start settings of a replay. None if the source is no replay.
     settings : Settings, optional
         Theme, first screen, keys.
     logs : sequence of Path

@@ -10,7 +10,7 @@ from textual.theme import Theme
 
 
 class Sheet(Stylesheet):
-    """A style sheet that parses nothing twice while its variables are unchanged."""
+    """A style sheet that parses no rules twice while its variables are unchanged."""
 
     def __init__(self, variables: dict[str, str]) -> None:
         super().__init__(variables=variables)

@@ -18,7 +18,7 @@ WITHOUT_LOG = Path("advisor")
 
 
 def pane_name(pane: Pane, view: View) -> str:
-    """Return a pane's name for a file: ``fit-4`` for the fit of manoeuvre 4, ``history`` without a number."""
+    """Return the file name of a pane: ``fit-4`` for the fit of manoeuvre 4, ``history`` without a number."""
     name = "-".join(pane.TITLE.split()[1:]).lower()
     judged = view.judged if pane.OF_SELECTED else None
     return f"{name}-{judged.maneuver.number}" if judged is not None else name

@@ -143,7 +143,7 @@ def needed_by_reading(
 def compare(
     blocks: Sequence[Mapping[tuple[str, Rule], tuple[int | None, ...]]], noise_percent: float
 ) -> list[ReadingResult]:
-    """Return the result of every reading over all blocks of campaigns at one noise level."""
+    """Return the results of every interpretation of the paper over all blocks at one noise level."""
     results = []
     for name, rule in blocks[0]:
         needed = [number for block in blocks for number in block[name, rule]]

@@ -1,1 +1,1 @@
-"""The campaigns of the axes."""
+"""The flight-test campaigns of the pitch axis and of the lateral axes."""

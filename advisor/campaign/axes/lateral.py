@@ -1,4 +1,4 @@
-"""The lateral half of a campaign: its manoeuvres, their estimates and verdicts, and the joint estimate."""
+"""The lateral campaign: its manoeuvres, their estimates and verdicts, and the joint estimate."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -24,21 +24,22 @@ from advisor.process.parts import Parts
 from advisor.words.problems import Problem
 
 NEWEST = 7
-"""Number of newest accepted manoeuvres that are estimated together in flight, as for the elevator."""
+"""Number of newest accepted manoeuvres in a joint estimate in flight, as for the elevator."""
 OF_EACH = 3
-"""Number of them that are kept of each control, so that inputs of one control alone do not make the estimate
-forget the other. With three manoeuvres, one may contradict two that agree."""
+"""Number of newest manoeuvres of each control that stay in the joint estimate, so that both controls stay
+represented. With three manoeuvres, one may contradict two that agree."""
 
 
 class LateralCampaign(AxisCampaign):
-    """Estimates and judges lateral manoeuvres as they come.
+    """Estimates and judges each lateral manoeuvre as it arrives.
 
     Parameters
     ----------
     aircraft
-        The crew's aircraft file. The rule is ``information``, whatever the file chooses for pitch.
+        The crew's aircraft file. The lateral stopping rule is ``information``, whatever the aircraft file
+        chooses for pitch.
     parts
-        Makes manoeuvres, decision and joint estimate, each of which may fail alone.
+        Computes manoeuvres, decision and joint estimate, each of which may fail separately.
     """
 
     def __init__(self, aircraft: Aircraft, parts: Parts) -> None:
@@ -48,7 +49,7 @@ class LateralCampaign(AxisCampaign):
         super().__init__("lateral", aircraft, replace(aircraft.campaign, rule="information"), parts)
 
     def take(self, maneuver: Maneuver, by_hand: ByHand) -> JudgedManeuver:
-        """Estimate and judge a manoeuvre that has just been flown, and decide anew whether to stop."""
+        """Estimate and judge a manoeuvre that has just been flown, and decide again whether to stop."""
         examined = self._parts.make(
             f"lateral, manoeuvre {maneuver.number}",
             lambda: self._examined(maneuver),
@@ -60,7 +61,7 @@ class LateralCampaign(AxisCampaign):
         return self.judged[-1]
 
     def _examined(self, maneuver: Maneuver) -> CandidateManeuver:
-        """Estimate a manoeuvre and examine it, before any rule compares it with other manoeuvres."""
+        """Estimate and examine a manoeuvre, before any rule compares it with other manoeuvres."""
         estimate = estimate_lateral([maneuver], self._aircraft)
         controls = estimate.flown if isinstance(estimate, LateralEstimate) else ()
         return CandidateManeuver(
@@ -72,13 +73,14 @@ class LateralCampaign(AxisCampaign):
         )
 
     def state(self, unknown: Problem | None = None) -> LateralState:
-        """Return the state after the newest manoeuvre; the identical object while nothing is added.
+        """Return the lateral state after the newest manoeuvre; the identical object until a manoeuvre is
+        added.
 
         Parameters
         ----------
         unknown
-            Reason for which aileron or rudder cannot be followed. None: the outputs of aileron and rudder
-            are known.
+            Reason for which the output of aileron or rudder cannot be identified. None: the outputs of
+            aileron and rudder are known.
         """
         if self._state is None or unknown != self._unknown:
             self._unknown = unknown
@@ -91,12 +93,12 @@ class LateralCampaign(AxisCampaign):
         return self._state
 
     def _decided(self, history: Sequence[CandidateManeuver], heard: Sequence[Heard]) -> FlightTestVerdict:
-        """Return the decision as the crew hears it after the newest manoeuvre."""
+        """Return the decision after the newest manoeuvre, as announced to the crew."""
         self._state = None
         return self._by(self._joint_estimate if self._may_stop else None, heard)
 
     def _by(self, joint: LateralEstimate | None, heard: Sequence[Heard]) -> FlightTestVerdict:
-        """Return the decision by a joint estimate."""
+        """Return the decision from a joint estimate."""
         return self._parts.make(
             "lateral, stop or continue",
             lambda: lateral_flight_test(
@@ -107,21 +109,22 @@ class LateralCampaign(AxisCampaign):
 
     @property
     def _inputs(self) -> list[FlownInput]:
-        """Inputs of all manoeuvres, accepted or not."""
+        """Inputs of all lateral manoeuvres, accepted or not."""
         return [FlownInput.of(one.maneuver, one.verdict.reasons) for one in self.judged]
 
     @property
     def _may_stop(self) -> bool:
-        """Whether the newest manoeuvre can decide: both controls were flown, and no stop was heard before.
+        """Whether the newest manoeuvre can decide: both controls were flown, and no stop was announced
+        before.
 
-        Without both, nothing is known of one control. A joint estimate takes a second.
+        While one control is not flown, its derivatives are unknown. A joint estimate takes a second.
         """
         moved = {control for one in self._told if one is not None for control in one.flown}
         return moved >= set(LATERAL.inputs) and not any(one.stops for one in self._still_heard)
 
     @property
     def _told(self) -> list[LateralEstimate | None]:
-        """Estimate of every manoeuvre; None for one that is not accepted."""
+        """Lateral estimate of every manoeuvre; None for one that is not accepted."""
         return [
             one.estimate if one.verdict.accepted and isinstance(one.estimate, LateralEstimate) else None
             for one in self.judged
@@ -129,7 +132,7 @@ class LateralCampaign(AxisCampaign):
 
     @property
     def _joint_estimate(self) -> LateralEstimate | None:
-        """Joint estimate, computed once for the same manoeuvres; None where there is none."""
+        """Joint estimate, computed once for the same manoeuvres; None without accepted manoeuvres."""
         joined = self._joined()
         if self._joint is None or self._joint[0] != joined:
             maneuvers = [self.judged[i].maneuver for i in joined]
@@ -140,8 +143,8 @@ class LateralCampaign(AxisCampaign):
         return self._joint[1]
 
     def _joined(self) -> tuple[int, ...]:
-        """Return the places of the manoeuvres of the joint estimate: the newest accepted ones of each control
-        in flight, all at the end."""
+        """Return the indices of the manoeuvres in the joint estimate: the newest accepted of each control in
+        flight, all at the end."""
         accepted = [i for i, one in enumerate(self.judged) if one.verdict.accepted]
         if self._ended:
             return tuple(accepted)

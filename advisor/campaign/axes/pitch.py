@@ -1,4 +1,4 @@
-"""The elevator's half of a campaign: its manoeuvres, their estimates and verdicts, and the joint estimate."""
+"""The elevator's campaign: its manoeuvres, their estimates and verdicts, and the joint estimate."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -23,40 +23,41 @@ from advisor.process.parts import Parts
 
 
 class ElevatorCampaign(AxisCampaign):
-    """Estimates and judges manoeuvres of the elevator as they come, and learns from them of the instruments.
+    """Estimates and judges each elevator manoeuvre as it arrives, and improves the instruments' values with
+    it.
 
     Parameters
     ----------
     aircraft
         The crew's aircraft file.
     say
-        Called with a sentence where the manoeuvres have told more of the instruments.
+        Called with a sentence when the manoeuvres have given new values of the instruments.
     parts
-        Makes manoeuvres, verdicts and the joint estimate, each of which may fail alone.
+        Computes manoeuvres, verdicts and the joint estimate, each of which may fail separately.
     """
 
     def __init__(self, aircraft: Aircraft, say: Callable[[str], object], parts: Parts) -> None:
         super().__init__("pitch", aircraft, aircraft.campaign, parts)
         self.learnt = aircraft
-        """The crew's aircraft with what the manoeuvres have told of the instruments."""
+        """The crew's aircraft with the instruments' values from the manoeuvres."""
         self._told_by: set[tuple[int, int]] = set()
         self._say = say
         self._together = Together(aircraft)
 
     def take(self, maneuver: Maneuver, by_hand: ByHand) -> None:
-        """Estimate and judge a manoeuvre that has just been flown, and decide anew whether to stop."""
+        """Estimate and judge a manoeuvre that has just been flown, and decide again whether to stop."""
         self._add(maneuver, self._assess(maneuver), by_hand)
         self._blame_instruments(maneuver)
         self.decide()
         self._hear()
 
     def take_better(self, maneuver: Maneuver, because: str | None) -> None:
-        """Take another record of a manoeuvre in the former one's place; exclude it for a given reason."""
+        """Replace a manoeuvre's record by a better one; exclude the manoeuvre if a reason is given."""
         self._replace(maneuver)
         self.exclude(maneuver.number, because)
 
     def count_anew(self, again: Recount) -> None:
-        """Count manoeuvres by a limit that was heard late, and leave out those it makes useless."""
+        """Scale manoeuvres by an elevator limit that arrived late, and omit those that become useless."""
         for maneuver in again.anew:
             self._replace(maneuver)
         for number in again.lost:
@@ -65,13 +66,14 @@ class ElevatorCampaign(AxisCampaign):
         self.decide()
 
     def decide(self) -> None:
-        """Judge all manoeuvres, and examine them again where they have told more of the instruments."""
+        """Judge all manoeuvres, and examine them again if they have given new values of the instruments."""
         self._judge()
         self._parts.make("pitch, instruments told by the manoeuvres", self._learn, lambda _: None)
 
     @property
     def joined(self) -> Sequence[JudgedManeuver]:
-        """Manoeuvres of the joint estimate: the newest accepted in flight, all accepted at the end."""
+        """Manoeuvres of the joint estimate: the newest accepted ones in flight, all accepted ones at the
+        end."""
         accepted = self._accepted
         return accepted if self._ended else accepted[-NEWEST:]
 
@@ -84,19 +86,19 @@ class ElevatorCampaign(AxisCampaign):
         )
 
     def _replace(self, maneuver: Maneuver) -> None:
-        """Examine a manoeuvre in the place of the one with its number."""
+        """Examine a new record of a manoeuvre, and replace the record with the same number."""
         flown = self._of(maneuver.number)
         flown.maneuver = maneuver
         self._examine(flown)
 
     def _examine(self, flown: Flown) -> None:
-        """Estimate and examine a manoeuvre again. Its exclusion holds."""
+        """Estimate and examine a manoeuvre again. An exclusion of the manoeuvre remains."""
         because = flown.examined.excluded_because
         flown.examined = self._assess(flown.maneuver)
         flown.exclude(because)
 
     def _assess(self, maneuver: Maneuver) -> CandidateManeuver:
-        """Estimate and examine one manoeuvre with what the others have told of the instruments."""
+        """Estimate and examine one manoeuvre with the instruments' values from the other manoeuvres."""
         known = self.learnt if maneuver.power_on in self._told_by else of_another_power_on(self.learnt)
         return self._parts.make(
             f"pitch, manoeuvre {maneuver.number}",
@@ -105,7 +107,7 @@ class ElevatorCampaign(AxisCampaign):
         )
 
     def _blame_instruments(self, newest: Maneuver) -> None:
-        """Judge the earlier manoeuvres again where the newest one contradicts their instruments."""
+        """Judge the earlier manoeuvres again if the newest one contradicts their instruments."""
         for flown in self._flown[:-1]:
             known = as_known_by(flown.maneuver, newest)
             if known is not flown.maneuver:
@@ -116,7 +118,7 @@ class ElevatorCampaign(AxisCampaign):
 
     @property
     def _of_lag(self) -> Estimate | None:
-        """Joint estimate that tells the servo's lag; None where there is none yet."""
+        """Joint estimate that determines the servo's lag; None before the first one."""
         accepted = [judged.maneuver for judged in self._accepted]
         estimate = self._together.of_lag if self._ended else self._together.of_lag_so_far
         return self._parts.make(
@@ -124,7 +126,7 @@ class ElevatorCampaign(AxisCampaign):
         )
 
     def _learn(self) -> None:
-        """Examine all manoeuvres again when they have told more of the instruments."""
+        """Examine all manoeuvres again if they have given new values of the instruments."""
         joined = self.joined
         if not may_learn(self.learnt, len(joined) == len(self._accepted)):
             return

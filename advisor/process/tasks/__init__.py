@@ -1,1 +1,1 @@
-"""Independent tasks: done in this process, in processes, or on a cluster, with equal results."""
+"""Independent tasks, done in this process, in other processes, or on a cluster, with equal results."""

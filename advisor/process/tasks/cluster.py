@@ -21,11 +21,12 @@ R = TypeVar("R")
 Versions = Mapping[str, str | None]
 
 CONNECT_S = 5.0
-"""Time within which a scheduler must answer, s, and a cluster's workers must start."""
+"""Time within which a scheduler must answer, s, and within which the cluster's workers must start."""
 _SAME = ("advisor", "python")
-"""Packages whose version must be equal in every worker. Otherwise its results differ or cannot be read."""
+"""Packages whose version must be equal in every worker. With another version of these packages the results
+differ or cannot be read."""
 _ADVISOR = ("inflight-advisor", "advisor")
-"""Names under which Dask may know the advisor: the distribution's since 2025, the module's before."""
+"""Names under which Dask may list the advisor: the distribution's since 2025, the module's before."""
 _TOLD = ("distributed", "numba", "numpy", "scipy")
 """Packages of which another version may change the last digits of a result."""
 
@@ -126,7 +127,7 @@ def _connected(address: str) -> "Iterator[Client]":
 def _versions_on(client: "Client") -> dict[str, Any]:
     """Return the versions of the packages in the client and in each worker.
 
-    Workers that start, or start again after a death, have ``CONNECT_S`` for the first answer.
+    Workers that start or restart have ``CONNECT_S`` for the first answer.
     """
     end = time.monotonic() + CONNECT_S
     while True:
@@ -138,7 +139,7 @@ def _versions_on(client: "Client") -> dict[str, Any]:
 
 
 async def _answer(address: str) -> None:
-    """Connect once. The client itself would wait for ever at a silent port."""
+    """Connect to the scheduler once. The Dask client itself would wait for ever at a silent port."""
     from distributed.comm import connect
     from distributed.security import Security
 
@@ -156,24 +157,24 @@ def _cause(error: BaseException) -> str:
 
 
 def _named(packages: Versions) -> Versions:
-    """Return versions with the advisor's under one name."""
+    """Return package versions with the advisor under one name."""
     return {**packages, "advisor": next(filter(None, map(packages.get, _ADVISOR)), None)}
 
 
 def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
-    """Compare the versions in the workers with those of this computer.
+    """Compare the package versions in the workers with those of this computer.
 
     Parameters
     ----------
     here
-        Version of each package; None where one is missing.
+        Version of each package; None for a missing package.
     workers
-        Versions in each worker, by the worker's address.
+        Package versions in each worker, by the worker's address.
 
     Returns
     -------
     str
-        A caution in one sentence; empty where nothing differs.
+        A caution in one sentence; empty if all versions are equal.
 
     Raises
     ------
@@ -197,7 +198,7 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
 
 
 def _version(versions: Versions, name: str) -> str | None:
-    """Return the version of a package; for Python without its last digits, which change no result."""
+    """Return the version of a package; for Python without the last digits, which change no result."""
     version = versions.get(name)
     return ".".join(version.split(".")[:2]) if version and name == "python" else version
 

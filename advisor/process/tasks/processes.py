@@ -1,4 +1,4 @@
-"""Tasks in processes. A process that dies costs only its own task."""
+"""Tasks in processes. A process that dies loses only its own task."""
 
 import multiprocessing
 import os
@@ -19,7 +19,7 @@ R = TypeVar("R")
 
 
 def processes(workers: int) -> Executor:
-    """Return fresh processes, which leave signals to this process and end with it."""
+    """Return new processes, which ignore signals and end together with this process."""
     context = spawning()
     _start_silent_tracker()
     return ProcessPoolExecutor(workers, mp_context=context, initializer=_begin_worker)
@@ -60,9 +60,9 @@ def _until_broken(
     executor: Callable[[int], Executor],
     suspects: list[T],
 ) -> Iterator[tuple[T, R | Exception]]:
-    """Take tasks from the end of ``waiting`` until all are done or a worker has died.
+    """Do tasks from the end of ``waiting`` until all are done or a worker has died.
 
-    No more tasks than workers are under way, so that a dead worker casts doubt on few.
+    At most one task per worker runs, so that a dead worker makes few tasks suspect.
     """
     under_way: dict[Future[R], T] = {}
     with executor(min(workers, len(waiting))) as pool:
@@ -93,7 +93,7 @@ def _alone(work: Callable[[T], R], task: T, executor: Callable[[int], Executor])
 
 
 def _start_silent_tracker() -> None:
-    """Start the process that removes the semaphores of an interrupted run, without its warning of them.
+    """Start the process that removes the semaphores of an interrupted run, without its warning.
 
     The tracker of `multiprocessing` takes the warning options of the interpreter that starts the tracker.
     """

@@ -1,4 +1,4 @@
-"""Interface of all ways of doing tasks: each task comes back with its result or its error."""
+"""Interface of all ways to do tasks: each task returns with its result or its error."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -29,12 +29,12 @@ def run_here(work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R 
 def results_in_order(
     run: Runner, work: Callable[[T], R], tasks: Sequence[T], tell: Callable[[int], None]
 ) -> list[R]:
-    """Do all tasks and return their results in the order of the tasks, whichever is done first.
+    """Do all tasks and return their results in the order of the tasks, independent of which ends first.
 
     Parameters
     ----------
     tell
-        Called with the place of each task in ``tasks`` when the task is done.
+        Called with the index of each task in ``tasks`` when the task is done.
 
     Raises
     ------

@@ -4,9 +4,10 @@ import os
 
 
 def pin_linear_algebra() -> None:
-    """Let libraries that are loaded later use one thread, unless the user asks for more.
+    """Let libraries that are loaded later use one thread, unless the user requests more.
 
-    Matrices here are small, so that threads cost far more than they gain. The processes are the parallelism.
+    The matrices are small, so that threads cost far more time than they save. Parallel work is done by the
+    processes instead of threads.
     """
     for library in ("OPENBLAS", "OMP", "MKL"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")

@@ -111,7 +111,7 @@ def no_fit(name: str, why: str) -> Chart:
 
 
 def rows_of_fit(judged: JudgedManeuver, over: JudgedManeuver | None, axis: Shown) -> TableRows:
-    """Write the controls and all outputs, sample by sample, of one manoeuvre or of two."""
+    """Return one row per sample of the controls and all outputs, for one manoeuvre or two."""
     header = ("manoeuvre", "channel", "unit", "t_s", "measured", "fitted", "residual")
     return TableRows(
         header, tuple(row for one in (judged, over) if one is not None for row in _samples(one, axis))

@@ -30,7 +30,7 @@ class Part:
 
 
 class Lines(Static):
-    """Text without markup, because texts of vehicles and people may hold any bracket."""
+    """Lines of plain text, because texts of vehicles and people may contain brackets."""
 
     def __init__(self, text: str = "", *, id: str | None = None) -> None:
         super().__init__(text, id=id, markup=False)

@@ -31,7 +31,7 @@ class Pane(Part, Vertical):
     """Parts of the last moment that was painted."""
 
     def on_mount(self) -> None:
-        """Write the title into the frame."""
+        """Write the pane's title into its frame."""
         self.border_title = self.TITLE
 
     @property

@@ -1,4 +1,4 @@
-"""Content of a plot: series with units, levels, and a sentence for an empty plot."""
+"""Content of a plot: curves with units, horizontal levels, and a sentence for a plot without data."""
 
 from dataclasses import dataclass
 from typing import Literal
