@@ -53,8 +53,8 @@ def read(log: str | PathLike[str], aircraft: Aircraft | str | PathLike[str] | No
     Parameters
     ----------
     log : str or path
-        A ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not. Marks in ``LOG.maneuvers.yaml``
-        next to the log count.
+        Path of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, compressed or not. Marks in
+        ``LOG.maneuvers.yaml`` next to the log count.
     aircraft : Aircraft, str or path, optional
         The aircraft, or its YAML file; by default nothing is known of it.
 

@@ -1,18 +1,18 @@
-"""Backlog of the advisor itself: the time between the newest record heard and the newest one judged."""
+"""Backlog of the advisor: the time between the newest record received and the newest record judged."""
 
 from math import inf, isfinite, isnan
 
 from advisor.mavlink.link.health import LinkStatistics
 
 BEHIND_S = 2.0
-"""Backlog, s, above which the crew reads that this computer is behind. A joint estimate of seven manoeuvres
-delays the next record by up to 2 s on a laptop. A manoeuvre takes 10 s."""
+"""Backlog, s, above which the crew is informed that this computer is late. A joint estimate of seven
+manoeuvres delays the next record by up to 2 s on a laptop. A manoeuvre takes 10 s."""
 
 
 def backlog_s(link: LinkStatistics, read_to_s: float) -> float:
     """Return the time between the newest record read and the newest record of the link, s.
 
-    Before any record is read, the time counts from the link's first record. Before that record it is 0.
+    Before any record is read, the backlog starts at the link's first record. Before that record it is 0.
     """
     backlog = link.newest_s - (link.first_s if isnan(read_to_s) else read_to_s)
     return max(0.0, backlog) if isfinite(backlog) else 0.0
@@ -24,12 +24,12 @@ def behind_sentence(behind_s: float) -> str:
 
 
 def spoken(behind_s: float) -> str:
-    """Return a backlog with its unit: seconds up to ten minutes, then minutes."""
+    """Return a backlog in words with its unit: seconds up to ten minutes, then minutes."""
     return f"{behind_s:.0f} s" if behind_s < 600.0 else f"{behind_s / 60.0:.0f} min"
 
 
 class BehindTeller:
-    """Chooses the moments at which lines of text and announcements tell of the backlog."""
+    """Chooses the moments at which lines of text and announcements report the backlog."""
 
     def __init__(self) -> None:
         self._told_s = 0.0

@@ -1,6 +1,6 @@
 """The file of a flight test's options next to its recording: ``flight.campaign.yaml``.
 
-``advisor live --resume`` reads the file, so that nobody has to remember the options of the first start.
+``advisor live --resume`` reads this file, so that nobody must remember the options of the first start.
 """
 
 from dataclasses import dataclass, replace
@@ -22,23 +22,24 @@ _HEADING = "# Options of this flight test; `advisor live --resume` reads this fi
 
 @dataclass(frozen=True, slots=True)
 class CampaignFile:
-    """Options of a flight test that a resumed flight test keeps."""
+    """Options of a flight test that a resumed flight test uses again."""
 
     master: str
-    """Connection, as in pymavlink."""
+    """Address of the connection, as in pymavlink."""
     rule: Rule | None = None
-    """Rule given on the command line. None: the aircraft file's rule."""
+    """Stopping rule from the command line. None: the aircraft file's rule."""
     target_system: int | None = None
     aircraft: Any = None
     """Content of the aircraft file. None: no file."""
 
     def parsed_aircraft(self, origin: str) -> Aircraft:
-        """Return the aircraft of the flight test, with the rule of the command line where one was given.
+        """Return the aircraft of the flight test, with the stopping rule of the command line if one was
+        given.
 
         Parameters
         ----------
         origin
-            Path of the file, for messages about mistakes.
+            Path of the aircraft file, for messages about mistakes.
 
         Raises
         ------
@@ -52,7 +53,7 @@ class CampaignFile:
 
 
 def path_beside(recording: Path) -> Path:
-    """Return the path of the file of options."""
+    """Return the path of the campaign file next to a recording."""
     return recording.with_suffix(SUFFIX)
 
 

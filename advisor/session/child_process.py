@@ -1,4 +1,4 @@
-"""Child processes of a screen: their start, and sentences on their end."""
+"""Child processes of a screen: their start, and the sentences on their end."""
 
 import signal
 from subprocess import DEVNULL, PIPE, Popen
@@ -23,7 +23,7 @@ def start_child(module: str, shows_errors: bool = False) -> "Popen[bytes]":
 
 
 def said_of(code: int, watch: Watch) -> str:
-    """Return a clause on the end of a process, from its exit code and from its watch."""
+    """Return a clause on the end of a process, from the exit code and the watch."""
     if watch.ended_after_s is not None:
         return f"did not answer for {watch.ended_after_s:.0f} s and was ended"
     if code >= 0:
@@ -35,5 +35,5 @@ def said_of(code: int, watch: Watch) -> str:
 
 
 def pause_s(deaths: int) -> float:
-    """Return the pause before a process is restarted, s: none at first, a second more after each death."""
+    """Return the pause before a process is restarted, s: zero at first, a second more after each death."""
     return min(deaths - 1.0, _LONGEST_PAUSE_S)

@@ -1,4 +1,5 @@
-"""Interface between the screens and the conductor of the campaign, and the differences of its reports."""
+"""Interface between the screens and the conductor of the campaign, and the differences between its
+reports."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
@@ -22,7 +23,7 @@ class SessionReport:
     log: tuple[str, ...]
     """Sentences of the event log, oldest first."""
     problems: tuple[Problem, ...] = ()
-    """Reasons for which nothing can be judged, while nothing has been judged."""
+    """Reasons for which no manoeuvre can be judged, until the first one is judged."""
 
     def grown_old(self, who: str, age_s: float) -> "SessionReport":
         """Return the report with a warning of its age.
@@ -43,19 +44,19 @@ Tell = Callable[[SessionReport], object]
 
 
 class Conducting(Protocol):
-    """Runs a campaign over a source. Every method but ``run`` returns before its request is done."""
+    """Runs a campaign over a source. Every method except ``run`` returns before its request is done."""
 
     def run(self, tell: Tell) -> None:
-        """Work until `stop`, in the calling thread. ``tell`` receives every report.
+        """Run the campaign until `stop`, in the calling thread. ``tell`` is called with every report.
 
         Raises
         ------
         UnusableInputError
-            The data of the log or link can never serve.
+            The data of the log or link can never be sufficient.
         """
 
     def stop(self) -> None:
-        """End ``run`` at the next opportunity."""
+        """End ``run`` at the next possible moment."""
 
     def decide(self, decision: HandDecision) -> None:
         """Exclude, include, note, mark, begin or end a marked manoeuvre."""
@@ -77,7 +78,7 @@ class Conducting(Protocol):
 
 
 class AskedElsewhere:
-    """Requests of a `Conducting` that another process carries out."""
+    """Sends each request of a `Conducting` to another process."""
 
     @abstractmethod
     def ask(self, name: str, *arguments: object) -> None:
@@ -110,7 +111,8 @@ class AskedElsewhere:
 
 @dataclass(frozen=True, slots=True)
 class Again:
-    """A manoeuvre that was sent earlier, with a new verdict. Samples and estimate stay."""
+    """A manoeuvre that was sent earlier, with a new verdict. The samples and the estimate of the manoeuvre
+    are unchanged."""
 
     index: int
     verdict: ManeuverVerdict
@@ -119,11 +121,11 @@ class Again:
 
     @classmethod
     def of(cls, index: int, judged: JudgedManeuver) -> "Again":
-        """Return the new judgement of the manoeuvre."""
+        """Return the new verdict on the manoeuvre."""
         return cls(index, judged.verdict, judged.excluded_because, judged.notes)
 
     def applied_to(self, maneuvers: Sequence[JudgedManeuver]) -> JudgedManeuver:
-        """Return the manoeuvre with the new judgement; the identical object where nothing changed."""
+        """Return the manoeuvre with the new verdict; the identical object if the verdict is unchanged."""
         last = maneuvers[self.index]
         if self == Again.of(self.index, last):
             return last
@@ -132,19 +134,19 @@ class Again:
 
 @dataclass(frozen=True, slots=True)
 class Changes:
-    """Fields whose object differs from the earlier report's.
+    """Fields of a report whose object differs from the earlier report's.
 
-    The samples of a manoeuvre are sent once, not with every verdict and ten times a second. The receiver
-    keeps the identical objects of unchanged fields. By their identity, panes know what needs no painting.
+    The samples of a manoeuvre are sent once instead of with every report. The receiver keeps the identical
+    objects of unchanged fields. By their identity, panes know what needs no painting.
     """
 
     report: dict[str, Any]
     state: dict[str, Any]
     maneuvers: tuple[JudgedManeuver | Again, ...] | None = None
-    """The manoeuvres. None where no manoeuvre was judged."""
+    """The manoeuvres with new data or verdicts. None if no manoeuvre was judged."""
 
     def applied_to(self, last: SessionReport) -> SessionReport:
-        """Return the newer report."""
+        """Return the newer report, from the earlier one and its changes."""
         state = dict(self.state)
         if self.maneuvers is not None:
             known = last.state.maneuvers
@@ -155,7 +157,7 @@ class Changes:
 
 
 def changes(last: SessionReport, report: SessionReport) -> Changes:
-    """Return the changes that turn ``last`` into ``report``. The state's notices are in its log."""
+    """Return the changes that turn ``last`` into ``report``. The state's notices are in the report's log."""
     before, now = last.state.maneuvers, report.state.maneuvers
     return Changes(
         _changed(last, report, {"state"}),

@@ -1,6 +1,6 @@
-"""The conductor: feeds one campaign from one source and reports its results.
+"""The conductor: reads one source into one campaign and reports the results.
 
-Only the thread in ``run`` touches the campaign. The methods below only leave a request, whose result comes
+Only the thread of ``run`` uses the campaign. The other methods only store a request, whose result comes
 through ``tell``.
 """
 
@@ -21,7 +21,7 @@ _READ_TIMEOUT_S = 0.05
 
 
 class Conductor:
-    """Runs a campaign over a source until told to stop.
+    """Runs a campaign over a source until `stop` is called.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Conductor:
         self._told_s = -inf
 
     def run(self, tell: Tell) -> None:
-        """Work until `stop`. The calling thread is the working thread.
+        """Run the campaign until `stop`. The calling thread is the working thread.
 
         Parameters
         ----------
@@ -60,7 +60,7 @@ class Conductor:
         Raises
         ------
         UnusableInputError
-            The input can never serve.
+            The source's data can never be sufficient.
         """
         self._tell = tell
         try:
@@ -71,7 +71,7 @@ class Conductor:
             self._source.close()
 
     def stop(self) -> None:
-        """End `run` at the next opportunity."""
+        """End `run` at the next possible moment."""
         self._stopped.set()
 
     def decide(self, decision: HandDecision) -> None:
@@ -101,7 +101,7 @@ class Conductor:
             self._source.step()
 
     def _play(self, campaign: CampaignLike) -> None:
-        """Feed one campaign until a rewind or the stop."""
+        """Run one campaign until a rewind or the stop."""
         ended = False
         if self._goal is None and not campaign.state.serves:
             self._hurry_to(DataBegin())
@@ -132,7 +132,7 @@ class Conductor:
                 self._report_if_due(campaign)
 
     def _answer(self, campaign: CampaignLike, timeout_s: float) -> None:
-        """Serve the requests of the screens, after waiting for a first one."""
+        """Carry out the requests of the screens, after waiting for the first one."""
         try:
             self._requests.get(timeout=timeout_s or None, block=timeout_s > 0.0)(campaign)
         except Empty:
@@ -153,7 +153,7 @@ class Conductor:
         self._told_s = monotonic()
 
     def _decide(self, campaign: CampaignLike, decision: HandDecision) -> None:
-        """Apply a decision now, or after a jump back as soon as its manoeuvre has been flown again."""
+        """Apply a decision at once, or after a jump back when its manoeuvre has been flown again."""
         self._pending.append(decision)
         self._decide_what_is_due(campaign)
 
@@ -165,7 +165,7 @@ class Conductor:
             self._keep(campaign)
 
     def _keep(self, campaign: CampaignLike) -> None:
-        """Keep the decisions by hand for a rewind, and with the data."""
+        """Store the decisions by hand for a rewind, and in the file next to the data."""
         if campaign.by_hand != self._by_hand:
             self._by_hand = campaign.by_hand
             where = self._source.keep(self._by_hand)
@@ -191,7 +191,7 @@ class Conductor:
             self._rewound = True
 
     def _hurry_to(self, goal: Goal | DataBegin | Position) -> None:
-        """Play a log as fast as possible until the goal is reached. A link cannot hurry."""
+        """Play a log as fast as possible until the goal is reached. A live link cannot play faster."""
         if isinstance(self._source, Playable):
             self._goal = goal
             self._source.hurry(True)

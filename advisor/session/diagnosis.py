@@ -1,4 +1,4 @@
-"""The diagnosis of the gap in a process of its own, so that the screens and the estimates go on.
+"""The diagnosis of the gap in a separate process, so that the screens and the estimates continue.
 
     python -m advisor.session.diagnosis
 
@@ -22,24 +22,24 @@ if TYPE_CHECKING:
     from advisor.campaign.hand_decisions import ByHand
 
 _GIVES_WAY = 10
-"""Niceness of the process. A diagnosis may wait for the estimates of a manoeuvre in the air."""
+"""Niceness of the diagnosis process. A diagnosis may wait for the estimates of a manoeuvre in flight."""
 
 Document = Mapping[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
 class GapTask:
-    """Logs of a flight test, and its aircraft."""
+    """Logs of a flight test and its aircraft, for one diagnosis of the gap."""
 
     logs: tuple[Path, ...]
     aircraft: Aircraft
     aircraft_file: Path | None = None
-    """File of the aircraft, for the commands of the next steps; None without one."""
+    """Path of the aircraft file, for the commands of the next steps; None without a file."""
     sideways: bool = False
-    """Whether the diagnosis is of roll and yaw, and not of pitch."""
+    """Whether roll and yaw are diagnosed instead of pitch."""
 
     def done(self) -> Document:
-        """Diagnose here, and return ``advisor.gap/1`` with the next steps."""
+        """Diagnose in this process, and return ``advisor.gap/1`` with the next steps."""
         from advisor.analysis.marks_file import read_by_hand
 
         if self.sideways:
@@ -93,7 +93,7 @@ def diagnosed(
 
 
 def _diagnosed_sideways(logs: Sequence[Path], aircraft: Aircraft) -> Document:
-    """Diagnose roll and yaw of logs."""
+    """Diagnose roll and yaw from logs."""
     from advisor.analysis.side_gap import compare_side_logs
     from advisor.process.parts import FailedPart, attempt
     from advisor.report.gap_document import gap_document
@@ -108,7 +108,7 @@ def _diagnosed_sideways(logs: Sequence[Path], aircraft: Aircraft) -> Document:
 
 
 def diagnose_elsewhere(task: GapTask) -> Document:
-    """Diagnose in another process. The call returns when the process has ended."""
+    """Diagnose the gap in another process. The call returns when the process has ended."""
     with start_child("advisor.session.diagnosis") as process:
         told, _ = process.communicate(pickle.dumps(task))
     if process.returncode or not told:
@@ -121,7 +121,7 @@ def diagnose_elsewhere(task: GapTask) -> Document:
 
 
 def main() -> None:
-    """Diagnose one task. A library's output must not fall into the document."""
+    """Diagnose one task in this process. The output of a library must not enter the document."""
     os.nice(_GIVES_WAY)
     interrupt.ignore()
     with os.fdopen(os.dup(sys.stdout.fileno()), "wb") as out:

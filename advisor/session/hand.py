@@ -1,4 +1,4 @@
-"""Decision by hand, on its way from a key to the campaign, which tests may bring."""
+"""Decision by hand, on its way from a key to the campaign."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ class CampaignLike(Protocol):
 
     @property
     def by_hand(self) -> ByHand:
-        """All decisions by hand so far."""
+        """The engineer's decisions by hand so far."""
 
     @property
     def state(self) -> CampaignState:
@@ -26,10 +26,10 @@ class CampaignLike(Protocol):
         """Reasons for which the stream so far cannot be used."""
 
     def feed(self, columns: Sequence[Columns]) -> Sequence[object]:
-        """Take the next messages."""
+        """Process the next messages."""
 
     def finish(self) -> Sequence[object]:
-        """Take the end of the stream, and judge open manoeuvres."""
+        """End the stream, and judge open manoeuvres."""
 
     def exclude(self, number: int, because: str, axis: AxisName = "pitch") -> None:
         """Exclude a manoeuvre from every decision."""
@@ -54,23 +54,23 @@ class CampaignLike(Protocol):
 
 
 Verb = Literal["exclude", "include", "note", "mark", "begin", "end"]
-"""Kind of decision: ``mark`` names a moment in the log; ``begin`` and ``end`` mark a manoeuvre."""
+"""Kind of decision by hand: ``mark`` names a moment in the log; ``begin`` and ``end`` mark a manoeuvre."""
 
 
 @dataclass(frozen=True, slots=True)
 class HandDecision:
-    """One decision by hand, with its reason."""
+    """One decision by hand, with the engineer's reason."""
 
     verb: Verb
     text: str = ""
-    """Reason, note or name of the moment."""
+    """Text of the decision: a reason, a note or the name of the moment."""
     number: int = 0
-    """Number of the manoeuvre. 0 for a decision on the present moment."""
+    """Number of the manoeuvre; 0 for a decision on the present moment."""
     axis: AxisName = "pitch"
     """Axis of the manoeuvre."""
 
     def due(self, state: CampaignState) -> bool:
-        """Return whether the flight has reached the subject of the decision."""
+        """Return whether the flight has reached the manoeuvre or moment of the decision."""
         side = state.lateral.maneuvers if state.lateral is not None else ()
         flown = side if self.axis == "lateral" else state.maneuvers
         return self.number == 0 or any(judged.maneuver.number == self.number for judged in flown)

@@ -22,11 +22,11 @@ _DECODED = ("vehicle_messages", "lost", "repeated", "repeated_after_s", "late")
 
 
 class LinkLike(Protocol):
-    """A link as its readers see it, in this process or in another."""
+    """Interface of a link to its readers, in this process or in another."""
 
     @property
     def statistics(self) -> LinkStatistics:
-        """Health of the link now."""
+        """Statistics of the link at this moment."""
 
     @property
     def read_to_s(self) -> float:
@@ -37,30 +37,30 @@ class LinkLike(Protocol):
         """Whether earlier records are still being read."""
 
     def read(self, timeout_s: float) -> list[Columns]:
-        """Return the next messages in order of arrival; empty when none came in time."""
+        """Return the next messages in order of arrival; empty if none arrived within the timeout."""
 
     def take_notices(self) -> list[LinkNotice]:
-        """Return the notices since the last call, oldest first."""
+        """Return the link's notices since the last call, oldest first."""
 
     def follow(self, system: int) -> None:
-        """Follow another vehicle."""
+        """Read the messages of another vehicle."""
 
     def take_output(self, output: int) -> None:
-        """Use an output as the elevator."""
+        """Use a servo output as the elevator."""
 
     def ask_for_outputs(self) -> None:
         """Ask the vehicle once which of its outputs is the elevator."""
 
 
 class LinkSource:
-    """Reads a link. The source ends when the sender has finished.
+    """Source that reads a live link. The source ends when the sender has finished.
 
     Parameters
     ----------
     connection
-        Context that opens the link, entered by the first ``read``.
+        Context that opens the link at the first ``read``.
     over
-        Function that returns whether the far end has finished. Only a demonstration knows.
+        Function that returns whether the sender has finished. Only a demonstration knows.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class LinkSource:
         self._ended = False
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
-        """Return the next batch; None when the far end has finished and everything was read.
+        """Return the next batch; None when the sender has finished and everything was read.
 
         Raises
         ------
@@ -87,7 +87,7 @@ class LinkSource:
         return None if self._ended else self._files.followed(columns)
 
     def health(self) -> LinkHealth:
-        """Return the state of the data's arrival."""
+        """Return the state of the arriving data."""
         if self._link is None:
             return LinkHealth("waiting", "Opening the connection.")
         health = _health(self._link.statistics, self._link.read_to_s)
@@ -102,7 +102,7 @@ class LinkSource:
         return [notice.text for notice in self._link.take_notices()] if self._link is not None else ()
 
     def order(self, order: LinkRequest) -> None:
-        """Pass on a crew's request."""
+        """Send a crew's request to the link."""
         if self._link is None:
             return
         if order.what == "follow":
@@ -113,20 +113,20 @@ class LinkSource:
             self._link.ask_for_outputs()
 
     def keep(self, by_hand: ByHand) -> str:
-        """Keep the decisions next to the recording."""
+        """Store the decisions by hand next to the recording."""
         recording = self._link.statistics.recording if self._link is not None else None
         if recording is None:
             return "decisions by hand are not kept, because nothing is recorded: they hold until you quit"
         return keep_by_hand(recording, by_hand)
 
     def close(self) -> None:
-        """Stop listening. The recording is whole afterwards."""
+        """Close the link. The recording is complete afterwards."""
         if self._link is not None:
             self._connection.__exit__(None, None, None)
 
 
 def renewed(health: LinkHealth, link: LinkStatistics) -> LinkHealth:
-    """Return the health with newer counts of the link.
+    """Return the link's health with newer statistics.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def _figures(link: LinkStatistics, read_to_s: float) -> tuple[tuple[str, str], .
 
 
 def recording_line(link: LinkStatistics) -> str:
-    """Return the size of the recording and the free disk: ``REC 3.2 MB, 41 GB free``."""
+    """Return the size of the recording and the free disk space: ``REC 3.2 MB, 41 GB free``."""
     if link.recording is None:
         return "NOT RECORDED"
     size = f"{link.recorded_bytes / 1e6:.1f} MB"

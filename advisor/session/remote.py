@@ -22,7 +22,7 @@ from advisor.session.live import renewed
 from advisor.session.source import LinkHealth, Source
 
 Request = tuple[str, tuple[object, ...]]
-"""Name of a method of `Conducting`, and its arguments."""
+"""Request to the conductor: the name of a method of `Conducting`, and its arguments."""
 
 _ENOUGH: Request = ("", ())
 """Empty request, which ends the thread that sends requests to the other process."""
@@ -30,24 +30,25 @@ _ENOUGH: Request = ("", ())
 
 @dataclass(frozen=True, slots=True)
 class ConductorTask:
-    """Task of a conductor. The other process uses the task, so that all of it must be picklable."""
+    """Task of a conductor in another process. All fields of the task must be picklable, because another
+    process uses them."""
 
     open_source: Callable[[], Source]
     make_campaign: Callable[[ByHand], CampaignLike]
     by_hand: ByHand = NOTHING
-    """Earlier decisions by hand."""
+    """Earlier decisions by hand of the engineer."""
     kept: Callable[[], ByHand] | None = None
     """Function that reads the decisions by hand since the start. None: the source cannot be read again from
     its beginning."""
     door: Door | None = None
-    """Address of the link's process, which tells the link's health without delay. None: no process keeps a
-    link."""
+    """Address of the link's process, from which the link's health comes without delay. None: the source has
+    no process for a link."""
     first: SessionReport | None = None
-    """Report that stands until the other process sends one. None: nothing is told before."""
+    """Report that is shown until the other process sends one. None: no report is shown before."""
 
 
 class RemoteConductor(AskedElsewhere):
-    """A `Conducting` that passes requests to another process, and reports back from it.
+    """A `Conducting` that sends requests to another process, and receives its reports.
 
     Where the source can be read again from its beginning, the death of the other process ends nothing. The
     process is restarted, and the last report stands until the new process has caught up. A process that hangs
@@ -71,12 +72,12 @@ class RemoteConductor(AskedElsewhere):
         self._lock = Lock()
         self._link: LinkStatistics | None = None
         self._age_s = 0.0
-        """Age of the last report, s, while the estimating process does not answer; else 0."""
+        """Age of the last report, s, if the estimating process does not answer; else 0."""
         self._behind = BehindTeller()
         self._observer: LinkObserver | None = None
 
     def run(self, tell: Tell) -> None:
-        """Start the process and take its reports until it ends.
+        """Start the process and receive its reports until it ends.
 
         Raises
         ------
@@ -96,11 +97,11 @@ class RemoteConductor(AskedElsewhere):
             self._watch.hurry()
 
     def ask(self, name: str, *arguments: object) -> None:
-        """Pass a request on, once a process takes it."""
+        """Send a request when a process can receive it."""
         self._requests.put((name, arguments))
 
     def _conduct_to_the_end(self, tell: Tell) -> None:
-        """Run one process after another until one comes to its end."""
+        """Run one process after another until one finishes its work."""
         while (ended := self._conduct(tell))[0]:
             if self._stopped.is_set():
                 return
@@ -137,8 +138,8 @@ class RemoteConductor(AskedElsewhere):
         return code, watch
 
     def _pass_on(self, pipe: IO[bytes]) -> None:
-        """Send the task, then every request. A request that a process has not taken waits for the next
-        process."""
+        """Send the task to the process, then every request. A request that no process has received waits for
+        the next process."""
         request = _ENOUGH
         with suppress(BrokenPipeError, ValueError):
             pickle.dump(self._task, pipe)
@@ -150,7 +151,7 @@ class RemoteConductor(AskedElsewhere):
             self._requests.put(request)
 
     def _keep_what_is_asked(self) -> None:
-        """Remove the requests meant for the thread that has ended."""
+        """Remove the requests to the thread that has ended."""
         waiting = []
         with suppress(Empty):
             while True:
@@ -176,7 +177,7 @@ class RemoteConductor(AskedElsewhere):
                     watch.rest()
 
     def _tell(self, report: SessionReport, tell: Tell) -> None:
-        """Pass on a report. While a process catches up, pass on only the health of the link."""
+        """Report the state to the screens. During a catch-up only the health of the link is reported."""
         if self._deaths:
             report = replace(report, log=(*report.log, *self._deaths))
             if self._last is not None and report.health.condition == "waiting":
@@ -185,12 +186,12 @@ class RemoteConductor(AskedElsewhere):
         self._tell_last(tell)
 
     def _hear_link(self, tell: Tell, link: LinkStatistics) -> None:
-        """Pass on the last report with the health of the link at this moment."""
+        """Report the last state with the health of the link at this moment."""
         self._link = link
         self._tell_last(tell)
 
     def _tell_last(self, tell: Tell) -> None:
-        """Pass on the last report with the newest health of the link, its backlog or its age."""
+        """Report the last state with the newest health of the link, its backlog or its age."""
         with self._lock:
             report = self._last
             if report is None:

@@ -1,4 +1,4 @@
-"""Logs played like a flight: paused, stepped, sped up, always in the order of arrival."""
+"""Logs that are replayed like a flight: paused, stepped, at any speed, in the order of arrival."""
 
 from collections.abc import Callable, Sequence
 from math import inf
@@ -67,7 +67,7 @@ class LogPlayer:
         self._changed = Event()
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
-        """Return the next stretch of the log when its time has come, see `Source.read`."""
+        """Return the next part of the log when its time has come, see `Source.read`."""
         if self._timeline is None:
             self._timeline = Timeline(self._load())
             self._notices = self._said()
@@ -95,7 +95,7 @@ class LogPlayer:
         return self._timeline.up_to(self._position_s)
 
     def health(self) -> LinkHealth:
-        """Return the state of the log, which can only be playing or over."""
+        """Return the state of the log: playing or ended."""
         timeline = self._timeline
         if timeline is None:
             return LinkHealth("waiting", f"Reading {self._title}.")
@@ -110,7 +110,7 @@ class LogPlayer:
         return Playback(self._position_s, duration_s, self._hurrying)
 
     def play(self, tempo: Tempo) -> None:
-        """Pause, continue, or change the speed."""
+        """Pause or continue the replay, or change its speed."""
         self._tempo = tempo
         self._changed.set()
 
@@ -130,19 +130,19 @@ class LogPlayer:
             self._timeline.rewind()
 
     def take_notices(self) -> Sequence[str]:
-        """Return sentences on the logs after loading. A file gives no later notices."""
+        """Return sentences on the logs after loading. A log file gives no later notices."""
         notices, self._notices = self._notices, ()
         return notices
 
     def order(self, order: LinkRequest) -> None:
-        """Do nothing, because the vehicle of a log cannot be asked."""
+        """Do nothing, because the vehicle of a log cannot receive requests."""
 
     def keep(self, by_hand: ByHand) -> str:
-        """Keep each decision next to its log."""
+        """Store each decision by hand next to its log."""
         if not self._keep_beside:
             return "decisions by hand are not kept: they hold until you quit"
         before, self._kept = self._kept, by_hand
         return keep_on_all(self._keep_beside, before, by_hand)
 
     def close(self) -> None:
-        """Do nothing, because a log holds nothing open."""
+        """Do nothing, because a replay keeps no file open."""

@@ -14,7 +14,7 @@ from advisor.session.source import LinkHealth, LinkRequest, Source
 from advisor.session.timeline import Timeline
 
 STRETCH_S = 30.0
-"""Longest stretch of an earlier flight in one batch, s. An autopilot's own log comes as a whole, and its
+"""Longest part of an earlier flight in one batch, s. An autopilot's own log comes as a whole, and its
 campaign would not report for minutes."""
 
 
@@ -34,7 +34,7 @@ class ResumedSource:
     logs
         Logs of earlier flights, the oldest first, only read.
     link
-        Link to the flight in the air.
+        Link to the vehicle in flight.
     """
 
     def __init__(self, logs: Sequence[Path], link: Source) -> None:
@@ -45,7 +45,7 @@ class ResumedSource:
         self._notices: list[str] = []
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
-        """Return the next batch, those of the earlier flights first.
+        """Return the next batch, beginning with the earlier flights.
 
         Raises
         ------
@@ -62,7 +62,7 @@ class ResumedSource:
         return columns if columns is None else of_flight(columns, len(self._series.logs))
 
     def health(self) -> LinkHealth:
-        """Return the state of the data's arrival."""
+        """Return the state of the arriving data."""
         if self._past is not None:
             return LinkHealth("waiting", "The earlier flights are being read.")
         return self._link.health()
@@ -73,16 +73,16 @@ class ResumedSource:
         return [*notices, *self._link.take_notices()]
 
     def order(self, order: LinkRequest) -> None:
-        """Pass on a crew's request to the link."""
+        """Send a crew's request to the link."""
         self._link.order(order)
 
     def keep(self, by_hand: ByHand) -> str:
-        """Keep each decision next to its log or recording."""
+        """Store each decision by hand next to its log or recording."""
         before, self._kept = self._kept, by_hand
         said = keep_on_all(self._series.logs, before, by_hand)
         newest = self._link.keep(by_hand.on_flight(len(self._series.logs)))
         return "; ".join(filter(None, (said, newest)))
 
     def close(self) -> None:
-        """Release the link."""
+        """Close the link."""
         self._link.close()

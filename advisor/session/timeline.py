@@ -1,4 +1,4 @@
-"""The messages of a log on the time scale of its replay, and the goals to which a replay hurries."""
+"""The messages of a log by replay time, and the goals of a fast replay."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,16 +9,17 @@ from advisor.campaign.state import CampaignState
 from advisor.flight.signals.messages import Columns, IntArray, cut
 
 LONGEST_SILENCE_S = 2.0
-"""Longest replay time of a silence in a log, or of a leap of its clock, s."""
+"""Longest replay time of a silence in a log, or of a jump of its clock, s."""
 
 
 class Timeline:
-    """Columns cut into stretches of replay time. Each message is delivered once and in order.
+    """Columns of a log, divided into parts by replay time. Each message is delivered once and in order.
 
     Parameters
     ----------
     columns : sequence of Columns
-        One whole log, or several logs, flight after flight. One message type may come in several pieces.
+        One complete log, or several logs in the order of the flights. One message type may come in several
+        pieces.
     """
 
     def __init__(self, columns: Sequence[Columns]) -> None:
@@ -38,7 +39,7 @@ class Timeline:
 
     @property
     def duration_s(self) -> float:
-        """Replay time of the last message."""
+        """Replay time of the last message, s."""
         return float(self._played_s[-1]) if len(self) else 0.0
 
     def up_to(self, position_s: float) -> list[Columns]:
@@ -80,11 +81,11 @@ class Goal:
 
     number: int
     start: tuple[int, int, float] | None
-    """Flight, power-on and vehicle time of the first step, where the manoeuvre was judged before. None: the
-    beginning lies ahead."""
+    """Flight, power-on and vehicle time of the first step, if the manoeuvre was judged before. None: the
+    start of the manoeuvre is still to come."""
 
     def reached(self, state: CampaignState, position_s: float = 0.0) -> bool:
-        """Return whether the replay has reached the goal, or passed it."""
+        """Return whether the replay has reached or passed the goal."""
         done = len(state.maneuvers)
         if done >= self.number:
             return True
@@ -95,16 +96,17 @@ class Goal:
 
 @dataclass(frozen=True, slots=True)
 class DataBegin:
-    """The moment at which the data of a log can serve. Many logs begin with slow streams or parameters."""
+    """The moment at which the data of a log become sufficient. Many logs begin with slow streams or
+    parameters."""
 
     def reached(self, state: CampaignState, position_s: float = 0.0) -> bool:
-        """Return whether the present data can serve."""
+        """Return whether the present data are sufficient."""
         return state.serves
 
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """A position of the replay, s since the first record with silences shortened."""
+    """A position of the replay, in s since the first record, with silences shortened."""
 
     position_s: float
 

@@ -1,4 +1,4 @@
-"""State of one moment for the panes: the elevator's axis, or roll and yaw in its place."""
+"""State of one moment for the panes, of the elevator's axis or of roll and yaw."""
 
 from dataclasses import dataclass, replace
 from math import nan
@@ -16,7 +16,7 @@ from advisor.words.problems import Problem
 
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
-    """Campaign, link, replay, and the manoeuvre that an engineer looks at."""
+    """Campaign, link, replay, and the manoeuvre that the engineer has selected."""
 
     state: CampaignState
     health: LinkHealth
@@ -24,33 +24,34 @@ class View:
     """Position of a replay. None on a live link, and before the log is read."""
     aircraft: Aircraft
     title: str
-    """Name of the source."""
+    """Name of the source: of the log or the link."""
     tempo: Tempo | None = None
     """Tempo of a replay: its speed, and whether it is paused. None on a live link."""
     log: tuple[str, ...] = ()
     """Sentences of the event log, oldest first."""
     problems: tuple[Problem, ...] = ()
-    """Reasons for which nothing can be judged of the whole stream, while nothing has been judged."""
+    """Reasons for which the complete stream cannot be judged, until the first manoeuvre is judged."""
     selected: int | None = None
-    """Number of the manoeuvre chosen by hand; None: always the newest."""
+    """Number of the manoeuvre selected by hand; None: always the newest."""
     logs: tuple[Path, ...] = ()
-    """Logs and recordings, flight by flight, next to which files are written. Empty: the current folder."""
+    """Logs and recordings, by flight, next to which files are written. Empty: the current folder."""
     aircraft_file: Path | None = None
-    """Aircraft file, for commands to type afterwards; None without one."""
+    """Path of the aircraft file, for commands that the user types afterwards; None without a file."""
     elevator: "View | None" = None
-    """View of the elevator's axis, where this one shows roll and yaw. None: this view shows the elevator's
+    """View of the elevator's axis, if this view shows roll and yaw. None: this view shows the elevator's
     axis."""
 
     @property
     def obstacles(self) -> tuple[Problem, ...]:
-        """Reasons for which nothing can be judged: of present data, and finally of the whole stream."""
+        """Reasons for which nothing can be judged: from the present data, and at the end from the complete
+        stream."""
         found = self.problems if self.health.condition == "ended" else self.state.no_data
         wrong = (f.problem for f in self.state.instruments if f.refuses)
         return tuple({p.code: p for p in (*found, *wrong)}.values())
 
     @property
     def plan(self) -> CrewPlan | None:
-        """Plan of both axes, whichever axis is shown; None where only one of them has been flown."""
+        """Plan of both axes, whichever axis is shown; None if only one axis has been flown."""
         return (self.elevator or self).state.plan
 
     @property
@@ -81,7 +82,7 @@ def view_before_first(
 
 
 def report_before_first(aircraft: Aircraft, title: str) -> SessionReport:
-    """Return the report that stands before the first one: nothing flown, nothing heard."""
+    """Return the report before the first one: without manoeuvres and without messages."""
     plan = aircraft.campaign
     limit = limit_percent(plan.rule, plan)
     verdict = FlightTestVerdict(plan.rule, "continue", "No manoeuvre has been flown yet.", None, limit, None)
@@ -99,7 +100,8 @@ def report_before_first(aircraft: Aircraft, title: str) -> SessionReport:
 
 
 class SideView:
-    """Views of roll and yaw. The parts of a view stay identical objects until a manoeuvre is judged."""
+    """Views of roll and yaw, made from those of the elevator's axis. The parts of a view remain identical
+    objects until a manoeuvre is judged."""
 
     def __init__(self) -> None:
         self._of: LateralState | None = None
@@ -120,7 +122,7 @@ class SideView:
 
 
 _IN_THE_AIR: dict[str, Any] = {"flying": None, "settling": None, "readable": False, "enough": None}
-"""State of a manoeuvre that is being flown, which is followed for the elevator alone."""
+"""Empty state of the current manoeuvre, which is estimated for the elevator only."""
 
 
 def _parts(lateral: LateralState) -> dict[str, Any]:

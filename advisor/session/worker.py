@@ -29,13 +29,13 @@ class Reporter:
         self._last = report
 
     def send(self, message: object) -> None:
-        """Write a message at once."""
+        """Write a message immediately."""
         pickle.dump(message, self._pipe, pickle.HIGHEST_PROTOCOL)
         self._pipe.flush()
 
 
 def serve(conductor: Conductor, requests: IO[bytes]) -> None:
-    """Carry out requests, and stop when nobody can send any more."""
+    """Carry out requests, and stop when no process can send any more."""
     with suppress(EOFError):
         while True:
             name, arguments = pickle.load(requests)
@@ -44,7 +44,7 @@ def serve(conductor: Conductor, requests: IO[bytes]) -> None:
 
 
 def main() -> None:
-    """Conduct one campaign from its task to its end. An error that ends the campaign is the last message."""
+    """Run one campaign from its task to its end. An error that ends the campaign is the last message."""
     # A signal is for the screens, which then stop this process in order.
     interrupt.ignore()
     # Closed at the end, after which the other side closes the requests and ``serve`` returns.

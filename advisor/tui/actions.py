@@ -1,4 +1,4 @@
-"""Keys of the application: decisions by hand about the present moment, a live link, and a replay."""
+"""Keys of the application: decisions by hand on the present moment, on a live link, and on a replay."""
 
 from abc import abstractmethod
 from dataclasses import replace
@@ -26,7 +26,7 @@ SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, inf)
 
 
 class _Actions(Base):
-    """Conductor, present moment and last line, which all actions use."""
+    """Conductor, present moment and last line of the screen, which all actions use."""
 
     conductor: Conducting
     view: View
@@ -37,7 +37,7 @@ class _Actions(Base):
 
 
 class HandActions(_Actions):
-    """Actions of the application that name a moment, or mark a manoeuvre from one moment to another."""
+    """Actions that name a moment, or mark a manoeuvre from one moment to another."""
 
     def action_mark(self) -> None:
         """Mark this moment in the event log."""
@@ -45,7 +45,7 @@ class HandActions(_Actions):
             self.screen.ask("Mark this moment as:", self._mark)
 
     def action_begin_maneuver(self) -> None:
-        """Begin a manoeuvre's mark at the present moment."""
+        """Begin the mark of a manoeuvre at the present moment."""
         if not isfinite(self.view.state.now_s):
             self.say("nothing can be marked before the vehicle's clock is heard")
             return
@@ -72,7 +72,7 @@ class LinkActions(_Actions):
     """Actions of the application that exist only on a live link."""
 
     def action_follow_another(self) -> None:
-        """Follow the next of the other vehicles, unless a manoeuvre of this one has been judged."""
+        """Read the next of the other vehicles, unless a manoeuvre of the present one has been judged."""
         state = self.view.state
         others = state.other_vehicles
         if not others:
@@ -124,7 +124,7 @@ class ReplayActions(_Actions):
         self._play(replace(self._tempo, speed=speed))
 
     def action_jump(self) -> None:
-        """Ask for a manoeuvre and go to its begin."""
+        """Ask for a manoeuvre's number and go to the manoeuvre's begin."""
         if isinstance(self.screen, Face):
             self.screen.ask("Jump to manoeuvre number:", lambda answer: self._jump(int(answer)), integer=True)
 
@@ -134,13 +134,14 @@ class ReplayActions(_Actions):
         self._jump(flown + step if step > 0 else flown)
 
     def action_seek_by(self, seconds: int) -> None:
-        """Go some seconds on or back."""
+        """Go forward or back by some seconds."""
         playback = self.view.playback
         if playback is not None:
             self.seek(playback.position_s + seconds)
 
     def go_to(self, at_s: float) -> None:
-        """Go to the begin of the manoeuvre of either axis at a time of this power-on, s; else to the time."""
+        """Go to the begin of the manoeuvre at a time of this power-on, s; without a manoeuvre, to the
+        time."""
         state, playback = self.view.state, self.view.playback
         if playback is None:
             return
@@ -152,20 +153,20 @@ class ReplayActions(_Actions):
         self.say(f"going to {clock(to_s)}")
 
     def seek(self, position_s: float) -> None:
-        """Go to a position of the replay, s. A position beyond an end is that end."""
+        """Go to a position of the replay, s. A position outside the replay becomes its nearest end."""
         duration_s = self.view.playback.duration_s if self.view.playback is not None else 0.0
         self.conductor.seek(min(max(position_s, 0.0), duration_s))
 
     @abstractmethod
     def show(self, view: View) -> None:
-        """Show another moment on the screens."""
+        """Show the state of another moment on the screens."""
 
     @property
     def _tempo(self) -> Tempo:
         return self.view.tempo or Tempo()
 
     def _play(self, tempo: Tempo) -> None:
-        """Show the tempo at once, however busy the conductor is."""
+        """Show the tempo immediately, even if the conductor is busy."""
         self.conductor.play(tempo)
         self.show(replace(self.view, tempo=tempo))
 

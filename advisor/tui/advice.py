@@ -1,4 +1,4 @@
-"""The pilot's one word, from the campaign's verdicts."""
+"""The pilot's one word of advice, from the campaign's verdicts."""
 
 import re
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ Tone = Literal["good", "warn", "bad", "quiet"]
 
 @dataclass(frozen=True, slots=True)
 class Advice:
-    """Word and sentence for the pilot, with their urgency."""
+    """Word and sentence of advice for the pilot, with their urgency."""
 
     word: Word
     sentence: str
@@ -51,7 +51,8 @@ def advise(view: View) -> Advice:
 
 
 def _another(view: View) -> str:
-    """Return a sentence on other vehicles that a key can follow; empty once this one flew and in replays."""
+    """Return a sentence on other vehicles that a key can select; empty once this vehicle has flown and in
+    replays."""
     others = view.state.other_vehicles
     if not others or view.state.maneuvers or view.tempo is not None:
         return ""
@@ -59,7 +60,8 @@ def _another(view: View) -> str:
 
 
 def _elevator(view: View) -> str:
-    """Return a sentence on the keys that choose the elevator's output, where it is missing on a live link."""
+    """Return a sentence on the keys that choose the elevator's output, if the output is unknown on a live
+    link."""
     if view.obstacles[0].code != "no_elevator" or view.tempo is not None:
         return ""
     guess = view.state.elevator_guess
@@ -71,5 +73,5 @@ def _elevator(view: View) -> str:
 
 
 def without_word(sentence: str) -> str:
-    """Return a verdict's sentence without its first word, which stands in large letters already."""
+    """Return a verdict's sentence without its first word, which is already shown in large letters."""
     return re.sub(r"^[A-Z ]+: ", "", sentence)

@@ -38,10 +38,10 @@ from advisor.words.problems import UnusableInputError
 _TWICE_WITHIN_S = 3.0
 _AT_ONCE_S = 0.001
 _BREATH_S, _QUIET_S = 0.02, 0.5
-"""Delays after the answer to a key, and without any key, before work that would hold up a key, s."""
+"""Delays after the answer to a key, and without any key, before work that would delay a key, s."""
 
 _ANSWER_S = 0.03
-"""Delay of reports behind a key, s, so that the key's answer is painted before the reports' changes."""
+"""Delay of reports after a key, s, so that the key's answer is painted before the reports' changes."""
 
 
 class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
@@ -106,15 +106,16 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
         self.view = view_before_first(aircraft, title, tempo, tuple(logs), aircraft_file)
         self.conductor = conductor
         self.failure: BaseException | None = None
-        """Error for the caller: the thread's failure, or the reason for which the input could not be used."""
+        """Error for the caller: the thread's failure, or the reason for which the source could not be
+        used."""
         self._leaving_s = self._pressed_s = -inf
         self._report: SessionReport | None = None
-        """Newest report, while it waits."""
+        """Newest report that is not shown yet."""
         self._garbage = Garbage()
         self._side: SideView | None = None
         """Views of roll and yaw, while that axis is shown."""
         self._axis_chosen = False
-        """Whether the axis that is shown is settled: by a key, or by the first manoeuvre."""
+        """Whether the shown axis was chosen, by a key or by the first manoeuvre."""
         self._sheets = Sheets(THEMES)
         self._voice = Voice()
         self._sound = Sound(self.bell, self._speak)
@@ -142,24 +143,24 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
         self._garbage.end()
 
     async def on_event(self, event: Event) -> None:
-        """Answer a key. The moment after the answer is the best time for tidying up."""
+        """Answer a key. The moment after the answer is the best time for garbage collection."""
         await super().on_event(event)
         if isinstance(event, Key):
             self._pressed_s = monotonic()
             self.call_after_refresh(self.set_timer, _BREATH_S, self._tidy)
 
     def _tidy_if_quiet(self) -> None:
-        """Tidy up when no key is being answered."""
+        """Collect garbage when no key is being answered."""
         if monotonic() - self._pressed_s > _QUIET_S:
             self._tidy()
 
     def _tidy(self) -> None:
-        """Do one piece of the work that would hold up a key."""
+        """Do one piece of the work that would delay a key."""
         if not self._sheets.prepare(self.stylesheet):
             self._garbage.collect_if_due()
 
     def on_advisor_app_told(self, event: Told) -> None:
-        """Show the newest report, after a key's answer where one is due."""
+        """Show the newest report, after a key's answer if one is pending."""
         waiting, self._report = self._report is not None, event.report
         due_s = self._pressed_s + _ANSWER_S - monotonic()
         if due_s <= 0.0:
@@ -197,7 +198,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
             self.refresh_bindings()
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
-        """Leave when the input is found unusable. The caller prints the reason."""
+        """Leave when the source is found unusable. The caller prints the reason."""
         if event.state is WorkerState.ERROR:
             self.failure = event.worker.error
             self.exit()
@@ -207,11 +208,11 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
         self.seek(event.position_s)
 
     def on_whole_flight_pane_sought(self, event: WholeFlightPane.Sought) -> None:
-        """Go to what is pointed at."""
+        """Go to the time that the user has clicked."""
         self.go_to(event.at_s)
 
     def on_face_decided(self, event: Face.Decided) -> None:
-        """Pass a decision to the campaign."""
+        """Send a decision to the campaign."""
         self.conductor.decide(event.decision)
 
     def show(self, view: View) -> None:
@@ -224,14 +225,14 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
                 screen.show(shown)
 
     def say(self, text: str, seconds: float = 3.0) -> None:
-        """Show a text on the last line of the screen, for a while; over a dialog, next to it."""
+        """Show a text on the last line of the screen for a while, or next to an open dialog."""
         if isinstance(self.screen, Face):
             self.screen.say(text, seconds)
         else:
             self.notify(text, timeout=seconds, markup=False)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer the replay's actions only in a replay, the link's only on a link."""
+        """Allow the replay's actions only in a replay, and the link's actions only on a link."""
         if self._side is not None and action in ("jump", "jump_by"):
             return False
         only_elsewhere = LINK_ACTIONS if self.view.tempo is not None else REPLAY_ACTIONS
@@ -250,7 +251,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
         self.show(self.view)
 
     def action_other_axis(self) -> None:
-        """Show roll and yaw in the place of the elevator's axis, or the elevator's axis again."""
+        """Show roll and yaw instead of the elevator's axis, or the elevator's axis again."""
         self._axis_chosen = True
         self._side = SideView() if self._side is None else None
         self.show(self.view)
@@ -258,7 +259,8 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
         self.say("axis: elevator" if self._side is None else "axis: roll and yaw")
 
     def delay_update(self, delay: float = _AT_ONCE_S) -> None:
-        """Paint at once. Textual would hide transitions for 50 ms, and mounted screens have none."""
+        """Paint the screen immediately. Textual would hide transitions for 50 ms, and mounted screens have
+        none."""
         super().delay_update(_AT_ONCE_S)
 
     def refresh_css(self, animate: bool = True) -> None:
@@ -274,7 +276,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
         self.say(f"theme: {theme}")
 
     def _speak(self, text: str) -> None:
-        """Speak, unless the viewer sits at a browser: the voice would speak at the server."""
+        """Speak a text, except for a viewer in a browser, whose voice would sound at the server."""
         if not self.is_web:
             self._voice(text)
 
@@ -292,11 +294,11 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
         self.action_leave()
 
     def action_help_quit(self) -> None:
-        """Quit by ctrl+c as well, which Textual only explains."""
+        """Quit by ctrl+c too, which Textual only explains."""
         self.action_leave()
 
     def action_leave(self) -> None:
-        """Quit; on a live link only after a second request."""
+        """Quit the application; on a live link only after a second request."""
         over = self.view.tempo is not None or self.view.health.condition == "ended"
         if over or monotonic() - self._leaving_s < _TWICE_WITHIN_S:
             self.exit()

@@ -28,7 +28,7 @@ _LETTERS = {
 }
 
 _SCALES = ((4, 3), (4, 2), (3, 2), (2, 2), (2, 1), (1, 1))
-"""Cells across and down for each dot, the largest first."""
+"""Columns and rows of the terminal for each dot of a letter, the largest first."""
 
 
 def block_letters(word: str, width: int, height: int) -> str:
@@ -37,7 +37,7 @@ def block_letters(word: str, width: int, height: int) -> str:
     Raises
     ------
     KeyError
-        A letter of the word has no drawing.
+        The word contains a letter without a drawing.
     """
     for across, down in _SCALES:
         for gap in ("  ", " "):

@@ -22,12 +22,13 @@ class KeyAtHand:
     shown: str
     does: str
     name: str
-    """Name of the action in the settings."""
+    """Name of the key's action in the settings."""
     run: Callable[[], Awaitable[Any]]
 
 
 def keys_at_hand(app: App[None], screen: Screen[Any] | None = None) -> list[KeyAtHand]:
-    """Return the keys of the table in `advisor.tui.keys` that are active on a screen. None: the newest."""
+    """Return the keys of the table in `advisor.tui.keys` that are active on a screen. Screen of the keys;
+    None: the newest."""
     return [
         KeyAtHand(
             app.get_key_display(active.binding),

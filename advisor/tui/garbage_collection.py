@@ -1,4 +1,4 @@
-"""Garbage collection while nobody waits.
+"""Garbage collection at times without a pending key.
 
 Python collects whenever enough objects were made, most often while a key is being answered. Every few
 milliseconds it examines the newest objects. Now and then it examines all objects, which delays everything by
@@ -8,22 +8,23 @@ milliseconds it examines the newest objects. Now and then it examines all object
 import gc
 
 _LOT = 5_000
-"""Number of new objects that is worth a collection of one millisecond. Repainting a large screen makes five
-times as many."""
+"""Number of new objects that justifies a collection of one millisecond. Painting a large screen makes five
+times as many objects."""
 _LOTS = 5
 """Number of collections after which their survivors are examined with all other objects."""
 
 
 class Garbage:
-    """Runs collections at times when nobody waits, in place of Python's own."""
+    """Runs garbage collections at times without a pending key, instead of Python's own."""
 
     def begin(self) -> None:
-        """Take over from Python. Objects imported so far stay alive and are never examined."""
+        """Stop Python's own garbage collection. Objects that were imported before stay alive and are never
+        examined."""
         gc.freeze()
         gc.disable()
 
     def end(self) -> None:
-        """Give control back to Python."""
+        """Start Python's own garbage collection again."""
         gc.enable()
         gc.unfreeze()
 

@@ -28,7 +28,8 @@ class Settings:
     sound: bool = True
     """Whether a bell rings and the system's voice speaks at each verdict."""
     keys: Mapping[str, str] = field(default_factory=dict)
-    """Action to its key, or to keys with commas between. ``?`` on a screen lists the actions."""
+    """Keys of each action, by the action's name; several keys are separated by commas. ``?`` on a screen
+    lists the actions."""
 
 
 def settings_path() -> Path:

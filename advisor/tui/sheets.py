@@ -1,6 +1,6 @@
 """One style sheet for each theme, parsed once.
 
-Textual parses all styles anew whenever the theme changes, and again when the next kind of widget appears.
+Textual parses all styles again whenever the theme changes, and when a new kind of widget appears.
 """
 
 from collections.abc import Sequence
@@ -17,13 +17,13 @@ class Sheet(Stylesheet):
         self._parsed_with = variables
 
     def set_variables(self, variables: dict[str, str]) -> None:
-        """Take variables. Only changed variables need new rules."""
+        """Set the variables of the style sheet. Only changed variables need new rules."""
         if variables != self._parsed_with:
             self._parsed_with = variables
             super().set_variables(variables)
 
     def reparse(self) -> None:
-        """Parse the new parts."""
+        """Parse the new parts of the style sheet."""
         self.parse()
 
 
@@ -40,14 +40,14 @@ class Sheets:
         self._sheets = {theme.name: Sheet(_variables(theme)) for theme in themes}
 
     def of(self, theme: str, now: Stylesheet) -> Sheet:
-        """Return a theme's sheet, with everything that the present sheet has read, in equal order."""
+        """Return the sheet of a theme, with everything that the present sheet has read, in equal order."""
         sheet = self._sheets[theme]
         for place, source in now.source.items():
             sheet.add_source(source.content, place, source.is_defaults, source.tie_breaker, source.scope)
         return sheet
 
     def prepare(self, now: Stylesheet) -> bool:
-        """Parse one incomplete sheet; return False where there is none."""
+        """Parse one incomplete sheet; return False if all sheets are complete."""
         lacking = (name for name, sheet in self._sheets.items() if sheet.source.keys() != now.source.keys())
         theme = next(lacking, None)
         if theme is not None:

@@ -13,7 +13,7 @@ _PROGRAMS = ("spd-say", "espeak-ng", "espeak", "say")
 
 
 class Voice:
-    """Speaks with the system's own program; silent where there is none."""
+    """Speaks with the system's own program; silent without such a program."""
 
     def __init__(self) -> None:
         self._program = next(filter(None, map(shutil.which, _PROGRAMS)), None)
@@ -29,7 +29,7 @@ class Voice:
 class Sound:
     """Rings and speaks when a manoeuvre is judged, or when the pilot's word changes.
 
-    A replay that is faster than the flight stays silent.
+    A replay that is faster than real time stays silent.
     """
 
     def __init__(self, ring: Callable[[], object], speak: Callable[[str], object]) -> None:
@@ -38,7 +38,7 @@ class Sound:
         self._last: tuple[bool, int, str] | None = None
 
     def hear(self, view: View) -> None:
-        """Compare a moment with the last one."""
+        """Compare the state of a moment with the last one, and sound after a change."""
         now = view.elevator is None, len(view.state.maneuvers), advise(view).word
         last, self._last = self._last, now
         if last is None or last[0] != now[0] or last == now or not self.on or _hurries(view):

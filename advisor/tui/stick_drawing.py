@@ -7,7 +7,7 @@ from textwrap import fill
 from advisor.decision.verdict import NextInput
 
 _UNIT_COLUMNS = 6
-"""Columns of the shortest step, which holds its duration: ``0.4 s``."""
+"""Columns of the shortest step, enough for its duration: ``0.4 s``."""
 _LEAD = 3
 """Columns of the drawing at trim, before the first step and after the last."""
 _PULL, _TRIM, _PUSH = 0, 1, 2
@@ -15,11 +15,11 @@ _LEVELS = (_PULL, _TRIM, _PUSH)
 _SIDE_COLUMNS = 6
 _LABEL = "next        "
 SIDES = {"elevator": ("pull", "push"), "aileron": ("right", "left"), "rudder": ("right", "left")}
-"""Control to the names of both directions: above trim in the drawing, and below."""
+"""Names of both directions of each control, by the control's name: above trim in the drawing, and below."""
 
 
 def drawn(advised: NextInput, width: int, *, large: bool) -> str:
-    """Return the advice, and the drawing of the input that the advice names."""
+    """Return the advice, and the drawing of the advised input."""
     words = f"{_LABEL}{advised.advice.removeprefix('next: ')}"
     flown = advised.input
     if flown is None:

@@ -1,4 +1,4 @@
-"""Pictures of a terminal as SVG that looks alike on every machine."""
+"""SVG pictures of a terminal that look equal on every machine."""
 
 import io
 import re
@@ -23,7 +23,7 @@ _RUNS = re.compile(
 
 
 def drawn(svg: str) -> str:
-    """Draw dots and blocks as shapes and remove fonts: the picture looks alike on every machine."""
+    """Draw dots and blocks as shapes and remove fonts, so that the picture is equal on every machine."""
     return _TEXT.sub(_shapes, _FONTS.sub("", svg))
 
 
@@ -68,7 +68,7 @@ def picture_of(strips: Sequence[Strip], width: int, title: str) -> str:
     width
         Cells of the widest line.
     title
-        Title over the picture.
+        Title above the picture.
     """
     console = Console(
         width=width,

@@ -9,7 +9,7 @@ from math import isfinite
 from advisor.tui.plot.chart import Chart
 
 _DIGITS = 7
-"""Significant digits of a number, as many as a log keeps (float32)."""
+"""Significant digits of a number in a table, as many as a log stores (float32)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +20,7 @@ class TableRows:
     rows: tuple[tuple[object, ...], ...]
 
     def csv(self) -> str:
-        """Write a header line and one line for each row. An unknown number is an empty field."""
+        """Write a header line and one line for each row. An unknown number becomes an empty field."""
         text = StringIO()
         lines = csv.writer(text, lineterminator="\n")
         lines.writerow(self.header)

@@ -1,4 +1,4 @@
-"""A pane as text for the clipboard, and as files in the folder of the log."""
+"""A pane as text for the clipboard, and as files in the log's folder."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from advisor.tui.svg import picture_of
 from advisor.words.printable import printable
 
 WITHOUT_LOG = Path("advisor")
-"""Name that replaces the log's where nothing is recorded. Files then go into the current folder."""
+"""Name that replaces the log's name without a recording. Such files are written into the current folder."""
 
 
 def pane_name(pane: Pane, view: View) -> str:
@@ -25,7 +25,7 @@ def pane_name(pane: Pane, view: View) -> str:
 
 
 def log_of(pane: Pane, view: View) -> Path:
-    """Return the log that names the files: that of the selected manoeuvre, else the newest.
+    """Return the log that names the files: that of the selected manoeuvre, else the newest log.
 
     A page in a browser knows the log of a replay by the title alone.
     """
@@ -49,7 +49,7 @@ def files_of(pane: Pane, view: View) -> dict[str, str]:
 def save(pane: Pane, view: View) -> str:
     """Write the files of a pane into the folder of the log; return a sentence on the place or failure.
 
-    A file of an earlier save is replaced. A file that is half written never has the final name.
+    A file from an earlier save is replaced. A file that is half written never has the final name.
     """
     folder, files = log_of(pane, view).parent, files_of(pane, view)
     names = " and ".join(map(printable, files))
@@ -76,7 +76,7 @@ def picture_of_plots(pane: Pane, title: str) -> str:
 
 
 def _joined(plots: list[Plot], y: int, around: Region, paper: Style) -> Strip:
-    """Join one line of the plots that stand side by side."""
+    """Join one line of plots that are side by side."""
     pieces, x = [], around.x
     for plot in plots:
         pieces += [Strip.blank(plot.region.x - x, paper), plot.render_line(y - plot.region.y)]

@@ -1,4 +1,4 @@
-"""A question with one line of answer, at the foot of its screen."""
+"""A question with a one-line answer, at the foot of its screen."""
 
 from collections.abc import Callable
 from typing import ClassVar
@@ -11,7 +11,7 @@ from textual.widgets import Input, Label
 
 
 class Ask(Horizontal):
-    """Asks for a reason, a note or a number. Escape leaves everything unchanged.
+    """Asks for a reason, a note or a number. The Escape key leaves everything unchanged.
 
     The widget is a line and no dialog, so that the subject of the question stays visible.
     """
@@ -51,7 +51,7 @@ class Ask(Horizontal):
         answer.focus()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Pass the answer on."""
+        """Send the answer to the function that waits for it."""
         event.stop()
         answer = event.value.strip()
         if answer and (event.validation_result is None or event.validation_result.is_valid):
@@ -59,6 +59,6 @@ class Ask(Horizontal):
             self._answered(answer)
 
     def action_leave(self) -> None:
-        """Close the question and give the keys back."""
+        """Close the question, and return the keys to the screen."""
         self.screen.set_focus(self._focused_before)
         self.remove_class("-open")

@@ -1,4 +1,4 @@
-"""CONTINUE, REPEAT or TEST COMPLETE, readable at arm's length."""
+"""The pilot's word CONTINUE, REPEAT or TEST COMPLETE, readable at arm's length."""
 
 from textual.events import Resize
 
@@ -11,7 +11,7 @@ TONES = ("good", "warn", "bad", "quiet")
 
 
 class BigWord(Part, Lines):
-    """One word in block letters."""
+    """The pilot's word of advice in block letters."""
 
     EITHER_AXIS = True
 
@@ -20,7 +20,7 @@ class BigWord(Part, Lines):
         self.word = ""
 
     def show(self, view: View) -> None:
-        """Write the advice's word in its tone."""
+        """Write the word of advice in the colour of its urgency."""
         advice = advise(view)
         if advice.word == self.word:
             return
@@ -39,7 +39,7 @@ class BigWord(Part, Lines):
 
 
 class Why(Part, Lines):
-    """The sentence under the word."""
+    """The sentence of advice under the pilot's word."""
 
     EITHER_AXIS = True
 

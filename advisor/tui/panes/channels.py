@@ -11,7 +11,7 @@ from advisor.words.vehicle_time import clock
 
 
 def alpha_in_words(view: View) -> str:
-    """Return source and provenance of the angle of attack in one line."""
+    """Return the source of the angle of attack in one line."""
     alpha = view.state.channels.get("alpha")
     if alpha is None:
         return "no angle of attack heard yet"
@@ -19,7 +19,7 @@ def alpha_in_words(view: View) -> str:
 
 
 class Channels(Pane):
-    """Alpha's provenance, the channels with rate and gaps, link statistics."""
+    """Source of the angle of attack, rates and gaps of the channels, and link statistics."""
 
     TITLE = "7 Channels and link"
     SHORT = "7Cha"
@@ -38,7 +38,7 @@ gusts), or *simulated*. Then every channel with its source, its rate and its lon
             yield HangingLines("Nothing has arrived yet.", id="arriving")
 
     def show(self, view: View) -> None:
-        """Write the lists."""
+        """Write the lists of channels and link statistics."""
         health = view.health
         rows: list[Labelled] = [
             ("α  ", alpha_in_words(view)),

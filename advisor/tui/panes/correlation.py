@@ -20,12 +20,12 @@ from advisor.words.quantities import PARAMETERS
 
 _LABEL = 5
 _WIDE_CELL, _NARROW_CELL = 6, 5
-"""Cells for ``−0.97`` and for ``−.97``, with the space before them."""
+"""Columns for ``−0.97`` and for ``−.97``, including the space before them."""
 _STRONG = Style(reverse=True)
 
 
 class Correlation(Pane):
-    """One matrix: the joint estimate above the diagonal, the selected manoeuvre below."""
+    """Correlation matrix: the joint estimate above the diagonal, the selected manoeuvre below."""
 
     OF_ELEVATOR = True
     TITLE = "0 Correlation"
@@ -57,7 +57,7 @@ grow at the cost of the other. An input with other frequencies tells them apart.
         self._why = ""
 
     def show(self, view: View) -> None:
-        """Write the matrix when an estimate changed."""
+        """Write the correlation matrix after an estimate has changed."""
         judged = view.judged
         if judged is None:
             return
@@ -70,11 +70,11 @@ grow at the cost of the other. An input with other frequencies tells them apart.
         self._write()
 
     def on_resize(self, event: Resize) -> None:
-        """Leave the zero before the point away where there is little room."""
+        """Write correlations without the zero before the point if the pane is narrow."""
         self._write()
 
     def rows(self) -> TableRows | None:
-        """Give one row for each pair of parameters and each estimate."""
+        """Return one row for each pair of parameters and each estimate."""
         if self._number is None:
             return None
         rows: list[tuple[object, ...]] = []

@@ -17,7 +17,7 @@ from advisor.tui.table_rows import TableRows
 from advisor.words.quantities import PARAMETERS, SIDE_PARAMETERS
 
 _MANY = 4
-"""Plots that stand side by side without room for the name of their x axis."""
+"""Number of adjacent plots above which there is no room for the name of their x axis."""
 
 
 class Courses(Pane):
@@ -48,7 +48,7 @@ drifts shows an aircraft that changes.
         self._view: View | None = None
 
     def show(self, view: View) -> None:
-        """Draw all courses when an estimate changed."""
+        """Draw the history of all parameters after an estimate has changed."""
         if self.changed(view.state.maneuvers, view.state.model):
             self._view = view
             self._draw()
@@ -67,7 +67,7 @@ drifts shows an aircraft that changes.
             self.subtitle("├┤ ± 95 %  ── joint  ╌╌ simulator")
 
     def rows(self) -> TableRows:
-        """Give one row for each manoeuvre and parameter."""
+        """Return one row for each manoeuvre and parameter."""
         header = (
             "parameter",
             "unit",
@@ -88,7 +88,7 @@ drifts shows an aircraft that changes.
 
 
 def _small(chart: Chart, x_label: str, *, foot: bool) -> Chart:
-    """Remove the names that the frame of the pane gives for all plots."""
+    """Remove the names that the pane's frame shows for all plots."""
     series = tuple(replace(one, name="") for one in chart.series)
     levels = tuple(replace(one, name="") for one in chart.levels)
     return replace(chart, x_label=x_label, foot=foot, series=series, levels=levels)
@@ -100,19 +100,19 @@ _MARGIN = 0.5
 
 @dataclass(frozen=True, slots=True)
 class ParameterCourse:
-    """One parameter over the manoeuvres, and the values to hold against it, in the unit for people."""
+    """Estimates of one parameter over the manoeuvres, with values for comparison, in the unit for people."""
 
     parameter: str
     numbers: FloatArray
-    """Shape (n,), numbers of the manoeuvres that tell the parameter."""
+    """Shape (n,), numbers of the manoeuvres that determine the parameter."""
     value: FloatArray
-    """Shape (n,)."""
+    """Shape (n,), the parameter's value from each manoeuvre."""
     half: FloatArray
     """Shape (n,), half of each 95 % interval: 1.96 σ, corrected for coloured residuals."""
     model: float | None
-    """The joint estimate; None while there is none, or where it does not tell the parameter."""
+    """The parameter's joint estimate; None without an estimate of this parameter."""
     prior: float | None
-    """The aircraft file's value; None where it has none."""
+    """The parameter's value in the aircraft file; None without one."""
 
 
 def course(view: View | None, name: str) -> ParameterCourse:
@@ -135,7 +135,8 @@ def course(view: View | None, name: str) -> ParameterCourse:
 
 
 def history_chart(view: View | None, name: str) -> Chart:
-    """Draw each manoeuvre's value with its 95 % interval, and the joint estimate and the prior as levels."""
+    """Draw each manoeuvre's value with its 95 % interval, and the joint estimate and the file's value as
+    levels."""
     quantity, of = {**PARAMETERS, **SIDE_PARAMETERS}[name], course(view, name)
     if len(of.numbers) == 0:
         return Chart(quantity.label, "manoeuvre", why_empty="no manoeuvre has given an estimate of it yet.")

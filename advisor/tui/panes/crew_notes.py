@@ -1,4 +1,4 @@
-"""Further notes for a pilot: the manoeuvre in the air, a fault of the link, warnings for the engineer."""
+"""Notes for a pilot: the manoeuvre in flight, a fault of the link, warnings for the engineer."""
 
 from collections.abc import Iterator
 
@@ -8,7 +8,7 @@ from advisor.tui.panes.lines import HangingLines, Labelled, Part
 
 
 def flying_in_words(view: View) -> str:
-    """Return a line on the manoeuvre in the air."""
+    """Return a line on the manoeuvre in flight."""
     if view.health.behind:
         return f"not known: {view.health.behind}"
     if view.health.condition == "ended":
@@ -20,7 +20,7 @@ def flying_in_words(view: View) -> str:
 
 
 class CrewNotes(Part, HangingLines):
-    """The manoeuvre in the air, a fault of the link, and the number of warnings."""
+    """The manoeuvre in flight, a fault of the link, and the number of warnings."""
 
     EITHER_AXIS = True
 
@@ -30,7 +30,7 @@ class CrewNotes(Part, HangingLines):
 
 
 def _other_axis(view: View) -> Iterator[Labelled]:
-    """Yield the word of the axis that is not shown, once one of its manoeuvres was flown."""
+    """Yield the verdict's word of the axis that is not shown, after its first manoeuvre."""
     lateral = view.state.lateral
     if view.elevator is not None and view.elevator.state.maneuvers:
         yield "elevator    ", _word(view.elevator.state.flight_test)

@@ -1,4 +1,4 @@
-"""The stop criterion after each manoeuvre, under every rule."""
+"""The stop criterion after each manoeuvre, for every stopping rule."""
 
 import numpy as np
 from textual.app import ComposeResult
@@ -17,7 +17,7 @@ _Y, _X = "[% of limit]", "manoeuvre"
 
 
 class Criterion(TextPane):
-    """One curve for each rule against the limit, and each rule's decision."""
+    """Criterion of each stopping rule against its limit, and each rule's decision."""
 
     TITLE = "6 Criterion"
     SHORT = "6Cri"
@@ -41,7 +41,7 @@ prediction of the newest manoeuvre are within their tolerances; the lines above 
         yield Plot(_chart(None))
 
     def show(self, view: View) -> None:
-        """Draw the histories when the verdict changed."""
+        """Draw the histories of the criteria after the verdict has changed."""
         verdict = view.state.flight_test
         if not self.changed(verdict):
             return

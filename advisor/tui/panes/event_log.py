@@ -11,7 +11,7 @@ _TIME = 9
 
 
 class EventLogPane(TextPane):
-    """The newest notices, the last one at the bottom."""
+    """The newest sentences of the event log, the last one at the bottom."""
 
     TITLE = "8 Log"
     SHORT = "8Log"
@@ -28,11 +28,11 @@ begin anew where a line says that another power-on, flight or vehicle begins.
 """
 
     def on_mount(self) -> None:
-        """Keep the newest line in sight."""
+        """Keep the newest sentence visible."""
         super().on_mount()
         self.query_one(VerticalScroll).anchor()
 
     def show(self, view: View) -> None:
-        """Write the newest lines."""
+        """Write the newest sentences of the event log."""
         if view.log and self.changed(view.log):
             self.write((line[:_TIME], line[_TIME:]) for line in view.log[-_SHOWN:])

@@ -1,4 +1,4 @@
-"""The controls over measured, fitted and residual, for every output of the selected manoeuvre."""
+"""Controls, and measured, fitted and residual curves of every output of the selected manoeuvre."""
 
 import numpy as np
 from textual.app import ComposeResult
@@ -30,10 +30,10 @@ from advisor.words.digits import signed
 _ROWS_FOR_ONE = 11
 """Rows that an output and its residual need where several stand above one another."""
 _LEAST_ROWS_FOR_BOTH = 8
-"""Rows below which an output has no room for its residual."""
+"""Number of rows below which an output has no room for its residual."""
 _ROWS_OF_INPUT = 3
 _SHARE_OF_INPUT = 8
-"""A control takes one row in eight, and never less than ``_ROWS_OF_INPUT``."""
+"""A control takes an eighth of the rows, and at least ``_ROWS_OF_INPUT``."""
 _INPUTS = (*ELEVATOR_AXIS.inputs, *SIDE_AXIS.inputs)
 _OUTPUTS = (*ELEVATOR_AXIS.outputs, *SIDE_AXIS.outputs)
 
@@ -82,7 +82,7 @@ with 0 takes the second away.
         self._sight: Sight | None = None
 
     def show(self, view: View) -> None:
-        """Draw the selected manoeuvre, and the one over it, when another one is to be shown."""
+        """Draw the selected manoeuvre, and any manoeuvre laid over it, after a change."""
         judged = view.judged
         over = next((j for j in view.state.maneuvers if j.maneuver.number == self._over_number), None)
         over = None if over is judged else over
@@ -102,11 +102,12 @@ with 0 takes the second away.
         self._draw()
 
     def lay_over(self, number: int | None) -> None:
-        """Choose the manoeuvre that the next ``show`` lays over the selected one. None: none."""
+        """Choose the manoeuvre that the next ``show`` lays over the selected one. None: no manoeuvre is laid
+        over."""
         self._over_number = number
 
     def rows(self) -> TableRows | None:
-        """Give one row for each sample of each channel, in sight or not."""
+        """Return one row for each sample of each channel, visible or not."""
         return rows_of_fit(self._judged, self._over, self._axis) if self._judged is not None else None
 
     def on_resize(self, event: Resize) -> None:
@@ -114,12 +115,12 @@ with 0 takes the second away.
         self._draw()
 
     def on_plot_pointed(self, event: Plot.Pointed) -> None:
-        """Read the values where the mouse points."""
+        """Show the values at the position of the mouse."""
         event.stop()
         self._look(self._sight and self._sight.pointed(event.x, self._stamps()))
 
     def on_plot_wheeled(self, event: Plot.Wheeled) -> None:
-        """Zoom about the mouse; with shift, pan."""
+        """Zoom at the mouse position; with shift, pan."""
         event.stop()
         if event.sideways:
             self.action_pan(-1 if event.up else 1)
@@ -148,7 +149,7 @@ with 0 takes the second away.
             self._draw()
 
     def _stamps(self) -> FloatArray:
-        """Return the stamps on which the cursor stands: of the output at the top, else of the control."""
+        """Return the time stamps for the cursor: of the top output, else of the control."""
         there = self._outputs()
         for name in (there[self._first % len(there)], *self._axis.inputs):
             curve = measured(self._judged, name) if self._judged is not None else None
@@ -157,7 +158,7 @@ with 0 takes the second away.
         return np.zeros(0)
 
     def _draw(self) -> None:
-        """Give the room to as many outputs as fit, and draw them."""
+        """Draw as many outputs as fit into the pane."""
         inputs = [name for name in self._axis.inputs if self._has(name)] or self._axis.inputs[:1]
         each = max(_ROWS_OF_INPUT, self.size.height // _SHARE_OF_INPUT)
         above = each * len(inputs)
@@ -176,7 +177,7 @@ with 0 takes the second away.
         self._write_subtitle()
 
     def _outputs(self) -> list[str]:
-        """List the outputs of the fit; without a fit, the one output that says why."""
+        """Return the outputs of the fit; without a fit, one output that shows the reason."""
         fits = fits_of(self._judged) if self._judged is not None else {}
         outputs = self._axis.outputs
         return [name for name in outputs if name in fits] or [outputs[0]]

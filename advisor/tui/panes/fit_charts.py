@@ -15,7 +15,8 @@ from advisor.words.quantities import channel
 OUTPUTS = ("alpha", "q", "a_z", "theta")
 _T = "t [s]"
 _GUTTER = 7
-"""Columns left of the canvas, wide enough for ``-12.50``: all plots of the pane begin in one column."""
+"""Columns left of the canvas, wide enough for ``-12.50``, so that all plots of the pane begin in one
+column."""
 
 Curve = tuple[FloatArray, FloatArray]
 """Seconds since the start of the input, shape (n,), and values in the unit for people, shape (n,)."""
@@ -23,7 +24,7 @@ Curve = tuple[FloatArray, FloatArray]
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """Channels of the axis that the pane shows."""
+    """Channels of the axis that the fit pane shows."""
 
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
@@ -44,7 +45,7 @@ def fits_of(judged: JudgedManeuver) -> dict[str, ChannelFit]:
 
 
 def measured(judged: JudgedManeuver, name: str) -> Curve | None:
-    """Return a channel as the fit used it, else as recorded; None where the record has none."""
+    """Return a channel as the fit used it, else as recorded; None for a channel that is not recorded."""
     factor = channel(name).factor
     fit = fits_of(judged).get(name)
     if fit is not None:
@@ -56,7 +57,7 @@ def measured(judged: JudgedManeuver, name: str) -> Curve | None:
 
 
 def extent(judged: JudgedManeuver, over: JudgedManeuver | None) -> tuple[float, float]:
-    """Return the first and last time to draw, in seconds since the start of the input."""
+    """Return the first and last time of the drawing, in seconds since the start of the input."""
     spans = [one.maneuver.span for one in (judged, over) if one is not None]
     first = min(span.record_from_s - span.start_s for span in spans)
     last = max(span.end_s - span.start_s for span in spans)
@@ -64,7 +65,7 @@ def extent(judged: JudgedManeuver, over: JudgedManeuver | None) -> tuple[float, 
 
 
 def in_sight(chart: Chart, x_range: tuple[float, float], cursor: float | None, *, foot: bool) -> Chart:
-    """Return a stretch of a chart, with a cursor, aligned with the other plots of the pane."""
+    """Return a part of a chart, with a cursor, aligned with the other plots of the pane."""
     return replace(chart, x_range=x_range, cursor=cursor, foot=foot, gutter=_GUTTER)
 
 

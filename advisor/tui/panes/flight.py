@@ -20,9 +20,9 @@ from advisor.tui.plot.widget import Plot
 from advisor.words.quantities import CHANNELS, channel
 
 SHOWN_WHOLE = ("elevator", "alpha", "q", "airspeed", "height")
-"""Channels with a plot of their own, from above."""
+"""Channels of pitch that have their own plots, from top to bottom."""
 _SIDEWAYS = ("aileron", "rudder", "p", "r", "airspeed")
-"""Channels of roll and yaw, in the places of those of pitch."""
+"""Channels of roll and yaw, which replace those of pitch."""
 _INKS: dict[str, Ink] = {
     **dict.fromkeys(("elevator", "aileron", "rudder"), "input"), "height": "prior", "airspeed": "residual"
 }  # fmt: skip
@@ -31,7 +31,7 @@ _GUTTER = 7
 """Columns left of the plots, for the labels of their axes."""
 _MODE = "modes"
 _LEAST_S = 10.0
-"""Shortest time axis, s."""
+"""Shortest length of the time axis, s."""
 
 
 class WholeFlightPane(Pane):
@@ -56,7 +56,7 @@ upright line is the present moment.
 """
 
     class Sought(Message):
-        """A time of the flight was pointed at, s since power-on."""
+        """A time of the flight was clicked, s since power-on."""
 
         def __init__(self, at_s: float) -> None:
             super().__init__()
@@ -75,7 +75,7 @@ upright line is the present moment.
         yield Lines(id="whole-modes")
 
     def show(self, view: View) -> None:
-        """Draw the power-on anew when its picture is renewed, or a manoeuvre is judged."""
+        """Draw the power-on again after its picture is renewed or a manoeuvre is judged."""
         self._view = view
         if self.changed(view.state.whole_flight, view.state.maneuvers, view.state.lateral):
             self._draw(view)
@@ -125,7 +125,7 @@ upright line is the present moment.
         return view.state.whole_flight.courses.get(name, _NOTHING)
 
     def on_plot_pointed(self, event: Plot.Pointed) -> None:
-        """Tell the time that is pointed at."""
+        """Report the time at the position of the mouse."""
         event.stop()
         self.post_message(self.Sought(event.x))
 
@@ -151,7 +151,7 @@ def _chart(name: str, course: Course, ends: tuple[float, float], now_s: float, *
 
 
 def _zigzag(course: Course) -> tuple[FloatArray, FloatArray]:
-    """Return a line through the lowest and the highest value of each stretch; shape (2n,) each."""
+    """Return a line through the lowest and highest values of each interval of a channel; shape (2n,) each."""
     return np.repeat(course.t, 2), np.column_stack([course.low, course.high]).ravel()
 
 
@@ -174,7 +174,7 @@ def _maneuvers(view: View, low: float, high: float, width: int) -> str:
 
 
 def _modes(bands: Sequence[tuple[float, float, str]], low: float, high: float, width: int) -> str:
-    """Return the flight modes, each from its begin on the time axis as far as there is room."""
+    """Return the flight modes, each from its start on the time axis as far as there is room."""
     line = [" "] * width
     line[: len(_MODE)] = _MODE
     for begin_s, end_s, name in bands:

@@ -1,4 +1,4 @@
-"""The sim-to-real gap of the flight so far: answer, picture of the worst manoeuvre, next steps."""
+"""The sim-to-real gap of the flight so far: answer, plots of the worst manoeuvre, next steps."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
@@ -23,10 +23,10 @@ from advisor.words.quantities import channel
 
 _SHOWN = ("alpha", "q", "a_z", "theta")
 _SHOWN_SIDEWAYS = ("p", "r", "bank", "a_y")
-"""Channels of roll and yaw, in the places of those of pitch."""
+"""Channels of roll and yaw, which replace those of pitch."""
 _ROWS_FOR_ONE = 6
 _TEXT_SHARE = 0.45
-"""Share of the pane's height that the text takes at most."""
+"""Largest fraction of the pane's height for the text."""
 _ASKING = "The diagnosis of {count} manoeuvres runs for {seconds:.0f} s; each manoeuvre takes some seconds."
 _NO_LOG = "Nothing is recorded here, so there is no log to diagnose: run advisor gap on the log afterwards."
 _TOO_EARLY = "No manoeuvre has been flown yet, so there is nothing to compare with the simulator."
@@ -58,7 +58,7 @@ findings.
             yield Plot(_empty(name), id=f"gap-{name}")
 
     _asked: tuple[int, ...] | None = None
-    """Axis and manoeuvres of the newest diagnosis that was asked for."""
+    """Axis and manoeuvres of the newest requested diagnosis."""
     _since_s: float | None = None
     """Time at which the running diagnosis was started; None while none runs."""
     _view: View | None = None
@@ -68,11 +68,11 @@ findings.
         self.set_interval(1.0, self._tick)
 
     def show(self, view: View) -> None:
-        """Keep the moment. The pane itself changes only with a diagnosis."""
+        """Keep the state of this moment. The pane itself changes only with a diagnosis."""
         self._view = view
 
     def ask(self, view: View) -> None:
-        """Start the diagnosis, unless there is one of all manoeuvres so far."""
+        """Start the diagnosis, unless one of all manoeuvres so far exists."""
         numbers = tuple(judged.maneuver.number for judged in view.state.maneuvers)
         sideways = view.elevator is not None
         asked = (sideways, *numbers)
@@ -97,7 +97,7 @@ findings.
             self._say([("", _ASKING.format(count=len(self._asked) - 1, seconds=seconds))])
 
     def _told(self, document: Document) -> None:
-        """Show a diagnosis. A part of the pane that fails leaves the other."""
+        """Show a diagnosis. If one part of the pane fails, the other part is still shown."""
         self._since_s = None
         rows: list[Labelled] = []
         parts = Parts(lambda failed: rows.append(("✗ ", str(failed.problem))))
@@ -106,7 +106,7 @@ findings.
         self._say(rows)
 
     def _draw(self, document: Document) -> None:
-        """Draw the manoeuvre with the largest gap, where there are curves."""
+        """Draw the manoeuvre with the largest gap, if its curves exist."""
         found = document.get("lateral") or document
         if found["gap"] is None or not found["traces"]:
             return
@@ -133,7 +133,8 @@ findings.
 
 
 def answer_rows(document: Document) -> Iterator[Labelled]:
-    """Yield the answer, how sure it is, its limits, what differs, the shrink, the steps, the reasons."""
+    """Yield the answer, its certainty and limits, the differences, the reduction of the gap, the steps and
+    the reasons."""
     if (side := document.get("lateral")) is not None:
         yield "", f"Roll and yaw. {side['title']}: {side['sentence']}"
         if side["how_sure"]:

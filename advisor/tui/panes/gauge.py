@@ -1,4 +1,4 @@
-"""How far the flight test is: manoeuvres flown, of those that are expected in all."""
+"""Progress of the flight test: manoeuvres flown, and the number expected in total."""
 
 from advisor.session.view import View
 from advisor.tui.panes.last_verdict import symbol_and_word
@@ -9,18 +9,18 @@ _BAR = 20
 
 
 def bar(share: float, width: int) -> str:
-    """Return a bar of which a share, 0 to 1, is filled."""
+    """Return a bar that is filled to a fraction, 0 to 1."""
     filled = min(max(round(share * width), 0), width)
     return "█" * filled + "·" * (width - filled)
 
 
 class Gauge(Part, HangingLines):
-    """The bar of the way to the end, and the manoeuvres so far."""
+    """The progress bar of the flight test, and the number of manoeuvres so far."""
 
     EITHER_AXIS = True
 
     def show(self, view: View) -> None:
-        """Write the two lines."""
+        """Write the two lines of progress."""
         self.write_rows((("how far     ", how_far(view)), ("manoeuvres  ", _flown(view))))
 
 

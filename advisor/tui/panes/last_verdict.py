@@ -69,7 +69,7 @@ class LastVerdict(Part, Vertical):
 
 
 class VerdictPane(TextPane):
-    """Sentence, reasons with numbers and limits, quality of the fit, cautions."""
+    """Sentence of the verdict, its reasons with numbers and limits, quality of the fit, and cautions."""
 
     TITLE = "2 Verdict"
     SHORT = "2Ver"
@@ -124,6 +124,6 @@ def _rows(judged: JudgedManeuver, of: str) -> list[Labelled]:
 
 
 def _limits(verdict: ManeuverVerdict) -> str:
-    """Return the limits of the cost, rule by rule."""
+    """Return the limits of the fit's cost under each stopping rule."""
     limits = [f"{rule} {one.limit:.3g}" for rule, one in verdict.rules.items() if one.limit is not None]
     return f" (limit {', '.join(limits)})" if limits else ""

@@ -1,4 +1,4 @@
-"""Bank, air speed and angle of attack now, against the limits of the next manoeuvre."""
+"""Present bank, air speed and angle of attack, against the limits of the next manoeuvre."""
 
 from math import degrees, isfinite
 
@@ -12,7 +12,8 @@ class LimitsNow(Part, Lines):
     """One line that a pilot reads before the first step."""
 
     def show(self, view: View) -> None:
-        """Write the newest values. A value outside its limit has a cross."""
+        """Write the newest values of bank, air speed and angle of attack. A value outside its limit is marked
+        by a cross."""
         self.write(f"before it   {limits_now(view)}")
 
 
@@ -50,7 +51,8 @@ def _airspeed_m_s(view: View) -> float | None:
 
 
 def _newest(view: View, name: str) -> float | None:
-    """Return the newest value that the campaign was given. None: not received, or too old."""
+    """Return the newest value of a channel that the campaign has received. None: the channel was not
+    received, or its value is too old."""
     if view.health.behind:
         return None
     status = view.state.channels.get(name)

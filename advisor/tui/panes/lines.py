@@ -1,4 +1,4 @@
-"""Parts of a screen, and lines of plain text that are repainted only when they change."""
+"""Parts of a screen, and lines of plain text that are painted only after a change."""
 
 from abc import abstractmethod
 from collections.abc import Iterable
@@ -17,16 +17,17 @@ class Part:
     """Any widget that is shown each new `View`."""
 
     EITHER_AXIS: ClassVar[bool] = False
-    """Whether the part can show roll and yaw. A part that cannot shows the elevator's axis."""
+    """Whether the part can show roll and yaw. A part that cannot show roll and yaw shows the elevator's
+    axis."""
 
     @property
     def wants_showing(self) -> bool:
-        """Whether the part is visible, so that painting is no waste of time."""
+        """Whether the part is visible, so that it must be painted."""
         return True
 
     @abstractmethod
     def show(self, view: View) -> None:
-        """Update to a new moment. The update is cheap where nothing of the part's own changed."""
+        """Update the part to a new moment. The update is fast if no data of the part have changed."""
 
 
 class Lines(Static):
@@ -37,14 +38,15 @@ class Lines(Static):
         self._text = text
 
     def write(self, text: str) -> None:
-        """Show another text. An equal text costs nothing, and one of equal height no new layout."""
+        """Show another text in the widget. An unchanged text takes no time, and a text of unchanged height
+        needs no new layout."""
         if text != self._text:
             higher = self._rows(text) != self._rows(self._text)
             self._text = text
             self.update(text, layout=higher)
 
     def _rows(self, text: str) -> float:
-        """Return the number of rows of a text; NaN, unequal to all, where the text must be wrapped."""
+        """Return the number of rows of a text; NaN, unequal to all, if the text must be wrapped."""
         height = self.styles.height
         if height is not None and not height.is_auto:
             return height.value
@@ -53,10 +55,11 @@ class Lines(Static):
 
 
 Labelled = tuple[str, str]
-"""A label, which stands once, and the text after it."""
+"""A label, and the text after it."""
 
 _LEAST = 20
-"""Fewest columns of text after a label. With fewer, the text continues at the left edge."""
+"""Least number of columns for the text after a label. With fewer columns, the text continues at the left
+edge."""
 
 
 class HangingLines(Lines):
@@ -67,7 +70,7 @@ class HangingLines(Lines):
         self._labelled: tuple[Labelled, ...] = ()
 
     def write_rows(self, rows: Iterable[Labelled]) -> None:
-        """Show other rows. Equal rows cost nothing."""
+        """Show other rows in the widget. Unchanged rows take no time."""
         self._labelled = tuple(rows)
         self._wrap()
 
@@ -83,7 +86,7 @@ class HangingLines(Lines):
 
 @lru_cache(maxsize=2000)
 def _wrapped(label: str, text: str, width: int) -> str:
-    """Wrap one row at a width, into as many lines as it takes."""
+    """Wrap one row to a width, into as many lines as needed."""
     indent = " " * len(label) if width - len(label) >= _LEAST else ""
     lines = wrap(label + text, width, subsequent_indent=indent, drop_whitespace=True, break_on_hyphens=False)
     return "\n".join(lines)

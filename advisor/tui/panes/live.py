@@ -1,4 +1,4 @@
-"""The manoeuvre being flown: its trace and its estimate as they settle."""
+"""The manoeuvre that is being flown: its curves and its running estimate."""
 
 from textual.app import ComposeResult
 from textual.events import Resize
@@ -19,7 +19,7 @@ _ROWS_FOR_ONE = 5
 
 
 class Live(Pane):
-    """Angle of attack, pitch rate and elevator of the manoeuvre in the air."""
+    """Angle of attack, pitch rate and elevator of the manoeuvre in flight."""
 
     OF_ELEVATOR = True
     TITLE = "5 Live"
@@ -34,7 +34,7 @@ so: recover. Between manoeuvres nothing moves here; the last trace stays.
 """
 
     def compose(self) -> ComposeResult:
-        """Yield a line of numbers over three traces."""
+        """Yield a line of numbers above three plots."""
         yield Lines(
             "Nothing is being flown; the trace begins with the first step of the elevator.",
             id="settling",
@@ -44,7 +44,7 @@ so: recover. Between manoeuvres nothing moves here; the last trace stays.
             yield Plot(empty, id=f"live-{name}")
 
     def show(self, view: View) -> None:
-        """Draw the manoeuvre in the air. Between manoeuvres the last trace stays."""
+        """Draw the manoeuvre in flight. Between manoeuvres the last curves remain."""
         flying, settling = view.state.flying, view.state.settling
         if flying is None or view.health.condition == "ended":
             if self.border_subtitle:
@@ -57,7 +57,7 @@ so: recover. Between manoeuvres nothing moves here; the last trace stays.
             self.query_one(f"#live-{name}", Plot).chart = _trace(flying, settling, name, ink)
 
     def on_resize(self, event: Resize) -> None:
-        """Show as many traces as have room."""
+        """Show as many plots as have room."""
         count = max(1, (event.size.height - 2) // _ROWS_FOR_ONE)
         for k, name in enumerate(TRACES):
             self.query_one(f"#live-{name}").display = k < count

@@ -15,7 +15,8 @@ from advisor.tui.panes.pane import Pane
 from advisor.words.vehicle_time import clock
 
 Columns = tuple[tuple[str, int], ...]
-"""Name and width of each column. Widths ignore the rows, so that growing content moves nothing."""
+"""Name and width of each column of the table. The widths do not depend on the rows, so that new content moves
+no column."""
 
 _FIRST: Columns = (("no.", 3), ("start", 7), ("input", 15))
 _MIDDLE: tuple[Columns, ...] = (
@@ -23,7 +24,8 @@ _MIDDLE: tuple[Columns, ...] = (
     (("", 2), ("csi", 3)),
     (("", 2),),
 )
-"""Columns between the input and the reason, the fullest choice first. The least is the symbol alone."""
+"""Columns between the input and the reason, beginning with the most detailed choice. The shortest choice is
+the symbol alone."""
 _REASON = 13
 """Longest reason in one word, in characters (``free response``), with ``turbulence +1``."""
 _RULES = ("continuous", "separate", "information")
@@ -51,7 +53,7 @@ verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each ru
 """
 
     class Selected(Message):
-        """Another manoeuvre was chosen; None: follow the newest."""
+        """Another manoeuvre was selected; None: always the newest."""
 
         def __init__(self, number: int | None) -> None:
             super().__init__()
@@ -81,7 +83,7 @@ verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each ru
             self._fill()
 
     def show(self, view: View) -> None:
-        """Fill the table anew when a verdict changed."""
+        """Fill the table again after a verdict has changed."""
         maneuvers = view.state.maneuvers
         if maneuvers is self._shown or (not maneuvers and not self._shown):
             return
@@ -104,7 +106,7 @@ verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each ru
                 table.move_cursor(row=shown.index(self._judged), scroll=True)
 
     def on_data_table_row_highlighted(self, event: DataTable.RowHighlighted) -> None:
-        """Tell the screen the manoeuvre under the cursor."""
+        """Report the manoeuvre under the cursor to the screen."""
         event.stop()
         if self._shown and event.row_key.value is not None:
             number = int(event.row_key.value)
@@ -143,7 +145,7 @@ def _cell(judged: JudgedManeuver, column: str, width: int) -> str:
 
 
 def _reason(judged: JudgedManeuver, width: int) -> str:
-    """Return the reasons against a manoeuvre, as many as have room; no word is cut."""
+    """Return as many reasons against a manoeuvre as fit, without cut words."""
     if judged.excluded_because is not None:
         return shorten(judged.excluded_because, width, placeholder="…")
     words = [r.code.replace("_", " ") for r in judged.verdict.reasons]
@@ -152,6 +154,6 @@ def _reason(judged: JudgedManeuver, width: int) -> str:
 
 
 def _listed(words: list[str], count: int) -> str:
-    """Join the first words, and say how many more there are."""
+    """Join the first words, and state the number of the other words."""
     more = f" +{len(words) - count}" if count < len(words) else ""
     return f"{', '.join(words[:count])}{more}"

@@ -9,7 +9,8 @@ from advisor.tui.stick_drawing import drawn
 
 
 class NextInput(Part, Lines):
-    """The advice in words over its drawing. A low terminal has one line of drawing next to the words."""
+    """The advised input in words above its drawing. On a low terminal the drawing is one line next to the
+    words."""
 
     EITHER_AXIS = True
 

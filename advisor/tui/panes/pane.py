@@ -17,9 +17,9 @@ class Pane(Part, Vertical):
 
     TITLE: ClassVar[str] = ""
     SHORT: ClassVar[str] = ""
-    """The title where all titles have to share 80 columns."""
+    """Title of the pane if all titles share 80 columns."""
     OF_ELEVATOR: ClassVar[bool] = False
-    """Whether the pane shows the elevator's axis alone, whichever axis the others show."""
+    """Whether the pane shows only the elevator's axis, whichever axis other panes show."""
     OF_SELECTED: ClassVar[bool] = False
     """Whether the pane shows the selected manoeuvre."""
     HELP = ""
@@ -28,7 +28,7 @@ class Pane(Part, Vertical):
     """Whether the pane takes the focus. A pane whose table or text takes the keys does not take the focus."""
 
     _parts: tuple[object, ...] = ()
-    """Parts of the last moment that was painted."""
+    """Data of the last painted moment."""
 
     def on_mount(self) -> None:
         """Write the pane's title into its frame."""
@@ -36,22 +36,23 @@ class Pane(Part, Vertical):
 
     @property
     def wants_showing(self) -> bool:
-        """Whether the pane is in sight. Only panes in sight are updated."""
+        """Whether the pane is visible. Only visible panes are updated."""
         return bool(self.display)
 
     def changed(self, *parts: object) -> bool:
-        """Return whether any part is another object than at the last call, so that painting is needed."""
+        """Return whether any part is a new object since the last call, so that painting is needed."""
         same = len(parts) == len(self._parts) and all(a is b for a, b in zip(parts, self._parts, strict=True))
         self._parts = parts
         return not same
 
     def subtitle(self, text: str) -> None:
-        """Write into the lower edge of the frame. An equal text costs nothing."""
+        """Write into the lower edge of the frame. An unchanged text takes no time."""
         if text != self.border_subtitle:
             self.border_subtitle = text
 
     def rows(self) -> TableRows | None:
-        """Give the pane's content as a table: of its cells, else of its curves; None: it holds text only."""
+        """Return the pane's content as a table: of its cells, else of its curves; None for a pane with text
+        only."""
         if tables := self.query(DataTable):
             table = tables.first()
             header = tuple(str(column.label) for column in table.ordered_columns)
@@ -61,7 +62,7 @@ class Pane(Part, Vertical):
         return rows_of_charts(charts) if any(chart.series for chart in charts) else None
 
     def text(self) -> str:
-        """Give the pane's content as text: its rows as CSV, or its lines."""
+        """Return the pane's content as text: its rows as CSV, or its lines."""
         rows = self.rows()
         if rows is not None:
             return rows.csv()
@@ -74,7 +75,7 @@ class TextPane(Pane):
 
     can_focus = False
     EMPTY: ClassVar[str] = "No manoeuvre has ended yet."
-    """Text before there is any content."""
+    """Text of the pane before it has any content."""
 
     def compose(self) -> ComposeResult:
         """Lay out the text."""

@@ -1,4 +1,4 @@
-"""Choice of the pane in sight, on terminals too small for all panes."""
+"""Choice of the visible pane, on terminals too small for all panes."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ _BRACKETS = 2
 
 
 class PaneTabs(Static):
-    """Numbered names of the panes on one line, with the chosen one in brackets. A click chooses a pane.
+    """Numbered names of the panes on one line, with the visible pane in brackets. A click chooses a pane.
 
     Parameters
     ----------

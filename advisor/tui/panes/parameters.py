@@ -1,4 +1,4 @@
-"""The parameters with their intervals, against the simulator's model and manoeuvre by manoeuvre."""
+"""The parameters with their intervals, against the simulator's model and for each manoeuvre."""
 
 from itertools import accumulate
 
@@ -25,7 +25,7 @@ _COLUMNS = (
 away where they have no room: half a number would be another number."""
 _SCROLL_BAR = 1
 _FIRST_SHOWN = ("M_alpha", "L_p")
-"""Parameter of each axis that is chosen at first: what a crew asks for before all others."""
+"""Parameter of each axis that is selected at first, as the most requested one."""
 
 
 class ParametersPane(Pane):
@@ -53,7 +53,7 @@ others; the verdict pane says why.
         yield Plot(history_chart(None, _FIRST_SHOWN[0]))
 
     def on_mount(self) -> None:
-        """Begin without an estimate."""
+        """Begin the table without an estimate."""
         super().on_mount()
         self._view: View | None = None
         self._columns = 0
@@ -73,7 +73,7 @@ others; the verdict pane says why.
             self.show(self._view)
 
     def show(self, view: View) -> None:
-        """Fill the table anew when an estimate changed."""
+        """Fill the table again after an estimate has changed."""
         self._view = view
         if not self._columns or not self.changed(view.state.maneuvers, view.state.model, view.judged):
             return
@@ -111,6 +111,6 @@ def _cells(joint: EstimatedParameter, alone: EstimatedParameter) -> tuple[str, .
 
 
 def _columns_in(width: int) -> int:
-    """Count the columns that have room, at least those of the names and of the model."""
+    """Return the number of columns that fit, at least those of the names and of the model."""
     ends = accumulate(width for _, width in _COLUMNS)
     return max(sum(end <= width for end in ends), 2)

@@ -30,7 +30,7 @@ Roll and yaw: Dutch roll, roll and spiral. Where the aircraft file states the de
 """
 
     def show(self, view: View) -> None:
-        """Write the flying qualities when the joint estimate is another one."""
+        """Write the flying qualities after the joint estimate has changed."""
         if not self.changed(view.state.model, view.elevator and view.state.lateral):
             return
         lines = [(" " * (len(line) - len(line.lstrip())), line.strip()) for line in _lines(view)]

@@ -14,10 +14,11 @@ _WIDTH = 24
 
 
 class ReplayBar(Part, Lines):
-    """Playing or paused, speed, position in the log, and the vehicle's time there. A click goes there."""
+    """State of the replay, its speed, its position in the log, and the vehicle's time there. A click on the
+    bar moves the replay to that position."""
 
     class Sought(Message):
-        """A place on the bar was clicked."""
+        """A position on the bar was clicked."""
 
         def __init__(self, position_s: float) -> None:
             super().__init__()
@@ -44,7 +45,7 @@ class ReplayBar(Part, Lines):
         self.write(f"{before}{place}  {100.0 * share:3.0f} %  at {_now(view)}{jump}")
 
     def on_click(self, event: Click) -> None:
-        """Tell the place on the bar."""
+        """Report the clicked position on the bar."""
         column = event.x - self.styles.padding.left - self._begins
         if 0 <= column < _WIDTH:
             self.post_message(self.Sought(column / _WIDTH * self._duration_s))

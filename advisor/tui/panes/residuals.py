@@ -17,8 +17,8 @@ from advisor.tui.table_rows import TableRows
 from advisor.words.quantities import channel
 
 _LAGS_SHARE = 4
-"""Share of the record that the longest lag takes: a quarter (Box and Jenkins). A longer lag averages too few
-products."""
+"""Longest lag of the autocorrelation: a quarter of the record (Box and Jenkins). At a longer lag too few
+products are averaged."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,11 +26,11 @@ class Whiteness:
     """The autocorrelation of one residual against that of white noise."""
 
     lag_s: FloatArray
-    """Shape (m,), rising; the first is one sample."""
+    """Shape (m,), lags of the autocorrelation, s, rising; the first is one sample."""
     r: FloatArray
     """Shape (m,), autocorrelation at each lag."""
     bound: float
-    """Half-width of the band that white noise keeps at 95 % of the lags."""
+    """Half-width of the band in which white noise remains at 95 % of the lags."""
 
     @classmethod
     def of(cls, fit: ChannelFit) -> "Whiteness":
@@ -41,7 +41,7 @@ class Whiteness:
 
     @property
     def outside(self) -> int:
-        """Number of lags outside the bound; one in twenty is expected of white noise."""
+        """Number of lags outside the bound; for white noise one in twenty is expected."""
         return int(np.count_nonzero(np.abs(self.r) > self.bound))
 
 
@@ -69,7 +69,7 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
             yield Plot(_nothing(name, "no manoeuvre has ended yet."), id=f"white-{name}")
 
     def on_mount(self) -> None:
-        """Begin with the sentence of one output."""
+        """Begin with one plot that shows a sentence."""
         super().on_mount()
         self._fits: dict[str, ChannelFit] = {}
         self._only_with_fit()
@@ -90,13 +90,14 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
         self._only_with_fit()
 
     def _only_with_fit(self) -> None:
-        """Hide plots that are no output of the fit. Without any output, one plot shows the reason."""
+        """Hide plots of channels that are no output of the fit. Without any output, one plot shows the
+        reason."""
         shown = self._fits or OUTPUTS[:1]
         for name in OUTPUTS:
             self.query_one(f"#white-{name}").display = name in shown
 
     def rows(self) -> TableRows | None:
-        """Give one row for each output and lag."""
+        """Return one row for each output and lag."""
         if not self._fits:
             return None
         rows = []

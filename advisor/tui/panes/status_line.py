@@ -47,7 +47,7 @@ class StatusLine(Part, Lines):
 
 
 _MARGINS = 2
-"""Cells next to a message."""
+"""Columns to the left and right of a message."""
 
 
 class KeysLine(Static):
@@ -76,7 +76,7 @@ class KeysLine(Static):
         return len(text) + _MARGINS <= self.size.width
 
     def say(self, text: str, seconds: float) -> None:
-        """Show a message in place of the keys. A message still shown is replaced."""
+        """Show a message instead of the keys. A message that is still shown is replaced."""
         if self._until is not None:
             self._until.stop()
         self._until = self.set_timer(seconds, self._said_enough)

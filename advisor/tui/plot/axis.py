@@ -8,12 +8,12 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 
 _FINENESS = 8
-"""The ends of an axis are rounded to about this share of its length."""
+"""The ends of an axis are rounded to about an eighth of the axis's length."""
 
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """A range with rounded ends, which stays while data grow inside it, and its tick step."""
+    """An axis range with rounded ends, unchanged while data grow inside it, and the step of its ticks."""
 
     low: float
     high: float
@@ -41,7 +41,7 @@ class LogAxis:
     high: float
     """Decimal logarithm of the value at the upper end."""
     values: tuple[float, ...]
-    """Values at the ticks, rising."""
+    """Values of the ticks, rising."""
 
     @property
     def ticks(self) -> list[float]:

@@ -7,13 +7,13 @@ from advisor.flight.signals.messages import FloatArray
 
 BLANK = 0x2800
 BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], dtype=np.uint8)
-"""Bit of each dot in a cell, row by row, as Unicode lays out U+2800..U+28FF."""
+"""Bit of each dot in a cell, row by row, in Unicode's order of U+2800..U+28FF."""
 
 
 class Canvas:
     """A drawing surface of ``columns`` x ``rows`` cells over a rectangle of data.
 
-    Later marks take the colour of a cell; dots of all marks stay.
+    A cell has the colour of its last curve, and the dots of all curves remain.
 
     Parameters
     ----------
@@ -34,11 +34,11 @@ class Canvas:
         """Shape (rows, columns). Number of the ink last used in each cell, -1 where none."""
 
     def points(self, x: FloatArray, y: FloatArray, ink: int) -> None:
-        """Set one dot for each sample; a sample that is not finite or lies outside is left out."""
+        """Set one dot for each sample; samples that are not finite or lie outside are omitted."""
         self._set(*self._place(x, y), ink)
 
     def line(self, x: FloatArray, y: FloatArray, ink: int) -> None:
-        """Draw a polyline; a NaN breaks the line, and a sample alone between two NaN is a point."""
+        """Draw a polyline; a NaN interrupts the line, and a single sample between two NaN is a point."""
         px, py = self._place(x, y)
         self._set(px, py, ink)
         dx, dy = np.diff(px), np.diff(py)

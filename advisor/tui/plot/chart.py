@@ -16,9 +16,9 @@ class Series:
 
     name: str
     x: FloatArray
-    """Shape (n,), in the unit of the chart's x axis."""
+    """Shape (n,), values of x in the unit of the chart's x axis."""
     y: FloatArray
-    """Shape (n,), in the unit of the chart's y axis; NaN breaks a line."""
+    """Shape (n,), values of y in the unit of the chart's y axis; NaN interrupts a line."""
     ink: Ink
     mark: Literal["line", "points", "joined", "stems", "intervals"] = "line"
     """A joined series is a line with a stroke at each value, so that one value alone is seen. A stem goes
@@ -29,7 +29,7 @@ class Series:
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """A horizontal line: a limit, a prior value."""
+    """A horizontal line in a chart: a limit or a value for comparison."""
 
     name: str
     y: float
@@ -39,28 +39,29 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """Everything one plot widget draws."""
+    """Everything that one plot widget draws."""
 
     y_label: str
-    """Quantity and unit, e.g. ``q [deg/s]``."""
+    """Quantity and unit of the y axis, such as ``q [deg/s]``."""
     x_label: str
-    """Quantity and unit, e.g. ``t [s]``."""
+    """Quantity and unit of the x axis, such as ``t [s]``."""
     series: tuple[Series, ...] = ()
     levels: tuple[Level, ...] = ()
     layer: Series | None = None
-    """Curve of another quantity, drawn from the lowest to the highest row whatever its range is."""
+    """Curve of another quantity, scaled from the lowest to the highest row of the plot."""
     why_empty: str = ""
-    """Sentence of a plot without series."""
+    """Sentence that a plot without curves shows."""
     whole_x: bool = False
-    """Whether ticks stand only at whole numbers (counts)."""
+    """Whether the ticks are at whole numbers only, as for counts."""
     log_y: bool = False
     """Whether the y axis is logarithmic, so that 25 and 2,500 are both readable. Only positive values are
     drawn, and no intervals or stems."""
     x_range: tuple[float, float] | None = None
-    """Ends of the x axis. None: rounded ends that hold all data. The mouse can point only with given ends."""
+    """Ends of the x axis. None: rounded ends that include all data. The mouse can point only with given
+    ends."""
     cursor: float | None = None
     """Value of x with a vertical line, at which the legend reads each series."""
     foot: bool = True
-    """Whether the x axis has labels. Of plots above one another with one axis, only the lowest needs them."""
+    """Whether the x axis has labels. Of plots with a common x axis, only the lowest needs labels."""
     gutter: int = 0
-    """Least width of the labels of the y axis, so that plots above one another begin in one column."""
+    """Least width of the labels of the y axis, so that all plots of a column begin at the same position."""

@@ -24,16 +24,16 @@ _LEAST_WIDTH, _LEAST_ROWS = 16, 2
 
 @dataclass(frozen=True, slots=True)
 class Painting:
-    """The lines of a plot, and where its x axis lies in them."""
+    """The lines of a plot, and the position of the x axis in them."""
 
     strips: list[Strip]
     gutter: int = 0
-    """Cells to the left of the canvas."""
+    """Number of columns to the left of the canvas."""
     x_axis: Axis | None = None
-    """None where no curve is painted."""
+    """X axis of the plot; None if no curve is painted."""
 
     def x_at(self, column: int, width: int) -> float | None:
-        """Return the value of x under a cell of the plot; None where no curve is painted."""
+        """Return the value of x at a column of the plot; None if no curve is painted."""
         if self.x_axis is None:
             return None
         share = (column - self.gutter) / max(width - self.gutter - 1, 1)
@@ -124,7 +124,7 @@ def _scaled(series: Series, low: float, high: float) -> Series:
 
 
 def _heights(chart: Chart) -> list[FloatArray]:
-    """Collect the values that the y axis has to hold."""
+    """Return the values that the y axis must include."""
     held = [np.array([level.y]) for level in chart.levels]
     for series in chart.series:
         half = 0.0 if series.half is None else series.half

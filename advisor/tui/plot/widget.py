@@ -60,26 +60,26 @@ class Plot(Widget):
         self._painting = None
 
     def on_mouse_down(self, event: MouseDown) -> None:
-        """Point, and follow the mouse until it is let go."""
+        """Report the position of the mouse, and follow the mouse until its button is released."""
         if self._chart.x_range is not None:
             self.capture_mouse()
             self._point(event.x)
 
     def on_mouse_move(self, event: MouseMove) -> None:
-        """Point again while the button is down."""
+        """Report the position again while the mouse button is down."""
         if self.app.mouse_captured is self:
             self._point(event.x)
 
     def on_mouse_up(self, event: MouseUp) -> None:
-        """Let the mouse go."""
+        """Stop following the mouse."""
         self.release_mouse()
 
     def on_mouse_scroll_up(self, event: MouseScrollUp) -> None:
-        """Report the wheel."""
+        """Report a turn of the mouse wheel."""
         self._wheel(event, up=True)
 
     def on_mouse_scroll_down(self, event: MouseScrollDown) -> None:
-        """Report the wheel."""
+        """Report a turn of the mouse wheel."""
         self._wheel(event, up=False)
 
     def _point(self, column: int) -> None:

@@ -1,4 +1,4 @@
-"""The stretch of an axis that a plot shows, and the sample that a cursor reads."""
+"""The part of an axis that a plot shows, and the sample at the cursor."""
 
 from dataclasses import dataclass, replace
 
@@ -7,19 +7,19 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 
 _LEAST_SHARE = 0.01
-"""Shortest stretch, as a share of the whole: a hundredth of 12 s holds six samples at 50 Hz."""
+"""Shortest visible part, as a fraction of the whole axis: a hundredth of 12 s holds six samples at 50 Hz."""
 
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """A stretch of a longer range. Every change keeps the stretch inside the range."""
+    """A visible part of a longer range of an axis. Every change keeps the part inside the range."""
 
     first: float
     last: float
-    """The ends of the whole range."""
+    """Both ends of the whole range of the axis."""
     low: float
     high: float
-    """The ends of what is shown."""
+    """Both ends of the visible part of the axis."""
 
     @classmethod
     def whole(cls, first: float, last: float) -> "Window":
@@ -33,7 +33,7 @@ class Window:
 
     @property
     def shown(self) -> tuple[float, float]:
-        """Ends of the stretch in sight, the lower first."""
+        """Ends of the visible part, the lower first."""
         return self.low, self.high
 
     def zoom(self, factor: float, about: float) -> "Window":
@@ -45,12 +45,12 @@ class Window:
         return self._placed(low, wanted)
 
     def pan(self, share: float) -> "Window":
-        """Move by a share of the shown length; above 0 towards the last value."""
+        """Move the visible part by a fraction of its length; above 0 towards the last value."""
         length = self.high - self.low
         return self._placed(self.low + share * length, length)
 
     def showing(self, value: float) -> "Window":
-        """Move as little as shows a value."""
+        """Move the visible part as little as possible to show a value."""
         length = self.high - self.low
         low = min(self.low, max(value, self.first))
         low = max(low, min(value, self.last) - length)
@@ -86,21 +86,21 @@ def nearest(x: FloatArray, value: float) -> int:
 
 
 _STEPS_ACROSS = 100
-"""Steps in which the cursor crosses what is shown."""
+"""Number of cursor steps across the visible part."""
 _ZOOM = 1.5
 _PAN = 0.2
 
 
 @dataclass(frozen=True, slots=True)
 class Sight:
-    """A window on the time axis and a cursor that stands on samples."""
+    """A visible part of the time axis, and a cursor on samples."""
 
     window: Window
     cursor: float | None = None
-    """Stamp of a sample; None: there is no cursor."""
+    """Time stamp of the cursor's sample; None without a cursor."""
 
     def over(self, first: float, last: float, stamps: FloatArray) -> "Sight":
-        """Look at another record; the cursor goes to its nearest sample."""
+        """Show another record; the cursor moves to its nearest sample."""
         there = replace(self, window=self.window.over(first, last))
         return there if self.cursor is None else there.pointed(self.cursor, stamps)
 

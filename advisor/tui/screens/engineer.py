@@ -1,4 +1,4 @@
-"""The engineer's screen: every number behind the word."""
+"""The engineer's screen, with all numbers behind the pilot's word."""
 
 from dataclasses import replace
 
@@ -45,9 +45,9 @@ _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
 }
 _WIDE, _MEDIUM = (160, 42), (110, 30)
 _LOW = 7
-"""Rows of the manoeuvres above a pane that stands alone."""
+"""Rows of the manoeuvre table above a single pane."""
 _LOW_TABLE = 38
-"""Rows of a terminal below which the table of parameters shows four of the eight at once."""
+"""Height of a terminal, in rows, below which the parameter table shows four of its eight rows at once."""
 
 
 class EngineerScreen(Face, PaneActions):
@@ -109,7 +109,7 @@ work on the manoeuvres that are shown.
         self.call_after_refresh(self._refresh_panes)
 
     def show(self, view: View) -> None:
-        """Update what is visible."""
+        """Update the visible panes."""
         same_axis = self._view is not None and (self._view.elevator is None) == (view.elevator is None)
         selected = self._view.selected if self._view is not None and same_axis else None
         if not same_axis:
@@ -161,7 +161,7 @@ work on the manoeuvres that are shown.
         self.query_one("#left").styles.height = _LOW if alone else "1fr"
 
     def pane_in_front(self) -> Pane:
-        """Return the pane that has the focus, else the one chosen last."""
+        """Return the pane with the focus, else the pane chosen last."""
         around = self.focused.ancestors_with_self if self.focused else ()
         focused = next((node for node in around if isinstance(node, Pane)), None)
         return focused or self.query_one(self._chosen)
@@ -188,7 +188,8 @@ work on the manoeuvres that are shown.
         self.ask(question, lambda text: self._decided(HandDecision(verb, text, number, shown)))
 
     def _decided(self, decision: HandDecision) -> None:
-        """Pass the decision on, and show a message. The table follows once all is computed anew."""
+        """Send the decision to the campaign, and show a message. The table shows the decision when all is
+        recomputed."""
         self.post_message(self.Decided(decision))
         if decision.verb != "note":
             self.say(f"{decision.verb} manoeuvre {decision.number}: every decision is made again")

@@ -11,7 +11,7 @@ from textual.widgets import Static
 
 
 class Explain(ModalScreen[None]):
-    """Shows a text. Each of escape, q and ? closes the page."""
+    """Shows a text. Each of the keys escape, q and ? closes the page."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,question_mark", "dismiss", "Close")]
 

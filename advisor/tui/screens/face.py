@@ -1,4 +1,4 @@
-"""The base of both screens."""
+"""The base class of the pilot's and the engineer's screen."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -18,12 +18,12 @@ from advisor.tui.panes.status_line import KeysLine
 
 
 class Face(Screen[None]):
-    """A screen that is shown a `View` whenever there is a new one."""
+    """A screen that receives every new `View`."""
 
     AUTO_FOCUS = ""
 
     class Decided(Message):
-        """A crew member decided something by hand."""
+        """A crew member made a decision by hand."""
 
         def __init__(self, decision: HandDecision) -> None:
             super().__init__()
@@ -40,7 +40,7 @@ class Face(Screen[None]):
         await super().on_event(event)
 
     def ask(self, question: str, answered: Callable[[str], object], *, integer: bool = False) -> None:
-        """Ask for one line at the foot of the screen."""
+        """Ask for one line of text at the foot of the screen."""
         self.query_one(Ask).put(question, answered, integer=integer)
 
     def say(self, text: str, seconds: float = 3.0) -> None:
@@ -52,7 +52,7 @@ class Face(Screen[None]):
             self.notify(text, timeout=seconds, markup=False)
 
     def show(self, view: View) -> None:
-        """Update every part in sight to a new moment."""
+        """Update every visible part to a new moment."""
         # A report may still arrive while the screen is taken down, its innermost widgets first.
         with suppress(NoMatches):
             for node in self.walk_children():

@@ -19,7 +19,7 @@ else:
     Base = object
 
 _SAY_S = 8.0
-"""Time for which a sentence with a path is shown, s. A path takes longer to read than a word."""
+"""Time for which a sentence with a file path is shown, s. A path takes longer to read than a word."""
 
 
 class PaneActions(Base):
@@ -41,7 +41,7 @@ class PaneActions(Base):
 
     @abstractmethod
     def say(self, text: str, seconds: float = 3.0) -> None:
-        """Tell something for a while."""
+        """Show a text on the last line, for a while."""
 
     def action_copy(self) -> None:
         """Copy the pane to the clipboard of the terminal."""

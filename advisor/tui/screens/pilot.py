@@ -1,4 +1,4 @@
-"""The pilot's screen: one glance, one word."""
+"""The pilot's screen, which shows one word to be read at a glance."""
 
 from textual.app import ComposeResult
 from textual.events import Resize
@@ -16,9 +16,9 @@ from advisor.tui.panes.status_line import KeysLine, StatusLine
 from advisor.tui.screens.face import Face
 
 _TALL = 44
-"""Rows of a terminal with room for the verdict in block letters."""
+"""Least height of a terminal for the verdict in block letters, in rows."""
 _LARGE = 32
-"""Rows of a terminal with room for the drawing of the stick in five lines."""
+"""Least height of a terminal for the stick drawing of five lines, in rows."""
 
 
 class PilotScreen(Face):
