@@ -87,7 +87,8 @@ def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float 
     rates_hz
         Rates of new values of ``elevator``, ``q`` and, where measured, ``alpha`` and ``a_z``.
     airspeed_m_s
-        Air speed at which the specific force a_z is computed, m/s. None: not measured, so that a_z cannot be used.
+        Air speed at which the specific force a_z is computed, m/s.
+        None: not measured, so that a_z cannot be used.
     """
     model = assumed.model
     unit_s = float(np.clip(2.0 / frequency(model), 0.1, 3.0))
