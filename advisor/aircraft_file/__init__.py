@@ -1,1 +1,1 @@
-"""Aircraft files: writing one for a user, and checking one for missing keys."""
+"""Aircraft files: how a new one is written, and how one is checked for missing keys."""

@@ -1,4 +1,4 @@
-"""The section ``effects`` of an aircraft file: its mistakes and its schema, from the catalogue."""
+"""The section ``effects`` of an aircraft file: its mistakes, and its schema from the catalogue of effects."""
 
 import math
 from collections.abc import Iterator, Mapping

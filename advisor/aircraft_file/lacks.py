@@ -1,4 +1,4 @@
-"""Keys that an aircraft file lacks, and the cost of each missing key."""
+"""Keys that are missing in an aircraft file, and the cost of each missing key."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,29 +11,30 @@ from advisor.flight.elevator.side_outputs import SIDES
 from advisor.flight.vehicle.surfaces import Surface
 
 KEYS = tuple(key for key in keys_of(Aircraft) if key.example)
-"""Keys that stand in a new file."""
+"""Keys that a new aircraft file contains."""
 
 
 BEYOND_US = 20.0
-"""Distance by which pulses may exceed a calibration, us. Trims of servo and transmitter differ so much."""
+"""Largest excess of pulses over a calibration without a warning, us. The trims of servo and transmitter
+differ by as much."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lack:
-    """One key that is missing, or that contradicts the log."""
+    """One key of an aircraft file that is missing, or that contradicts the log."""
 
     key: str
-    """Path of the missing key."""
+    """Path of the key in the aircraft file."""
     cost: str
     """Sentence on the cost of the missing key."""
     mend: str
-    """Clause on the remedy in the file."""
+    """Clause on the remedy in the aircraft file."""
     wrong: bool = False
-    """Whether the key is present and contradicts the log."""
+    """Whether the key exists and contradicts the log."""
 
 
 def lacks_of(aircraft: Aircraft, facts: LogFacts | None = None) -> tuple[Lack, ...]:
-    """Return the keys that a file lacks, in the order of the file, after those that contradict the log.
+    """Return the missing keys of a file, in the order of the file, after the keys that contradict the log.
 
     Parameters
     ----------
@@ -51,7 +52,7 @@ def lacks_of(aircraft: Aircraft, facts: LogFacts | None = None) -> tuple[Lack, .
 
 
 def _given(path: str, aircraft: Aircraft) -> bool:
-    """Return whether the file gives the key, or another key that replaces it."""
+    """Return whether the aircraft file has the key, or another key that replaces it."""
     match path:
         case "elevator.output":
             return aircraft.elevator.output != "auto" or bool(aircraft.elevator.outputs)
@@ -111,7 +112,7 @@ def _contradictions(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
 
 
 def _beyond_calibration(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
-    """Yield the outputs whose pulses exceed their calibration, where the deflection is held."""
+    """Yield the outputs whose pulses exceed their calibration, beyond which the deflection is constant."""
     calibrations = {one.output: one.calibration for one in aircraft.elevator.outputs}
     if aircraft.elevator.calibration and len(facts.outputs) == 1:
         calibrations = {facts.outputs[0]: aircraft.elevator.calibration}
@@ -131,5 +132,5 @@ def _beyond_calibration(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
 
 
 def known_keys(aircraft: Aircraft) -> list[str]:
-    """List the paths of the given keys, of all keys that cost something when missing."""
+    """Return the paths of the keys that a file has, among all keys whose absence has a cost."""
     return [key.path for key in KEYS if key.cost and _given(key.path, aircraft)]

@@ -19,13 +19,13 @@ from advisor.flight.vehicle.wiring import Wiring
 from advisor.words.problems import Problem, UnusableInputError
 
 FLYING_SHARE = 0.5
-"""Share of the 95th percentile of the air speed above which an aircraft flies. A stall speed is above half of
-the cruise speed; an aircraft on the ground reads a few m/s of wind."""
+"""Fraction of the 95th percentile of the air speed, above which an aircraft flies. A stall speed is above
+half of the cruise speed; an aircraft on the ground reads a few m/s of wind."""
 SLOWEST_M_S = 3.0
-"""Air speed below which no fixed-wing aircraft of a flight test flies, m/s. An air speed that never exceeds
-it shows no flight."""
+"""Air speed below which no fixed-wing aircraft of a flight test flies, m/s. A log whose air speed never
+exceeds this value contains no flight."""
 _GROUND_STATIONS_COMPONENT = 190
-"""MAV_COMP_ID_MISSIONPLANNER: ground stations store the vehicle's parameters under this component."""
+"""MAV_COMP_ID_MISSIONPLANNER: the component under which ground stations store the vehicle's parameters."""
 _FRAMES = {
     1: "fixed wing",
     2: "quadrotor",
@@ -38,51 +38,51 @@ _FRAMES = {
     25: "VTOL",
     16: "flapping wing",
 }
-"""Values of MAV_TYPE, MAVLink common.xml."""
+"""Names of the aircraft types, by the value of MAV_TYPE in MAVLink's common.xml."""
 
 
 @dataclass(frozen=True, slots=True)
 class LogFacts:
-    """Facts about an aircraft from one log."""
+    """Facts about an aircraft from one log of the aircraft."""
 
     vehicle: Vehicle
     elevator: Surface | Problem
-    """Elevator by the log's parameters and the aircraft file."""
+    """Elevator, from the log's parameters and the aircraft file."""
     guess: Guess | None
-    """Output that the pitch rate answers to, where no parameter names the elevator."""
+    """Servo output that the pitch rate follows, if no parameter names the elevator."""
     wiring: Wiring
-    """All outputs by the log's parameters."""
+    """Functions of all servo outputs, from the log's parameters."""
     pulses_us: Mapping[int, tuple[float, float]]
-    """Servo output to its shortest and longest pulse, us."""
+    """Shortest and longest pulse of each servo output, us, by the output's number."""
     airspeed_m_s: tuple[float, float, float] | None
-    """Percentiles 5, 50 and 95 of the air speed in flight, m/s. None: the log has none."""
+    """Percentiles 5, 50 and 95 of the air speed in flight, m/s. None: the log has no air speed."""
     pressure_pa: float | None
-    """Median static pressure, Pa. None: the log has none."""
+    """Median static pressure, Pa. None: the log has no static pressure."""
     alpha_source: str | None
-    """Message and field of the angle of attack. None: the log has none."""
+    """Message and field of the angle of attack. None: the log has no angle of attack."""
     alpha_provenance: str
     """``vane``, ``derived``, ``simulated``, or ``unknown``."""
     maneuvers_m_s: tuple[float, ...]
-    """Mean air speed of every manoeuvre, m/s. NaN where a manoeuvre has none."""
+    """Mean air speed of every manoeuvre, m/s. NaN: the manoeuvre has no air speed."""
     sides_unknown: Problem | None = None
-    """Reason for which aileron or rudder cannot be followed; None where their outputs are known."""
+    """Reason for which the outputs of aileron or rudder are unknown; None if they are known."""
     sides: Mapping[str, Surface] = field(default_factory=dict)
-    """Aileron and rudder to their outputs, as far as parameters or the aircraft file state them."""
+    """Outputs of aileron and rudder, by the control's name, if parameters or the aircraft file state them."""
 
     @property
     def frame(self) -> str:
-        """Kind of aircraft in words."""
+        """Kind of the aircraft in words, from MAV_TYPE."""
         return _FRAMES.get(self.vehicle.type, f"MAV_TYPE {self.vehicle.type}")
 
     @property
     def outputs(self) -> tuple[int, ...]:
-        """Outputs of the elevator, known or guessed. Empty where unknown."""
+        """Servo outputs of the elevator, known or guessed. Empty if the elevator's outputs are unknown."""
         if isinstance(self.elevator, Surface):
             return self.elevator.outputs
         return (self.guess.output,) if self.guess else ()
 
     def stated_scale(self, output: int) -> Scale | None:
-        """Return the limits of an output by the log's parameters; None where the log states no limit."""
+        """Return the limits of a servo output from the log's parameters; None if the log has none."""
         return self.wiring.scales.get(output) if output in self.wiring.known_directions else None
 
 

@@ -11,16 +11,16 @@ from advisor.flight.vehicle.surfaces import Scale, Surface, joined_numbers
 from advisor.words.problems import Problem
 
 _FULL_STROKE_DEG = 25.0
-"""Deflection assumed at the end point of a servo without a measurement, deg."""
+"""Deflection that is assumed at a servo's end point without a measurement, deg."""
 
 
 def proposed(facts: LogFacts, log: str) -> Draft:
-    """Return an aircraft file with the facts of a log.
+    """Return a draft of an aircraft file with the facts of a log.
 
     Parameters
     ----------
     facts
-        Facts of the log.
+        Facts about the aircraft from its log.
     log
         Name of the log, for the comments.
     """
@@ -74,7 +74,7 @@ def _elevator(facts: LogFacts, draft: Draft) -> None:
 
 
 def _control(name: str, surface: Surface, facts: LogFacts, draft: Draft) -> None:
-    """Write the outputs of the aileron or the rudder."""
+    """Write the outputs of the aileron or the rudder into the draft."""
     if len(surface.parts) > 1:
         _found_by_function(name, surface, facts, draft)
         return
@@ -102,7 +102,7 @@ def _unknown_elevator(facts: LogFacts, problem: Problem, draft: Draft) -> None:
 
 
 def _calibration(facts: LogFacts, output: int, draft: Draft, name: str = "elevator") -> None:
-    """Write the limits of one output in place of the usual example."""
+    """Write the limits of one output into the draft, instead of the usual example."""
     draft.comments[f"{name}.calibration"] = _limits(facts, output)
     scale = facts.stated_scale(output)
     if scale is not None:
@@ -110,7 +110,7 @@ def _calibration(facts: LogFacts, output: int, draft: Draft, name: str = "elevat
 
 
 def _limits(facts: LogFacts, output: int) -> str:
-    """Return an output's travel in the log, in one sentence or two."""
+    """Return the travel of a servo output in the log, in one sentence or two."""
     scale = facts.stated_scale(output)
     said = []
     if scale is not None:

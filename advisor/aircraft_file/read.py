@@ -28,7 +28,7 @@ def load_aircraft(path: Path | None) -> Aircraft:
     Raises
     ------
     ConfigurationError
-        The file cannot be read, is not plain YAML, or holds unknown keys or unusable values.
+        The file cannot be read, is not plain YAML, or contains unknown keys or unusable values.
     """
     if path is None:
         return Aircraft()
@@ -97,7 +97,8 @@ def _without(content: Any, locations: list[tuple[int | str, ...]]) -> Any:
 
 
 def _take_out(section: dict[Any, Any], location: Sequence[int | str]) -> None:
-    """Remove the innermost key that a location names. Neighbours stay: they may be wrong, too."""
+    """Remove the innermost key at a location of the file. The other keys of the section remain, because they
+    may be wrong too."""
     key, *inside = location
     within = section.get(key)
     if isinstance(within, dict) and inside and inside[0] in within:
@@ -133,9 +134,9 @@ def _sentence(item: Any) -> str:
 
 
 def _meant(path: str) -> str:
-    """Name the known key that an unknown one resembles, as a question; empty where none does.
+    """Return the known key that an unknown key resembles, as a question; empty without such a key.
 
-    A key of the same section comes first, then the path of a key elsewhere.
+    A similar key of the same section precedes the path of a key elsewhere.
     """
     section, _, key = path.rpartition(".")
     by_path = {re.sub(r"\[\]", "", at): kind for at, kind in sections_of(Aircraft)}
@@ -156,22 +157,22 @@ def _meant(path: str) -> str:
 _PARTS = tuple(dict.fromkeys(kind for _, kind in sections_of(Aircraft)))[::-1]
 """The sections of the file, innermost first."""
 _EXAMPLE = "To see every key with its meaning, type: advisor aircraft new --blank -o example.yaml."
-"""Next step after a file was refused."""
+"""Sentence on the next step after a file was refused."""
 _MOST_LISTED = 20
-"""Most mistakes that are listed. A user with more has repeated one mistake."""
+"""Largest number of listed mistakes. A user with more mistakes has repeated one."""
 _MOST_POINTS = 500
-"""Most points of a calibration: one for every second microsecond of a servo's travel."""
+"""Largest number of points of a calibration: one for every second microsecond of a servo's travel."""
 _LONGEST_WINDOW = 50
 """Largest window of Eq. (12), in manoeuvres, above the number in any flight."""
 _OUTPUTS = 32
-"""Number of servo outputs that SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS can carry."""
+"""Number of servo outputs in SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS."""
 _LONGEST_STEP_S = 0.1
 """Longest communication step of an FMU, s. A short period of one second still has ten such steps."""
 _UNION_TAGS = frozenset({"int", "str", "float", "none"})
 
 
 def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
-    """Yield mistakes that types do not show, as ``path: description``."""
+    """Yield mistakes that the types of the keys do not exclude, as ``path: description``."""
     yield from _elevator_mistakes(aircraft.elevator)
     for name in ("aileron", "rudder"):
         yield from _side_control_mistakes(name, getattr(aircraft, name))
@@ -204,7 +205,7 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
 
 
 def _out_of_bounds(aircraft: Aircraft) -> Iterator[str]:
-    """Yield the numbers outside the bounds that their keys state."""
+    """Yield the values outside the bounds of their keys."""
     for key in keys_of(Aircraft):
         value: Any = aircraft
         for name in key.path.split("."):

@@ -11,7 +11,7 @@ from advisor.aircraft.key import Key
 from advisor.aircraft_file.lacks import KEYS
 
 _WIDTH = 100
-"""Columns of a comment line."""
+"""Width of a comment line, in characters."""
 
 
 @dataclass(slots=True)
@@ -19,13 +19,13 @@ class Draft:
     """Content of an aircraft file before it is written."""
 
     head: list[str] = field(default_factory=list)
-    """Sentences for the head of the file."""
+    """Sentences at the beginning of the file."""
     values: dict[str, Any] = field(default_factory=dict)
-    """Value of each key, by the key's path. ``elevator.outputs`` replaces output and calibration."""
+    """Value of each key, by the key's path. The key ``elevator.outputs`` replaces output and calibration."""
     comments: dict[str, str] = field(default_factory=dict)
-    """Path of a key to the source of its value, or to the known facts in place of a value."""
+    """Source of each key's value, or the known facts instead of a value, by the key's path."""
     examples: dict[str, str] = field(default_factory=dict)
-    """Path of a key without a value to the value in its comment, in place of the usual example."""
+    """Example of a value in the comment of each key without a value, by the key's path."""
     needless: set[str] = field(default_factory=set)
     """Paths of keys that this aircraft does not need."""
     unsure: list[str] = field(default_factory=list)
@@ -33,7 +33,7 @@ class Draft:
 
 
 def aircraft_text(draft: Draft) -> str:
-    """Write an aircraft file.
+    """Return the text of an aircraft file from its draft.
 
     Returns
     -------
@@ -79,7 +79,7 @@ def _commented(sentence: str, indent: str = "") -> list[str]:
 
 
 def _inline(value: Any) -> str:
-    """Write a value on one line of YAML."""
+    """Return a value as one line of YAML."""
     text: str = yaml.safe_dump(
         value, default_flow_style=True, allow_unicode=True, width=10_000, sort_keys=False
     )

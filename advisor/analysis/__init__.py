@@ -1,1 +1,1 @@
-"""Whole logs: several as one campaign, marks by hand, and the diagnosis of logs."""
+"""Complete logs: several logs as one campaign, marks by hand, and the diagnosis of logs."""

@@ -1,4 +1,4 @@
-"""From logs to a diagnosis: every manoeuvre counts once, then ``advisor.gap`` diagnoses."""
+"""From logs to a diagnosis: every manoeuvre is used once, then ``advisor.gap`` diagnoses the gap."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -35,18 +35,18 @@ from advisor.words.printable import printable
 from advisor.words.problems import Problem, UnusableInputError
 
 _PAUSE_S = 60.0
-"""Time between the last manoeuvre of one log and the first of the next, s. No clock measured the pause
-between two logs."""
+"""Assumed time between the last manoeuvre of one log and the first of the next, s. No clock measured the
+pause between two logs."""
 
 
 @dataclass(frozen=True)
 class GapFlights:
-    """Manoeuvres of logs, ready for a diagnosis."""
+    """Manoeuvres of several logs, prepared for a diagnosis."""
 
     maneuvers: list[Maneuver]
-    """Every manoeuvre once, numbered through and on one clock."""
+    """Every manoeuvre once, with consecutive numbers and times on one clock."""
     again: int
-    """Number of repeated manoeuvres that were left out."""
+    """Number of repeated manoeuvres that were omitted."""
     notes: tuple[str, ...]
     """Assumptions about the elevator, and the manoeuvres excluded by hand, as sentences."""
 
@@ -112,8 +112,8 @@ def _recorded(
 
 
 def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
-    """Return the manoeuvres without repetitions. A copy of a log would confirm the log's own errors. The
-    fuller record stays."""
+    """Return the manoeuvres without copies from a second log. A copy of a log would confirm the log's own
+    errors. Of two copies of a manoeuvre, the longer record is used."""
     found: list[Maneuver] = []
     for maneuver in recorded:
         known = next((m for m in found if m.power_on != maneuver.power_on and are_one(maneuver, m)), None)
@@ -125,9 +125,9 @@ def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
 
 
 def _on_one_clock(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
-    """Return the manoeuvres with times that go on where the vehicle's clock goes back.
+    """Return the manoeuvres with continuous times, also after a restart of the vehicle's clock.
 
-    A quantity that drifts or steps between manoeuvres does so in the order of flying.
+    A quantity that drifts or steps between manoeuvres does so in the order of the flights.
     """
     found: list[Maneuver] = []
     ahead = 0.0
@@ -225,12 +225,12 @@ def compare_flown(
 
 
 def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Simulator | None:
-    """Open the simulator that the aircraft file names; None where the file names none.
+    """Open the simulator that the aircraft file names; None if the file names none.
 
     Raises
     ------
     ConfigurationError
-        The specification names no simulator.
+        The specification of the simulator is unknown.
     UnusableInputError
         The log that a simulator wrote cannot serve.
     """
@@ -252,7 +252,7 @@ def with_true_reference(aircraft: Aircraft, true_over_read: float) -> Aircraft:
 
 
 def _simulator_at_true_speed(simulator: Simulator, true_over_read: float) -> Simulator:
-    """Return the simulator with a true reference speed. ``linear`` has the aircraft file's."""
+    """Return the simulator at the true reference speed. ``linear`` has the aircraft file's."""
     if isinstance(simulator, IdentifiedSimulator) or not isinstance(simulator, LinearSimulator):
         return simulator
     read = simulator.reference_m_s

@@ -1,6 +1,7 @@
-"""Several logs as one campaign, in the order of their true times. Messages carry their flight's number.
+"""Several logs as one campaign, in the order of their true times. Each message carries the number of its
+flight.
 
-``Campaign.feed`` takes the columns of a series unchanged. A link that follows the logs is the next flight.
+``Campaign.feed`` takes the columns of a series unchanged. A link after the logs is the next flight.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -19,12 +20,13 @@ from advisor.words.problems import Problem, UnusableInputError
 T = TypeVar("T")
 
 SINCE_1970_S = 1e9
-"""Least time of arrival that is a date, s since 1970 (a day in 2001). A log without a date counts from its
-boot and stays below."""
+"""Earliest time of arrival that is a date, s since 1970 (a day in 2001). Times of a log without a date begin
+at its boot and are smaller."""
 
 
 class LogSeries:
-    """The logs of one campaign. Oldest first where every log has a date, else in the order given.
+    """The logs of one campaign in the order of their flights. The oldest log is first if every log has a
+    date; else the given order is used.
 
     Parameters
     ----------
@@ -36,25 +38,27 @@ class LogSeries:
         self.logs = _oldest_first(logs) if len(logs) > 1 else list(logs)
         """Paths of the logs in the order of flights."""
         self.reordered = self.logs != list(logs)
-        """Whether the order differs from the order given."""
+        """Whether the order differs from the given order."""
         self.unreadable: dict[int, Problem] = {}
-        """Flight number to the reason for which its log ends early. Filled while reading."""
+        """Reason for which a log ends early, by its flight number. The reasons are found while the logs are
+        read."""
         self._left_out: set[int] = set()
 
     @property
     def names(self) -> list[str]:
-        """Name of each log: the file's name, or the path where two files have one name."""
+        """Name of each log: the file's name, or the path if two files have the same name."""
         names = [log.name for log in self.logs]
         return [str(log) if names.count(log.name) > 1 else log.name for log in self.logs]
 
     @property
     def order_said(self) -> str:
-        """Sentence on the order where the order differs from the one given; else empty."""
+        """Sentence on the order of the logs if it differs from the given order; else empty."""
         listed = ", ".join(self.names)
         return f"The logs are taken in the order of their times: {listed}." if self.reordered else ""
 
     def batches(self) -> Iterator[list[Columns]]:
-        """Yield the messages of all logs. A log that cannot be read is only listed in ``unreadable``."""
+        """Yield the messages of all logs. A log that cannot be read is omitted and listed in
+        ``unreadable``."""
         for flight in sorted(set(range(len(self.logs))) - self._left_out):
             try:
                 for columns in self._read(flight):
@@ -88,7 +92,8 @@ class LogSeries:
                 return consumer
 
     def _read(self, flight: int) -> Iterator[list[Columns]]:
-        """Stream one log as a whole. The nearest other log lends parameters to a log without any."""
+        """Yield the messages of one complete log. A log without parameters uses those of the nearest other
+        log."""
         # The log reader takes longer to load than the first screen to paint.
         from advisor.mavlink.logs.whole import read_whole_log
 
@@ -109,7 +114,7 @@ class LogSeries:
         return columns
 
     def said(self) -> list[str]:
-        """Return sentences on the order of the logs, and on those that could not be read."""
+        """Return sentences on the order of the logs, and on the logs that could not be read."""
         wrong = [problem.about(self.names[flight]) for flight, problem in self.unreadable.items()]
         return [*([self.order_said] if self.reordered else []), *wrong]
 
@@ -137,7 +142,7 @@ def _oldest_first(logs: Sequence[Path]) -> list[Path]:
 
 
 def began_s(log: Path) -> float:
-    """Return the time at which a log began, s since 1970. A log without dates gives a smaller number, and an
+    """Return the start time of a log, s since 1970. A log without dates gives a smaller number, and an
     unreadable log gives infinity."""
     from advisor.mavlink.logs.logs import open_log
 

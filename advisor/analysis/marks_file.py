@@ -20,7 +20,7 @@ from advisor.words.problems import ConfigurationError
 
 SUFFIX = ".maneuvers.yaml"
 _TEXT_KEYS = {"excluded": "because", "notes": "text", "remarks": "text"}
-"""Section of the file with sentences, to the key that holds each sentence. Sections have the names of the
+"""Key of the sentence in each section of the file, by the section's name. Sections have the names of the
 fields of ``ByHand``."""
 _SECTIONS = ("maneuvers", *_TEXT_KEYS)
 _MEND = "Fix the file, move it away, or give --no-marks."
@@ -35,7 +35,7 @@ def path_beside(log: Path) -> Path:
 
 
 def read_by_hand(log: Path) -> ByHand:
-    """Read the decisions by hand on a log. Without a file nothing is marked.
+    """Read the decisions by hand on a log. Without such a file there are no decisions by hand.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def read_by_hand(log: Path) -> ByHand:
 
 
 def write_by_hand(log: Path, by_hand: ByHand) -> None:
-    """Write the decisions next to a log. The file is whole, old or new, even where power fails.
+    """Write the decisions next to a log. The file is always complete, old or new, even after a power failure.
 
     Raises
     ------

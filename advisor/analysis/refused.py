@@ -1,4 +1,4 @@
-"""Manoeuvres that ``advisor analyze`` refuses by their data alone, which the gap does not use either."""
+"""Manoeuvres that ``advisor analyze`` refuses because of their data, which the gap does not use either."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,24 +14,24 @@ from advisor.simulators.speed_kind import SpeedKind
 from advisor.words.problems import UnusableInputError
 
 _KNOWN = frozenset({"throttle", "rate"})
-"""Reasons that do not apply here. The gap's model knows the throttle, and the gap says itself which effects a
-slow channel hides."""
+"""Reasons for a refusal that do not apply to the gap. The gap's model includes the throttle, and the gap
+itself reports the effects that a slow channel hides."""
 _LARGEST_SPEED_CHANGE_PERCENT = 30.0
 """Change of the air speed, %, up to which the gap scales forces with the speed, where the crew allows less.
-Forces change by two thirds. Manoeuvres of the generators stay below 24 %, and those of two UAV records
-outside the model have 66 and 69 %."""
+Such a speed change alters the forces by two thirds. Manoeuvres of the generators stay below 24 %, and those
+of two UAV records outside the model have 66 and 69 %."""
 LEAST = 3
-"""Least number of manoeuvres that must remain: two for a search, and one kept apart from it."""
+"""Least number of remaining manoeuvres: two for a search, and one for its check."""
 
 
 @dataclass(frozen=True)
 class Chosen:
-    """The manoeuvres in use, and a sentence on each refused manoeuvre."""
+    """The manoeuvres that the gap uses, and a sentence on each refused manoeuvre."""
 
     maneuvers: list[Maneuver]
     notes: tuple[str, ...]
     although_refused: tuple[int, ...] = ()
-    """Numbers of the manoeuvres in use that ``advisor analyze`` refuses."""
+    """Numbers of the used manoeuvres that ``advisor analyze`` refuses."""
 
     def with_speed(self, kind: SpeedKind) -> "Chosen":
         """Return the choice with the kind of air speed that the motion shows."""
@@ -39,7 +39,7 @@ class Chosen:
 
 
 def without_refused(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Chosen:
-    """Return the manoeuvres without those outside the limits or with incomplete data.
+    """Return the manoeuvres without those that exceed the limits or have incomplete data.
 
     Where fewer than ``LEAST`` would remain, all are used, and the sentences say what is wrong.
 
@@ -64,7 +64,8 @@ def without_refused(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Chosen
 
 
 def _reason(maneuver: Maneuver, aircraft: Aircraft) -> Reason | None:
-    """Return the first reason for which ``advisor analyze`` refuses a manoeuvre, whatever its estimate."""
+    """Return the first reason for which ``advisor analyze`` refuses a manoeuvre, independent of its
+    estimate."""
     period_s = natural_period(maneuver, NoEstimate("not_asked", "no estimate was asked for"))
     most = max(aircraft.limits.airspeed_change_percent, _LARGEST_SPEED_CHANGE_PERCENT)
     allowing = replace(aircraft, limits=replace(aircraft.limits, airspeed_change_percent=most))

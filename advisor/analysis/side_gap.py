@@ -1,4 +1,4 @@
-"""From logs to the gap of the lateral axis, over the accepted manoeuvres of aileron and rudder."""
+"""From logs to the gap of the lateral axis, from the accepted manoeuvres of aileron and rudder."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -27,15 +27,15 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 
 @dataclass(frozen=True)
 class SideCompared:
-    """Gap of roll and yaw, and the flight that it is of."""
+    """Gap of roll and yaw, with the flight from which it was found."""
 
     gap: SideGap
     state: CampaignState
-    """Campaign at the end of the logs, both axes."""
+    """State of the campaign at the end of the logs, with both axes."""
     aircraft: Aircraft
     """The aircraft file."""
     maneuvers: Sequence[Maneuver] = ()
-    """Accepted manoeuvres as flown."""
+    """Accepted lateral manoeuvres, as flown."""
 
 
 def compare_side_logs(
@@ -81,7 +81,7 @@ def axis_flown(
     marks: Sequence[Mark] = (),
     no_marks: bool = False,
 ) -> tuple[Literal["pitch", "lateral"], GapFlights | None]:
-    """Return the axis to diagnose, and the elevator's manoeuvres where they can be read.
+    """Return the axis for the diagnosis, and the elevator's manoeuvres if they can be read.
 
     The axis is pitch, unless the elevator has no accepted manoeuvre and aileron or rudder has one.
     """
@@ -103,7 +103,8 @@ def axis_flown(
 def beside_simulator(
     maneuvers: Sequence[Maneuver], aircraft: Aircraft, progress: Progress = lambda *_: None
 ) -> tuple[Sequence[Maneuver], Aircraft]:
-    """Return manoeuvres without the difference of the file's simulator to its surrogate, and the surrogate.
+    """Return manoeuvres without the difference between the file's simulator and its surrogate, and the
+    surrogate.
 
     The model of the aircraft file is its own surrogate, as is the model that a simulator's log shows.
     """
@@ -134,7 +135,7 @@ def accepted_of(state: CampaignState) -> list[Maneuver]:
 
 
 def _identified(log: Path, aircraft: Aircraft) -> Aircraft:
-    """Return the aircraft file with the derivatives that a simulator's log shows."""
+    """Return the aircraft file with the derivatives identified from a simulator's log."""
     if not log.is_file():
         raise ConfigurationError(f"--simulator log:{log}: there is no such file; name the simulator's log.")
     flown = accepted_of(read_whole([log], aircraft, no_marks=True, axis="lateral").state)
@@ -143,7 +144,7 @@ def _identified(log: Path, aircraft: Aircraft) -> Aircraft:
 
 
 def with_derivatives(aircraft: Aircraft, found: Estimate, airspeed_m_s: float | None) -> Aircraft:
-    """Return the aircraft file with the identifiable derivatives of an estimate, at this air speed."""
+    """Return the aircraft file with the identifiable derivatives of an estimate, at a given air speed."""
     told = zip(SIDE_PARAMETERS, found.theta.tolist(), strict=True)
     model = {name: value for name, value in told if name not in found.not_identifiable}
     return replace(aircraft, model=model, reference_airspeed_m_s=airspeed_m_s)
@@ -155,7 +156,7 @@ _Found = TypeVar("_Found")
 def answered(
     found: _Found | NoEstimate, fix: str = "Fly an aileron doublet and a rudder doublet.", option: str = ""
 ) -> _Found:
-    """Return an answer, or refuse manoeuvres that gave none; ``option`` begins the message."""
+    """Return the gap found, or refuse manoeuvres without one; ``option`` begins the message."""
     if isinstance(found, NoEstimate):
         raise UnusableInputError(found.code, f"{option}{found.text}", fix)
     return found

@@ -10,7 +10,7 @@ from advisor.gap.result import Trace
 
 
 def side_traces(found: SideGap, flown: Sequence[Maneuver], compared: Sequence[Maneuver]) -> tuple[Trace, ...]:
-    """Return the curves of every output and manoeuvre; none without a diagnosis.
+    """Return the curves of every output and manoeuvre; empty without a diagnosis.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The sticks of a flight, as its receiver reported them."""
+"""The pilot's stick positions of a flight, as the radio receiver reported them."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,21 +11,21 @@ from advisor.words.problems import UnusableInputError
 
 _CHANNELS = ("chan1_raw", "chan2_raw", "chan3_raw", "chan4_raw")
 _NO_PULSE_US = 800
-"""Pulse width below which a channel carries none, µs: receivers send 900 to 2100."""
+"""Pulse width below which a channel carries no pulse, µs: receivers send 900 to 2100."""
 
 
 @dataclass(frozen=True)
 class RecordedSticks:
-    """Pulses of the first four channels."""
+    """Pulses of the receiver's first four channels."""
 
     t: FloatArray
-    """Shape (n,): seconds since the first pulse."""
+    """Shape (n,): time of each sample in seconds since the first pulse."""
     pulses: IntArray
-    """Shape (n, 4), µs."""
+    """Shape (n, 4), pulse width of each channel, µs."""
 
 
 def sticks_of(log: Path) -> RecordedSticks:
-    """Return the sticks of a log.
+    """Return the stick positions from a log.
 
     Raises
     ------

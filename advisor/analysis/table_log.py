@@ -29,14 +29,15 @@ _ANGLES = frozenset({"elevator", "alpha", "q", "theta", "bank", "p", "r"})
 _HALF_TURN = ("elevator", "alpha", "theta")
 """Angles that never exceed a quarter of a turn."""
 _CENTRE_US, _US_PER_DEG = 1500.0, 10.0
-"""Pulse width at zero deflection, and its change per degree: any line serves, because it is undone again."""
+"""Pulse width at zero deflection, and its change per degree, of an arbitrary calibration that is inverted
+later."""
 _SYSTEM, _ARDUPILOT, _ARMED_MANUAL = 1, 3, 128
 _ORDERS = 8
-"""Number of messages of one row, which stand one after another in the order of arrival."""
+"""Number of messages of one row, which arrive one after another."""
 
 
 def table_maneuvers(path: Path, aircraft: Aircraft) -> list[Maneuver]:
-    """Return the manoeuvres in a table.
+    """Return the manoeuvres in a simulator's table.
 
     Raises
     ------
@@ -89,7 +90,7 @@ def _quantities(
 
 
 def _refuse_degrees(given: Mapping[str, FloatArray], columns: TableColumns, file: str) -> None:
-    """Refuse angles that are none in rad."""
+    """Refuse angles whose values are not in rad."""
     for name in (n for n in _HALF_TURN if n in given):
         largest = float(np.nanmax(np.abs(given[name]), initial=0.0))
         if largest > np.pi / 2.0:

@@ -1,1 +1,2 @@
-"""Check of telemetry before a flight: whether it suffices to identify a short period, and what to change."""
+"""Check of telemetry before a flight: whether it suffices to identify a short period, and which settings to
+change."""

@@ -1,4 +1,4 @@
-"""Result of an examination: facts, limits, and the verdict."""
+"""Result of a telemetry examination: facts, limits, and the verdict."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,12 +15,12 @@ DoctorVerdict = Literal["ready", "usable with limits", "not usable"]
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """A defect that keeps the telemetry from being ready."""
+    """A defect for which the telemetry is not ready."""
 
     code: str
     """Short and stable identifier: ``rate``, ``alpha_derived``, ``calibration``, ..."""
     text: str
-    """Sentence on the defect, with its number."""
+    """Sentence on the defect, with the measured value."""
     fix: str
     """Remedy."""
     stops: bool = False
@@ -31,18 +31,19 @@ class Limit:
 
 
 _OF_THE_FILE = frozenset({"servo_limits", "calibration", "resolution", "servo_unknown"})
-"""Codes of the limits that parameters or the aircraft file can mend. All others are limits of the data."""
+"""Codes of the limits that parameters or the aircraft file can remedy. All other codes are limits of the
+data."""
 
 
 def in_order(limits: Sequence[Limit]) -> tuple[Limit, ...]:
-    """Return limits in the order in which they are said: what stops, then the data, then the numbers of
+    """Return the limits in the order of a report: what prevents identification, then the data, then
     parameters and aircraft file. Within these they keep their order."""
     return tuple(sorted(limits, key=lambda limit: (not limit.stops, limit.code in _OF_THE_FILE)))
 
 
 @dataclass(frozen=True, slots=True)
 class ElevatorFound:
-    """Elevator as found in the telemetry."""
+    """Elevator of the vehicle, as found in the telemetry."""
 
     outputs: tuple[int, ...]
     resolution_deg: float
@@ -51,12 +52,12 @@ class ElevatorFound:
     """Whether the file has a calibration. Without a calibration, the parameters' limits and an assumed full
     travel give the scale."""
     doubts: tuple[Problem, ...] = ()
-    """Problems of limits that are assumed in the scale."""
+    """Problems with the servo limits that the scale assumes."""
 
 
 @dataclass(frozen=True, slots=True)
 class AlphaFound:
-    """Source of the angle of attack."""
+    """Source of the angle of attack in the telemetry."""
 
     source: str
     provenance: str
@@ -66,7 +67,7 @@ class AlphaFound:
 
 @dataclass(frozen=True, slots=True)
 class Examination:
-    """Findings of the examination."""
+    """Findings of the telemetry examination."""
 
     vehicle: Vehicle | None
     messages: tuple[Arrival, ...]
@@ -74,21 +75,22 @@ class Examination:
     elevator: ElevatorFound | None
     alpha: AlphaFound | None
     limits: tuple[Limit, ...]
-    """Defects, those that prevent any identification first."""
+    """Defects of the telemetry, beginning with those that prevent any identification."""
     expectation: ExpectedErrors | None
-    """Expected errors. None when a needed channel is missing."""
+    """Expected errors of the derivatives. None when a needed channel is missing."""
     assumed: Assumed
-    """Model and noise behind the expected errors and the demands on rates."""
+    """Model and noise from which the expected errors and the required rates follow."""
     instruments: tuple[InstrumentFinding, ...] = ()
     """Contradictions of the instruments. Each contradiction of an instrument is also listed in ``limits``."""
     airspeed_m_s: tuple[float, float] | None = None
-    """Lowest and highest air speed in flight, m/s. None: no air speed arrives, or nothing flies."""
+    """Lowest and highest air speed in flight, m/s. None: no air speed arrives, or the vehicle does not
+    fly."""
     notes: tuple[str, ...] = ()
     """Choices made in reading the log, and pauses of the autopilot's own log, as sentences."""
 
     @property
     def verdict(self) -> DoctorVerdict:
-        """Ready, usable with limits, or not usable."""
+        """Verdict on the telemetry: ready, usable with limits, or not usable."""
         if any(limit.stops for limit in self.limits):
             return "not usable"
         return "usable with limits" if self.limits else "ready"

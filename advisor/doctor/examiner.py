@@ -1,4 +1,4 @@
-"""The examination of telemetry: messages in, findings out, without reading files or printing."""
+"""The telemetry examination: messages in, findings out, without reading files or printing."""
 
 from collections.abc import Mapping, Sequence
 
@@ -45,12 +45,12 @@ _DERIVED_RENEWAL_HZ = 20.0  # ArduPilot refreshes AOA_SSA no faster; on the grou
 
 
 class Examiner:
-    """Collects the messages of a log or link, then gives its findings.
+    """Collects the messages of a log or link, then returns the findings.
 
     Parameters
     ----------
     aircraft
-        The aircraft file.
+        The crew's aircraft file.
     target_system
         System id of the vehicle; None: the first one heard.
     """
@@ -65,7 +65,7 @@ class Examiner:
         self._notes: list[str] = []
 
     def feed(self, columns: Sequence[Columns]) -> None:
-        """Take the next messages."""
+        """Process the next messages."""
         self._keep(self._stream.feed(columns))
         vehicle = self._stream.vehicle
         if vehicle is not None and vehicle.system != self._surveyed_system:
@@ -75,7 +75,7 @@ class Examiner:
 
     @property
     def vehicle(self) -> Vehicle | None:
-        """Vehicle under examination. None before its first heartbeat."""
+        """Vehicle whose telemetry is examined. None before its first heartbeat."""
         return self._stream.vehicle
 
     def findings(
@@ -84,7 +84,7 @@ class Examiner:
         repeated_percent: float = 0.0,
         repeated_after_s: float = np.nan,
     ) -> Examination:
-        """Return the findings. The caller calls once, at the end.
+        """Return the findings of the examination. The caller calls this method once, at the end.
 
         Parameters
         ----------
@@ -171,7 +171,7 @@ class Examiner:
         self._notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
 
     def _assumed(self) -> Assumed:
-        """Return the aircraft and its noise: from the file's model, else from the flown manoeuvres, else
+        """Return the assumed aircraft and noise: from the file's model, else from the flown manoeuvres, else
         typical ones."""
         flown = estimate_jointly(self._maneuvers, self._aircraft) if self._maneuvers else None
         if not isinstance(flown, Estimate) or not is_believable(flown):
@@ -191,7 +191,7 @@ class Examiner:
         return Assumed(TYPICAL, noise, source, colour, self._aircraft)
 
     def _paced(self, arrivals: dict[str, Arrival]) -> dict[str, Paced]:
-        """Return the channels that identification needs, with the messages that set their pace."""
+        """Return the channels that identification needs, with the messages that determine their rates."""
         paced = {}
         dead = {distrust.channel for distrust in self._stream.frozen} - {"alpha"}  # another may be derived
         for name in ("elevator", "q", "alpha", "a_z"):
@@ -218,7 +218,7 @@ class Examiner:
         return bank_name(elevator.ports[-1])
 
     def _airspeed(self, paced: dict[str, Paced]) -> float | None:
-        """Return a speed for the specific force; None when no speed is measured or given."""
+        """Return an air speed for the specific force; None if none is measured or given."""
         if self._aircraft.airspeed_m_s is not None:
             return self._aircraft.airspeed_m_s
         recent = self._stream.recent("airspeed", 60.0)
@@ -227,7 +227,7 @@ class Examiner:
         return max(10.0, float(np.median(recent.y)))  # on the ground: a speed to fly at
 
     def _flown_at(self) -> tuple[float, float] | None:
-        """Return the lowest and highest air speed in flight; None without one."""
+        """Return the lowest and highest air speed in flight; None without an air speed."""
         course = self._stream.courses().get("airspeed")
         if course is None or not len(course.high):
             return None
@@ -257,7 +257,7 @@ class Examiner:
     def _speed_limits(
         self, paced: dict[str, Paced], assumed: Assumed, vehicle: Vehicle, speed: float | None
     ) -> list[Limit]:
-        """Return the limits from missing air speed or specific force, which enlarge some errors."""
+        """Return the limits from a missing air speed or specific force, which increase some errors."""
         if speed is None:
             text = "No air speed arrives: derivatives cannot be referred to one speed, nor a_z be used"
             fix = _fast("VFR_HUD", vehicle) + "; or give airspeed_m_s in the aircraft file"
@@ -274,8 +274,8 @@ class Examiner:
 
 
 def is_believable(flown: Estimate) -> bool:
-    """Return whether an estimate may represent the aircraft: it explains the motion, and its pace and
-    effectiveness are significant."""
+    """Return whether an estimate may represent the aircraft: it explains the motion, and M_α and control
+    effect are significant."""
     low, high = _PLAUSIBLE_RAD_S
     pace = frequency(ShortPeriod(flown.theta))
     moved = low < pace < high and abs(flown.value("M_delta_e")) > _LEAST_EFFECT * pace**2
@@ -286,7 +286,7 @@ def is_believable(flown: Estimate) -> bool:
 
 
 def _fast(message: str, vehicle: Vehicle) -> str:
-    """Return the way to obtain a message that never came, at a good rate."""
+    """Return the way to request a missing message at a good rate."""
     if vehicle.carrier == "telemetry":
         return vehicle.mends.faster(message)
     return vehicle.mends.present([message])
@@ -300,7 +300,7 @@ def _stopping(problem: Problem, vehicle: Vehicle | None) -> Limit:
 
 
 def _message(status: ChannelStatus, arrivals: Mapping[str, Arrival]) -> str:
-    """Return the message that sets the pace of a channel, the slower of two for a derived one."""
+    """Return the message that determines the rate of a channel, the slower of two for a derived channel."""
     if not status.source.startswith("theta"):
         return status.source.partition(".")[0]
     both = [arrivals[name] for name in ("VFR_HUD", "ATTITUDE") if name in arrivals]

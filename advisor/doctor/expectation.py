@@ -26,14 +26,13 @@ from advisor.oem.surface import Servo
 
 UNITS_OF_TIME = (3, 2, 1, 1)
 RESPONSE_ALPHA_DEG = 4.0
-"""Largest change of the angle of attack for which the input is sized, deg: clear of the noise, clear of the
-stall."""
+"""Largest change of the angle of attack by the expected input, deg: above the noise and below the stall."""
 NOISE = {"alpha": np.radians(0.2), "q": np.radians(0.2), "a_z": 0.3, "theta": np.radians(0.1)}
-"""Noise assumed where none was measured, rad, rad/s, m/s², rad: small autopilots in calm air."""
+"""Noise that is assumed without a measurement, rad, rad/s, m/s², rad: small autopilots in calm air."""
 
 _LEAD_IN_S = 1.0
 _EDGES_S = (0.04, 0.05, 0.06, 0.07, 0.08)
-"""Times that a hand takes for a step of the stick, s."""
+"""Times that a pilot's hand needs for a step of the stick, s."""
 _SHIFT_S = 2e-3
 
 TYPICAL = ShortPeriod.from_mapping(
@@ -45,13 +44,13 @@ damping 0.5."""
 
 @dataclass(frozen=True, slots=True)
 class Assumed:
-    """Assumed model and noise behind the expected errors."""
+    """Assumed model and noise for the expected errors."""
 
     model: ShortPeriod
     noise: Mapping[str, float]
     """Standard deviation of each output's measurement noise, SI, keys as in ``NOISE``."""
     source: str
-    """Origin of model and noise, in words."""
+    """Source of the model and the noise, in words."""
     colour: FloatArray = field(default_factory=lambda: np.ones(len(PARAMETERS)))
     """Ratio of corrected errors to Cramér-Rao bounds in flight, shape (8,); 1 for white residuals."""
     aircraft: Aircraft = field(default_factory=Aircraft)
@@ -60,7 +59,7 @@ class Assumed:
 
 @dataclass(frozen=True, slots=True)
 class ExpectedErrors:
-    """Expected errors of one standard 3-2-1-1."""
+    """Expected errors from one standard 3-2-1-1."""
 
     std: Mapping[str, float]
     """Parameter name to its expected standard deviation; NaN where these rates do not identify the
@@ -68,11 +67,11 @@ class ExpectedErrors:
     unit_s: float
     """One unit of time of the manoeuvre, s."""
     amplitude_deg: float
-    """Elevator amplitude on either side of trim."""
+    """Elevator amplitude on either side of trim, deg."""
 
 
 def frequency(model: ShortPeriod) -> float:
-    """Return the natural frequency in rad/s; without one, the rate of the fastest mode."""
+    """Return the natural frequency in rad/s; for a model without one, the rate of the fastest mode."""
     natural = model.natural_frequency
     return natural if np.isfinite(natural) and natural > 0.0 else float(np.max(np.abs(model.eigenvalues)))
 

@@ -1,4 +1,4 @@
-"""Defects of instruments and clocks, whatever their rates."""
+"""Defects of instruments and clocks that do not depend on message rates."""
 
 from collections.abc import Collection, Iterable
 
@@ -16,24 +16,26 @@ COARSE_DEG = 0.5
 """Resolution of the command, deg, above which small steps are not reproduced as steps."""
 LOSSY_PERCENT = 5.0
 REPEATED_PERCENT = 1.0
-"""Share of repeated packets, %, above which a second path is assumed. A network alone repeats only single
-packets."""
+"""Fraction of repeated packets, %, above which a second network path is assumed. A network alone repeats only
+single packets."""
 DRIFTING_PERCENT = 1.0
 SIMULATED_PERCENT = 10.0
-"""Drift beyond which a clock is a simulator's, %. Crystals err by .01 %, the worst RC oscillators by 5 %."""
+"""Clock drift above which the clock is a simulator's, %. Crystal clocks err by .01 %, the worst RC
+oscillators by 5 %."""
 _MOTION = ("ATTITUDE", "RAW_IMU", "SCALED_IMU", "HIGHRES_IMU")
 """Messages whose values change with every sample of a sensor in flight."""
 _MOSTLY_NEW = 0.7
 """Least ratio of the rate of renewal to the rate of arrival of a message that repeats no values, as in
 ``renewal.py``. Two copies have 0.5; records of sound messages have 0.95 to 1."""
 STRAYED_SHARE = 0.01
-"""Share of a message's stamps that may fit on neither clock. Around a reboot a few always do."""
+"""Largest fraction of a message's stamps that may fit neither clock. Around a reboot a few stamps always fit
+neither clock."""
 
 _A_VANE = "fit a vane that sends {} (alpha.source: named_value:NAME)"
 
 
 def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
-    """Return the limits of an angle of attack that comes from no vane."""
+    """Return the limits of an angle of attack that is not measured by a vane."""
     if alpha.provenance != "derived":
         return []
     vane = _A_VANE.format(vehicle.mends.called("NAMED_VALUE_FLOAT"))
@@ -93,14 +95,14 @@ def _continued(fix: str) -> str:
 
 
 def distrust_limits(found: Iterable[Distrust]) -> list[Limit]:
-    """Return defects for channels that cannot be right, each once. A frozen pitch rate is already a problem
-    elsewhere."""
+    """Return a defect for each channel whose values cannot be right. A frozen pitch rate is reported
+    elsewhere as a problem."""
     told = {d.channel: d for d in found if not (d.stops and d.code == "frozen")}
     return [Limit(d.code, d.sentence, d.fix, stops=d.stops) for d in told.values()]
 
 
 def repeat_limits(arrivals: Iterable[Arrival]) -> list[Limit]:
-    """Return a defect where the motion's messages bring old values again under new stamps."""
+    """Return a defect if the motion's messages repeat old values under new stamps."""
     return [
         Limit(
             "repeats",
@@ -159,14 +161,14 @@ def _is_simulated(clocks: Clocks) -> bool:
 
 
 def sender_limits(two_senders: Problem | None) -> list[Limit]:
-    """Return a defect where two senders share one system id, by the rule of the flight's own stream."""
+    """Return a defect if two senders share one system id, by the rule of the flight stream."""
     if two_senders is None:
         return []
     return [Limit(two_senders.code, two_senders.text.rstrip("."), two_senders.fix.rstrip("."))]
 
 
 def company_limits(other_systems: Collection[int]) -> list[Limit]:
-    """Return a defect for further vehicles on the link, where nobody chose one."""
+    """Return a defect for other vehicles on the link, if the user selected none."""
     if not other_systems:
         return []
     others = ", ".join(map(str, sorted(other_systems)))
@@ -180,7 +182,7 @@ def company_limits(other_systems: Collection[int]) -> list[Limit]:
 
 
 def loss_limits(lost_percent: float | None) -> list[Limit]:
-    """Return a defect for packets that a live link lost; nothing where they were not counted."""
+    """Return a defect for packets that a live link lost; empty if packets were not counted."""
     if lost_percent is None or lost_percent <= LOSSY_PERCENT:
         return []
     shown, most = distinct_texts(lost_percent, LOSSY_PERCENT, 1)
@@ -194,7 +196,8 @@ def loss_limits(lost_percent: float | None) -> list[Limit]:
 
 
 def path_limits(repeated_percent: float, after_s: float) -> list[Limit]:
-    """Return a defect for a second path that repeats packets. A repeated packet counts once all the same."""
+    """Return a defect for a second path that repeats packets. A repeated packet is nevertheless used only
+    once."""
     if repeated_percent <= REPEATED_PERCENT:
         return []
     return [

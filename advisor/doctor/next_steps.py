@@ -1,4 +1,4 @@
-"""The three commands that follow an examination, with its log or connection and the options that fit."""
+"""The three commands after an examination, with its log or connection and the suitable options."""
 
 import shlex
 from dataclasses import dataclass
@@ -7,16 +7,16 @@ from advisor.doctor.examination import Examination
 from advisor.process.installed import SAMPLE
 
 NEW_FILE = "aircraft.yaml"
-"""Aircraft file that the commands name where none exists."""
+"""Name of the aircraft file in the commands, if no aircraft file exists."""
 RECORDING = "flight.tlog"
-"""Recording of a live link that the commands name."""
+"""Name of a live link's recording in the commands."""
 USUAL_LINK = "udpin:0.0.0.0:14550"
 """Default address to which ground stations and simulators send telemetry."""
 _SLOW = frozenset({"rate", "renewal", "no_pitch_rate", "no_alpha", "no_airspeed", "no_accelerometer"})
-"""Codes of limits that a request for faster streams remedies."""
+"""Codes of limits for which faster message streams are the remedy."""
 
 _NO_AIRCRAFT = frozenset({"no_vehicle", "multicopter"})
-"""Codes of limits of a log without an aircraft with an elevator."""
+"""Codes of limits of a log without a fixed-wing aircraft."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class ExaminedInput:
     """The log or connection that was examined, as the user named it."""
 
     target: str
-    """Path of a log, or a connection."""
+    """Path of a log, or address of a connection."""
     is_log: bool
     aircraft_file: str | None = None
     target_system: int | None = None
@@ -101,7 +101,7 @@ def _aircraft(examined: ExaminedInput) -> str:
 
 
 def _chosen(findings: Examination, examined: ExaminedInput) -> str:
-    """Return the option that names the vehicle, where the user chose one or several are heard."""
+    """Return the option that names the vehicle, if the user selected one or several are received."""
     system = examined.target_system
     if system is None and findings.vehicle and any(x.code == "several_vehicles" for x in findings.limits):
         system = findings.vehicle.system

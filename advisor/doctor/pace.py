@@ -1,4 +1,4 @@
-"""Rates of channels relative to the aircraft's natural frequency, and the cost of slow ones."""
+"""Rates of channels relative to the aircraft's natural frequency, and the cost of slow channels."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,11 +15,11 @@ from advisor.words.digits import distinct_texts
 from advisor.words.mends import GOOD_HZ, Carrier
 
 ENOUGH_PER_PERIOD = 20.0
-"""Samples in one natural period above which faster telemetry hardly helps."""
+"""Samples in one natural period above which faster telemetry hardly improves the errors."""
 GAP_INTERVALS = 3.0
-"""Shortest gap, in intervals of the message."""
+"""Shortest gap of a message, in its usual intervals."""
 FALLEN = 0.6
-"""Share of the usual rate below which a message counts as interrupted."""
+"""Fraction of the usual rate below which a message is considered interrupted."""
 
 _DROPPED = (
     "the autopilot could not write all records: log fewer or use a faster card; a manoeuvre with such a "
@@ -35,14 +35,14 @@ _PLAIN = {"elevator": "elevator command", "q": "pitch rate", "alpha": "angle of 
 
 @dataclass(frozen=True, slots=True)
 class Paced:
-    """One channel and the message that sets its pace."""
+    """One channel, with the message that determines its rate."""
 
     channel: str
     message: str
     rate_hz: float
-    """Samples per second over the whole record."""
+    """Samples of the channel per second over the whole record."""
     renewed_hz: float
-    """New values per second, at most ``rate_hz``."""
+    """New values of the channel per second, at most ``rate_hz``."""
 
 
 def rate_limits(
@@ -100,7 +100,7 @@ def _samples(hz: float, fewest_hz: float, enough_hz: float, plain: str, period_s
 def steadiness_limits(
     arrivals: Mapping[str, Arrival], needed: set[str], period_s: float, carrier: Carrier
 ) -> list[Limit]:
-    """Return a defect for each message that came with interruptions."""
+    """Return a defect for each message that arrived with interruptions."""
     limits = []
     for name in sorted(needed & arrivals.keys()):
         arrival = arrivals[name]

@@ -54,23 +54,24 @@ class Arrival:
     largest_gap_s: float
     """Longest time between two messages within one boot, without pauses of the log."""
     renewed_hz: float
-    """Rate at which the value changes while it changes at all. NaN where no field shows changes."""
+    """Rate at which the message's value changes, while it changes. NaN if no field of the message shows
+    changes."""
     lowest_hz: float
     """Rate of the slowest five seconds within the stretch in which the message came."""
 
 
 @dataclass(frozen=True, slots=True)
 class Clocks:
-    """Consistency of the stamps."""
+    """Consistency of the messages' time stamps."""
 
     boots: int
     """Number of the vehicle's power-ons within the record."""
     drift_percent: float
-    """Excess of the vehicle clock's speed over the host clock's, in percent. NaN when unknown."""
+    """Excess of the vehicle clock's speed over the host clock's, in percent. NaN if the drift is unknown."""
     arrival_jitter_ms: float
     """Standard deviation of arrival relative to the vehicle's clock, which the link causes."""
     strayed: Mapping[str, float]
-    """Message name to the share of its stamps that lie off the vehicle's clock."""
+    """Fraction of stamps that do not fit the vehicle's clock, by the message's name."""
 
 
 @dataclass(slots=True)
@@ -95,7 +96,7 @@ class _Sender:
 
 @dataclass(frozen=True, slots=True)
 class _Pause:
-    """A stretch of one boot in which the autopilot wrote nothing."""
+    """A time interval of one boot in which the autopilot wrote nothing."""
 
     boot: int
     start_s: float
@@ -137,7 +138,7 @@ class Survey:
         self._master_s = float(clock[-1])
 
     def _helps(self, part: Columns) -> bool:
-        """Return whether another component of the vehicle sends its angle of attack."""
+        """Return whether another component of the vehicle sends the vehicle's angle of attack."""
         return part.system == self._who[0] and part.name == "AOA_SSA"
 
     def _advance(self, attitude: Columns | None) -> tuple[NDArray[np.int64], FloatArray, NDArray[np.int64]]:
@@ -192,7 +193,7 @@ class Survey:
 
     @property
     def pauses(self) -> list[str]:
-        """Sentences on the stretches in which the autopilot wrote nothing into its own log."""
+        """Sentences on the time intervals in which the autopilot wrote nothing into its own log."""
         because = " (LOG_DISARMED 0)" if self._carrier == "dataflash" else ""
         return [
             f"The autopilot logged nothing from {stretch(p.start_s, p.end_s)} since power-on, as it may "
@@ -236,7 +237,7 @@ def _banks(part: Columns) -> Iterator[tuple[str, NDArray[np.bool_]]]:
 
 
 def _telling(part: Columns) -> FloatArray:
-    """Return the fields whose change shows a new value, shape (n, fields)."""
+    """Return the fields that show by their change that a value is new, shape (n, fields)."""
     names = [name for name in _TELLING.get(part.name, ()) if name in part.fields]
     columns = [np.asarray(part.fields[name], dtype=np.float64).reshape(len(part), -1) for name in names]
     return np.column_stack(columns) if columns else np.empty((len(part), 0))
@@ -287,7 +288,7 @@ def _lowest_rate(t: FloatArray, boot: NDArray[np.int64]) -> float:
 
 def _typical(steps: FloatArray) -> float:
     """Return the interval, s, below which half of the time is spent; longer silences than ``_WINDOW_S`` do
-    not count. A rate that falls for most of a record is then no row of gaps."""
+    not count. A rate that decreases for most of a record is then no series of gaps."""
     ordered = np.sort(steps[steps <= _WINDOW_S])
     if len(ordered) == 0:
         return float(np.median(steps))

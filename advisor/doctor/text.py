@@ -95,7 +95,7 @@ class ExaminationText:
 
 
 def _told(limit: Limit) -> list[Text]:
-    """Return the lines of a defect: its text, its remedy and its cost."""
+    """Return the text lines of a defect: its sentence, its remedy and its cost."""
     lines = [Text(f"  {'✗' if limit.stops else '!'} {limit.text}."), Text(f"    -> {limit.fix}.")]
     worst = sorted(limit.std_ratio.items(), key=lambda item: -item[1])[:3]
     notable = [f"{QUANTITIES[name].symbol} {ratio:.1f}" for name, ratio in worst if ratio >= _NOTABLE_COST]

@@ -26,13 +26,14 @@ class Names:
     shared: tuple[str, ...]
     """Parameters that all manoeuvres share."""
     local: tuple[str, ...]
-    """Parameters of which each manoeuvre has its own."""
+    """Parameters with a separate value for each manoeuvre."""
     reported: tuple[str, ...]
-    """Parameters of a result. A local one is reported as the mean over the manoeuvres."""
+    """Parameters in the result of an estimate. The reported value of a local parameter is its mean over the
+    manoeuvres."""
 
     @cached_property
     def places(self) -> tuple[tuple[bool, int], ...]:
-        """Place of each reported parameter: whether it is shared, and its index."""
+        """Position of each reported parameter: whether it is shared, and its index."""
         return tuple(
             (name in self.shared, (self.shared if name in self.shared else self.local).index(name))
             for name in self.reported
@@ -45,16 +46,16 @@ class Term:
 
     name: str
     state: str
-    """State whose rate the parameter enters."""
+    """State whose time derivative contains the parameter."""
     factor: str
     """State or input that the parameter multiplies, or ``CONSTANT``."""
     power: int
-    """Power of the air speed with which the parameter grows at constant density."""
+    """Power of the air speed to which the parameter is proportional at constant density."""
 
 
 @dataclass(frozen=True)
 class Axis:
-    """Names and places of everything that one axis consists of."""
+    """Names and indices of all quantities of one axis."""
 
     states: tuple[str, ...]
     inputs: tuple[str, ...]
@@ -62,9 +63,9 @@ class Axis:
     shared: tuple[Term, ...]
     """Derivatives, which all manoeuvres share."""
     constants: tuple[Term, ...]
-    """Constants of trim, of which each manoeuvre has its own."""
+    """Constants of trim, with a separate value for each manoeuvre."""
     biases: tuple[str, ...]
-    """Outputs with a constant error of their own in each manoeuvre."""
+    """Outputs with a separate constant error in each manoeuvre."""
 
     @cached_property
     def names(self) -> Names:
@@ -79,7 +80,7 @@ class Axis:
 
     @cached_property
     def place(self) -> NDArray[np.int64]:
-        """Row, column and power of each derivative and constant, shape (k, 3)."""
+        """Row, column and power of the air speed of each derivative and constant, shape (k, 3)."""
         columns = (*self.states, *self.inputs, CONSTANT)
         return np.array(
             [

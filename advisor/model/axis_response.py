@@ -20,9 +20,10 @@ REACH = 0.25
 """Largest product of a step and the largest row sum of the matrix. A step then errs by less than 1e-5 of the
 states."""
 MOST_PARTS = 16
-"""Most parts of a step: rates of 200 1/s at 50 Hz. A search that asks for faster modes has gone astray."""
+"""Largest number of parts of a step: rates of 200 1/s at 50 Hz. A search that reaches faster modes has
+diverged."""
 LARGEST = 1e9
-"""Sum of the states' sizes at which the model has run away."""
+"""Sum of the states' magnitudes above which the model has diverged."""
 
 
 class AxisGrid(NamedTuple):
@@ -38,9 +39,9 @@ class AxisGrid(NamedTuple):
     ratio: FloatArray
     """(E,) air speed ratio s on the step; at a manoeuvre's last event, of the step to that event."""
     inputs: FloatArray
-    """(E, u) inputs at the event."""
+    """(E, u) values of the inputs at the event."""
     start: FloatArray
-    """(E, u) inputs just after the event."""
+    """(E, u) values of the inputs just after the event."""
     slope: FloatArray
     """(E, u) rates of the inputs on the step."""
     changed: FloatArray
@@ -122,7 +123,7 @@ def _respond_in(
 
 @kernel()
 def _parts(grid: AxisGrid, begin: int, end: int, theta: FloatArray) -> Index:
-    """Return into how many equal parts each step is divided; 0 where the matrix is too large.
+    """Return the number of equal parts of each step; 0 if the matrix is too large.
 
     The last event has a part of no length.
     """
@@ -167,7 +168,7 @@ def _advance(
     grid: AxisGrid, begin: int, end: int, theta: FloatArray, parts: Index, course: FloatArray,
     motion: FloatArray,
 ) -> bool:  # fmt: skip
-    """Solve for the states.
+    """Compute the states over time.
 
     ``course`` (parts, 3, n + u + 1) receives states, inputs and 1. The three points of a part are its
     beginning, its middle and its end.
@@ -233,7 +234,7 @@ def _rates(
 def _read(
     grid: AxisGrid, begin: int, end: int, theta: FloatArray, parts: Index, course: FloatArray, y: FloatArray
 ) -> None:
-    """Write the outputs at all events."""
+    """Write the outputs of the model at all events."""
     place, ratio, inputs, bias = grid.place, grid.ratio, grid.inputs, grid.bias
     row, seen, felt = grid.row, grid.seen, grid.felt
     n, moved = seen.shape[2], inputs.shape[1]
@@ -260,7 +261,7 @@ def _read(
 def _carry(
     grid: AxisGrid, begin: int, end: int, theta: FloatArray, parts: Index, course: FloatArray, g: FloatArray
 ) -> None:
-    """Write the sensitivities of the outputs.
+    """Write the sensitivities of the outputs to the parameters.
 
     Sensitivities of the states are advanced by Simpson's rule for the forcing. The derivatives of the rates
     are those in the middle of each part.

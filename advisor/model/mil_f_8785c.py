@@ -32,13 +32,13 @@ class ShortPeriodLimits:
     """Limits of one level in one category."""
 
     damping: Range
-    """Damping ratio, 1."""
+    """Limits of the damping ratio."""
     cap: Range
-    """ω_n²/(n/α), rad²/s² per g/rad."""
+    """Limits of the control anticipation parameter ω_n²/(n/α), rad²/s² per g/rad."""
     frequency: Range
-    """ω_n, rad/s."""
+    """Limits of the natural frequency ω_n, rad/s."""
     load: Range
-    """n/α, g/rad."""
+    """Limits of the acceleration sensitivity n/α, g/rad."""
 
 
 _ANY = (0.0, inf)
@@ -68,7 +68,7 @@ class LevelFound:
 
     category: Category
     level: int
-    """Level of the estimated values, whatever their intervals."""
+    """Level of the estimated values, without regard to their intervals."""
     best_level: int
     """Best level within the 95 % intervals."""
     worst_level: int
@@ -93,7 +93,7 @@ class ShortPeriodFound:
     """The four parameters of the requirements, each with its 95 % interval, in the units of the limits."""
 
     values: ShortPeriodLimits
-    """The values, each as both ends of its range."""
+    """The estimated values, each as a range with two equal ends."""
     intervals: ShortPeriodLimits
 
 

@@ -1,1 +1,1 @@
-"""Models of the axes, as tables of terms."""
+"""Models of the axes, as tables of parameters."""

@@ -38,7 +38,7 @@ LATERAL = Axis(
 )
 """The lateral axis. A bias of r or φ cannot be told from the constants of trim."""
 CONTROLS = {"delta_a": "aileron", "delta_r": "rudder"}
-"""Ending of a control's derivatives to its name."""
+"""Name of each control, by the ending of its derivatives."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,10 +65,10 @@ def state_matrix(theta: FloatArray, trim: Trim) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class Modes:
-    """Modes of the lateral motion; None where the aircraft has no such mode."""
+    """Modes of the lateral motion; None for a mode that the aircraft does not have."""
 
     dutch_roll: complex | None
-    """Eigenvalue with positive imaginary part, 1/s."""
+    """Dutch roll eigenvalue with positive imaginary part, 1/s."""
     roll: float | None
     """Eigenvalue of the roll subsidence, 1/s."""
     spiral: float | None
@@ -78,7 +78,8 @@ class Modes:
 def modes_of(a: FloatArray) -> Modes:
     """Return the modes of a state matrix (4, 4).
 
-    The faster oscillation is the Dutch roll. Roll and spiral that oscillate together are not separate.
+    The faster oscillation is the Dutch roll. Roll and spiral modes that form one oscillation are not
+    separate.
     """
     values = np.linalg.eigvals(a)
     swinging = sorted((complex(v) for v in values if v.imag > 1e-9), key=abs)
