@@ -1,4 +1,4 @@
-"""Logs heard by the campaign, which drops samples, and as whole power-ons; flights that do not count."""
+"""Logs as one campaign and as complete power-ons, with the flights that are left out."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -25,23 +25,23 @@ class WholeFlights:
     """Logs of one campaign: its results, and every sample."""
 
     logs: tuple[Path, ...]
-    """Logs in the order in which their flights count."""
+    """Logs in the order of their flights."""
     names: tuple[str, ...]
     """Name of each log."""
     order_said: str
-    """Sentence on the order of the logs where it differs from the given one; else empty."""
+    """Sentence on the order of the logs if it differs from the given order; else empty."""
     by_hand: ByHand
-    """Decisions by hand on the logs."""
+    """The engineer's decisions by hand on the logs."""
     state: CampaignState
-    """Campaign at the end of the logs, as in ``advisor analyze``."""
+    """State of the campaign at the end of the logs, as in ``advisor analyze``."""
     left_out: Mapping[int, tuple[Problem, ...]]
-    """Number of a flight to the reasons for which its log does not count."""
+    """Reasons for which the log of a flight is not used, by the number of the flight."""
     power_ons: tuple[tuple[int, PowerOn], ...]
     """Every power-on with the number of its flight, 0 for the first."""
 
     @property
     def said(self) -> list[str]:
-        """Sentences on the order of the logs and on logs that do not count."""
+        """Sentences on the order of the logs and on logs that are not used."""
         problems = [p.about(self.names[flight]) for flight, several in self.left_out.items() for p in several]
         failed = [part.sentence for part in self.state.failed]
         return [*([self.order_said] if self.order_said else []), *problems, *failed]
@@ -131,9 +131,9 @@ def read_whole(
 
 
 def left_out_of(axis: Axis, state: CampaignState) -> dict[int, tuple[Problem, ...]]:
-    """Return the flights that do not count, each with its problems.
+    """Return the flights that are not used, each with its problems.
 
-    A flight with an accepted lateral manoeuvre needs none of the elevator's.
+    A flight with an accepted lateral manoeuvre does not need the elevator's messages.
     """
     left_out = {one.flight: one.problems for one in state.flights if one.problems}
     if state.lateral is None:
@@ -153,16 +153,16 @@ def left_out_of(axis: Axis, state: CampaignState) -> dict[int, tuple[Problem, ..
 
 
 def holds_no_test(left_out: Mapping[int, Sequence[Problem]]) -> bool:
-    """Return whether the absence of test inputs is all that keeps these flights from counting."""
+    """Return whether these flights are unused only because they contain no test input."""
     return bool(left_out) and all(p.code in _UNTESTED for several in left_out.values() for p in several)
 
 
 _UNTESTED = frozenset({"no_maneuver", "no_aileron"})
-"""Codes of problems of a flight whose telemetry can serve, and which holds no test input."""
+"""Problem codes of a flight with sufficient telemetry and without a test input."""
 
 
 def no_lateral(flight: FlightHeard) -> Problem:
-    """Return why a flight has no lateral manoeuvre."""
+    """Return the reason for which a flight has no lateral manoeuvre."""
     if flight.sides_unknown is not None:
         return flight.sides_unknown
     return Problem(

@@ -1,4 +1,4 @@
-"""Commands of the advisor, called for an assistant: each in a process of its own, for a limited time."""
+"""Commands of the advisor for an assistant: each runs in a separate process, for a limited time."""
 
 import json
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from advisor.process.children import python_module
 
 
 class Calls:
-    """Calls of the advisor's commands, one at a time.
+    """Runs the advisor's commands, one at a time.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class Calls:
         self._one = CapacityLimiter(1)
 
     async def document(self, arguments: Sequence[str]) -> dict[str, Any]:
-        """Return the document that a command prints with ``--json``, also that of an unusable log.
+        """Return the document that a command prints with ``--json``, for an unusable log too.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Documents cut to a size that an assistant can read, with the address of each part left out."""
+"""Documents shortened to a size that an assistant can read, with the address of each omitted part."""
 
 import json
 from collections.abc import Sequence
@@ -9,13 +9,15 @@ from advisor.assistant.folders import RefusedError
 MOST_BYTES = 20_000
 """Longest answer as sent, bytes: some 7,000 tokens, a small share of an assistant's context."""
 _ENVELOPE_BYTES = 200
-"""Most bytes of an answer around its text: the protocol's envelope, with the number of the request."""
+"""Largest size of the protocol's data around an answer's text, bytes, with the number of the request."""
 _LEAST_BYTES = 200
-"""Least share of an answer, bytes, that a part is shortened to. A smaller share is left out."""
+"""Least size, bytes, to which a part of an answer is shortened. A part that would become smaller is
+omitted."""
 _ITEM_BYTES = 800
-"""Least share of a list item, bytes: one manoeuvre with its verdict and reasons. Later items are left out."""
+"""Least size of a list item, bytes: one manoeuvre with its verdict and reasons. Later items of the list are
+omitted."""
 _DIGITS = 7
-"""Significant digits of a number: a time of one hour keeps its millisecond."""
+"""Significant digits of a number in an answer: a time of one hour keeps its milliseconds."""
 
 
 def part_of(document: Any, path: str) -> Any:
@@ -48,7 +50,8 @@ def part_of(document: Any, path: str) -> Any:
 def written(document: Any, path: str = "", without: Sequence[str] = ()) -> str:
     """Return a document, or its part at ``path``, as JSON of at most ``MOST_BYTES``.
 
-    The largest parts are shortened first. A sentence in the place of a part names the path to ask for.
+    The largest parts of the document are shortened first. A sentence in the place of a part names the path to
+    ask for.
 
     Parameters
     ----------
@@ -80,7 +83,7 @@ def fits(text: str) -> bool:
 
 
 def _shortened(value: Any, budget: int, path: str) -> Any:
-    """Return a value whose parts share a budget, bytes: small parts are whole, large ones share the rest."""
+    """Return a value shortened to a size in bytes: small parts stay complete, large ones are shortened."""
     if _size(value) <= budget:
         return value
     if budget < _LEAST_BYTES:

@@ -1,4 +1,4 @@
-"""Files that an assistant may read: those inside the folders of the command line, up to a size."""
+"""Files that an assistant may read: those inside the folders of the command line, up to a given size."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -11,17 +11,17 @@ LOGS = (*ENDINGS, ".zip", ".gz", ".log", ".raw")
 
 
 class RefusedError(Exception):
-    """A file that the assistant may not read. The message is for the assistant."""
+    """A file that the assistant may not read. The exception's message is for the assistant."""
 
 
 @dataclass(frozen=True, slots=True)
 class Folders:
-    """Folders of an assistant."""
+    """Folders that an assistant may read."""
 
     roots: tuple[Path, ...]
-    """Folders with links resolved."""
+    """Paths of the folders with links resolved."""
     most_bytes: int
-    """Largest file."""
+    """Size of the largest file that an assistant may read, bytes."""
 
     def file(self, name: str) -> Path:
         """Return a file inside the folders, with links resolved.
@@ -68,7 +68,7 @@ class Folders:
 
     @property
     def listed(self) -> str:
-        """Folders in one line."""
+        """Paths of the folders in one line."""
         return ", ".join(map(str, self.roots))
 
     def logs(self) -> Iterator[Path]:
@@ -79,7 +79,7 @@ class Folders:
 
 
 def _amount(count: int) -> str:
-    """Return a number of bytes in words, in the largest unit that it fills."""
+    """Return a number of bytes in words, in the largest suitable unit."""
     for unit, size in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
         if count >= size:
             return f"{count / size:.{0 if count >= 10.0 * size else 1}f} {unit}".replace(".0 ", " ")

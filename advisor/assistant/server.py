@@ -28,13 +28,13 @@ sentences of verdicts as they stand. An answer has at most 20 kB; what it leaves
 for. Paths may be relative to: {folders}. Logs: {logs}.
 """
 _LISTED = 50
-"""Most logs that the instructions name."""
+"""Largest number of logs in the instructions."""
 
 _EVIDENCE = ("traces", "evidence", "decisions")
-"""Parts of a gap's document that only a request for them answers."""
+"""Parts of a gap's document that are sent only on request."""
 
 Names = list[str] | str | None
-"""Names of logs: several, one, or none."""
+"""Names of logs in a request: several, one, or none."""
 Tool = Callable[..., Awaitable[Any]]
 
 
@@ -98,7 +98,7 @@ def server_of(folders: Folders, calls: Calls) -> MCPServer[Any]:
 
 
 def _answering(tool: Tool) -> Tool:
-    """Return the tool with a refusal as a sentence."""
+    """Return the tool, whose refusals become sentences."""
 
     @wraps(tool)
     async def answer(**arguments: Any) -> Any:

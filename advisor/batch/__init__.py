@@ -1,1 +1,1 @@
-"""Many flights: every log analyzed once, in processes, resumable; with tables and changes."""
+"""Many flights: every log is analyzed once, in processes, resumable; with tables and changes."""

@@ -1,4 +1,4 @@
-"""One log of a batch: its key, its analysis, and the stored form of its result."""
+"""One log of a batch: its key, its analysis, and the file with its result."""
 
 import hashlib
 import json
@@ -24,26 +24,26 @@ from advisor.words.problems import ConfigurationError, Problem, UnusableInputErr
 
 @dataclass(frozen=True, slots=True)
 class BatchTask:
-    """A log to be analyzed."""
+    """A log for analysis, with its aircraft file."""
 
     log: Path
     aircraft: Aircraft
     aircraft_file: str
     """Name of the aircraft file; empty without one."""
     sha256: str
-    """SHA-256 of the log."""
+    """SHA-256 hash of the log."""
     aircraft_path: Path | None = None
-    """Aircraft file; None without one."""
+    """Path of the aircraft file; None without a file."""
 
     @property
     def aircraft_name(self) -> str:
-        """Name of the aircraft by its file; empty without a file."""
+        """Name of the aircraft, from the name of its file; empty without a file."""
         return self.aircraft.name if self.aircraft_file else ""
 
     @property
     def key(self) -> str:
-        """Key under which the result is kept. Equal logs, configurations, decisions by hand and advisors have
-        one key."""
+        """Key under which the log's result is stored. Logs with equal content, configuration, decisions by
+        hand and advisor have one key."""
         beside = path_beside(self.log)
         by_hand = beside.read_text(encoding="utf-8", errors="replace") if beside.is_file() else ""
         parts = [__version__, self.sha256, json.dumps(asdict(self.aircraft), sort_keys=True), by_hand]
@@ -52,28 +52,28 @@ class BatchTask:
 
 @dataclass(frozen=True, slots=True)
 class Analyzed:
-    """Result of one log."""
+    """Result of the analysis of one log."""
 
     log: str
     aircraft_file: str
     sha256: str
     began_s: float
-    """Begin of the log, s since 1970. NaN for a log without dates."""
+    """Start time of the log, s since 1970. NaN for a log without dates."""
     document: dict[str, Any]
     """Document of ``advisor analyze --json``."""
     joint: dict[str, Any] = field(default_factory=dict)
     """Joint estimate with its covariances, for comparison over flights; empty without one."""
     aircraft_name: str = ""
-    """Name of the aircraft by its file; empty without a file."""
+    """Name of the aircraft, from the name of its file; empty without a file."""
 
     @property
     def usable(self) -> bool:
-        """Whether the log counts."""
+        """Whether the log's results are used."""
         return bool(self.document["usable"])
 
     @property
     def reasons(self) -> list[str]:
-        """Reasons for which the log does not count, as sentences."""
+        """Reasons for which the log's results are not used, as sentences."""
         return [f"{problem['text']} {problem['fix']}".strip() for problem in self.document["problems"]]
 
     @property
@@ -89,7 +89,7 @@ class Analyzed:
 
     @property
     def is_named(self) -> bool:
-        """Whether an aircraft file says which aircraft flew."""
+        """Whether an aircraft file identifies the aircraft that flew."""
         return bool(self.aircraft_file)
 
     @property
@@ -116,7 +116,7 @@ _KEPT = ("theta", "covariance_cr", "covariance")
 
 
 def analyze(task: BatchTask) -> Analyzed:
-    """Analyze a log like ``advisor analyze``. An unusable log has a result as well."""
+    """Analyze a log like ``advisor analyze``. An unusable log has a result too."""
     from advisor.analysis.log_series import LogSeries
     from advisor.analysis.whole_flights import left_out_of
     from advisor.campaign.campaign import Campaign
@@ -159,14 +159,14 @@ def analyze_shared(task: BatchTask) -> Analyzed:
 
 
 def failed(task: BatchTask, problems: Sequence[Problem]) -> Analyzed:
-    """Return the result of a log that could not be analyzed."""
+    """Return the result of a log whose analysis failed."""
     document = analysis_document(None, [str(task.log)], task.aircraft, {0: problems})
     name = task.aircraft_name
     return Analyzed(str(task.log), task.aircraft_file, task.sha256, nan, document, aircraft_name=name)
 
 
 def keep(result: Analyzed, path: Path) -> None:
-    """Write a result. The file is always whole, old or new.
+    """Write the result of a log into a file. The file is always complete, old or new.
 
     Raises
     ------

@@ -27,7 +27,7 @@ from advisor.words.quantities import symbol
 _COLUMNS = ("Flight", "Log", "Begun, UTC", "Aircraft", "Accepted", "Result")
 
 _STYLE = "td:nth-child(3) { white-space: nowrap; }\n"
-"""Style that keeps a date on one line."""
+"""Page style for a date on one line."""
 
 
 def index_page(flights: Sequence[Analyzed], reports: Mapping[Path, str] = MappingProxyType({})) -> str:
@@ -113,7 +113,7 @@ def _table(flights: Sequence[Analyzed], names: Mapping[str, str], reports: Mappi
 
 
 def _below_their_folder(logs: Sequence[str]) -> list[str]:
-    """Return the paths of logs below their common folder; whole paths where some are not absolute."""
+    """Return the paths of logs below their common folder; full paths if some are not absolute."""
     try:
         folder = commonpath([Path(log).parent for log in logs])
     except ValueError:
@@ -139,7 +139,7 @@ def _row(number: int, flight: Analyzed, log: str, aircraft: str, report: str | N
 
 
 def _accepted(flight: Analyzed) -> str:
-    """Return how many manoeuvres are accepted, of the elevator and of aileron and rudder."""
+    """Return the numbers of accepted manoeuvres of the elevator and of aileron and rudder."""
     pitch, lateral = (
         [one["verdict"] for one in several]
         for several in (flight.document["maneuvers"], flight.lateral.get("maneuvers", ()))
@@ -165,5 +165,5 @@ def _result(sentence: str) -> str:
 
 
 def _shown(text: str) -> str:
-    """Return a text from outside, escaped for a page."""
+    """Return a text from outside the advisor, escaped for a page."""
     return escape(printable(text))

@@ -59,18 +59,18 @@ def _is_log(name: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class AircraftMap:
-    """Patterns of logs with their aircraft files. The first matching pattern counts."""
+    """Patterns of log names with their aircraft files. The first pattern that matches a log is used."""
 
     entries: tuple[tuple[str, Path], ...]
 
     def file_of(self, log: Path) -> Path | None:
-        """Return the aircraft file of a log; None where no pattern matches its path or its name."""
+        """Return the aircraft file of a log; None if no pattern matches the log's path or name."""
         names = (log.as_posix(), log.name)
         return next((file for pattern, file in self.entries if any(fnmatch(n, pattern) for n in names)), None)
 
 
 def read_map(path: Path) -> AircraftMap:
-    """Read a YAML file of ``pattern: aircraft file``. The files are relative to the map.
+    """Read a YAML file of ``pattern: aircraft file``. Paths of the aircraft files are relative to the map.
 
     Raises
     ------

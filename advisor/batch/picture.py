@@ -13,12 +13,12 @@ _INK, _PALE, _MARK = "#0b5394", "#ddd", "#b45f06"
 
 
 class Point(NamedTuple):
-    """One flight in the picture."""
+    """One flight in the picture of a derivative."""
 
     flight: int
     value: float
     half: float
-    """Half of the 95 % interval, not finite where the flight did not show the derivative."""
+    """Half of the 95 % interval, not finite if the flight did not determine the derivative."""
 
 
 def trend_svg(name: str, unit: str, points: Sequence[Point], since: int | None) -> str:

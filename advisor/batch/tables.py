@@ -18,7 +18,7 @@ from advisor.oem.estimate import Estimate
 
 
 def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
-    """Return flights, oldest first where all usable ones have dates, else in the given order."""
+    """Return flights, oldest first if all usable ones have dates, else in the given order."""
     if not all(SINCE_1970_S <= one.began_s < inf for one in results if one.usable):
         return list(results)
     return sorted(results, key=lambda one: one.began_s if one.usable else inf)
@@ -34,7 +34,7 @@ def estimates_of(flights: Sequence[Analyzed]) -> dict[str, list[tuple[int, Estim
 
 
 def changes_of(flights: Sequence[Analyzed]) -> dict[str, ChangeOverFlights]:
-    """Return the change over the flights of each aircraft, by the name of its aircraft.
+    """Return the change over the flights of each aircraft, by the name of the aircraft.
 
     Flights without an aircraft file may be those of several aircraft; no change is sought among them.
     """
@@ -44,10 +44,10 @@ def changes_of(flights: Sequence[Analyzed]) -> dict[str, ChangeOverFlights]:
 
 
 def not_told_apart(flights: Sequence[Analyzed]) -> dict[str, str]:
-    """Return a sentence for each identity without an aircraft file whose flights do not agree.
+    """Return a sentence for each identity without an aircraft file whose flights contradict each other.
 
-    A system id is 1 by default, so that it names no aircraft. Flights without an aircraft file that agree
-    count as flights of one aircraft.
+    A system id is 1 by default, so that it identifies no aircraft. Flights without an aircraft file that
+    agree count as flights of one aircraft.
     """
     told = {}
     nameless = [replace(f, joint={}) if f.is_named else f for f in flights]
@@ -71,7 +71,7 @@ def aircraft_of(flight: Analyzed) -> str:
 
 
 def names_of(flights: Sequence[Analyzed]) -> dict[str, str]:
-    """Return each aircraft's identity to its name for people.
+    """Return the name of each aircraft for people, by the aircraft's identity.
 
     Aircraft that share a name have their identity in brackets behind the name. Nameless aircraft show their
     identity alone.
@@ -110,8 +110,8 @@ def tables_of(flights: Sequence[Analyzed]) -> Dataset:
 
 
 def is_whole(result: Analyzed) -> bool:
-    """Return whether a stored result contains all data of the tables. Another advisor may have written
-    another shape."""
+    """Return whether a stored result contains all data of the tables. Another version of the advisor may have
+    stored a different result."""
     try:
         tables_of([result])
         estimates_of([result])
@@ -159,7 +159,7 @@ def _flights(flights: Sequence[Analyzed]) -> FlightTable:
 
 
 def decided(test: Mapping[str, Any]) -> str:
-    """Return the word on the flight test of a flight that is over; empty without one."""
+    """Return the decision's word for the flight test of a flight that is over; empty without a decision."""
     return {"stop": "complete", "continue": "not complete"}.get(test.get("decision", ""), "")
 
 

@@ -21,7 +21,7 @@ class ChangeOverFlights:
     since: int
     """Number of the first flight after the change."""
     change: Change
-    """Change, whose numbers count the compared flights."""
+    """Change between the compared flights, which it numbers from the first."""
     sentence: str
 
 

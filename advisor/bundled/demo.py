@@ -1,7 +1,7 @@
 """The demonstration: the bundled aircraft flies as a process of its own, over a real MAVLink link.
 
-The advisor meets the simulator only here and in the study. Here the simulator is heard like any aircraft, by
-packets on a socket.
+The advisor meets the simulator only here and in the study. Here the advisor receives the simulator's messages
+like any aircraft's, by MAVLink.
 """
 
 import subprocess
@@ -67,7 +67,7 @@ class Demonstration:
 
     @staticmethod
     def fly_once() -> None:
-        """Fly one manoeuvre into a file that is thrown away: this compiles all that the aircraft needs."""
+        """Fly one manoeuvre into a temporary file, in order to compile all functions of the aircraft."""
         with TemporaryDirectory() as folder:
             scenario = Path(folder) / "one.yaml"
             scenario.write_text('aircraft: linear\nmaneuvers: ["3211"]\n')
@@ -78,7 +78,7 @@ class Demonstration:
             )
 
     def over(self) -> bool:
-        """Return whether the aircraft has landed and its last packets have arrived.
+        """Return whether the aircraft has landed and the advisor has received its last packets.
 
         Raises
         ------

@@ -39,7 +39,7 @@ LOCAL = ("Z_0", "M_0", "alpha_initial", "q_initial", "theta_initial", "q_bias", 
 N_SHARED, N_LOCAL = len(SHARED), len(LOCAL)
 N_PARAMETERS = N_SHARED + N_LOCAL
 N_MOVING = N_SHARED + 4
-"""Number of parameters that move α and q; the rest only enter the outputs."""
+"""Number of parameters that affect α and q; the other parameters only affect the outputs."""
 
 
 class Grid(NamedTuple):
@@ -55,7 +55,7 @@ class Grid(NamedTuple):
     step_s: FloatArray
     """(U,) length of the step."""
     ratio: FloatArray
-    """(U,) air speed ratio s on the step."""
+    """(U,) air speed ratio s on the step, relative to the reference speed."""
     elevator: FloatArray
     """(E,) δe at the event."""
     start: FloatArray

@@ -19,7 +19,8 @@ from advisor.model.axis import Names
 from advisor.model.response import LOCAL, OUTPUTS, SHARED
 
 NAMES = Names(OUTPUTS, SHARED, LOCAL, PARAMETERS)
-"""Names of the short period. Z_0 and M_0 are reported as means over the manoeuvres."""
+"""Names of the short-period model's outputs and parameters. Z_0 and M_0 are reported as means over the
+manoeuvres."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +32,7 @@ class ShortPeriod:
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, float]) -> "ShortPeriod":
-        """Collect the parameters by name; a missing one is zero."""
+        """Return the model from parameters by name; a missing parameter is zero."""
         return cls(np.array([float(values.get(name, 0.0)) for name in PARAMETERS]))
 
     @property

@@ -17,13 +17,13 @@ ORDERS = 4
 WIDTH = 13 * ORDERS
 """Length of a row of the table: for each k, three 2×2 matrices and one scalar."""
 REACH = 2.0
-"""Largest |hA| of one series; longer steps are divided."""
+"""Largest |hA| of one power series; longer steps are divided."""
 MOST_DIVISIONS = 256
 
 
 @kernel()
 def divisions(a11: float, a12: float, a21: float, a22: float, h: float) -> int:
-    """Return into how many equal parts a step is divided for fast convergence; 0 where A is too large."""
+    """Return the number of equal parts of a step for fast convergence; 0 if A is too large."""
     trace = abs(a11 + a22)
     determinant = abs(a11 * a22 - a12 * a21)
     size = h * (trace + math.sqrt(determinant))

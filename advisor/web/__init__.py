@@ -1,1 +1,1 @@
-"""The screens in a browser: a web server, one process per page, and the campaigns that pages show."""
+"""The screens in a browser: a web server, one process for each page, and the displayed campaigns."""

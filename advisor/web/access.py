@@ -1,4 +1,4 @@
-"""Access to the pages: the password and its source, names of the server, pages that may speak to it."""
+"""Access to the pages: the password, the names of the server, and the pages that may send requests."""
 
 import hmac
 import os
@@ -18,7 +18,7 @@ _HERE = frozenset({"localhost", "127.0.0.1", "::1"})
 
 
 def on_this_computer(host: str) -> bool:
-    """Return whether only programs of this computer reach an address."""
+    """Return whether only programs of this computer can reach an address."""
     try:
         return ip_address(host).is_loopback
     except ValueError:
@@ -26,7 +26,7 @@ def on_this_computer(host: str) -> bool:
 
 
 def checked_origin(address: str) -> str:
-    """Bring the address of a proxy into the form that browsers send as ``Origin``.
+    """Return the address of a proxy in the form that browsers send as ``Origin``.
 
     Parameters
     ----------
@@ -49,15 +49,15 @@ def checked_origin(address: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """Decides on every request. One password lets all viewers in."""
+    """Decides whether a request to the server is allowed. One password gives access to all viewers."""
 
     password: str | None = field(default=None, repr=False)
-    """Password of the pages. None: every program that reaches the server is let in, so that only this
-    computer may reach it."""
+    """Password of the pages. None: every program that reaches the server has access, so that only this
+    computer may reach the server."""
     origin: str | None = None
-    """Address that browsers see, where a proxy stands before the server. None: no proxy."""
+    """Address of the server in the browser, if a proxy is between both. None: no proxy."""
     token: str = field(default_factory=lambda: secrets.token_urlsafe(32), repr=False)
-    """Cookie of a browser that has given the password. Each start of the server has another token."""
+    """Cookie of a browser that has sent the password. Each start of the server makes a new cookie."""
 
     @property
     def cookie(self) -> str:
@@ -65,10 +65,10 @@ class Access:
         return f"advisor-{sha256(self.token.encode()).hexdigest()[:8]}"
 
     def is_called_properly(self, host: str) -> bool:
-        """Return whether a browser calls the server by a name that the server has.
+        """Return whether a browser addresses the server by one of the server's names.
 
-        Without a password only the names of this computer count. A foreign page can give its own name the
-        address 127.0.0.1 (DNS rebinding), and would read the screens otherwise.
+        Without a password only the names of this computer are allowed. A foreign page can give its own name
+        the address 127.0.0.1 (DNS rebinding), and would read the screens otherwise.
 
         Parameters
         ----------
@@ -93,11 +93,11 @@ class Access:
         return origin is not None and origin.lower() in (f"{scheme}://{host}".lower(), self.origin)
 
     def lets_in(self, token: str | None) -> bool:
-        """Return whether a request is let in; ``token`` is its cookie, None where it has none."""
+        """Return whether a request is allowed; ``token`` is its cookie, None without a cookie."""
         return self.password is None or _same(token or "", self.token)
 
     def is_password(self, given: str) -> bool:
-        """Return whether a text is the password; the time taken tells nothing about the password."""
+        """Return whether a text is the password, in a time that does not depend on the text."""
         return self.password is not None and _same(given, self.password)
 
 

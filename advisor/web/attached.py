@@ -1,4 +1,4 @@
-"""A campaign conducted by the server, as the process of a page sees it."""
+"""A campaign that runs in the server, for the process of a page."""
 
 from multiprocessing.connection import Connection
 from threading import Event
@@ -7,7 +7,7 @@ from advisor.process.liveness import OLD_AFTER_S
 from advisor.session.conducting import AskedElsewhere, Changes, SessionReport, Tell
 
 LOOK_EVERY_S = 0.1
-"""Time after which a thread without news tests whether to stop, s."""
+"""Time after which a thread without messages tests whether to stop, s."""
 
 
 class ServerGoneError(Exception):
@@ -28,7 +28,7 @@ class AttachedConductor(AskedElsewhere):
         self._stopped = Event()
 
     def run(self, tell: Tell) -> None:
-        """Take reports until `stop`.
+        """Receive reports until `stop`.
 
         Raises
         ------
@@ -53,11 +53,11 @@ class AttachedConductor(AskedElsewhere):
                     raise failure
 
     def stop(self) -> None:
-        """End ``run`` at the next opportunity."""
+        """End ``run`` at the next possible moment."""
         self._stopped.set()
 
     def _hear(self) -> object:
-        """Return the next message of the server, or None when none came in time."""
+        """Return the next message of the server; None if none came in time."""
         try:
             return self._connection.recv() if self._connection.poll(LOOK_EVERY_S) else None
         except (OSError, EOFError) as error:

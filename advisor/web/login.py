@@ -11,10 +11,10 @@ from aiohttp import web
 from advisor.web.access import Access
 
 AFTER_WRONG_S = 1.0
-"""Pause after a wrong password, s. The wrong guesses from one address wait one after another."""
+"""Pause after a wrong password, s. Wrong guesses from one address wait one after another."""
 MOST_WAITING = 20
-"""Most wrong guesses from one address that may wait. Further guesses from there are refused unseen, so that
-an address has one guess a second in the long run."""
+"""Largest number of wrong guesses from one address that may wait. Further guesses from this address are
+refused without a check, so that an address has one guess a second."""
 _BUSY = "Too many passwords are being tried at this moment. Try again in a minute."
 
 
@@ -26,7 +26,7 @@ class _Turn:
         self.waiting = 0
 
     async def pause(self) -> None:
-        """Wait for the turn, and then for the pause."""
+        """Wait for the earlier guesses, and then for the pause."""
         self.waiting += 1
         try:
             async with self._lock:
@@ -36,7 +36,7 @@ class _Turn:
 
 
 class Login:
-    """Asks for the password once per browser.
+    """Asks for the password once in each browser.
 
     Parameters
     ----------
@@ -49,11 +49,12 @@ class Login:
         self._turns: dict[str, _Turn] = defaultdict(_Turn)
 
     async def show(self, request: web.Request) -> web.Response:
-        """Ask for the password."""
+        """Show the page that asks for the password."""
         return page("login", wrong=False)
 
     async def check(self, request: web.Request) -> web.Response:
-        """Let a browser with the right password in at once. A wrong password costs a second."""
+        """Admit a browser with the right password immediately. After a wrong password the answer waits one
+        second."""
         if not self._access.is_own_page(request.headers.get("Origin"), request.scheme, request.host):
             raise web.HTTPForbidden(text="This form belongs to another page.")
         given = str((await request.post()).get("password", ""))
@@ -89,7 +90,7 @@ def _environment() -> jinja2.Environment:
 
 
 def page(name: str, status: int = 200, **values: object) -> web.Response:
-    """Fill a template.
+    """Return the page from a template.
 
     Parameters
     ----------

@@ -38,13 +38,13 @@ class PageProcess(AppService):
         self._door, self._socket, self._ending = door, socket, asyncio.Lock()
 
     async def run(self) -> None:
-        """Pass on the application's output. A page whose process has ended is closed."""
+        """Send the application's output to the page. A page whose process has ended is closed."""
         with suppress(ConnectionError):  # the browser is gone
             await super().run()
         await self._close()
 
     async def end(self) -> None:
-        """End the process at once, because it holds nothing that must be closed in order.
+        """End the process immediately, because it keeps no file open.
 
         The page and the server may call this at the same time. The first call ends the process, and every
         call returns when it has ended.

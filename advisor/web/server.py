@@ -14,7 +14,7 @@ from advisor.words.problems import ConfigurationError
 
 
 def listening(host: str, port: int) -> socket.socket:
-    """Take a port, before anything else is begun.
+    """Reserve a port, before any other work begins.
 
     Raises
     ------
@@ -68,7 +68,7 @@ class WebServer:
 
     @property
     def at_work(self) -> bool:
-        """Whether the server still serves."""
+        """Whether the server is still running."""
         return self._thread.is_alive()
 
     def _run(self) -> None:

@@ -24,7 +24,7 @@ _REPLAY_IS_OVER = "Its replay has ended with it."
 
 @dataclass(frozen=True, slots=True)
 class PageAddress:
-    """Address, access and number of the pages."""
+    """Address of the pages, access to them, and their largest number."""
 
     at: socket.socket
     access: Access
@@ -42,7 +42,7 @@ def place(
     viewers: int,
     watch_only: bool = False,
 ) -> Iterator[PageAddress]:
-    """Check the user's options, and take the port.
+    """Check the user's options, and reserve the port.
 
     Raises
     ------

@@ -1,4 +1,5 @@
-"""A running campaign and its newest report, for any number of pages, and the entrance of their processes."""
+"""A running campaign and its newest report, for any number of pages, and the connection to their
+processes."""
 
 import time
 from collections.abc import Callable
@@ -13,13 +14,14 @@ from advisor.session.conducting import Conducting, SessionReport, changes
 from advisor.web.viewing import Viewing
 
 PATIENCE_S = 2.0
-"""Longest time for the end of the estimating process, s. The process also ends when the server has gone."""
+"""Longest waiting time for the end of the estimating process, s. The estimating process also ends when the
+server has ended."""
 
 
 class Showing:
     """Runs a conductor in a thread and keeps its newest report.
 
-    A page that takes reports slowly misses some, and never delays another page.
+    A page that receives reports slowly skips some, and never delays another page.
 
     Parameters
     ----------
@@ -48,7 +50,7 @@ class Showing:
 
     @property
     def at_work(self) -> bool:
-        """Whether the conductor still runs."""
+        """Whether the conductor is still running."""
         return self._thread.is_alive()
 
     def newer(self, than: int, timeout_s: float) -> tuple[int, SessionReport] | None:
@@ -85,13 +87,13 @@ class Showing:
 
 
 LOOK_EVERY_S = 0.2
-"""Time after which a page without news is tested for its end, s."""
+"""Time after which a page without messages is tested for its end, s."""
 _OWN_REPLAY = frozenset({"jump", "play", "step"})
 _BY_HAND = frozenset({"decide", "order"})
 
 
 class Audience:
-    """Lets pages in, sends each its reports, and passes on the requests of each.
+    """Accepts pages, sends reports to each, and receives the requests of each.
 
     Parameters
     ----------
@@ -139,7 +141,7 @@ class Audience:
             self._pages[-1].start()
 
     def _serve(self, connection: Connection) -> None:
-        """Serve one page from its arrival to its end."""
+        """Serve one page from its connection to its end."""
         gone = Event()
         own = None if self._shared is not None else Showing(self._make_conductor())
         with suppress(OSError), connection, own or nullcontext():
@@ -155,7 +157,7 @@ class Audience:
                 asking.join()  # a connection that a thread still reads would stay open
 
     def _report(self, connection: Connection, showing: Showing, gone: Event) -> None:
-        """Send the first report as a whole, then the changes since the last report."""
+        """Send the first report completely, then the changes since the last report."""
         number, last = 0, None
         while not gone.is_set() and not self._closing.is_set():
             newer = showing.newer(number, LOOK_EVERY_S)
@@ -168,7 +170,7 @@ class Audience:
                 return
 
     def _obey(self, connection: Connection, conductor: Conducting, gone: Event) -> None:
-        """Pass on the page's requests, until the page is gone."""
+        """Send the page's requests to the conductor, until the page is closed."""
         with suppress(EOFError, OSError):
             while not gone.is_set():
                 if not connection.poll(LOOK_EVERY_S):

@@ -1,4 +1,4 @@
-"""Answers of the web server: the page with the screens, its WebSocket, and the login before them."""
+"""Answers of the web server: the page with the screens, its WebSocket, and the login page."""
 
 import asyncio
 import json
@@ -18,13 +18,13 @@ from advisor.web.page_process import PageProcess
 _Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 LARGEST_MESSAGE = 65_536
-"""Most bytes of one message of a browser: keys, or a pasted text."""
+"""Largest message of a browser, bytes: keys, or a pasted text."""
 HEARTBEAT_S = 15.0
-"""Time after which a silent browser loses its place, s."""
+"""Time after which the page of a silent browser is closed, s."""
 _GOODBYE_S = 2.0
 """Longest time for a browser's answer to the closing of its page, s."""
 _COLUMNS, _ROWS = (20, 500), (5, 200)
-"""Fewest and most characters of a page. A larger page would only take memory."""
+"""Smallest and largest size of a page, in characters. A larger page would only use memory."""
 _OPEN_TO_ALL = ("/login", "/static/", "/textual/")
 _HEADERS = {
     # The browser itself then refuses to load anything from another host.
@@ -43,7 +43,7 @@ class Site:
     Parameters
     ----------
     access
-        Decides who is let in.
+        Access rules for viewers.
     door
         Address of the campaign for the process of a page.
     title
@@ -80,7 +80,7 @@ class Site:
         return application
 
     async def close(self) -> None:
-        """Close every page and end its process."""
+        """Close every page and end the page's process."""
         await asyncio.gather(*(process.end() for process in self._pages))
 
     @web.middleware
@@ -138,7 +138,7 @@ class Site:
 
 
 async def _pass_on(socket: web.WebSocketResponse, process: PageProcess) -> None:
-    """Pass on a browser's messages until its page is closed.
+    """Send a browser's messages to the page's process until the page is closed.
 
     Raises
     ------

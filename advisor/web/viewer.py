@@ -37,7 +37,7 @@ class WatchingEngineerScreen(EngineerScreen):
 
 
 class ViewerApp(AdvisorApp):
-    """The application in a page. The page can be left at any time, and the advisor goes on.
+    """The application in a page. The user can leave the page at any time, and the advisor continues.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class ViewerApp(AdvisorApp):
         self._watch_only = viewing.watch_only
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Enable decisions by hand only where the page may decide."""
+        """Enable decisions by hand only if the page may decide."""
         return not (self._watch_only and action in _BY_HAND) and super().check_action(action, parameters)
 
     def action_leave(self) -> None:
@@ -66,7 +66,7 @@ class ViewerApp(AdvisorApp):
 
 
 class WatchingApp(ViewerApp):
-    """The application in a page that only watches."""
+    """The application in a page that cannot decide by hand."""
 
     MODES: ClassVar[dict[str, str | Callable[[], Screen[Any]]]] = {
         "pilot": PilotScreen,
@@ -75,7 +75,7 @@ class WatchingApp(ViewerApp):
 
 
 def main() -> None:
-    """Show the screens until the page or the server is gone."""
+    """Show the screens until the page is closed or the server has ended."""
     interrupt.ignore()  # a signal is for the server, which then ends this process in order
     warnings.simplefilter("ignore")  # as in the server: warnings are for those who develop
     door = Door(os.environ.pop(ADDRESS), bytes.fromhex(os.environ.pop(KEY)))

@@ -21,7 +21,7 @@ class Viewing:
     title: str
     """Name of the log or of the connection."""
     tempo: Tempo | None
-    """Start settings of a replay. None: the source is a live link."""
+    """Tempo of a replay at the start. None: the source is a live link."""
     settings: Settings
     watch_only: bool = False
-    """Whether the page may neither decide by hand nor request anything of the link."""
+    """Whether the page may neither decide by hand nor send requests to the link."""

@@ -1,1 +1,1 @@
-"""Words for people: errors, numbers, times, fixes."""
+"""Words for people: errors, numbers, times, remedies."""

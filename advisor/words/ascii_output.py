@@ -29,7 +29,7 @@ def plain(text: str) -> str:
 
 
 def speak_plainly() -> None:
-    """Let standard output and standard error spell characters that their encoding lacks, instead of failing.
+    """Let standard output and standard error replace characters outside their encoding, instead of failing.
 
     A stream in ASCII is given ASCII under another name, because click takes ASCII for a mistake in the user's
     settings and writes UTF-8 there. A terminal whose user states the POSIX locale is such a stream, although
@@ -47,7 +47,7 @@ def speak_plainly() -> None:
 
 
 def _posix() -> bool:
-    """Return whether the user states the POSIX locale, and nothing else chose Python's UTF-8."""
+    """Return whether the user chose the POSIX locale, and no other setting chose Python's UTF-8."""
     stated = os.environ.get("LC_ALL") or os.environ.get("LANG")
     return stated in ("C", "POSIX") and bool(sys.flags.utf8_mode) and "PYTHONUTF8" not in os.environ
 

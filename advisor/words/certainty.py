@@ -1,9 +1,9 @@
-"""How sure an answer is: the title over it, and the sentence that carries its doubt."""
+"""Certainty of an answer: the title above the answer, and the sentence on the doubt."""
 
 from collections.abc import Sequence
 
 DECIDED = 0.6
-"""Contract: least probability of an answer that is decided."""
+"""Contract: least probability of an answer that is considered decided."""
 _SURE = 0.9
 """Contract: least probability of an answer that is stated without the word "likely"."""
 
@@ -17,7 +17,7 @@ def is_decided(answers: Answers) -> bool:
 
 
 def title(stated: str, likely: str, answers: Answers) -> str:
-    """Return the title over an answer.
+    """Return the title above an answer.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def title(stated: str, likely: str, answers: Answers) -> str:
 
 
 def doubt_of(answers: Answers) -> str:
-    """Return the sentence on the two likeliest answers; empty where one is decided."""
+    """Return the sentence on the two likeliest answers; empty if one answer is decided."""
     if len(answers) < 2 or is_decided(answers):
         return ""
     (one, p), (other, q) = answers[:2]
@@ -38,7 +38,7 @@ def doubt_of(answers: Answers) -> str:
 
 
 def as_sure(sentence: str, answers: Answers) -> str:
-    """Return the sentence of an answer as sure as the answer is: alone, after "likely", or its doubt."""
+    """Return the sentence of an answer with its certainty: alone, after "likely", or the doubt."""
     if not answers or answers[0][1] >= _SURE:
         return sentence
     return doubt_of(answers) or f"Likely, {sentence[:1].lower()}{sentence[1:]}"

@@ -1,10 +1,11 @@
-"""Numbers as text: two significant digits of an interval, unequal numbers that read as unequal."""
+"""Numbers as text: an interval with two significant digits, and unequal texts for unequal numbers."""
 
 from math import floor, isfinite, log10
 from typing import Literal
 
 MOST_DIGITS = 9
-"""Most decimals or significant digits of a text. Numbers that agree to so many digits read as equal."""
+"""Largest number of decimals or significant digits of a text. Numbers that are equal in so many digits have
+equal texts."""
 
 
 def distinct_texts(

@@ -27,18 +27,18 @@ class Problem:
         return f"{self.text} {self.fix}".strip()
 
     def about(self, name: str) -> str:
-        """Return the problem with ``name`` before its text, unless the text names ``name`` already."""
+        """Return the problem with ``name`` before its text, unless the text already contains ``name``."""
         name = printable(name)
         return str(self) if name in self.text else f"{name}: {self}"
 
 
 class UnusableInputError(Exception):
-    """The input cannot serve this purpose (exit code 3)."""
+    """The input cannot be used for this purpose (exit code 3)."""
 
     def __init__(self, code: str, text: str, fix: str = "", further: Sequence[Problem] = ()) -> None:
         self.problem = Problem(code, text, fix)
         self.problems = (self.problem, *further)
-        """Every problem of the input."""
+        """All problems of the input."""
         super().__init__("\n".join(map(str, self.problems)))
 
     @classmethod

@@ -1,4 +1,4 @@
-"""Quantiles of the normal distribution, each in one place."""
+"""Quantiles of the normal distribution that several modules use."""
 
 NORMAL_95 = 1.959963984540054
 """Half-width of an interval that holds 95 % of a normal distribution, in standard deviations."""

@@ -49,16 +49,17 @@ PARAMETERS: Mapping[str, Quantity] = {
     "M_q": Quantity("M_q", "1/s"),
     "M_delta_e": Quantity("M_δe", "1/s²"),
 }
-"""Parameter to its quantity. Only Z_0 and M_0 carry an angle."""
+"""Quantity with symbol and unit for each parameter, by the parameter's name. Only Z_0 and M_0 have an angle
+in their unit."""
 
 _SIDE_UNITS = {"beta": ("β", 2), "p": ("p", 1), "r": ("r", 1), "delta_a": ("δa", 2), "delta_r": ("δr", 2)}
-"""Factor of a lateral derivative: its symbol, and the power of 1/s of the moment per unit of the factor."""
+"""Symbol of each factor of a lateral derivative, with the power of 1/s in the unit of a moment derivative."""
 SIDE_PARAMETERS: Mapping[str, Quantity] = {
     f"{y}_{x}": Quantity(f"{y}_{symbol}", ("1", "1/s", "1/s²")[power - (y == "Y")])
     for y in "YLN"
     for x, (symbol, power) in _SIDE_UNITS.items()
 }
-"""Derivative of roll and yaw to its quantity."""
+"""Quantity with symbol and unit for each derivative of roll and yaw."""
 
 
 def symbol(parameter: str) -> str:
@@ -67,5 +68,5 @@ def symbol(parameter: str) -> str:
 
 
 def channel(name: str) -> Quantity:
-    """Return the quantity of a channel. A channel without an entry keeps its own name and SI."""
+    """Return the quantity of a channel. A channel without an entry has its own name and SI unit."""
     return CHANNELS.get(name, Quantity(name, "SI"))

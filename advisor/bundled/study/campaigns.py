@@ -1,4 +1,4 @@
-"""The paper's campaign, flown many times: each rule's stop, and the errors at the stop."""
+"""The paper's campaign, flown many times, with each rule's stop and the errors at the stop."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -51,7 +51,8 @@ def estimate_copies(
 
 
 def _correlation(flight: NoiselessManeuver, batch: Batch) -> FloatArray:
-    """Return the (8, 8) correlation of the errors. The input determines it: one copy suffices."""
+    """Return the (8, 8) correlation of the errors. The correlation depends only on the input, so that one
+    copy suffices."""
     step = float(flight.t[1] - flight.t[0])
     noise = (float(batch.noise[0, 0]), float(batch.noise[0, 1]))
     expected = expect(
@@ -65,7 +66,7 @@ def _correlation(flight: NoiselessManeuver, batch: Batch) -> FloatArray:
 def _estimate(
     flight: NoiselessManeuver, z: FloatArray, batch: Batch, i: int, correlation: FloatArray
 ) -> Estimate:
-    """Return the estimate of one copy. The noise is white, so that the plain bound is the covariance."""
+    """Return the estimate of one copy. The noise is white, so that the Cramér–Rao bound is the covariance."""
     covariance = correlation * np.outer(batch.std_cr[i], batch.std_cr[i])
     fits = {
         # The clean response stands for the fitted one, which differs by less than its error.
@@ -97,15 +98,15 @@ def blocks(campaigns: int, size: int) -> Iterator[tuple[int, int]]:
 
 RULES: tuple[Rule, ...] = ("continuous", "separate", "information")
 BLOCK = 50
-"""Number of campaigns in a task: a third of a second of work."""
+"""Number of campaigns in a task, which take a third of a second."""
 
 
 @dataclass(frozen=True, slots=True)
 class RuleOutcome:
-    """One campaign under one rule."""
+    """Outcome of one campaign under one stopping rule."""
 
     needed: int | None
-    """Manoeuvres flown when the rule first said stop. None: no stop within the campaign."""
+    """Number of manoeuvres after which the rule first said stop. None: no stop within the campaign."""
     theta: FloatArray
     """(8,) parameters reported at the stop, or at the campaign's end."""
     tolerance: FloatArray
@@ -113,7 +114,7 @@ class RuleOutcome:
     history_percent: tuple[float | None, ...]
     """Criterion after each manoeuvre; for ``information`` up to the stop."""
     rejected: int
-    """Number of flown manoeuvres that the rule rejected."""
+    """Number of flown manoeuvres that the stopping rule rejected."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +127,7 @@ class CampaignBlock:
     seed: tuple[int, ...]
     reading: NoiseReading = "std"
     other_readings: bool = False
-    """Whether the campaigns are also judged by other readings of the paper's rules."""
+    """Whether the campaigns are also judged by other interpretations of the paper's rules."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +135,7 @@ class CampaignResults:
     """Results of a block of campaigns."""
 
     outcomes: Mapping[Rule, tuple[RuleOutcome, ...]]
-    """Rule to its outcomes, campaign by campaign."""
+    """Outcomes of all campaigns under each stopping rule, by the rule."""
     needed: Mapping[tuple[str, Rule], tuple[int | None, ...]]
     """Name of the reading and rule to the manoeuvres that each campaign needed; empty unless requested."""
 
@@ -157,7 +158,7 @@ def table_blocks(
 
 
 def judge(block: CampaignBlock) -> CampaignResults:
-    """Fly the campaigns of a block, and end each by every rule."""
+    """Fly the campaigns of a block, and stop each by every rule."""
     maneuvers = [as_maneuver(fly_named(block.scene, name)) for name in ORDER]
     plan = CampaignPlan()
     flown = fly_campaigns(block)
@@ -175,7 +176,7 @@ def joined(judged: Sequence[CampaignResults], rule: Rule) -> list[RuleOutcome]:
 def fly_campaigns(block: CampaignBlock) -> list[list[Estimate]]:
     """Return the estimates of every manoeuvre of a block, campaign by campaign.
 
-    The noise of the first manoeuvre holds for all, because a set of instruments has one noise.
+    The noise of the first manoeuvre is used for all, because the instruments are the same.
     """
     rng = np.random.default_rng(block.seed)
     flights = [fly_named(block.scene, name) for name in ORDER]

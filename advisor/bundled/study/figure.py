@@ -19,16 +19,17 @@ TICKS_PERCENT = (2, 5, 10, 25, 50, 100, 200)
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Criterion of one rule at one noise level over all campaigns."""
+    """Criterion of one stopping rule at one noise level over all campaigns."""
 
     rule: Rule
     noise_percent: float
     quantiles: tuple[tuple[float, float, float] | None, ...]
-    """Quantiles 10 %, 50 %, 90 % over the campaigns with a value, for each manoeuvre. None without any."""
+    """Quantiles 10 %, 50 %, 90 % over the campaigns with a value, for each manoeuvre. None if no campaign has
+    a value."""
 
 
 def curve(rule: Rule, noise_percent: float, outcomes: Sequence[RuleOutcome]) -> Curve:
-    """Collect the criterion's history, as if every campaign continued to its end."""
+    """Return the criterion's history, as if every campaign continued to its end."""
     quantiles: list[tuple[float, float, float] | None] = []
     for i in range(len(ORDER)):
         values = [
@@ -40,12 +41,12 @@ def curve(rule: Rule, noise_percent: float, outcomes: Sequence[RuleOutcome]) -> 
 
 
 def refuse_undrawable(path: Path) -> None:
-    """Refuse, before any work, a figure that could not be drawn after it.
+    """Refuse a figure that could not be drawn later, before any campaign is flown.
 
     Raises
     ------
     ConfigurationError
-        matplotlib is not installed, or does not know the ending.
+        matplotlib is not installed, or does not support the file ending.
     """
     try:
         from matplotlib.backend_bases import FigureCanvasBase
@@ -99,7 +100,7 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
 
 
 def in_terminal(curves: Sequence[Curve], rule: Rule, height: int = 13) -> list[str]:
-    """Return the medians of one rule as lines of text, logarithmic in the criterion."""
+    """Return the medians of one rule as lines of text, with a logarithmic axis of the criterion."""
     chosen = [c for c in curves if c.rule == rule]
     values = [q[1] for c in chosen for q in c.quantiles if q is not None]
     if not values:

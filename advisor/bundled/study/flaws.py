@@ -10,22 +10,22 @@ from advisor.bundled.study.flying import Scene
 from advisor.bundled.study.readings import ORDER
 
 MOST_CAMPAIGNS = 100
-"""Number of campaigns, enough for a share of practically one."""
+"""Number of campaigns that suffices for a fraction close to one."""
 NOISE_PERCENT = 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class Flaws:
-    """Both flaws of the paper's rules in numbers."""
+    """Sizes of both flaws of the paper's rules."""
 
     thrown_away_percent: float
-    """Share of equally good manoeuvres, after the first, that Eq. (11) rejects."""
+    """Fraction of equally good manoeuvres, after the first, that Eq. (11) rejects, %."""
     near_zero_campaigns: int
     """Number of campaigns with Z_q = 0."""
     near_zero_never_percent: float
-    """Share of campaigns at 1 % noise that Eq. (12) never ends when Z_q is zero."""
+    """Fraction of campaigns with zero Z_q at 1 % noise that Eq. (12) never stops, %."""
     near_zero_information: int | None
-    """Median number of manoeuvres that the rule ``information`` needs in these campaigns."""
+    """Median number of manoeuvres that the rule ``information`` needs in campaigns with zero Z_q."""
 
 
 def near_zero_blocks(campaigns: int, seed: int) -> list[CampaignBlock]:
@@ -36,7 +36,8 @@ def near_zero_blocks(campaigns: int, seed: int) -> list[CampaignBlock]:
 
 
 def measure(ordinary: Sequence[CampaignResults], near_zero: Sequence[CampaignResults]) -> Flaws:
-    """Return both flaws: the first in the paper's campaigns, the second in campaigns with Z_q = 0."""
+    """Return the sizes of both flaws: the first in the paper's campaigns, the second in campaigns with Z_q =
+    0."""
     rejected = [one.rejected / (len(ORDER) - 1) for one in joined(ordinary, "separate")]
     never = [one.needed is None for one in joined(near_zero, "continuous")]
     needed = sorted(one.needed or np.inf for one in joined(near_zero, "information"))

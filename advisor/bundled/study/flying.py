@@ -37,12 +37,13 @@ NOISE_READINGS: Mapping[NoiseReading, str] = {
     "rms": "of the root mean square of the response, trim included",
     "sample": "of each sample's own deviation from trim",
 }
-"""Reference of the noise's percentage to its description. The first is the default."""
+"""Description of each reference of the noise's percentage, by its name. The first reference is the
+default."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """An aircraft, with the sampling and the input of its manoeuvres."""
+    """An aircraft, with the sampling rate and the input of its manoeuvres."""
 
     aircraft: ShortPeriod = RESEARCH_JET
     unit_s: float = 0.7
@@ -60,13 +61,13 @@ class Scene:
 
 @dataclass(frozen=True, slots=True)
 class NoiselessManeuver:
-    """One manoeuvre without noise."""
+    """One simulated manoeuvre without noise."""
 
     t: FloatArray
     elevator: FloatArray
-    """(n,) elevator in rad, linear between samples."""
+    """(n,) elevator deflection in rad, linear between samples."""
     response: FloatArray
-    """(n, 2) α in rad and q in rad/s."""
+    """(n, 2) response of α in rad and q in rad/s."""
     trim: FloatArray
     """(2,) state before the input."""
 
@@ -97,7 +98,7 @@ def fly_named(scene: Scene, name: str) -> NoiselessManeuver:
 
 
 def as_maneuver(flight: NoiselessManeuver) -> Maneuver:
-    """Return the flight in the form of a manoeuvre cut from the stream: command, begin and end."""
+    """Return the flight as a manoeuvre from a message stream: command, begin and end."""
     moving = np.flatnonzero(np.abs(flight.elevator - flight.elevator[0]) > 1e-9)
     start, end = flight.t[moving[0]], flight.t[min(moving[-1] + 1, len(flight.t) - 1)]
     span = Span(

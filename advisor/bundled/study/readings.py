@@ -24,17 +24,17 @@ from advisor.oem.estimate import Estimate
 
 NOISE_PERCENT = (1.0, 2.5, 5.0)
 ORDER = ("3211", "rev", "rev", "3211", "rev", "3211", "rev")
-"""The seven manoeuvres of the campaign."""
+"""Inputs of the seven manoeuvres of the campaign."""
 
 
 @dataclass(frozen=True, slots=True)
 class PaperRow:
-    """One row of Table 1."""
+    """One row of Table 1 of the paper."""
 
     needed: int | None
-    """Manoeuvres until the stop. None: never."""
+    """Number of manoeuvres until the stop. None: the campaign never stopped."""
     error_percent: Mapping[str, float]
-    """Nominal error of each parameter."""
+    """Error of each parameter in percent of its true value."""
 
 
 def _row(needed: int | None, *errors: float) -> PaperRow:
@@ -86,7 +86,7 @@ def largest_scatter(theta: FloatArray) -> float:
 
 
 def written_out(theta: FloatArray) -> float:
-    """Apply Eq. (13)."""
+    """Apply Eq. (13) of the paper."""
     return scatter_percent(theta, "eq13")
 
 
@@ -118,7 +118,7 @@ READINGS = (
 
 @dataclass(frozen=True, slots=True)
 class ReadingResult:
-    """Result of one reading in one row of Table 1."""
+    """Result of one interpretation in one row of Table 1."""
 
     reading: str
     rule: Rule
@@ -126,13 +126,14 @@ class ReadingResult:
     median: int | None
     never_percent: float
     as_paper_percent: float
-    """Share of campaigns that need exactly the paper's number of manoeuvres."""
+    """Fraction of campaigns that need exactly the paper's number of manoeuvres, %."""
 
 
 def needed_by_reading(
     campaigns: Sequence[Sequence[Estimate]],
 ) -> dict[tuple[str, Rule], tuple[int | None, ...]]:
-    """Return the manoeuvres that each campaign needs under every reading, by reading and rule."""
+    """Return the number of manoeuvres of each campaign under every interpretation, by interpretation and
+    rule."""
     return {
         (reading.name, rule): tuple(_needed(campaign, accepting, reading) for campaign in campaigns)
         for reading in READINGS

@@ -13,7 +13,7 @@ from advisor.bundled.study.table import as_document, row
 
 
 class StudyTask(Protocol):
-    """Some campaigns of a study, with everything that decides their result, including the seed."""
+    """Several campaigns of a study, with all data that determine their result, including the seed."""
 
     @property
     def campaigns(self) -> int:
@@ -26,14 +26,14 @@ R = TypeVar("R")
 
 @dataclass(frozen=True, slots=True)
 class StudyReport:
-    """Result of a study."""
+    """Result of a study, for people and for programs."""
 
     lines: list[str]
-    """Lines of text for people."""
+    """Lines of the report for people."""
     document: dict[str, object]
-    """Numbers for programs."""
+    """Results of the study for programs."""
     curves: tuple[Curve, ...] = ()
-    """Figure 5, where the study has one."""
+    """Curves of Figure 5, if the study draws the figure."""
 
 
 @dataclass(frozen=True, slots=True)

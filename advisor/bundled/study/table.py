@@ -1,4 +1,4 @@
-"""Table 1 of this study with the paper's: medians, spread, and the paper's place within them."""
+"""Table 1 of this study next to the paper's: medians, spread, and the paper's rank among the campaigns."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,25 +14,25 @@ from advisor.flight.signals.messages import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """All campaigns of one rule at one noise level."""
+    """Outcomes of all campaigns of one rule at one noise level."""
 
     rule: Rule
     noise_percent: float
     needed: tuple[int | None, ...]
-    """Manoeuvres needed in each campaign. None: never."""
+    """Number of manoeuvres until the stop of each campaign. None: the campaign never stopped."""
     error_percent: FloatArray
     """(campaigns, 8) |error| at the stop, or at the end, in percent of the true value."""
     outside_tolerance_percent: FloatArray | None
-    """(8,) share of stops with the parameter outside its tolerance, for ``information`` only."""
+    """(8,) fraction of stops with the parameter outside its tolerance, %, for ``information`` only."""
 
     @property
     def paper(self) -> PaperRow | None:
-        """Row of the paper, for the paper's rules."""
+        """Row of the paper's Table 1, for the paper's rules."""
         return TABLE_1.get((self.rule, self.noise_percent))
 
     @property
     def never_percent(self) -> float:
-        """Share of campaigns that did not stop."""
+        """Percentage of campaigns that did not stop."""
         return 100.0 * float(np.mean([n is None for n in self.needed]))
 
     def needed_quantile(self, share: float) -> int | None:
@@ -59,7 +59,7 @@ class Row:
 
 
 def row(rule: Rule, noise_percent: float, outcomes: Sequence[RuleOutcome], truth: FloatArray) -> Row:
-    """Collect the outcomes of one rule at one noise level."""
+    """Return the outcomes of one rule at one noise level as a row."""
     errors = np.array([o.theta for o in outcomes]) - truth
     outside = None
     if rule == "information":

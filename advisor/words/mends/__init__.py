@@ -1,4 +1,4 @@
-"""Remedies for a record that falls short, in the words of its autopilot's users.
+"""Remedies for a record with missing or slow data, in the words of the autopilot's users.
 
 A vehicle is heard over telemetry, live or from a ``.tlog``, or read from the log that its autopilot keeps.
 Each kind of sender has other names for the values, and other settings for their rates.

@@ -8,13 +8,13 @@ from advisor.words.mends.mends import GOOD_HZ, Mends
 
 @dataclass(frozen=True, slots=True)
 class _Record:
-    """Record of the log that replaces a message."""
+    """Record of ArduPilot's log that contains the values of a message."""
 
     name: str
     bit: int
     bit_name: str
     paced: str
-    """Origin of the record's rate."""
+    """Origin of the rate at which the record is written."""
 
 
 _IMU = _Record("IMU", 7, "IMU", "the main loop's rate")
@@ -47,7 +47,7 @@ class Dataflash(Mends):
         return f"{logged}for more record a telemetry log with {message} at {GOOD_HZ} Hz"
 
     def present(self, messages: Sequence[str]) -> str:
-        """Return the bits of LOG_BITMASK that log the records."""
+        """Return the bits of LOG_BITMASK that log the given records."""
         records = [_RECORDS[message] for message in messages if message in _RECORDS]
         bits = dict.fromkeys(f"{one.name} by bit {one.bit} ({one.bit_name})" for one in records)
         return f"set LOG_BITMASK so that these are logged: {', '.join(bits)}; its default, 65535, has all"

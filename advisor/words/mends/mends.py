@@ -5,7 +5,8 @@ from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 GOOD_HZ = 50
-"""Rate to ask for, 1/s. A short period of 2 Hz, typical of an aircraft of some kg, then has 25 samples."""
+"""Message rate that the remedies recommend, 1/s. A short period of 2 Hz, typical of an aircraft of some kg,
+then has 25 samples."""
 
 
 class Mends:
@@ -15,7 +16,7 @@ class Mends:
     """
 
     names: ClassVar[Mapping[str, str]] = {}
-    """Message of MAVLink to its name in this kind of log, where the names differ."""
+    """Name of each MAVLink message in this kind of log, by the message, if the names differ."""
 
     def called(self, message: str) -> str:
         """Return the name under which users of this record know the values of a message."""

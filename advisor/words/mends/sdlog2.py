@@ -20,10 +20,10 @@ class Sdlog2(Mends):
     names = _RECORDS
 
     def faster(self, message: str) -> str:
-        """Return the setting of the rate, which all records share."""
+        """Return the rate setting, which all records of the log share."""
         return f"set SDLOG_RATE to {GOOD_HZ}, at which sdlog2 logs {self.called(message)}"
 
     def present(self, messages: Sequence[str]) -> str:
-        """Return the setting that adds the records."""
+        """Return the setting that adds the given records."""
         named = ", ".join(dict.fromkeys(self.called(message) for message in messages))
         return f"set SDLOG_EXT to 1, so that sdlog2 logs {named}"

@@ -12,7 +12,7 @@ _STREAM_GROUPS = {
     "SCALED_IMU2": "RAW_SENS",
     "GLOBAL_POSITION_INT": "POSITION",
 }
-"""Message to ArduPilot's stream group (GCS_MAVLink): the suffix of the parameter with the rate."""
+"""Stream group in ArduPilot (GCS_MAVLink) of each message: the suffix of the parameter with the rate."""
 
 _IDS = {
     "SCALED_IMU": 26,
@@ -29,7 +29,7 @@ _IDS = {
 
 _PX4_NAMES = {"RAW_IMU": "HIGHRES_IMU"}
 _PX4_STREAMS = {"SERVO_OUTPUT_RAW": "SERVO_OUTPUT_RAW_0", "RAW_IMU": "HIGHRES_IMU"}
-"""Message to its PX4 stream, where the names differ (PX4's ``mavlink_messages.cpp``)."""
+"""PX4 stream of each message, if the names differ (PX4's ``mavlink_messages.cpp``)."""
 
 
 def _request(message: str) -> str:
@@ -52,7 +52,7 @@ class ArduPilotTelemetry(Mends):
 
 
 class Px4Telemetry(Mends):
-    """PX4's streams: a rate for each, under the limit of its link."""
+    """PX4's streams: a rate for each stream, below the limit of its link."""
 
     names = _PX4_NAMES
 
@@ -70,5 +70,5 @@ class OtherTelemetry(Mends):
     """Streams of an autopilot with unknown parameters."""
 
     def faster(self, message: str) -> str:
-        """Return a request for the rate."""
+        """Return a request for a higher rate of the message."""
         return f"raise the rate of {message} on the vehicle to {GOOD_HZ} Hz, or {_request(message)}"

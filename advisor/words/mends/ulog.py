@@ -15,7 +15,8 @@ _TOPICS = {
     "AOA_SSA": "vehicle_local_position",
     "NAMED_VALUE_FLOAT": "debug_key_value",
 }
-"""Message to its topic. The climb rate of the position gives the angle of attack that PX4 lacks."""
+"""Topic of PX4's log for each message. The climb rate of the position gives the angle of attack that PX4
+lacks."""
 
 _Bit = tuple[int, str]
 _DEFAULT: _Bit = (0, "default set")
@@ -41,7 +42,7 @@ The set for system identification has ``vehicle_torque_setpoint`` at full rate.
 
 
 class Ulog(Mends):
-    """Topics of PX4's log.
+    """Topics of PX4's own log.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ class Ulog(Mends):
         return self._advice(_BITS.get(message, (_DEFAULT,)), self.called(message))
 
     def present(self, messages: Sequence[str]) -> str:
-        """Return the bits that log the topics at all."""
+        """Return the bits that log the given topics."""
         wanted = [_DEBUG if _BITS.get(m) == (_DEBUG,) else _DEFAULT for m in messages]
         bits = [bit for bit in dict.fromkeys(wanted) if not self._has(bit)]
         topics = " and ".join(dict.fromkeys(self.called(message) for message in messages))
