@@ -89,7 +89,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as own:
         root = (given.keep or Path(own)).resolve()
         root.mkdir(parents=True, exist_ok=True)
-        python = Path(given.program).with_name("python")
+        program = str(Path(given.program).absolute())
+        python = Path(program).with_name("python")
         home = ROOT if given.simulator == "sim" else root  # so that a wheel's own modules run
         flights = {"sample": ROOT / "logs" / "arduplane-calm.tlog"}
         for word, options in RECORDED.items():
@@ -106,7 +107,7 @@ def main() -> int:
                 folder = root / page.stem / next((word for word in RECORDED if word in line), "sample")
                 if "-o my-aircraft.yaml" in line:
                     (folder / "my-aircraft.yaml").unlink()
-                code, seconds, last = typed(line, given.program, folder)
+                code, seconds, last = typed(line, program, folder)
                 failed += code != 0
                 print(f"{code:>7}{seconds:>7.1f} s {page.name}: {line}", flush=True)
                 if code:
