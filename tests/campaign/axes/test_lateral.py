@@ -14,7 +14,7 @@ from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.parameters import filter_delay_s
 from advisor.report.facts.decision import lateral_decision
 from advisor.report.lateral import lateral_document
-from advisor.report.result_rows import SIDE_ROOM, joint_table, maneuver_line
+from advisor.report.result_rows import joint_table, maneuver_line
 from advisor.session.hand import HandDecision
 from tests.flight.columns import Wire, heartbeat, plane_parameters
 from tests.oem.axes.lateral.builders import JET, flown, steps
@@ -112,7 +112,7 @@ def test_a_derivative_is_told_or_not_identifiable_and_never_both(state):
 
 
 def test_the_text_says_every_verdict_and_the_decision(state):
-    lines = [maneuver_line(one, SIDE_ROOM) for one in state.maneuvers]
+    lines = [maneuver_line(one, 18) for one in state.maneuvers]
     assert sum("doublet" in line and "✓" in line for line in lines) == 2
     table = joint_table(state, AIRCRAFT.model)
     assert [row[0] for row in table.rows if row[1] != "–"][:2] == ["Y_β", "Y_p"]
