@@ -163,7 +163,7 @@ _MOST_LISTED = 20
 _MOST_POINTS = 500
 """Largest number of points of a calibration: one for every second microsecond of a servo's travel."""
 _LONGEST_WINDOW = 50
-"""Largest window of Eq. (12), in manoeuvres, above the number in any flight."""
+"""Largest window of the paper's stop rule, Eq. (12), in manoeuvres. No flight has as many manoeuvres."""
 _OUTPUTS = 32
 """Number of servo outputs in SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS."""
 _LONGEST_STEP_S = 0.1

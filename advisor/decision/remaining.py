@@ -44,7 +44,8 @@ class Odds:
 
 
 MOST = 50
-"""Largest number of further manoeuvres that is predicted. Above this number no end is in sight."""
+"""Largest number of further manoeuvres that is predicted. A longer forecast says that no
+end of the test is in sight."""
 _DRAWS = 400
 
 

@@ -65,9 +65,9 @@ class Gap:
     """Gap of the simulator on held-out manoeuvres: mean square error over the floor's square, minus 1."""
 
     before: float
-    """Mean over the channels, with the simulator as given."""
+    """Gap of the simulator as given, as the mean over the channels."""
     after: float
-    """Mean over the channels, with the final model."""
+    """Gap of the final model, as the mean over the channels."""
     floor: Mapping[str, float]
     """Standard deviation of the residual where nothing was flown, by channel, in the channel's SI unit."""
     floor_note: str

@@ -41,7 +41,7 @@ MODEL_ERROR = 1e-3
 """Numerical: error of the model's outputs, relative to their spread. A surface with a lag is taken as linear
 between the grid's stamps (``surface``)."""
 LEAST_SHARE = 0.01
-"""Least factor on a prior's standard deviation in a white-noise fit; data without noise have no colour."""
+"""Least factor on a prior's standard deviation in a white-noise fit."""
 CONTRADICTS = 3.0
 """Distance of a stated value from the data's value, in combined standard deviations, that is a
 contradiction."""

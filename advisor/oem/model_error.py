@@ -21,9 +21,9 @@ from advisor.oem.whitening import Whitening
 
 WIDTH_S, WEIGHTS = 0.2, 8
 """Numerical: distance between the filter's weights, s, and their number. The filter is linear between its
-weights, and represents dynamics up to 2.5 Hz. Faster errors come from stamps and edges. Six flights of an
-autopilot determined the distance among 0.1, 0.2, 0.3 and 0.4 s. Of 26 intervals on four other flights 22 hold
-the truth, and 18 without model errors."""
+weights, and represents dynamics up to 2.5 Hz. Errors of the outputs above 2.5 Hz come from stamps and edges
+of the input. Six flights of an autopilot determined the distance among 0.1, 0.2, 0.3 and 0.4 s. Of 26
+intervals on four other flights 22 hold the truth, and 18 without model errors."""
 _WITNESSES = 3
 """Numerical: least number of manoeuvres that can show a common error. On an axis with two controls, two of
 three manoeuvres move one control."""

@@ -114,12 +114,12 @@ class ReplayActions(_Actions):
         self.conductor.step()
 
     def action_faster(self) -> None:
-        """Choose the next higher speed."""
+        """Choose the next higher speed of the replay."""
         speed = next((s for s in SPEEDS if s > self._tempo.speed), inf)
         self._play(replace(self._tempo, speed=speed))
 
     def action_slower(self) -> None:
-        """Choose the next lower speed."""
+        """Choose the next lower speed of the replay."""
         speed = next((s for s in reversed(SPEEDS) if s < self._tempo.speed), SPEEDS[0])
         self._play(replace(self._tempo, speed=speed))
 

@@ -20,7 +20,9 @@ instruments."""
 
 
 class InstrumentWatch:
-    """Examination of stretches at fixed vehicle times, independent of batches.
+    """Examination of the instruments, one stretch of the flight after another.
+
+    The stretches end at fixed vehicle times, so that the batches of a log change no result.
 
     Parameters
     ----------

@@ -21,8 +21,8 @@ def open_log(
 ) -> Iterator[list[Columns]]:
     """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not.
 
-    The last two formats contain the autopilot's own records. Records become the messages that telemetry would
-    have carried, in one batch.
+    A ``.bin`` and a ``.ulg`` contain the autopilot's own records. Records become
+    the messages that telemetry would have carried, in one batch.
 
     Parameters
     ----------

@@ -57,7 +57,8 @@ class Window:
         return self._placed(low, length)
 
     def over(self, first: float, last: float) -> "Window":
-        """Take another range. A whole stretch stays whole, and a zoomed one keeps its length and place."""
+        """Take another range. A window on the whole range follows the range. A zoomed
+        window keeps its length and place."""
         if not self.zoomed:
             return Window.whole(first, last)
         return Window(first, last, self.low, self.high)._placed(self.low, self.high - self.low)
