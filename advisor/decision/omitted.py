@@ -53,7 +53,8 @@ class Bias:
 
 
 def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | None:
-    """Return the bias due to an omitted moment; None for a constant moment, or for too short a fit.
+    """Return the bias due to an omitted moment; None for a constant moment, for too short a fit,
+    and for a model whose response overflows.
 
     Parameters
     ----------
@@ -70,8 +71,11 @@ def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | 
         return None
     elevator = maneuver.channels["elevator"]
     moved = np.interp(t, elevator.t, elevator.y)
-    columns = _columns(estimate, t, moved - moved[0], term)
+    with np.errstate(over="ignore", invalid="ignore"):
+        columns = _columns(estimate, t, moved - moved[0], term)
     outputs = [(fits[name], columns[name]) for name in _OUTPUTS if name in fits]
+    if not all(np.all(np.isfinite(column)) for _, column in outputs):
+        return None  # The response of a fast unstable model overflows, and tells no bias.
     taken, _, _ = _regressed([_rows(fit, t, column, 0.0) for fit, column in outputs])
     # Coloured residuals make a term look significant that only follows their colour.
     _, coefficient, ratio = _regressed([_rows(fit, t, column, fit.lag1) for fit, column in outputs])

@@ -96,3 +96,11 @@ def test_a_record_without_roll_and_yaw_rate_is_not_asked():
     maneuver, estimated = flown()
     assert coupled(maneuver, estimated) == []
     assert bias_by(replace(maneuver), estimated, np.ones(len(estimated.fits[0]["q"].t))) is None
+
+
+def test_a_model_so_unstable_that_its_response_overflows_tells_no_bias():
+    p, r = dutch_roll(25.0 * DEG)
+    maneuver, estimated = flown(p=p, r=r)
+    theta = estimated.theta.copy()
+    theta[PARAMETERS.index("M_alpha")] = 1e6
+    assert coupled(maneuver, replace(estimated, theta=theta)) == []
