@@ -5,11 +5,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, TypeVar
 
+import numpy as np
+
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.analysis.gap import GapFlights, maneuvers_of
 from advisor.analysis.refused import without_refused
-from advisor.analysis.side_traces import side_traces
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.state import CampaignState
@@ -17,6 +18,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.gap.axes.lateral.comparison import SideGap, compare_side
 from advisor.gap.inference.prior import FIELD, FieldPrior
+from advisor.gap.result import Trace
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.simulators.flying import Progress
@@ -71,6 +73,29 @@ def compare_side_flown(
     found = answered(compare_side(compared, against, prior, state.lateral.model))
     found = replace(found, traces=side_traces(found, accepted, compared))
     return SideCompared(found, state, aircraft, accepted)
+
+
+def side_traces(found: SideGap, flown: Sequence[Maneuver], compared: Sequence[Maneuver]) -> tuple[Trace, ...]:
+    """Return the curves of every output and manoeuvre; empty without a diagnosis.
+
+    Parameters
+    ----------
+    flown
+        Manoeuvres as logged.
+    compared
+        The same manoeuvres as the diagnosis has them: less what a user's simulator does beyond its surrogate.
+    """
+    if found.diagnosis is None or not found.diagnosis.fits:
+        return ()
+    given, answer = found.diagnosis.fits
+    laid, traces = given.assembly, []
+    for logged, without, named in zip(flown, compared, laid.rows, strict=True):
+        for name, rows in named.items():
+            lost = logged.channels[name].y - without.channels[name].y
+            by = np.interp(laid.t[rows], logged.channels[name].t, lost)
+            curves = (x[rows] + by for x in (laid.z, given.fitted, answer.fitted))
+            traces.append(Trace(logged.number, name, laid.t[rows], *curves))
+    return tuple(traces)
 
 
 def axis_flown(

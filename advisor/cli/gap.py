@@ -211,7 +211,7 @@ def command(
     found = compared.diagnosis
     proof = proof_of(proving, partial(_prove, asked, by_hand, aircraft, shares, compared))
     if proof is not None:
-        from advisor.exports.models.pitch_proof import stays_of
+        from advisor.exports.models.axes.pitch import stays_of
 
         found = stays_of(proof, found, compared.aircraft.model)
     side = cache(partial(_side_of, asked, aircraft))
@@ -297,7 +297,7 @@ def _prove(
 ) -> "Proof":
     """Fly the improved simulator on the manoeuvres of logs; without any, on the last third."""
     from advisor.analysis.gap import maneuvers_of
-    from advisor.exports.models.pitch_proof import prove
+    from advisor.exports.models.axes.pitch import prove
 
     tell("reading for the proof", 0.0)
     flown = maneuvers_of(asked.logs, aircraft, asked.target_system, by_hand)

@@ -19,9 +19,9 @@ from advisor.cli.options import USAGE
 from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of
 from advisor.cli.stages import Stages
+from advisor.exports.models.axes.lateral import prove_side, stays_of_side
 from advisor.exports.models.proof import Proof
 from advisor.exports.models.roll_and_yaw import improved_side
-from advisor.exports.models.side_proof import prove_side, stays_of_side
 from advisor.exports.models.write import ExportOrder
 from advisor.gap.inference.prior import FIELD, FieldPrior, field_prior
 from advisor.gap.result import IMPROVING

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.analysis.side_traces import side_traces
+from advisor.analysis.side_gap import side_traces
 from advisor.report.side_gap import side_gap_document
 from tests.gap.axes.lateral.test_diagnosis import DIAGNOSIS, FOUND
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from advisor.analysis.side_traces import side_traces
+from advisor.analysis.side_gap import side_traces
 from advisor.gap.alternative import Contribution
 from advisor.process.parts import FailedPart
 from advisor.report.gap_document import gap_document

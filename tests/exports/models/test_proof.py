@@ -8,8 +8,8 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import GapFlights
-from advisor.exports.models import pitch_proof as proof
-from advisor.exports.models.pitch_proof import as_it_ended, stays_of
+from advisor.exports.models.axes import pitch as proof
+from advisor.exports.models.axes.pitch import as_it_ended, stays_of
 from advisor.exports.models.proof import lines_of
 from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.fit import fit

@@ -9,9 +9,9 @@ import pytest
 from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.analysis.side_gap import SideCompared
-from advisor.exports.models import side_proof
+from advisor.exports.models.axes import lateral as side_proof
+from advisor.exports.models.axes.lateral import _ahead, prove_side, stays_of_side
 from advisor.exports.models.proof import NUMBERS, Proof
-from advisor.exports.models.side_proof import _ahead, prove_side, stays_of_side
 from advisor.gap.axes.lateral.comparison import SideGap
 from tests.gap.axes.lateral.test_comparison import AIRCRAFT, TRUE, maneuvers
 from tests.gap.axes.lateral.test_diagnosis import FOUND

@@ -1,0 +1,1 @@
+"""What the proof of an improved simulator knows of each axis."""
