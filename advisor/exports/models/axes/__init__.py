@@ -1,1 +1,1 @@
-"""What the proof of an improved simulator knows of each axis."""
+"""The tables by which the proof of an improved simulator reads each axis."""
