@@ -64,7 +64,7 @@ def next_steps(
         write, proved, formats = _improvement(better, aircraft_file, simulator)
         if written is None:
             command = shlex.join([*read, *write]) if write else ""
-            lacks = " what it lacks" if d.verdict == "effect" else ""
+            lacks = " what it lacks" if _effects_of(d) else ""
             found.append(GapStep(f"Put into the simulator{lacks}: {what}.{formats}", command))
         prove = shlex.join([*read, *proved])
         found.append(GapStep("Prove the change: the gap must fall to what is printed above.", prove))
@@ -118,12 +118,21 @@ def _way_of(d: Diagnosis) -> str:
 
 
 def _to_put(d: Diagnosis) -> str:
-    """Return the effects and derivatives to change in the improved simulator; empty if there are none."""
+    """Return the effects or derivatives to change in the improved simulator; empty if there are none.
+
+    The air of one day is no part of a simulator.
+    """
     if not d.improves:
         return ""
-    effects = [f"{spelled(c.effect)} {', '.join(sizes_of(c.parameters))}" for c in d.causes if c.present]
+    effects = [f"{spelled(c.effect)} {', '.join(sizes_of(c.parameters))}" for c in _effects_of(d)]
     numbers = [changed(one) for one in d.derivatives if one.differs]
-    return ", ".join(effects if d.verdict == "effect" and effects else numbers) or "the fitted derivatives"
+    in_air = any(c.present and c.block == "air" for c in d.causes)
+    return ", ".join(effects or numbers) or ("" if in_air else "the fitted derivatives")
+
+
+def _effects_of(d: Diagnosis) -> list[Cause]:
+    """Return the effects of the answer that a simulator can contain."""
+    return [c for c in d.causes if c.present and c.block != "air"] if d.verdict == "effect" else []
 
 
 def _against_the_rival(d: Diagnosis) -> str:

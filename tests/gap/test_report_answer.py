@@ -7,7 +7,7 @@ import pytest
 
 from advisor.gap.alternative import Contribution
 from advisor.gap.decision import Decision
-from advisor.gap.result import ComparedDerivative, Shrink, Value
+from advisor.gap.result import Cause, ComparedDerivative, Shrink, Value
 from advisor.gap.verdict.text import limits_of
 from advisor.report.facts.gap import changed, changes
 from advisor.report.facts.reasons import in_percent, weighed
@@ -101,6 +101,22 @@ def test_wrong_numbers_are_put_as_numbers_and_name_the_file_though_a_propeller_b
     put, *_ = next_steps(found, LOGS, "mine.yaml")
     assert put.text.startswith("Put into the simulator: M_α −44.60 → −34.30 ± 0.71 1/s² (−23 %).")
     assert put.command.endswith("--out mine-with-fitted-model.yaml")
+
+
+@pytest.mark.parametrize(
+    ("derivatives", "first"),
+    [
+        (DERIVATIVES, "Put into the simulator: M_α −44.60 → −34.30 ± 0.71 1/s² (−23 %)."),
+        ((), "To exclude gust: fly more manoeuvres: a gust does not come back, turbulence does."),
+    ],
+)
+def test_moving_air_is_never_put_into_the_simulator(derivatives, first):
+    air = Cause(
+        "turbulence", "air", 0.95, {"sigma_w_m_s": Value(0.5, 0.1)}, ("gust",),
+        "fly more manoeuvres: a gust does not come back, turbulence does", 0.1, True,
+    )  # fmt: skip
+    step, *_ = next_steps(diagnosis(causes=(air,), derivatives=derivatives), LOGS, "mine.yaml")
+    assert step.text.startswith(first)
 
 
 def test_without_a_gap_there_is_nothing_to_put():
