@@ -97,8 +97,7 @@ def _without(content: Any, locations: list[tuple[int | str, ...]]) -> Any:
 
 
 def _take_out(section: dict[Any, Any], location: Sequence[int | str]) -> None:
-    """Remove the innermost key at a location of the file. The other keys of the section remain, because they
-    may be wrong too."""
+    """Remove only the innermost key at a location, because other keys of the section may be wrong too."""
     key, *inside = location
     within = section.get(key)
     if isinstance(within, dict) and inside and inside[0] in within:
@@ -134,10 +133,7 @@ def _sentence(item: Any) -> str:
 
 
 def _meant(path: str) -> str:
-    """Return the known key that an unknown key resembles, as a question; empty without such a key.
-
-    A similar key of the same section precedes the path of a key elsewhere.
-    """
+    """Return the known key that an unknown key resembles, as a question; empty without such a key."""
     section, _, key = path.rpartition(".")
     by_path = {re.sub(r"\[\]", "", at): kind for at, kind in sections_of(Aircraft)}
     here = by_path.get(re.sub(r"\[\d+\]", "", section))

@@ -112,8 +112,7 @@ def _recorded(
 
 
 def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
-    """Return the manoeuvres without copies from a second log. A copy of a log would confirm the log's own
-    errors. Of two copies of a manoeuvre, the longer record is used."""
+    """Return the manoeuvres without copies from a second log; of two copies the longer is used."""
     found: list[Maneuver] = []
     for maneuver in recorded:
         known = next((m for m in found if m.power_on != maneuver.power_on and are_one(maneuver, m)), None)
@@ -125,10 +124,7 @@ def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
 
 
 def _on_one_clock(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
-    """Return the manoeuvres with continuous times, also after a restart of the vehicle's clock.
-
-    A quantity that drifts or steps between manoeuvres does so in the order of the flights.
-    """
+    """Return the manoeuvres with continuous times, also after a restart of the vehicle's clock."""
     found: list[Maneuver] = []
     ahead = 0.0
     for maneuver in maneuvers:

@@ -92,8 +92,7 @@ class LogSeries:
                 return consumer
 
     def _read(self, flight: int) -> Iterator[list[Columns]]:
-        """Yield the messages of one complete log. A log without parameters uses those of the nearest other
-        log."""
+        """Yield the messages of one complete log; without parameters of its own, with the nearest log's."""
         # The log reader takes longer to load than the first screen to paint.
         from advisor.mavlink.logs.whole import read_whole_log
 

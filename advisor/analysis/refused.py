@@ -64,8 +64,7 @@ def without_refused(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Chosen
 
 
 def _reason(maneuver: Maneuver, aircraft: Aircraft) -> Reason | None:
-    """Return the first reason for which ``advisor analyze`` refuses a manoeuvre, independent of its
-    estimate."""
+    """Return the first reason to refuse a manoeuvre in ``analyze``, independent of its estimate."""
     period_s = natural_period(maneuver, NoEstimate("not_asked", "no estimate was asked for"))
     most = max(aircraft.limits.airspeed_change_percent, _LARGEST_SPEED_CHANGE_PERCENT)
     allowing = replace(aircraft, limits=replace(aircraft.limits, airspeed_change_percent=most))

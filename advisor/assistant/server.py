@@ -120,10 +120,7 @@ def _files(folders: Folders, log: str | None, logs: Names) -> list[str]:
 
 
 def _aircraft(folders: Folders, name: str | None, flies: bool = False) -> list[str]:
-    """Return the option of an aircraft file.
-
-    With ``flies`` the command flies the file's simulator, so a simulator that runs a program is refused.
-    """
+    """Return the option of an aircraft file; ``flies``: refuse a simulator that runs a program."""
     if name is None:
         return []
     path = folders.file(name)

@@ -128,14 +128,12 @@ class AxisCampaign(ABC):
 
     @property
     def _still_heard(self) -> Sequence[Heard]:
-        """Criteria that were announced to the crew; none after an exclusion by hand, which repeats every
-        decision."""
+        """Return announced criteria; none after an exclusion by hand, which repeats every decision."""
         excluded = any(one.examined.excluded_because is not None for one in self._flown)
         return () if excluded else self._heard
 
     def _judge(self) -> None:
-        """Judge the manoeuvres and the flight test; after a numerical fault all manoeuvres remain without a
-        verdict."""
+        """Judge manoeuvres and flight test; after a numerical fault no manoeuvre has a verdict."""
         self._parts.make(f"{self._axis}, verdicts", self._judged, self._unjudged)
 
     def _judged(self) -> None:

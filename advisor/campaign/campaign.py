@@ -307,8 +307,7 @@ class Campaign:
     def _judge(
         self, half: ElevatorCampaign | LateralCampaign, maneuver: Maneuver, axis: AxisName
     ) -> ManeuverJudged:
-        """Judge a manoeuvre that has just been flown, and log its verdict and the decision on the flight
-        test."""
+        """Judge a manoeuvre that has just been flown, and log its verdict and the decision."""
         half.take(maneuver, self.by_hand)
         span, judged = maneuver.span, half.judged[-1]
         which = f", {span.kind}" if axis == "lateral" else ""
@@ -337,8 +336,7 @@ class Campaign:
             self._reader_notes += (notice.text,)
 
     def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
-        """Handle a manoeuvre that arrived twice: the better record is used, and an exclusion of either
-        remains."""
+        """Keep the better record of a manoeuvre that arrived twice; an exclusion of either remains."""
         maneuver = event.maneuver
         where = f" in {self._flights.name}" if self._flights.name else ""
         better = "; this record holds more and takes the place" if event.takes_place else ""

@@ -121,8 +121,7 @@ def _flown_model(state: "CampaignState", aircraft: "Aircraft") -> "FlownModel":
 def _analyze(
     series: "LogSeries", make_campaign: "Callable[[], Campaign]", axis: "Axis"
 ) -> "tuple[CampaignState | None, dict[int, tuple[Problem, ...]]]":
-    """Return the campaign at the end of its logs and, by flight, the reasons for which logs do not count. The
-    campaign is None without a readable log."""
+    """Return the campaign after its logs, None without one, and why logs do not count, by flight."""
     from advisor.analysis.whole_flights import left_out_of
 
     campaign = series.fed_to(make_campaign, lambda campaign, columns: campaign.feed(columns))

@@ -90,8 +90,7 @@ def _whole(word: str) -> int:
 
 
 def _ask_calibrations(question: str, values: dict[str, Any]) -> None:
-    """Ask for the calibration of each output. Where the answer for one calibration is missing, all
-    calibrations are left out."""
+    """Ask for the calibration of each output; without one answer, leave all calibrations out."""
     several = values.get("elevator.outputs")
     if several is None:
         while (pairs := _pairs(question.format(values.get("elevator.output", "auto")))) is not None:

@@ -125,8 +125,7 @@ def started(start: Start, speaking: Speaking) -> Iterator[LinkProcess]:
 
 
 def _left_alone(start: Start) -> RunningLink | None:
-    """Return the link that still records for this flight test. End a link for another flight test on this
-    connection."""
+    """Return the link that still records for this flight test; end another test's link."""
     mine = None
     for running in running_alone():
         if start.goes_on and running.recording and _same(running.recording, start.recording):

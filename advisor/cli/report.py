@@ -55,13 +55,7 @@ def command(asked: LogsAsked, out: Path, form: str | None, with_gap: bool) -> in
 
 
 def _refuse(inputs: Sequence[Path], out: Path) -> None:
-    """Refuse, before any work, orders that would fail after it.
-
-    Raises
-    ------
-    ConfigurationError
-        A library is missing, the place cannot be written to, or the page would replace an input.
-    """
+    """Refuse, before any work, orders that would fail after it."""
     refuse_missing_libraries("advisor report")
     refuse_unwritable("-o", out)
     for given in inputs:

@@ -123,13 +123,7 @@ def of_logs(
 
 
 def _refuse_unreadable(logs: Sequence[Path]) -> None:
-    """Refuse logs of which none can be read, before a page does.
-
-    Raises
-    ------
-    UnusableInputError
-        Nothing can be read.
-    """
+    """Refuse logs of which none can be read, before a page does."""
     from advisor.analysis.log_series import LogSeries
     from advisor.words.problems import UnusableInputError
 

@@ -123,13 +123,7 @@ def fly(log: Path, master: str, target_system: int | None) -> int:
 
 
 def _speed_of(aircraft: Aircraft) -> float:
-    """Return the air speed that the aircraft file states.
-
-    Raises
-    ------
-    ConfigurationError
-        The file states none.
-    """
+    """Return the air speed that the aircraft file states; refuse a file that states none."""
     if aircraft.stated_airspeed_m_s is None:
         raise ConfigurationError(
             "advisor simulator check needs an air speed: "

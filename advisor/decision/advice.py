@@ -93,8 +93,7 @@ def _held_by(history: Sequence[CandidateManeuver], plan: CampaignPlan, known: Kn
 
 
 def _first_input(aircraft: Aircraft) -> NextInput:
-    """Return the advice before any estimate: a small textbook 3-2-1-1 with a time unit from any prior
-    model."""
+    """Return the first input's advice: a small 3-2-1-1 with a time unit from any prior model."""
     unit = 0.5
     if set(PARAMETERS) <= set(aircraft.model):
         frequency = ShortPeriod.from_mapping(aircraft.model).natural_frequency
@@ -106,16 +105,14 @@ def _first_input(aircraft: Aircraft) -> NextInput:
 
 
 def _same_but_better(flown: CandidateManeuver) -> str:
-    """Return the advice without a usable manoeuvre: repeat the input with the remedy of the newest first
-    reason."""
+    """Return the advice to repeat the input with the remedy of the newest first reason."""
     remedy = _remedy(flown)
     kind = flown.maneuver.span.kind if flown.maneuver is not None and is_named(flown) else "last input"
     return f"the elevator's {kind} again{f', {remedy}' if remedy else ''}"
 
 
 def _mend(flown: CandidateManeuver) -> str:
-    """Return the remedy for a faulty channel, which precedes any other input; empty without a faulty
-    channel."""
+    """Return the remedy for a faulty channel, which precedes any other input; else empty."""
     if flown.reasons and (flown.reasons[0].by_instrument or flown.reasons[0].code in NO_CURE_BY_INPUT):
         return _remedy(flown)
     wrong = flown.maneuver.distrusts if flown.maneuver else ()

@@ -113,8 +113,7 @@ def _widening(before: Pooled, after: Pooled) -> float:
 
 
 def _back_to_normal(before: Pooled, after: Sequence[Posterior]) -> bool:
-    """Return whether the newest manoeuvre agrees with the manoeuvres before the change. If so, the manoeuvres
-    just after the change were bad ones."""
+    """Return whether the newest manoeuvre agrees with those before the change: then those after were bad."""
     if len(after) < 2:
         return False
     with_old, dof = disagreement(before.shared, after[-1].shared)

@@ -111,8 +111,7 @@ def _instruments(estimate: Estimate, servo: Servo) -> Instruments:
 
 
 def _excursion(flown: CandidateManeuver, estimate: Estimate) -> float:
-    """Return the largest deviation of α from its initial value, rad: fitted, or predicted without a measured
-    α."""
+    """Return the largest change of α from its initial value, rad, fitted or, unmeasured, predicted."""
     if "alpha" not in estimate.fits[0]:
         response = response_to(flown, estimate.theta[list(DERIVATIVES)], None)
         return LINEAR_RAD if response is None else float(response.peak[0])

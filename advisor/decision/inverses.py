@@ -24,10 +24,7 @@ def covariance_of(information: FloatArray) -> FloatArray:
 
 
 def _inverse(matrix: FloatArray, known: np.ndarray, unknown: float) -> FloatArray:
-    """Return the inverse of symmetric positive semi-definite matrices (..., n, n), independent of units.
-
-    Rows and columns of unknown parameters become zero, with ``unknown`` on the diagonal.
-    """
+    """Return inverses of symmetric matrices (..., n, n): unknown rows zero, ``unknown`` on the diagonal."""
     inside = known[..., :, None] & known[..., None, :]
     one = np.eye(matrix.shape[-1])
     scale = 1.0 / np.sqrt(np.where(known, np.diagonal(matrix, axis1=-2, axis2=-1), 1.0))

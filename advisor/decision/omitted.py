@@ -83,8 +83,7 @@ def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | 
 
 
 def _regressed(outputs: list[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, float, float]:
-    """Return the known columns' share of the last column, its coefficient, and coefficient over standard
-    deviation."""
+    """Return the known columns' share of the last column, its coefficient, and that over its std."""
     rows = np.vstack([rows for rows, _ in outputs])
     residual = np.concatenate([left for _, left in outputs])
     size = np.maximum(np.linalg.norm(rows, axis=0), 1e-300)
@@ -131,8 +130,7 @@ def _driven(
 
 
 def _rows(fit: ChannelFit, t: FloatArray, columns: FloatArray, lag1: float) -> tuple[FloatArray, FloatArray]:
-    """Return sensitivities and residual of one output over its standard deviation, without the correlation
-    ``lag1``."""
+    """Return an output's sensitivities and residual over its std, without the correlation ``lag1``."""
     at_fit = np.stack([np.interp(fit.t, t, column) for column in columns.T], axis=1)
     keep = min(max(lag1, 0.0), 0.99)
     rows, left = (both[1:] - keep * both[:-1] for both in (at_fit, fit.residual))

@@ -112,8 +112,7 @@ def values_at_one_speed(estimates: Sequence[Estimate]) -> FloatArray:
 
 
 def _at_one_speed(estimates: Sequence[Estimate]) -> tuple[FloatArray, FloatArray]:
-    """Return the factors (n, p) on each estimate's parameters without gravity's part, and the parameters (n,
-    p)."""
+    """Return factors on each estimate's parameters less gravity, and the parameters, both (n, p)."""
     theta, names = np.array([e.theta for e in estimates]), estimates[0].names
     reference = common_airspeed(estimates)
     if reference is None:

@@ -190,12 +190,8 @@ def _airspeed(maneuver: Maneuver) -> float | None:
 
 
 def _horizon(command: Signal, derivatives: tuple[float, ...]) -> float:
-    """Return the length of time over which a response is compared, s. For a diverging model this is the time
-    in which a deviation doubles.
-
-    The pilot of an unstable aircraft corrects its motion within that time. A longer open-loop response is not
-    meaningful.
-    """
+    """Return the length of time over which a response is compared, s."""
+    # A pilot corrects an unstable aircraft within the time in which a deviation doubles.
     z_alpha, z_q, _, m_alpha, m_q, _ = derivatives
     trace, determinant = z_alpha + m_q, z_alpha * m_q - (1.0 + z_q) * m_alpha
     growth = 0.5 * (trace + np.sqrt(max(trace**2 - 4.0 * determinant, 0.0)))

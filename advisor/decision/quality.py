@@ -181,10 +181,8 @@ def _too_gentle(x: Examined, fits: Mapping[str, ChannelFit]) -> list[Reason]:
 
 
 def _badly_explained(x: Examined, estimate: Estimate) -> list[Reason]:
-    """Return a reason if residuals are not noise, because the model is not valid for the manoeuvre.
-
-    In moving air the angle of attack of a vane shows the air, which no model of the aircraft explains.
-    """
+    """Return a reason if residuals are not noise, because the model is not valid for the manoeuvre."""
+    # In moving air the angle of attack of a vane shows the air, which no model of the aircraft explains.
     reasons = []
     for one in x.responses:
         fit = estimate.fits[0].get(one.output)

@@ -108,10 +108,7 @@ def progress(
 
 
 def _weighed(history: Sequence[CandidateManeuver], rule: Rule) -> list[bool]:
-    """Return whether each manoeuvre is part of a rule's criterion.
-
-    The rule ``information`` uses all usable manoeuvres, because it detects contradictions itself.
-    """
+    """Return whether each manoeuvre counts in a criterion; ``information`` uses all usable ones."""
     if rule == "information":
         return [flown.usable is not None for flown in history]
     return [result.accepted for result in results_of(history, rule)]

@@ -57,11 +57,8 @@ def tolerances(theta: FloatArray, prediction: Prediction, plan: CampaignPlan) ->
 
 
 def _moving_the_short_period(theta: FloatArray) -> Mapping[str, float]:
-    """Return the change of each derivative that makes a relative change of 1 in the frequency or the damping.
-
-    ω² = Z_α·M_q - (1 + Z_q)·M_α and 2·ζ·ω = -(Z_α + M_q). If M_q is a small part of the damping, even a large
-    change of M_q has little effect.
-    """
+    """Return the change of each derivative for a relative change of 1 in frequency or damping."""
+    # ω² = Z_α·M_q - (1 + Z_q)·M_α and 2·ζ·ω = -(Z_α + M_q).
     z_alpha, z_q, m_alpha, m_q = (theta[PARAMETERS.index(n)] for n in ("Z_alpha", "Z_q", "M_alpha", "M_q"))
     damping = abs(z_alpha + m_q)
     stiffness = abs(z_alpha * m_q - (1.0 + z_q) * m_alpha)

@@ -171,8 +171,7 @@ class Examiner:
         self._notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
 
     def _assumed(self) -> Assumed:
-        """Return the assumed aircraft and noise: from the file's model, else from the flown manoeuvres, else
-        typical ones."""
+        """Return the assumed aircraft and noise: the file's model, flown manoeuvres, or typical ones."""
         flown = estimate_jointly(self._maneuvers, self._aircraft) if self._maneuvers else None
         if not isinstance(flown, Estimate) or not is_believable(flown):
             flown = None
@@ -210,8 +209,7 @@ class Examiner:
         return paced
 
     def _surveyed(self, message: str) -> str:
-        """Return the name of a message in the survey. Of the messages with servo outputs, that of the last
-        outputs completes a sample of the elevator."""
+        """Return a message's name in the survey; the last servo outputs complete an elevator sample."""
         elevator = self._stream.elevator
         if message != "SERVO_OUTPUT_RAW" or not isinstance(elevator, Surface):
             return message

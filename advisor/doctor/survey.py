@@ -202,8 +202,7 @@ class Survey:
         ]
 
     def _pauses(self) -> list[_Pause]:
-        """Return stretches in which no message of any kind came; none for a link, where such stretches are
-        faults."""
+        """Return stretches without any message; none for a link, where such stretches are faults."""
         if self._carrier == "telemetry" or not self._clock_pairs:
             return []
         _, t, boot = np.concatenate(self._clock_pairs).T
@@ -226,8 +225,7 @@ def bank_name(port: int) -> str:
 
 
 def _banks(part: Columns) -> Iterator[tuple[str, NDArray[np.bool_]]]:
-    """Yield groups of messages that are counted together. A vehicle with two banks of outputs sends two for
-    each sample."""
+    """Yield messages that are counted together; two banks of outputs make one sample."""
     if part.name != "SERVO_OUTPUT_RAW":
         yield part.name, np.ones(len(part), dtype=bool)
         return
@@ -275,8 +273,7 @@ def _intervals(t: FloatArray, boot: NDArray[np.int64]) -> FloatArray:
 
 
 def _lowest_rate(t: FloatArray, boot: NDArray[np.int64]) -> float:
-    """Return the lowest rate over ``_WINDOW_S``, in messages per second, among stretches that begin with a
-    message."""
+    """Return the lowest rate over ``_WINDOW_S`` that begins with a message, messages per second."""
     rates = []
     for n in np.unique(boot):
         mine = t[boot == n]
@@ -287,8 +284,7 @@ def _lowest_rate(t: FloatArray, boot: NDArray[np.int64]) -> float:
 
 
 def _typical(steps: FloatArray) -> float:
-    """Return the interval, s, below which half of the time is spent; longer silences than ``_WINDOW_S`` do
-    not count. A rate that decreases for most of a record is then no series of gaps."""
+    """Return the interval, s, below which half of the time passes, without silences over ``_WINDOW_S``."""
     ordered = np.sort(steps[steps <= _WINDOW_S])
     if len(ordered) == 0:
         return float(np.median(steps))
@@ -296,8 +292,7 @@ def _typical(steps: FloatArray) -> float:
 
 
 def _against_the_host(pairs: FloatArray) -> tuple[float, float]:
-    """Return the drift in percent and the jitter in ms of arrival against vehicle time, over the longest
-    boot."""
+    """Return drift (percent) and jitter (ms) of arrival against vehicle time, over the longest boot."""
     if len(pairs) == 0:
         return np.nan, np.nan
     boots, counts = np.unique(pairs[:, 2], return_counts=True)

@@ -63,8 +63,7 @@ def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
 
 
 def _folder() -> Path | None:
-    """Return numba's folder for machine code, where a file records the compilation; None without such a
-    folder."""
+    """Return numba's folder for machine code, where compilation is recorded; None without one."""
     from platformdirs import user_cache_path
 
     given = os.environ.get("NUMBA_CACHE_DIR")

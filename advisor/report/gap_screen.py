@@ -147,8 +147,7 @@ def _notes(d: Diagnosis) -> list[str]:
 
 
 def _numbered(steps: Sequence[GapStep], width: int) -> Iterator[Text]:
-    """Yield each step with its command line. No blank follows a backslash, which a shell would take for a
-    word."""
+    """Yield each step with its command line; a shell would take a blank after a backslash for a word."""
     for number, step in enumerate(steps, start=1):
         mark = f"{number}."
         yield _hanging(mark, step.text, width)

@@ -76,10 +76,7 @@ def next_steps(
 def _improvement(
     better: str, aircraft_file: str | None, simulator: str | None
 ) -> tuple[list[str], list[str], str]:
-    """Return the options that write and that fly the improved simulator, and words about formats.
-
-    A simulator other than the aircraft file and JSBSim reads no exported file, so its owner changes it.
-    """
+    """Return the options that write and fly the improved simulator, and words about formats."""
     aircraft = ["--aircraft", aircraft_file] if aircraft_file else []
     kind, _, _ = (simulator or "linear").partition(":")
     if kind == "linear":

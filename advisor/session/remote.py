@@ -138,8 +138,7 @@ class RemoteConductor(AskedElsewhere):
         return code, watch
 
     def _pass_on(self, pipe: IO[bytes]) -> None:
-        """Send the task to the process, then every request. A request that no process has received waits for
-        the next process."""
+        """Send the task to the process, then every request, or keep it for the next process."""
         request = _ENOUGH
         with suppress(BrokenPipeError, ValueError):
             pickle.dump(self._task, pipe)

@@ -121,10 +121,7 @@ def _stamps(lasts_s: float) -> FloatArray:
 
 
 def _check_side(found: CheckedSimulator, simulator: Simulator, condition: Condition) -> CheckedSimulator:
-    """Fly a doublet of each supported control of roll and yaw, and test the response.
-
-    The kinematics show signs and units, and a regression gives the control's derivatives.
-    """
+    """Fly a doublet of each supported control of roll and yaw, and test the response."""
     side: dict[str, float] = {}
     notes = [*found.notes]
     for control in (name for name in TURNS if name in simulator.takes):
@@ -144,8 +141,7 @@ def _check_side(found: CheckedSimulator, simulator: Simulator, condition: Condit
 
 
 def _side_derivatives(replay: Replay, moved: FloatArray, control: str) -> tuple[dict[str, float], float]:
-    """Return L and N derivatives by the motion and the control, and the size of the response
-    (``control_fault``)."""
+    """Return L and N derivatives by motion and control, and the response's size (``control_fault``)."""
     motion = [np.asarray(getattr(replay, name)) for name in _MOTION]
     columns = np.column_stack([*motion, moved, np.ones(len(moved))])
     turns, against = TURNS[control]

@@ -208,8 +208,7 @@ class FmuSimulator:
         self._fmu.write({self._inputs[name]: value / self._factor[name] for name, value in values.items()})
 
     def _motion(self, condition: Condition) -> list[float]:
-        """Return the outputs in the order of ``_OUTPUTS``; unmapped speed and height are those of the
-        condition."""
+        """Return outputs in the order of ``_OUTPUTS``; unmapped speed and height are the condition's."""
         values = dict(zip(self._outputs, self._fmu.read(self._outputs.values()), strict=True))
         kept = {"airspeed": condition.airspeed_m_s, "height": condition.height_m}
         told = {name: self._factor[name] * value for name, value in values.items()}

@@ -117,8 +117,7 @@ def _settle_engines(flight: JsbsimFlight) -> None:
 
 
 def _newton(flight: JsbsimFlight, condition: Condition, state: SteadyState) -> SteadyState:
-    """Return the state without all accelerations but the axial one; least squares for an axis without
-    control."""
+    """Return the state with axial acceleration alone; least squares for an axis without control."""
     gamma = condition.flight_path_rad
 
     def accelerations(at: SteadyState) -> FloatArray:

@@ -79,11 +79,7 @@ class LinearSimulator:
 def _step(
     rates: FloatArray, now: State, weight: float, increments: Increments | None
 ) -> tuple[float, tuple[float, float]]:
-    """Return the normal force over m·V in rad/s, and the rates of α and q.
-
-    ``rates``, shape (8,), holds the six derivatives, g/V and trim lift, rad/s; ``weight`` is gravity's part
-    of α̇.
-    """
+    """Return the normal force over m·V, rad/s, and the rates of α and q from ``rates`` (8,)."""
     z_alpha, z_q, z_delta, m_alpha, m_q, m_delta, _, level = rates.tolist()
     normal = level + z_alpha * now.alpha + z_q * now.q + z_delta * now.elevator
     alpha_dot = now.q + weight + normal

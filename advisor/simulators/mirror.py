@@ -143,8 +143,7 @@ def mirrored(
 def _quick_look(
     as_flights: Sequence[Maneuver], unknown: Aircraft
 ) -> tuple[Mapping[str, float], Mapping[str, Mapping[str, float]]] | None:
-    """Return the replays' derivatives and likeliest actuator or instrument effect; None if no effect lowers
-    the cost."""
+    """Return the replays' derivatives and likeliest actuator or instrument effect, or None."""
     problem, plain = fit_baseline(prepare(as_flights, unknown), unknown)
     around = [variant for variant in variants_for(problem.flights) if variant.block in _BLOCKS]
     found = Screen(problem, plain).likeliest(around)
@@ -163,15 +162,7 @@ def _gap_without(
     grids: Mapping[int, AsGiven],
     as_file: Aircraft,
 ) -> float:
-    """Return the flight's gap to the simulator without its effects, with no parameter fitted to the flight.
-
-    Parameters
-    ----------
-    as_flown, grids
-        Difference of simulator and surrogate, without and with the effects, by manoeuvre number.
-    as_file
-        Aircraft file of the surrogate without the effects.
-    """
+    """Return the flight's gap to the simulator without its effects, with no parameter fitted."""
     problem, floor = whole.findings.problem, floor_of(whole)
     flights = problem.flights.flights
     differs = [grids[f.number].beyond - as_flown[f.number].beyond for f in flights]

@@ -60,6 +60,5 @@ def cause_of(late: Value, after: float, own: Diagnosis) -> Cause:
 
 
 def _departure(replay: Replay) -> tuple[FloatArray, FloatArray]:
-    """Return the attitude's rate minus the pitch rate, rad/s, and the pitch rate's derivative, rad/s², shape
-    (m,) each."""
+    """Return attitude rate minus pitch rate, rad/s, and pitch acceleration, rad/s², shape (m,) each."""
     return unfiltered(replay).q - replay.q, np.gradient(replay.q, replay.t)

@@ -102,8 +102,7 @@ def _of_numbers_together(diagnosis: Diagnosis, examined: Examined) -> Iterator[s
 def _common(
     diagnosis: Diagnosis, given: dict[str, float], names: Sequence[str]
 ) -> tuple[float, float] | None:
-    """Return the common factor of some derivatives relative to the simulator's, with its error; None without
-    one."""
+    """Return the common factor of some derivatives on the simulator's, with its error; or None."""
     if any(given[name] == 0.0 for name in names):
         return None
     ratios = np.array([diagnosis.model[name].value / given[name] for name in names])

@@ -182,8 +182,7 @@ class Stepped:
         return [float(({**kept, **seen})[name]) for name in (*_NEEDED, *_KEPT, *self._side)]
 
     def _trimmed(self, condition: Condition) -> dict[str, float]:
-        """Return the controls and angle of attack for which two first steps change nothing (Newton's
-        method)."""
+        """Return controls and α for which two first steps change nothing (Newton's method)."""
 
         def rates(at: FloatArray) -> FloatArray:
             trim = dict(zip(self._unknowns, at.tolist(), strict=True))

@@ -90,10 +90,7 @@ def without_raised(whole: Examined) -> Examined:
 
 
 def _without(whole: Examined, most: int, flown: str, worse: float, better: float, removed: float) -> Examined:
-    """Return a diagnosis with at most the first ``most`` effects, which names the others and their gap.
-
-    Without any effect the answer is contradicted; ``removed`` is the gap's share that derivatives remove.
-    """
+    """Return a diagnosis with at most the first ``most`` effects, which names the others and their gap."""
     effects = [spelled(effect) for effect in whole.named[most:]]
     said = (*whole.diagnosis.taken_back, taken_back_said(effects, flown, worse, better))
     stays = whole.with_most(most)

@@ -51,8 +51,7 @@ def advise(view: View) -> Advice:
 
 
 def _another(view: View) -> str:
-    """Return a sentence on other vehicles that a key can select; empty once this vehicle has flown and in
-    replays."""
+    """Return a sentence on other vehicles that a key selects; empty after a flight and in replays."""
     others = view.state.other_vehicles
     if not others or view.state.maneuvers or view.tempo is not None:
         return ""
@@ -60,8 +59,7 @@ def _another(view: View) -> str:
 
 
 def _elevator(view: View) -> str:
-    """Return a sentence on the keys that choose the elevator's output, if the output is unknown on a live
-    link."""
+    """Return a sentence on the keys that choose an unknown elevator output on a live link."""
     if view.obstacles[0].code != "no_elevator" or view.tempo is not None:
         return ""
     guess = view.state.elevator_guess

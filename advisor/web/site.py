@@ -138,13 +138,7 @@ class Site:
 
 
 async def _pass_on(socket: web.WebSocketResponse, process: PageProcess) -> None:
-    """Send a browser's messages to the page's process until the page is closed.
-
-    Raises
-    ------
-    ValueError, RecursionError
-        The browser sends an unreadable message.
-    """
+    """Send a browser's messages to the page's process until the page is closed."""
     async for message in socket:
         if message.type is not WSMsgType.TEXT:
             return

@@ -51,8 +51,7 @@ def estimate_copies(
 
 
 def _correlation(flight: NoiselessManeuver, batch: Batch) -> FloatArray:
-    """Return the (8, 8) correlation of the errors. The correlation depends only on the input, so that one
-    copy suffices."""
+    """Return the (8, 8) correlation of the errors, which depends only on the input."""
     step = float(flight.t[1] - flight.t[0])
     noise = (float(batch.noise[0, 0]), float(batch.noise[0, 1]))
     expected = expect(

@@ -114,11 +114,7 @@ class LateralCampaign(AxisCampaign):
 
     @property
     def _may_stop(self) -> bool:
-        """Whether the newest manoeuvre can decide: both controls were flown, and no stop was announced
-        before.
-
-        While one control is not flown, its derivatives are unknown. A joint estimate takes a second.
-        """
+        """Return whether the newest manoeuvre can decide: both controls flown, no stop announced before."""
         moved = {control for one in self._told if one is not None for control in one.flown}
         return moved >= set(LATERAL.inputs) and not any(one.stops for one in self._still_heard)
 
@@ -143,8 +139,7 @@ class LateralCampaign(AxisCampaign):
         return self._joint[1]
 
     def _joined(self) -> tuple[int, ...]:
-        """Return the indices of the manoeuvres in the joint estimate: the newest accepted of each control in
-        flight, all at the end."""
+        """Return indices of manoeuvres in the joint estimate: newest accepted in flight; all at the end."""
         accepted = [i for i, one in enumerate(self.judged) if one.verdict.accepted]
         if self._ended:
             return tuple(accepted)

@@ -135,10 +135,7 @@ def _rms(x: np.ndarray) -> float:
 
 
 def _modes_alone(maneuver: Maneuver, estimate: LateralEstimate) -> tuple[Reason, ...]:
-    """Return a reason if the Dutch roll frequency, the only result of a record, is too uncertain.
-
-    A movement that is no test input and determines no derivative is a pilot's trimming.
-    """
+    """Return a reason if the Dutch roll frequency, the only result of a record, is too uncertain."""
     if maneuver.span.kind == "other":
         return (_TRIMMING,)
     omega = estimate.modes.dutch_roll_omega

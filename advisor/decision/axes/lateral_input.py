@@ -91,11 +91,7 @@ def next_lateral(
 
 
 def _larger(before: FlownInput, percent: float, aircraft: Aircraft) -> float:
-    """Return the amplitude that meets the tolerance with one more manoeuvre, within the bank limit.
-
-    The errors are inversely proportional to the amplitude. The amplitude is built up in steps, and never
-    below the flown amplitude.
-    """
+    """Return the amplitude that meets the tolerance with one more manoeuvre, within the bank limit."""
     factor = min(max(percent / INFORMATION_LIMIT_PERCENT, 1.0), BOLDER) if percent < inf else 1.0
     limit = ALPHA_MARGIN * max(BANK_DEG, aircraft.limits.bank_deg)
     if before.bank_rad > 0.0:

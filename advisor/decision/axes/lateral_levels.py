@@ -83,10 +83,7 @@ def lateral_levels(modes: LateralModes) -> tuple[LateralLevels, ...]:
 
 
 def _values(modes: LateralModes) -> dict[Mode, tuple[Least, Least, Least]]:
-    """Return the value of each mode, with the lower and the upper end of its 95 % interval.
-
-    The time constant and the pole have a negative sign, so that a larger value is better.
-    """
+    """Return each mode's value and 95 % interval; larger is better, so time constant and pole are negated."""
     found: dict[Mode, tuple[Least, Least, Least]] = {}
     zeta, omega = modes.dutch_roll_zeta, modes.dutch_roll_omega
     if zeta is not None and omega is not None:

@@ -113,11 +113,8 @@ def _flown_fewer_than(n: int, accepted: Sequence[LateralEstimate]) -> list[str]:
 def _remaining(
     shares: Mapping[str, float], accepted: Sequence[LateralEstimate], flown: int
 ) -> Remaining | None:
-    """Return the expected number of further manoeuvres if the crew continues as it has flown.
-
-    The variance of a derivative falls with the number of manoeuvres that move its control. None if a control
-    has no accepted manoeuvre, or a derivative no error.
-    """
+    """Return the expected number of further manoeuvres; None if that cannot be told."""
+    # The variance of a derivative falls with the number of manoeuvres that move its control.
     needed = 0
     for control in LATERAL.inputs:
         times = sum(control in one.flown for one in accepted)

@@ -145,10 +145,7 @@ def _estimates(axis: _Axis) -> FlightTable:
 
 
 def _told(e: Estimate, name: str, values: str, of: tuple[int, ...]) -> float | None:
-    """Return an attribute of one parameter of an estimate; None for an unidentifiable parameter.
-
-    An instrument has only a value and a standard deviation.
-    """
+    """Return an attribute of one parameter of an estimate; None for an unidentifiable parameter."""
     if name in e.names:
         return None if name in e.not_identifiable else getattr(e, values)[(e.names.index(name), *of)]
     instrument = e.instrument(name)
@@ -162,8 +159,7 @@ def _unit_of(name: str) -> str:
 
 
 def _residuals(axis: _Axis, record_of: Mapping[tuple[int, int], int]) -> Iterator[FlightTable]:
-    """Yield a table per output with measured, fitted and residual values of accepted manoeuvres, at own
-    stamps."""
+    """Yield per output measured, fitted and residual values of accepted manoeuvres, at own stamps."""
     accepted = [(one.maneuver, e) for one in axis.judged if one.verdict.accepted and (e := _estimate(one))]
     for output in axis.outputs:
         fits = [(maneuver, e.fits[0][output]) for maneuver, e in accepted if output in e.fits[0]]

@@ -85,15 +85,7 @@ def commanded(
 
 
 def _alike(alive: NDArray[np.bool_], rows: IntArray) -> list[IntArray]:
-    """Return the rows in stretches within which equal outputs carry a pulse.
-
-    Parameters
-    ----------
-    alive
-        Shape (n, number of outputs), whether an output carries a pulse.
-    rows
-        Indices of the rows of ``alive`` to be divided, rising.
-    """
+    """Return the rows in stretches within which equal outputs carry a pulse."""
     if len(rows) == 0:
         return []
     changes = np.flatnonzero(np.any(alive[rows[1:]] != alive[rows[:-1]], axis=1))

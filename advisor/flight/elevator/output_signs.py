@@ -78,15 +78,8 @@ def pitch_signs(
 
 
 def _fitted(signs: FloatArray, free: FloatArray, left: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the residual sum of squares of each combination of signs, and the residual of the best.
-
-    Parameters
-    ----------
-    signs
-        Shape (s, k): combinations of signs. A combination is used only if its sum has a positive effect.
-    free, left
-        Shapes (n, k) and (n,): integrals of the outputs, and the pitch rate.
-    """
+    """Return each combination's residual sum of squares (s,), and the residual of the best."""
+    # A combination of signs is used only if its sum has a positive effect.
     power = np.maximum(np.einsum("si,ij,sj->s", signs, free.T @ free, signs), 1e-30)
     effect = np.maximum(signs @ (free.T @ left), 0.0) / power
     total = float(left @ left)
@@ -96,8 +89,7 @@ def _fitted(signs: FloatArray, free: FloatArray, left: FloatArray) -> tuple[Floa
 
 
 def _independent(residual: FloatArray) -> float:
-    """Return the number of independent samples with equal information about a mean, by the correlation at lag
-    one."""
+    """Return how many independent samples would tell as much about a mean, by lag-one correlation."""
     power = float(residual @ residual)
     correlation = float(residual[1:] @ residual[:-1]) / power if power > 0.0 else 0.0
     correlation = min(max(correlation, 0.0), 1.0)

@@ -141,12 +141,8 @@ def _descended(
 
 
 def _covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
-    """Return the parameters' covariance for coloured residuals, plus that of a residual due to the
-    parameters.
-
-    An instrument error may have the shape of the motion, so that a parameter absorbs all of it. A parameter's
-    error is at most ‖r‖·√((JᵀJ)⁻¹). The error is taken as uniform up to this bound.
-    """
+    """Return the parameters' covariance for coloured residuals, plus that of a motion-shaped residual."""
+    # A parameter may absorb an error with the motion's shape, at most ‖r‖·√((JᵀJ)⁻¹), taken as uniform.
     mistaken = float(residual @ residual) / 3.0 * inverse_information(jacobian)
     return np.asarray(coloured_covariance(jacobian, residual) + mistaken)
 

@@ -249,8 +249,7 @@ def _clock_of_force(work: Work, told: Mapping[str, Measured]) -> bool:
 
 
 def _force_behind_climb(work: Work) -> None:
-    """Compare the clock of the specific force with that of the climb rate, if no other check has determined
-    it."""
+    """Compare clocks of specific force and climb rate, if no other check has determined it."""
     if any(f.code == "a_z_delay_s" for f in work.findings):
         return
     least = work.learn(force_against_climb(work.channels)).get("a_z_behind_climb")

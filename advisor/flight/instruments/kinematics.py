@@ -115,8 +115,7 @@ def check_alpha(
 
 
 def _followers(t: FloatArray, command: FloatArray) -> FloatArray:
-    """Return the command after two equal lags, for several lags, shape (n, k), as approximations of the
-    response."""
+    """Return the command after two equal lags, for several lags, shape (n, k), like the response."""
     moved = command - command[0]
     first = np.zeros(len(_FOLLOW_S))
     found = np.zeros((len(t), len(_FOLLOW_S)))
@@ -136,12 +135,8 @@ def _compare(
     alpha: FloatArray,
     offset: AlphaOffset,
 ) -> KinematicCheck:
-    """Fit α(t) = (1 + k)·α_k(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in τ, k and the b.
-
-    A gust moves the vane at once and the aircraft later, which looks like a lag and a scale error. A gust is
-    independent of the command. The lagged commands are the instrumental variables of the fit (two-stage least
-    squares).
-    """
+    """Fit α(t) = (1 + k)·α_k(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in τ, k and the b."""
+    # A gust looks like a lag and a scale error; lagged commands are instrumental variables (2SLS).
     inside = (t_alpha >= t[0] + 0.3) & (t_alpha <= t[-1] - 0.3)
     tm, y = t_alpha[inside], alpha[inside]
     if len(tm) < 12 or np.ptp(y) < 1e-4:

@@ -169,11 +169,7 @@ def _bank_and_rate(work: Work) -> bool:
 
 
 def _signs(work: Work, name: str, told: Evidence, sense: float) -> bool:
-    """Compare the signs of both parts of the sideslip with ``sense``; return whether they agree.
-
-    A reversed channel changes the sign of both parts. A reversed yaw rate or bank changes the sign of its own
-    part only.
-    """
+    """Compare the signs of both parts of the sideslip with ``sense``; return whether they agree."""
     parts = [told.get(f"{name}_by_{part}") for part in ("weight", "turn")]
     both = told.get(f"{name}_by_motion")
     wrong = [part is not None and _resolved(part) and part.value * sense < 0.0 for part in (*parts, both)]

@@ -85,8 +85,7 @@ def excitation(maneuver: Maneuver, loop: Loop = PITCH) -> Excitation | None:
 
 
 def _external(maneuver: Maneuver, loop: Loop) -> FloatArray:
-    """Return the part of the elevator that no linear feedback of the motion explains, at the elevator's
-    stamps."""
+    """Return the part of the elevator that no linear feedback of the motion explains, at its stamps."""
     elevator, q = maneuver.channels[loop.control], maneuver.channels[loop.rate]
     rate = np.interp(elevator.t, q.t, q.y)
     theta = maneuver.channels.get(loop.angle)
@@ -107,8 +106,7 @@ def _means(edges: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:
 
 
 def _effect(q: FloatArray, elevator: FloatArray) -> tuple[float, float]:
-    """Return the relative standard error of the elevator's effect, and the effect: the sum of its three
-    coefficients."""
+    """Return the relative standard error of the elevator's effect, and the effect, a sum of three."""
     n = len(q) - 2
     own = np.column_stack([q[1:-1], q[:-2], np.ones(n), np.linspace(-1.0, 1.0, n)])
     full = np.column_stack([own, elevator[2:], elevator[1:-1], elevator[:-2]])

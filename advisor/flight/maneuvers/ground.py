@@ -68,8 +68,7 @@ def why_on_ground(span: Span, cut: Cut, limits: Limits) -> str | None:
 
 
 def _stands(span: Span, cut: Cut) -> bool:
-    """Return whether neither ground speed nor air speed shows motion. A ground speed of exactly zero may also
-    mean that there is no receiver."""
+    """Return whether no speed shows motion; exactly zero ground speed may mean no receiver."""
     over_ground = _median("groundspeed", span, cut)
     through_air = _median("airspeed", span, cut)
     if over_ground is None or over_ground >= STANDING_M_S or (through_air or 0.0) > WINDY_M_S:

@@ -151,21 +151,8 @@ def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | Non
 def _steps(
     t: FloatArray, d: FloatArray, extent: tuple[int, int], amplitude: float, level: float, arrival_s: float
 ) -> tuple[tuple[float, float], ...]:
-    """Return the lobes on either side of trim as steps, with the onset at half amplitude.
-
-    Parameters
-    ----------
-    t, d
-        Shape (n,): stamps (s) and deviation from trim (rad).
-    extent
-        Indices of the first and the last sample away from trim.
-    amplitude
-        Largest deviation from trim, rad.
-    level
-        Level of the rest at the end, rad from trim; 0 after a return.
-    arrival_s
-        Time at which the elevator comes to rest after the movement, s.
-    """
+    """Return the lobes on either side of trim as steps, with the onset at half of ``amplitude`` (rad)."""
+    # ``t`` and ``d``, shape (n,), are stamps (s) and deviation from trim (rad); ``level`` is the rest's, rad.
     first, last = extent
     out = np.flatnonzero(np.abs(d[first : last + 1]) > BAND * amplitude) + first
     above = d[out] > 0.0

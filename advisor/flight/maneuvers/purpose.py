@@ -179,8 +179,7 @@ def _is_swept(maneuver: Maneuver) -> bool:
 
 
 def _stands_out(maneuver: Maneuver, control: str) -> bool:
-    """Return whether the control moves faster than before the movement. Hands that continue other flying do
-    not move faster."""
+    """Return whether the control moves faster than before, unlike hands that continue other flying."""
     span = maneuver.span
     before = motion_of(maneuver, span.record_from_s + EDGE_S, span.start_s, control)[:-1]
     within = motion_of(maneuver, span.start_s, span.last_step_s + EDGE_S, control)
@@ -202,10 +201,7 @@ def _is_on_ground(maneuver: Maneuver) -> bool:
 
 
 def _is_external(maneuver: Maneuver, control: str) -> bool:
-    """Return whether the control moves in sharp steps, which no feedback of the motion makes.
-
-    A step of less than two output increments is sharp only because of the output's resolution.
-    """
+    """Return whether the control moves in sharp steps, which no feedback of the motion makes."""
     elevator = maneuver.channels[control]
     interval_s = float(np.median(np.diff(elevator.t))) if len(elevator) > 1 else np.inf
     if interval_s > _SLOWEST_S:

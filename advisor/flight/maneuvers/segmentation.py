@@ -196,8 +196,7 @@ class Segmenter:
                 self._look(i, t, self._moved_from_s, self._base)
 
     def _watch_edges(self, i: int, t: float, from_s: float) -> None:
-        """Follow the speed of a movement, and separate an abrupt step from a slow movement before the
-        step."""
+        """Follow a movement's speed, and separate an abrupt step from the slow movement before it."""
         samples = self._samples
         before = max(0, min(samples.index(t - _EDGE_S), i - 3))
         level = float(samples.y[before])

@@ -79,8 +79,7 @@ def _dropped_out(airspeed: Channel) -> NDArray[np.bool_]:
 
 
 def _wild(y: FloatArray) -> NDArray[np.bool_]:
-    """Return whether each single sample deviates from its neighbours by more than the other samples'
-    range."""
+    """Return whether each sample deviates from its neighbours by more than the others' range."""
     neighbours = 0.5 * (y[:-2] + y[2:])
     away = np.abs(y[1:-1] - neighbours)
     # A neighbour of a wild sample leaves the mean of its own neighbours by half as much.

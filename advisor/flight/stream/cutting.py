@@ -301,6 +301,5 @@ def _trusted(channels: Mapping[str, Channel], distrusts: Sequence[Distrust]) -> 
 
 
 def _middle_s(span: Span) -> float:
-    """Return the middle time of the movement, s. A heartbeat reports a new flight mode up to two seconds
-    late."""
+    """Return the movement's middle time, s, because a new flight mode arrives up to two seconds late."""
     return 0.5 * (span.start_s + span.end_s)

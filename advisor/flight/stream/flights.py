@@ -222,8 +222,7 @@ class Flights:
         return [SideManeuverFlown(known[-1])]
 
     def _compare_vehicles(self, vehicle: Vehicle) -> Iterator[FlightEvent]:
-        """Yield notices about a vehicle that differs from the first flight's vehicle. Another aircraft is
-        refused."""
+        """Yield notices about a vehicle unlike the first flight's; refuse another aircraft."""
         self._foreign = self._one_aircraft.refuse(self.name, vehicle)
         if self._foreign is not None:
             yield Notice(self._foreign.code, f"{self.name}: {self._foreign}")

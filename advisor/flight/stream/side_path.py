@@ -91,8 +91,7 @@ class SidePath:
         return max(watch.newest_s for watch in self._watches.values())
 
     def _add(self, movement: SideMovement) -> None:
-        """Store a movement of aileron or rudder. A movement that ends at trim without any level belongs to no
-        input."""
+        """Store a movement of aileron or rudder, unless it ends at trim without any level."""
         if movement.amplitude == 0.0:
             return
         self._pending = sorted([*self._pending, movement], key=lambda one: one.span.start_s)

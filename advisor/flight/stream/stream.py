@@ -131,10 +131,7 @@ class FlightStream(StreamState):
     def _take_outputs(
         self, columns: Columns, t: FloatArray, autopilot: str, elevator: list[Commanded], side: list[Decoded]
     ) -> list[Notice]:
-        """Append the samples of the elevator, and of aileron and rudder, to the two lists.
-
-        Return a notice for each time in which the advisor was down.
-        """
+        """Append the samples of elevator, aileron and rudder to two lists; return notices of down time."""
         missed: list[Notice] = []
         for moved in commanded(self._who.surfaces, self._banks.together(columns), t, autopilot):
             if moved.channel == "elevator":

@@ -172,10 +172,7 @@ def _missing(
 def _is_without_pulse(
     elevator: Surface, channels: Mapping[str, ChannelStatus], seen: Collection[str]
 ) -> bool:
-    """Return whether the servo output message arrives but never has a pulse for the elevator.
-
-    Without a pitch rate no message has a vehicle time, so no channel shows this.
-    """
+    """Return whether the servo output message arrives but never has a pulse for the elevator."""
     arrives = "q" in channels and "SERVO_OUTPUT_RAW" in seen
     return arrives and "elevator" not in channels and max(elevator.outputs) <= _FIRST_BANK
 
@@ -203,10 +200,7 @@ def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
 def _not_logged(
     elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle, idle: bool
 ) -> list[Problem]:
-    """Return one problem that lists everything an autopilot's log lacks.
-
-    ``idle`` states whether the elevator's output is logged without a pulse, which is a separate problem.
-    """
+    """Return one problem that lists all missing messages; ``idle``: a missing pulse is reported apart."""
     lacks: dict[str, tuple[str, str]] = {}
     if "q" not in channels:
         lacks["no_pitch_rate"] = ("pitch rate", "ATTITUDE")

@@ -53,8 +53,7 @@ def _pair(surface: str, left: Mapping[str, float], right: Mapping[str, float]) -
 def _spoilers(
     surface: str, outer: Mapping[str, float], inner: Mapping[str, float]
 ) -> tuple[Role, Role, Role, Role]:
-    """Return the rows of outer left, inner left, outer right and inner right spoiler. Roll and yaw have the
-    opposite sign on the left."""
+    """Return rows of outer and inner spoilers, left then right; left has opposite signs of roll and yaw."""
     mirrored = [
         {control: value if control == "elevator" else -value for control, value in row.items()}
         for row in (outer, inner)

@@ -160,8 +160,7 @@ def _is_meant(variant: Variant, parameters: Mapping[str, float], variants: Seque
 
 
 def _values(variant: Variant, parameters: Mapping[str, float]) -> list[float]:
-    """Return the variant's parameter values from the aircraft file's entry: the inverse of
-    ``causes.parameters_of``."""
+    """Return variant parameters from the aircraft file's entry: the inverse of ``causes.parameters_of``."""
     spelled = {name: (key, factor) for key, (name, factor) in variant.in_file.items()}
     if spelled:
         keys = [spelled[name] for name in variant.names]

@@ -22,10 +22,7 @@ def _trims(flights: PreparedManeuvers) -> FloatArray:
 
 
 def _about_neutral(p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:
-    """Set a dead band about one fixed deflection, whatever the trim of each manoeuvre.
-
-    The band need not lie about the trim, because pilots and autopilots trim to one edge of the band.
-    """
+    """Set a dead band about one fixed deflection, because crews trim to one edge of the band."""
     p[:, INDEX["half_deadband_rad"]] += values[0]
     p[:, INDEX["neutral_rad"]] = values[1] - _trims(flights)
 

@@ -18,10 +18,7 @@ _MASS_AND_INERTIA = Variant(
 
 
 def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
-    """Return changes of mass with equal change of inertia; a step may also change the inertia independently.
-
-    Mass far from the centre of gravity adds more inertia than mass near it.
-    """
+    """Return changes of mass with equal change of inertia; a step may change the inertia independently."""
     together = ramps_and_steps("mass_change", "force_equation", flights, divide(*DERIVATIVES))
     inertia = {
         variant.fixed["at_s"]: replace(variant, starts=(), likewise=())

@@ -94,8 +94,7 @@ def hold_out(
 def _without_each(
     problem: EffectProblem, fitted: EffectFit, folds: Sequence[Sequence[int]] | None
 ) -> Iterator[tuple[Sequence[int], FloatArray, Sequence[FloatArray]]]:
-    """Yield each fold, the shared parameters' step without that fold, and the nuisance parameters'
-    response."""
+    """Yield each fold, the shared step without it, and the nuisance parameters' response."""
     n = len(problem.flights)
     chosen = folds_for(problem.flights) if folds is None else folds
     weights = 1.0 / fitted.noise

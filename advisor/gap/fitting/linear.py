@@ -202,11 +202,8 @@ def _answers_to_edges(
 def _pulses(
     problem: EffectProblem, flight: PreparedManeuver, p: FloatArray
 ) -> tuple[list[FloatArray], FloatArray]:
-    """Return the delays and areas of pulses that equal a move of each edge by its interval.
-
-    A moved edge usually equals one pulse at the edge. A servo at its limit moves on after the edge, and the
-    move delays all that motion.
-    """
+    """Return the delays and areas of pulses that equal a move of each edge by its interval."""
+    # A servo at its limit moves on after the edge, and the move delays all that motion.
     begin = flight.edges[:, 0] + p[INDEX["delay_s"]] + p[INDEX["latency_s"]]
     if problem.held:
         begin += 0.5 * (flight.edges[:, 2] - flight.edges[:, 3])
@@ -226,11 +223,7 @@ def _offsets(problem: EffectProblem, flight: PreparedManeuver) -> FloatArray:
 
 
 def _own_prior(problem: EffectProblem, flight: PreparedManeuver, own: int) -> FloatArray:
-    """Return the inverse prior variances of a manoeuvre's nuisance parameters, 0 if flat, shape (own,).
-
-    Edges of the command come last. Errors of the air speed come before the edges, in units of their own
-    standard deviation. Initial states and trim come first, then offsets of instruments.
-    """
+    """Return inverse prior variances (own,): initial states, trim, offsets, air speed, edges; 0 if flat."""
     prior = np.zeros(own)
     prior[: len(NUISANCES)] = own_precision(flight)
     offsets = [_OFFSETS[c] for c in _OFFSETS if c in problem.channels]

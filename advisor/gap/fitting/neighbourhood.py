@@ -184,10 +184,7 @@ class Neighbourhood:
         ]
 
     def _squares(self, kept: _Kept, flown: _Flown, along: FloatArray, own: FloatArray) -> FloatArray:
-        """Return sums of squares of one manoeuvre's residuals, nuisances refitted, shape (channels, points).
-
-        ``along`` has the inner products of the kept columns with the simulated ones, by channel.
-        """
+        """Return sums of squares of one manoeuvre's residuals after the refit, shape (channels, points)."""
         m, points = kept.m, own.shape[1]
         Ar = np.repeat(kept.products[:, :m, -1:], points, axis=2)
         rr = np.repeat(kept.products[:, -1, -1:], points, axis=1)
@@ -231,11 +228,7 @@ class Neighbourhood:
         return SimulatedPoint(there, float(cost + precision @ departure**2), noise, H, g)
 
     def _flown(self, i: int, asked: Sequence[_Asked], failed: np.ndarray) -> _Flown:
-        """Simulate manoeuvre ``i`` at those points that need a simulation.
-
-        A change of derivatives between manoeuvres needs no simulation, because known sensitivities sum to its
-        response.
-        """
+        """Simulate manoeuvre ``i`` at those points whose response no sum of sensitivities gives."""
         problem, kept = self.problem, self.kept[i]
         rows: list[FloatArray] = []
         base, step, at, points = [], [], [], []
@@ -286,10 +279,7 @@ def _still(i: int, asked: Sequence[_Asked], width: int) -> FloatArray:
 
 
 def _with_one_another(still: FloatArray, known: FloatArray, flown: _Flown) -> FloatArray:
-    """Return inner products of the columns within each point, shape (width, width).
-
-    ``still`` has the columns as sums of the known ones, ``known`` inner products of the known ones with all.
-    """
+    """Return inner products of the columns within each point, shape (width, width)."""
     XX = still.T @ known
     XX[flown.at] = XX[:, flown.at].T
     both = np.zeros((len(flown.at), len(flown.at)))

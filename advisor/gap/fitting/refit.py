@@ -71,17 +71,7 @@ def _refitted(
     ends: tuple[FloatArray, FloatArray],
     weights: FloatArray,
 ) -> tuple[_Refitted, FloatArray]:
-    """Return the residual at a manoeuvre's initial state and trim, and their next step, shape (4,).
-
-    Parameters
-    ----------
-    own
-        Shape (4,): initial state and trim at which the manoeuvre was simulated.
-    ends
-        Lower and upper ends of the initial state and trim, each of shape (4,).
-    weights
-        Shape (channels,): inverse of the noise.
-    """
+    """Return the residual at a manoeuvre's initial state and trim, and their next step, shape (4,)."""
     m, k = block.m, len(own)
     normal = np.tensordot(weights**2, block.products, 1)
     H, g = normal[:m, :m] + np.diag(block.prior), normal[:m, -1] + block.prior * block.departure

@@ -163,12 +163,8 @@ def _signature_of(
     vector: FloatArray,
     rounds: int,
 ) -> Signature:
-    """Return the model's response to an effect, per unit of its first parameter.
-
-    An effect whose search starts at zero is linear there, so its derivative is used. Other effects are
-    nonlinear: a limit that no command reaches leaves no signature. The response of a nonlinear effect is
-    evaluated at its smallest detectable size. ``vector`` is the signature of the effect at its first size.
-    """
+    """Return the model's response to an effect, per unit of its first parameter."""
+    # An effect whose search starts at zero is linear there; others are evaluated at their smallest size.
     reach = _reach(variant)
     numbers = len(variant.names)
     needed = _needed(signatures, numbers)
@@ -247,11 +243,7 @@ def _foreseen(
 
 
 def _shares(problem: EffectProblem, fitted: EffectFit) -> Mapping[str, float]:
-    """Return each nonlinear term as a share of its linear term, per unit of size, at the plan's largest
-    motion.
-
-    A term whose linear term is zero has no share.
-    """
+    """Return each nonlinear term as a share of its linear term, per size, at the plan's largest motion."""
     p = problem.driving(fitted.point)
     flights = problem.flights.flights
     reached = {
@@ -274,11 +266,8 @@ def _cosine(a: FloatArray, b: FloatArray) -> float:
 
 
 def _least_change(problem: EffectProblem) -> float:
-    """Return the least mean square change of the outputs for a named effect, over the instruments' noise.
-
-    The noise of very good instruments is not the limit. A low-order effect describes an output only within a
-    share of the channel's peak.
-    """
+    """Return the least mean square change of the outputs for a named effect, over the noise."""
+    # A low-order effect describes an output only within a share of the channel's peak.
     if problem.instruments is None:
         return VISIBLE
     return max(VISIBLE, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))

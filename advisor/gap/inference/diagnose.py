@@ -86,8 +86,7 @@ def infer(
 def _table(
     problem: EffectProblem, flight: FlightProblem, aircraft: Aircraft
 ) -> tuple[list[Variant], list[Variant]]:
-    """Return catalogue effects beyond those of the aircraft file, and laws outside the catalogue, with prior
-    sizes."""
+    """Return catalogue effects beyond the aircraft file's, and other laws, with prior sizes."""
     stated = {change.effect for change, _ in problem.changes}
     variants = beyond_known(aircraft.effects, beyond_servo(aircraft, variants_for(problem.flights)))
     described = [w for v in variants if v.effect not in stated for w in (v, *v.likewise)]
@@ -104,11 +103,8 @@ def _with_offset(
     prior: FieldPrior,
     names: int,
 ) -> list[Row[PitchModel]]:
-    """Return the rows with a constant offset of α as one more explanation.
-
-    Trims absorb an offset of α, so an offset may occur together with any other explanation. Only the answer
-    "nothing" excludes an offset of α.
-    """
+    """Return the rows with a constant offset of α as one more explanation."""
+    # Trims absorb an offset of α, so only the answer "nothing" excludes it.
     offset = kinematics.offset
     if "alpha" not in problem.channels or not offset.stays or not np.isfinite(offset.rad):
         return list(rows)

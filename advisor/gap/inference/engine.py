@@ -63,11 +63,7 @@ def decided(
 
 
 def _lead(flight: Flight[E], stage: Stage[E]) -> E | None:
-    """Return the likely effect that explains most together with a second effect, by a quick look at every
-    pair.
-
-    Two effects may hide each other, so that neither alone explains anything.
-    """
+    """Return the likely effect that explains most together with a second one, by a look at every pair."""
     likely: dict[str, E] = {}
     for one in sorted(stage.effects, key=lambda one: -one.evidence.either):
         likely.setdefault(one.name, one)

@@ -127,11 +127,8 @@ def _ways(flight: Flight[E], stage: Stage[E], prior: FieldPrior) -> Iterator[Row
 def _pairs(
     ways: Sequence[Row[E]], plain: E, lead: E, second: Stage[E], tried: tuple[int, int], prior: FieldPrior
 ) -> Iterator[Row[E]]:
-    """Yield the models in which an effect acts together with a second effect.
-
-    If the second cause is a law without a name, one law alone may look like both causes. A single law is the
-    likelier, the larger the share of the motion that the law explains.
-    """
+    """Yield the models in which an effect acts together with a second effect."""
+    # A law without a name may look like both causes, the likelier the more motion it explains.
     first = next(way for way in ways if way.explanation is lead and way.alternative.is_effect)
     of_first = max(lead.evidence.either - plain.evidence.either, 0.0)
     for one in (*second.effects, *second.laws):
@@ -158,10 +155,7 @@ def _row(alternative: Alternative, one: E, evidence: float, share: float) -> Row
 
 
 def _with_residual(way: Row[E], residual: Residual, prior: FieldPrior) -> Iterator[Row[E]]:
-    """Yield the row as right, and as a model that only resembles an effect without a name.
-
-    An effect without a name leaves a residual that a disturbance in one block explains.
-    """
+    """Yield the row as right, and as a model that only resembles an effect without a name."""
     size = residual.beside_air if way.in_moving_air else residual.size
     yield replace(way, terms={**way.terms, "residual": if_right(size)})
     lacking = float(np.log(0.5 * prior.unknown / (prior.none + prior.parameters + prior.effect)))

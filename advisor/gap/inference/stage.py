@@ -118,10 +118,7 @@ def stage_of(flight: Flight[E], base: E | None, most: int) -> Stage[E]:
 
 
 def _at_the_files(flight: Flight[E], one: E, plain: E, heat: float, best: float) -> E:
-    """Return an explanation refitted about the file's derivatives, if that fit is likelier.
-
-    The quadratic expansion about fitted derivatives holds only near the fit.
-    """
+    """Return an explanation refitted about the file's derivatives, if that fit is likelier."""
     if not flight.is_stated or max(one.evidence.wrong, one.evidence.right) < best - REFINED:
         return one
     right = flight.at_the_files(one, plain, heat)

@@ -73,8 +73,7 @@ def _trims_of(curve: Curve, flights: PreparedManeuvers) -> list[float]:
 
 
 def _about(angle_rad: float, variant: Variant, curve: Curve) -> Variant:
-    """Return a variant with (x + D)² and (x + D)³ expanded in x, where D is a manoeuvre's trim minus the
-    angle."""
+    """Return a variant with (x + D)² and (x + D)³ expanded in x, D being trim minus the angle."""
     slope, square, cube = (INDEX[entry] for entry in (curve.slope, *curve.powers))
 
     def bend(p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:

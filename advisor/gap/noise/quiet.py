@@ -108,10 +108,8 @@ def gusts_in(
 
 
 def _begun_anew(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -> list[FloatArray]:
-    """Return per manoeuvre the stacked residuals, with nuisances refitted to the instruments' noise.
-
-    A filter that allows for any gust does not determine an initial state.
-    """
+    """Return each manoeuvre's stacked residuals, with nuisances refitted to the instruments' noise."""
+    # A filter that allows for any gust does not determine an initial state.
     problem, fitted = unfiltered(problem, fitted)
     owns = solve_blocks(problem, fitted.linear, 1.0 / noise, fitted.point).free
     still = np.zeros(len(fitted.point.shared))

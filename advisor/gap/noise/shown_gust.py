@@ -39,10 +39,7 @@ def largest_gust(flights: PreparedManeuvers, z_alpha: float) -> float:
 
 
 def _beyond_motion(flight: PreparedManeuver) -> FloatArray:
-    """Return α minus the angle of attack from the motion, rad, shape (n,); α alone without the motion.
-
-    A straight line in time is removed, because it is the offset of gyro and accelerometer.
-    """
+    """Return α minus that of the motion, rad, shape (n,), without the straight line of offsets."""
     t, alpha = flight.outputs["alpha"].t, flight.outputs["alpha"].y
     if not all(name in flight.outputs for name in _NEEDED):
         return alpha

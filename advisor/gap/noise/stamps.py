@@ -92,8 +92,7 @@ def stamp_jitter(problem: EffectProblem, fitted: EffectFit, rates: list[FloatArr
 def _jitter_in(
     problem: EffectProblem, fitted: EffectFit, rates: list[FloatArray], channel: str
 ) -> tuple[float, float]:
-    """Return the ratio of stamp error power to its limit, and the standard deviation of the stamp errors,
-    s."""
+    """Return the ratio of stamp error power to its limit, and the stamp errors' std, s."""
     c = problem.channels.index(channel)
     power = float(np.sum(_THIRD**2))
     rough, moving = [], []

@@ -74,8 +74,7 @@ def _chord(reference: Reference) -> float | None:
 def _at_measured_speed(
     usable: Sequence[Maneuver], aircraft: Aircraft, true_over_read: float
 ) -> tuple[float, tuple[PreparedManeuver, ...], float]:
-    """Return reference speed (m/s), flights, and largest relative change of speed, from a measured air
-    speed."""
+    """Return reference speed (m/s), flights, largest relative speed change, from measured air speed."""
     means = [np.mean(m.channels["airspeed"].y) for m in usable]
     reference = aircraft.reference_airspeed_m_s or float(np.mean(means))
     flights = _about_their_mean(_ready(m, reference, None, true_over_read) for m in usable)
@@ -85,8 +84,7 @@ def _at_measured_speed(
 def _at_speed_of_motion(
     usable: Sequence[Maneuver], aircraft: Aircraft
 ) -> tuple[float, tuple[PreparedManeuver, ...], float]:
-    """Return reference speed (m/s), flights, and largest relative change of speed, without an air speed
-    sensor."""
+    """Return reference speed (m/s), flights, largest relative speed change, without a speed sensor."""
     reference = aircraft.stated_airspeed_m_s or ASSUMED_M_S
     shown = speeds_about(usable, reference)
     flights = _about_their_mean(
@@ -100,10 +98,7 @@ def _at_speed_of_motion(
 def _kind_of_alpha(
     usable: Sequence[Maneuver], flights: Sequence[PreparedManeuver], in_all: bool
 ) -> tuple[bool, bool]:
-    """Return whether α was smoothed before it was stored, and whether it is an estimate.
-
-    ``in_all``: every manoeuvre has an angle of attack; otherwise the smoothness is not examined.
-    """
+    """Return whether α was smoothed before it was stored, and whether it is an estimate."""
 
     def quiet(channel: str) -> list[FloatArray]:
         return [y for f in flights for y in f.quiet_stretches(channel)]
@@ -153,10 +148,7 @@ def _largest_departure(flights: Sequence[PreparedManeuver]) -> float:
 
 
 def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: float) -> PreparedManeuver:
-    """Return a manoeuvre on the time grid.
-
-    ``level`` is the air speed in m/s before the first step; None where the log has an air speed.
-    """
+    """Return a manoeuvre on the time grid; ``level``: air speed before the first step if unlogged, m/s."""
     start, end = recorded(m)
     n = int(np.ceil((end - start) / STEP_S)) + 1
     grid: FloatArray = (np.arange(n, dtype=np.float64) + 0.5) * STEP_S

@@ -111,12 +111,8 @@ def speed_without_instrument(
 def _turned_and_pushed(
     maneuver: Maneuver, level_m_s: float | None = None
 ) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Return stamps, and both sides of the integrated equation, the second times V; None without a channel.
-
-    Offsets of gyro and accelerometer make a straight line in time, which is removed from both sides. With
-    ``level_m_s`` the second side is multiplied by the speed before the first step, and the change of speed
-    since is known.
-    """
+    """Return stamps, and both sides of the integrated equation, the second times V; or None."""
+    # Offsets of gyro and accelerometer make a straight line in time, which is removed from both sides.
     found = maneuver.channels
     if not all(name in found and len(found[name]) > 10 for name in ("alpha", "q", "a_z", "theta")):
         return None

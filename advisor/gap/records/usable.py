@@ -62,8 +62,7 @@ def step_unseen(maneuver: Maneuver) -> bool:
 
 
 def _lost(t: FloatArray) -> FloatArray:
-    """Return the excess of each interval over the usual interval where a stamp was lost, else 0, shape (n -
-    1,)."""
+    """Return each interval's excess over the usual one where a stamp was lost, else 0, shape (n - 1,)."""
     interval = np.diff(t)
     usual = float(np.median(interval))
     return np.where(interval > LOST_INTERVAL * usual, interval - usual, 0.0)

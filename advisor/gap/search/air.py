@@ -140,11 +140,7 @@ def _moving_in(problem: EffectProblem, fitted: EffectFit, maneuvers: Iterable[in
 def _of_a_gust(
     problem: EffectProblem, fitted: EffectFit, instruments: FloatArray, least: float
 ) -> DisturbanceCourse:
-    """Return the gentlest gust that explains almost as much of the residual as the largest gust that the
-    flight shows.
-
-    A gust of unlimited size would wander where the instruments hardly show the air.
-    """
+    """Return the gentlest gust that explains almost as much of the residual as the largest gust shown."""
     most = largest_gust(problem.flights, float(fitted.point.derivatives[0]))
     sizes = [*np.geomspace(least, most, _TRIED)] if least < most else [most]
     courses = disturbance_courses(problem, fitted, instruments, "air", sizes)

@@ -156,10 +156,7 @@ def _unexplained(paths: Sequence[_Path]) -> float:
 def _path_of(
     maneuver: Maneuver, true_over_read: float = 1.0, late_s: float = 0.0, skipped_s: float = 0.0
 ) -> _Path | None:
-    """Return path and air speed of a manoeuvre with a late sensor; None without channels or samples.
-
-    The first ``skipped_s`` seconds are left out, so that all delays use the same samples.
-    """
+    """Return path and air speed of a manoeuvre with a late sensor; None without channels or samples."""
     found = maneuver.channels
     if not all(name in found and len(found[name]) > _LEAST_SAMPLES for name in _NEEDED):
         return None

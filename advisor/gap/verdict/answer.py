@@ -239,8 +239,7 @@ def _improvements(
 
 
 def _of_the_derivatives(problem: EffectProblem, fitted: EffectFit, known: FloatArray, gap: Gap) -> Where:
-    """Return the equation whose derivatives in the aircraft file deviate most, relative to their
-    uncertainty."""
+    """Return the equation whose file derivatives deviate most, relative to their uncertainty."""
     assert problem.prior_derivatives is not None
     off = fitted.point.derivatives - problem.prior_derivatives
     scores = {}

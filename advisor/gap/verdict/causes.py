@@ -95,8 +95,7 @@ def _offset(kinematics: KinematicCheck, posterior: Posterior[PitchModel], gap: G
 def _not_told_from(
     name: str, posterior: Posterior[PitchModel], channels: Sequence[str]
 ) -> tuple[tuple[str, ...], str]:
-    """Return the effects that the evidence does not exclude, and the measurement that would distinguish
-    them."""
+    """Return the effects that the evidence does not exclude, and the measurement that would."""
     names = [
         a.name
         for a, p in posterior.by_alternative.items()

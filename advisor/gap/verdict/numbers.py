@@ -79,8 +79,7 @@ def shrink_of(
 
 
 def _by_numbers(e: Findings) -> float | None:
-    """Return the share of the gap that fitted derivatives remove, per cent; None without derivatives in the
-    file."""
+    """Return the per cent of the gap that fitted derivatives remove; None without derivatives."""
     if e.file_model is None:
         return None
     was, now = (whole_gap(held.mean_square, e.floor) for held in (e.file_model, e.models[0].held_out))
@@ -94,12 +93,8 @@ def _by_effects(e: Findings) -> float | None:
 
 
 def _removed_beyond_air(models: Sequence[Model]) -> float | None:
-    """Return the share of the residual beyond moving air that the effects remove, on held-out manoeuvres.
-
-    The innovations contain no moving air. A right model's k parameters come from two of three folds, so its
-    squared innovations exceed 1 by 1.5 k over the samples. That excess is subtracted. None where no power
-    exceeds the noise.
-    """
+    """Return the share of the residual beyond moving air that the effects remove, on held-out manoeuvres."""
+    # With two of three folds fitted, squared innovations exceed 1 by 1.5 k over the samples.
     last = models[-1]
     noise, samples = last.fitted.noise**2, sum(map(len, last.fitted.innovations))
     was, now = (float(np.mean(s.held_out.innovation_square / noise)) - 1.0 for s in (models[0], last))
@@ -170,10 +165,7 @@ def compared_derivatives(
 
 
 def _as_it_began(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
-    """Return whether each manoeuvre was flown before a change in flight, shape (manoeuvres,), bool.
-
-    A change of mass or centre of gravity changes the trim too, so the file holds the state before the change.
-    """
+    """Return whether each manoeuvre was flown before a change in flight, shape (manoeuvres,), bool."""
     derivatives = problem.driving(fitted.point)[:, : len(DERIVATIVES)]
     off = np.max(
         np.abs(derivatives - fitted.point.derivatives) / derivative_scale(fitted.point.derivatives), axis=1

@@ -70,8 +70,7 @@ def _why_of(posterior: Posterior[Any], rival: Alternative) -> Iterator[Contribut
 
 
 def _log_odds(posterior: Posterior[Any], rival: Alternative) -> float:
-    """Return the log odds between the answer and a rival, nats, over all blocks of an effect without a
-    name."""
+    """Return the log odds of answer and rival, nats, over all blocks of an unnamed effect."""
     mine, other = (
         np.logaddexp.reduce([r.weight for r in posterior.rows if r.alternative.name == a.name])
         for a in (posterior.answer, rival)

@@ -108,10 +108,7 @@ def _after(newest: int, batch: Sequence[Columns], columns: Columns) -> Columns:
 
 
 def _messages(stored: Mapping[str, RecordTable], known: Known) -> tuple[Iterator[Columns] | None, Known]:
-    """Return the messages of a stretch, and the facts of its log for the next stretch.
-
-    No messages are returned without attitude, inertial sensors and servo outputs.
-    """
+    """Return a stretch's messages, and the facts of its log; none without attitude, inertia and outputs."""
     if is_sdlog2(stored):
         return Sdlog2Messages(stored).columns(), known
     read = in_todays_names(stored, known.epoch_s)
@@ -127,8 +124,7 @@ def _messages(stored: Mapping[str, RecordTable], known: Known) -> tuple[Iterator
 
 
 def _believable(table: RecordTable) -> RecordTable:
-    """Return the fields whose value types fit their names. A damaged definition can turn a number into
-    text."""
+    """Return the fields whose value types fit their names, which a damaged definition may not."""
     fields = {
         name: values
         for name, values in table.fields.items()

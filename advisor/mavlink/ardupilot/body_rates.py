@@ -104,10 +104,8 @@ def _stands_still(pid: RecordTable) -> bool:
 
 
 def _from_angles(att: RecordTable, delay_s: float) -> Rates | None:
-    """Return the rates from differences of the angles, delayed like the gyro's rates.
-
-    The angle of attack is late by an equal delay. With undelayed rates, derivatives would be wrong by half.
-    """
+    """Return the rates from differences of the angles, delayed like the gyro's rates."""
+    # The angle of attack is late by an equal delay. With undelayed rates, derivatives would be wrong by half.
     t = att.time_us.astype(np.float64) * 1e-6
     step_s = np.diff(t)
     if len(step_s) == 0 or not 0.0 < np.median(step_s) <= 1.0 / SLOWEST_ANGLES_HZ:

@@ -83,8 +83,7 @@ def _renamed(name: str, table: RecordTable) -> RecordTable:
 
 
 def _timed(tables: Mapping[str, RecordTable]) -> dict[str, RecordTable]:
-    """Return the tables with a time for each record. A record without time gets that of the stamped record
-    before it."""
+    """Return tables with a time for each record, by default that of the stamped record before it."""
     stamped = [table for table in tables.values() if "TimeUS" in table.fields]
     if not stamped or len(stamped) == len(tables):
         return {**tables} if stamped else {}

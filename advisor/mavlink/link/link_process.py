@@ -150,13 +150,7 @@ class LinkProcess:
             self._socket = None
 
     def _hangs(self, guard: Connection) -> bool:
-        """Wait until the process ends or hangs for ``HUNG_AFTER_S``, and return whether it hangs.
-
-        Raises
-        ------
-        OSError, EOFError
-            The process has ended.
-        """
+        """Wait until the process ends or hangs for ``HUNG_AFTER_S``, and return whether it hangs."""
         while True:
             guard.send(Alive())
             if not guard.poll(HUNG_AFTER_S):

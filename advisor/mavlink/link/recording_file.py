@@ -108,8 +108,7 @@ def take_up(path: Path) -> tuple[Path, BinaryIO]:
 
 
 def _end_of_whole_records(file: BinaryIO, path: Path) -> int:
-    """Return the end of the last complete record, bytes. Bytes after the last whole record were broken by a
-    power cut."""
+    """Return the end of the last whole record, bytes; a power cut breaks what follows."""
     size = file.seek(0, os.SEEK_END)
     start = max(0, size - _TAIL_BYTES)
     file.seek(start)

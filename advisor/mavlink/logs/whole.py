@@ -71,10 +71,7 @@ def read_whole_log(
 
 
 def _flew_though_heard_later(batches: Iterable[Sequence[Columns]]) -> Columns | None:
-    """Return the first heartbeat of the winged vehicle that alone was armed.
-
-    None if the first vehicle was armed, or several others were.
-    """
+    """Return the first heartbeat of the one armed winged vehicle; None if the first or several were armed."""
     first: dict[Sender, Columns] = {}
     armed: set[Sender] = set()
     for columns in (c for batch in batches for c in batch if c.name == "HEARTBEAT" and len(c)):

@@ -65,11 +65,8 @@ def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
 
 
 def _of_surfaces(topics: Topics, moving: Sequence[Topic], parameters: Mapping[str, float]) -> Outputs:
-    """Return the outputs from the fastest of outputs, servo commands and torque demand.
-
-    By default PX4 logs outputs and servos every 100 ms, and the torque set point every 20 ms. The control
-    allocation of the surfaces gives the servo commands from the torque.
-    """
+    """Return the outputs from the fastest of outputs, servo commands and torque demand."""
+    # By default PX4 logs outputs and servos every 100 ms, and the torque set point every 20 ms.
     servos = first(topics, "actuator_servos")
     # For a VTOL aircraft the last instance is the wing's.
     torque = topics["vehicle_torque_setpoint"][-1] if "vehicle_torque_setpoint" in topics else None
@@ -117,8 +114,7 @@ def _varies(values: FloatArray) -> bool:
 
 
 def _assigned(instances: Sequence[Topic], parameters: Mapping[str, float]) -> dict[int, Topic]:
-    """Return the instance of each output group, from 0, whose functions agree best with the moving
-    outputs."""
+    """Return each output group's instance, from 0, whose functions fit the moving outputs best."""
     agreements = []
     for bank, group in enumerate(banks(parameters) or ["PWM_MAIN"]):
         used = {k for k in OUTPUTS if parameters.get(f"{group}_FUNC{k}")}

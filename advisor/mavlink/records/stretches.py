@@ -140,8 +140,7 @@ class _Collected:
         return Stretch(tables, begins, math.inf)
 
     def _end_run(self) -> Iterator[Stretch]:
-        """Process a finished group of definitions, and yield the last stretch of a log that ends before
-        it."""
+        """Process a finished group of definitions; yield the last stretch of a log that ends before it."""
         run, self._run = self._run, []
         is_another = False
         for definition in run:

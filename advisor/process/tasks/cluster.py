@@ -125,10 +125,7 @@ def _connected(address: str) -> "Iterator[Client]":
 
 
 def _versions_on(client: "Client") -> dict[str, Any]:
-    """Return the versions of the packages in the client and in each worker.
-
-    Workers that start or restart have ``CONNECT_S`` for the first answer.
-    """
+    """Return the packages' versions in client and workers, which have ``CONNECT_S`` to answer first."""
     end = time.monotonic() + CONNECT_S
     while True:
         # Dask tells Python's version unasked, and none where it is asked for a package of that name.

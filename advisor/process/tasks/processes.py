@@ -60,10 +60,8 @@ def _until_broken(
     executor: Callable[[int], Executor],
     suspects: list[T],
 ) -> Iterator[tuple[T, R | Exception]]:
-    """Do tasks from the end of ``waiting`` until all are done or a worker has died.
-
-    At most one task per worker runs, so that a dead worker makes few tasks suspect.
-    """
+    """Do tasks from the end of ``waiting`` until all are done or a worker has died."""
+    # At most one task per worker runs, so that a dead worker makes few tasks suspect.
     under_way: dict[Future[R], T] = {}
     with executor(min(workers, len(waiting))) as pool:
         while under_way or (waiting and not suspects):
@@ -93,10 +91,8 @@ def _alone(work: Callable[[T], R], task: T, executor: Callable[[int], Executor])
 
 
 def _start_silent_tracker() -> None:
-    """Start the process that removes the semaphores of an interrupted run, without its warning.
-
-    The tracker of `multiprocessing` takes the warning options of the interpreter that starts the tracker.
-    """
+    """Start the process that removes the semaphores of an interrupted run, without its warning."""
+    # The tracker of `multiprocessing` takes the warning options of the interpreter that starts the tracker.
     options = list(sys.warnoptions)
     sys.warnoptions.append("ignore")
     try:

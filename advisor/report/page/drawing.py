@@ -130,10 +130,7 @@ def log_ticks(low: float, high: float) -> list[float]:
 
 
 def _inline(svg: str, width_in: float) -> str:
-    """Return the SVG element alone, with the width of its place.
-
-    Layers become classes, which several pictures of a page share. Only ids that are referred to are kept.
-    """
+    """Return the SVG element alone, with its width; layers become classes, unused ids are dropped."""
     element = svg[svg.index("<svg") :].strip()
     element = re.sub(r' (width|height)="[\d.]+pt"', "", element, count=2)
     element = re.sub(r"<!--.*?-->\s*", "", element, flags=re.DOTALL)

@@ -84,10 +84,8 @@ def write_gap_picture(found: Document, path: Path) -> None:
 
 
 def _paint(drawing: Drawing, found: Document, across: int) -> None:
-    """Draw the worst manoeuvre channel by channel, above small pictures of all manoeuvres.
-
-    Every axis has a fixed place in inches, because a computed layout would differ in the last digit.
-    """
+    """Draw the worst manoeuvre channel by channel, above small pictures of all manoeuvres."""
+    # Every axis has a fixed place in inches, because a computed layout would differ in the last digit.
     drawing.set_layout_engine("none")
     number, traces = worst(found), found["traces"]
     large = [trace for trace in traces if trace["number"] == number]

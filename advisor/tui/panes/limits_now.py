@@ -38,11 +38,7 @@ def _bank_rad(view: View) -> float | None:
 
 
 def _airspeed_m_s(view: View) -> float | None:
-    """Return the air speed, m/s; None: not received.
-
-    The campaign's air speed is the true one where that is known. Before the campaign has one, and while the
-    campaign is behind, the air speed of the link itself stands in its place.
-    """
+    """Return the campaign's air speed, m/s, else the link's own; None: not received."""
     link = view.health.link
     late = view.health.behind or "airspeed" not in view.state.channels
     if late and link is not None and isfinite(link.airspeed_m_s):
@@ -51,8 +47,7 @@ def _airspeed_m_s(view: View) -> float | None:
 
 
 def _newest(view: View, name: str) -> float | None:
-    """Return the newest value of a channel that the campaign has received. None: the channel was not
-    received, or its value is too old."""
+    """Return a channel's newest value that the campaign has; None: not received, or too old."""
     if view.health.behind:
         return None
     status = view.state.channels.get(name)

@@ -90,8 +90,7 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
         self._only_with_fit()
 
     def _only_with_fit(self) -> None:
-        """Hide plots of channels that are no output of the fit. Without any output, one plot shows the
-        reason."""
+        """Hide plots of channels without a fit; without any output, let one plot show the reason."""
         shown = self._fits or OUTPUTS[:1]
         for name in OUTPUTS:
             self.query_one(f"#white-{name}").display = name in shown

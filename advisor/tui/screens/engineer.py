@@ -188,8 +188,7 @@ work on the manoeuvres that are shown.
         self.ask(question, lambda text: self._decided(HandDecision(verb, text, number, shown)))
 
     def _decided(self, decision: HandDecision) -> None:
-        """Send the decision to the campaign, and show a message. The table shows the decision when all is
-        recomputed."""
+        """Send the decision to the campaign with a message; the table shows it once recomputed."""
         self.post_message(self.Decided(decision))
         if decision.verb != "note":
             self.say(f"{decision.verb} manoeuvre {decision.number}: every decision is made again")

@@ -131,11 +131,8 @@ def _outputs(model: FlownModel) -> Iterator[tuple[str, float]]:
 
 
 def _motion(servo: ExportedServo, model: FlownModel, control: str) -> Iterator[tuple[str, float]]:
-    """Yield the parameters of a servo's lag, delay and rate.
-
-    Alone, ``SIM_SERVO_SPEED`` is the time constant of a first-order lag. With a delay or a filter, it becomes
-    a rate limit. The lag then becomes a two-pole Butterworth filter with equal delay of a ramp.
-    """
+    """Yield the parameters of a servo's lag, delay and rate."""
+    # Alone, SIM_SERVO_SPEED is a first-order lag's time constant; with a delay or filter, a rate limit.
     lag_s = max(servo.lag_s, 0.0)
     speed, delay, cutoff = lag_s, servo.delay_s, 0.0
     if delay > 0.0 or servo.rate_rad_s or servo.damping:

@@ -98,16 +98,7 @@ def _improved(
     fitted: Sequence[Maneuver],
     folder: Path,
 ) -> tuple[Aircraft, tuple[str, ...]]:
-    """Return the aircraft file with the improved simulator, and the parts that the simulator does not
-    support.
-
-    Parameters
-    ----------
-    found
-        Estimate with the servos of ``servos``.
-    against, servos
-        Aircraft file of the surrogate, and the file with the servos found.
-    """
+    """Return the aircraft file with the improved simulator, and the parts that it does not support."""
     given = compared.aircraft
     kind, _, _ = (given.simulator or "linear").partition(":")
     if kind in ("linear", "log"):

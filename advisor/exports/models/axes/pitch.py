@@ -159,8 +159,7 @@ def named(found: Diagnosis) -> list[str]:
 def _improved(
     found: Diagnosis, against: Aircraft, aircraft: Aircraft, folder: Path
 ) -> tuple[Aircraft, tuple[str, ...]]:
-    """Return the aircraft file with the improved simulator, and the parts that the simulator does not
-    support."""
+    """Return the aircraft file with the improved simulator, and the parts that it does not support."""
     kind, _, _ = (aircraft.simulator or "linear").partition(":")
     if kind == "linear":
         better = parse_aircraft(file_of(FlownModel(against, None, None, found)))

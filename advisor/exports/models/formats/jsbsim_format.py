@@ -100,11 +100,7 @@ def _left_out(improvement: Improvement, surface: str) -> list[str]:
 def _targets(
     improvement: Improvement, first: Slopes, terms: Mapping[str, Sequence[str]], per_rad: float | None
 ) -> dict[str, float]:
-    """Return the target value of each contradicted derivative, and of moments that lift changes affect.
-
-    ``per_rad`` is the number of the elevator property's units per radian. None if the elevator's property is
-    no angle.
-    """
+    """Return the target of each contradicted derivative; None if the elevator's property is no angle."""
     found = {}
     for parameter in SLOPES:
         own = first.derivatives[parameter]

@@ -45,10 +45,7 @@ def knob_for(parameter: str, terms: Sequence[str], first: Slopes, surface: str) 
 
 
 def _turned(knob: Knob, missing: float, first: Slopes, surface: str) -> Knob:
-    """Return the knob changed by the missing part of its derivative.
-
-    Where the knob's factor would fall below zero, the export adds a function to the aircraft instead.
-    """
+    """Return the knob changed by the derivative's missing part; a function where its factor is below zero."""
     turned = knob.turned(missing)
     if isinstance(turned.change, AddedFunction) or turned.change.value > 0.0:
         return turned

@@ -78,13 +78,7 @@ def measure_side(content: bytes, model: Model, asked: SideRequest) -> SideSlopes
 
 
 def _answered(module: str, content: bytes, model: Model, asked: dict[str, Any]) -> dict[str, Any]:
-    """Load an aircraft text with its included files, and return its measurement.
-
-    Raises
-    ------
-    ConfigurationError
-        JSBSim does not load the aircraft, or the aircraft has no trim in the requested condition.
-    """
+    """Load an aircraft text with its included files, and return its measurement."""
     root = parse(content, model.file.name)
     for tag in ("input", "output"):
         # Sockets and files that the aircraft would open.
