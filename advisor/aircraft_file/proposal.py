@@ -19,8 +19,6 @@ def proposed(facts: LogFacts, log: str) -> Draft:
 
     Parameters
     ----------
-    facts
-        Facts about the aircraft from its log.
     log
         Name of the log, for the comments.
     """

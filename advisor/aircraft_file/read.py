@@ -41,8 +41,6 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
 
     Parameters
     ----------
-    content
-        Sections and keys.
     origin
         Name of the file, or of whatever the content comes from, for the sentence about mistakes.
     mend

@@ -154,11 +154,6 @@ def compare_logs(
 ) -> Compared:
     """Read logs and diagnose their gap to a simulator, or to the aircraft file's model where there is none.
 
-    Parameters
-    ----------
-    flown
-        Manoeuvres of the logs where they are read already.
-
     Raises
     ------
     UnusableInputError

@@ -27,11 +27,6 @@ at its boot and are smaller."""
 class LogSeries:
     """The logs of one campaign in the order of their flights. The oldest log is first if every log has a
     date; else the given order is used.
-
-    Parameters
-    ----------
-    logs
-        Paths of the logs.
     """
 
     def __init__(self, logs: Sequence[Path]) -> None:

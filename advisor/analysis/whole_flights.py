@@ -68,16 +68,12 @@ def read_whole(
 
     Parameters
     ----------
-    logs
-        Paths of the logs, a flight each.
     target_system
         System id of the vehicle; None: the first one heard.
     marks
         Further stretches marked as manoeuvres, on a single log.
     no_marks
         Whether to ignore earlier decisions by hand on the logs.
-    axis
-        Axes to judge.
     untested
         Whether flights without a test input are an answer of their own.
 

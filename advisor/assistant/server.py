@@ -45,8 +45,6 @@ def server_of(folders: Folders, calls: Calls) -> MCPServer[Any]:
     ----------
     folders
         Files that the tools may read.
-    calls
-        Runs the commands of the advisor.
     """
     logs = [str(path) for path in folders.logs()]
     named = ", ".join(logs[:_LISTED]) + (f" and {len(logs) - _LISTED} more" if len(logs) > _LISTED else "")

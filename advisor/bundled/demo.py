@@ -30,8 +30,6 @@ class Demonstration:
         One of the simulator's aircraft: ``linear`` is the paper's model.
     speed
         Multiple of real time, as ``python -m sim fly --speed`` takes it.
-    seed
-        Seed of the instruments' noise.
     record_to
         File of the recording; None: no recording.
     """

@@ -47,8 +47,6 @@ class AxisCampaign(ABC):
         Name of the axis, as it stands in the names of parts that may fail.
     aircraft
         The crew's aircraft file.
-    plan
-        Flight-test plan by which the axis is judged.
     parts
         Computes manoeuvres, verdicts and the joint estimate, each of which may fail separately.
     """

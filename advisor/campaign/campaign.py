@@ -74,8 +74,6 @@ class Campaign:
         Verdicts do not depend on the running estimate.
     tell
         Called with every event, for example to announce verdicts.
-    by_hand
-        Earlier decisions by hand on this flight.
     marks
         Further marks, which replace overlapping marks of ``by_hand`` and are not kept in a file.
     names

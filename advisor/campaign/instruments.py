@@ -55,8 +55,6 @@ def with_fit(
         Joint estimate over the accepted manoeuvres. The estimate's findings are in use.
     single
         Estimates of all manoeuvres. Findings of single estimates refuse manoeuvres.
-    aircraft
-        Aircraft file, with which the estimates were made.
     """
     found = {f.code: f for f in by_motion}
     told = [] if model is None else list(findings_of(model, aircraft))

@@ -63,8 +63,6 @@ class Settling:
             Manoeuvre being flown, up to the newest sample.
         aircraft
             The crew's aircraft, with a servo's lag that earlier manoeuvres told.
-        model
-            Joint estimate over the accepted manoeuvres.
         """
         if flying is None:
             self._number, self._settled = None, None

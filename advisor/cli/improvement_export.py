@@ -35,8 +35,6 @@ def orders_of(
     ----------
     inputs
         Files that the command reads, or that another option writes. No order may name one of them.
-    axis
-        Axis that the command answers for.
 
     Raises
     ------

@@ -52,8 +52,6 @@ def narrate(task: ConductorTask, say: Callable[[str], object], warn: Callable[[s
         Campaign and source; the source can be read from its beginning again.
     say
         Takes one line of text.
-    warn
-        Takes one line on what goes wrong.
 
     Raises
     ------
@@ -74,13 +72,7 @@ def narrate(task: ConductorTask, say: Callable[[str], object], warn: Callable[[s
 
 
 class Backlog:
-    """Warns when the estimating process falls behind the link.
-
-    Parameters
-    ----------
-    warn
-        Takes one line on what goes wrong.
-    """
+    """Warns when the estimating process falls behind the link."""
 
     def __init__(self, warn: Callable[[str], object]) -> None:
         self._warn, self._teller = warn, BehindTeller()

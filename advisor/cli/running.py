@@ -66,8 +66,6 @@ class Progress:
 
     Parameters
     ----------
-    total
-        Number of tasks.
     things
         Name of the tasks in the plural: ``logs``.
     """

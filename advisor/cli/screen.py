@@ -66,16 +66,10 @@ def advise(
     ----------
     open_source
         Makes the source in the estimating process. Both ``open_source`` and ``tell`` must be picklable.
-    title
-        Name of the source on the screens.
     tell
         Called with every event of the campaign, in the estimating process.
     tempo
         Start settings of a replay. None: the source is no replay.
-    by_hand
-        Earlier decisions by hand on this flight.
-    marks
-        Marks of the command line.
     kept
         Reads the decisions by hand since the start, for a source that can be read again from its
         beginning. A picklable source survives the death of the estimating process.

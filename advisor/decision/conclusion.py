@@ -49,8 +49,6 @@ def concluded(
 
     Parameters
     ----------
-    heard
-        Criterion that the crew heard after each earlier manoeuvre.
     change
         Change of the aircraft between manoeuvres; None if noise explains all differences.
     """

@@ -27,13 +27,7 @@ class Standing:
 
 
 class CriterionCourse:
-    """Cache of one campaign's stop criterion under one plan. The cache changes no decision.
-
-    Parameters
-    ----------
-    plan
-        Stop criterion of the campaign.
-    """
+    """Cache of one campaign's stop criterion under one plan. The cache changes no decision."""
 
     def __init__(self, plan: CampaignPlan) -> None:
         self.plan = plan

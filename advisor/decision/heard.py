@@ -54,8 +54,6 @@ def as_heard(found: RuleProgress, rule: str, heard: Sequence[Heard]) -> RuleProg
 
     Parameters
     ----------
-    found
-        Progress of the rule from the newest estimates.
     heard
         Criterion that the crew heard after each of the first manoeuvres. All other fields are equal to those
         of ``found``.

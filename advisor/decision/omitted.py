@@ -60,8 +60,6 @@ def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | 
     ----------
     maneuver
         Manoeuvre for which the estimate was made.
-    estimate
-        Estimate from this manoeuvre alone.
     term
         Shape (n,): omitted part of q̇ for a coefficient of one, at the stamps of the fitted pitch rate.
     """

@@ -55,12 +55,8 @@ def by_information(known: Knowledge, next_covariance: FloatArray, odds: Odds) ->
 
     Parameters
     ----------
-    known
-        Present knowledge of the aircraft.
     next_covariance
         Shape (8, 8): covariance of the expected errors of each further manoeuvre.
-    odds
-        Numbers of usable and of predicted manoeuvres in this campaign.
     """
     good = 1 if np.isnan(known.surprise) or not known.predicted else 0
     while good <= MOST and share_after(known, next_covariance, good) >= 1.0:
@@ -115,8 +111,6 @@ def by_scatter(
     window
         Shape (k, 8): estimates of the last accepted manoeuvres. At most n - 1 of these estimates remain in
         the next window.
-    posterior
-        Values about which the next estimates scatter, with their errors.
     next_std
         Shape (8,): standard deviations of that scatter.
     accepted_share

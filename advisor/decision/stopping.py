@@ -35,12 +35,8 @@ def flight_test(
 
     Parameters
     ----------
-    aircraft
-        Aircraft file, which gives the limits of the next input.
     course
         Cache of earlier decisions, which changes no verdict.
-    heard
-        Criterion that the crew heard after each earlier manoeuvre.
     """
     course = course or CriterionCourse(plan)
     by_rule: dict[str, RuleProgress] = {

@@ -25,8 +25,6 @@ def warnings(
 
     Parameters
     ----------
-    chosen
-        Progress of the rule that decides.
     change
         Change between manoeuvres; None if noise explains all differences.
     """

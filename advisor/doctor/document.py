@@ -23,8 +23,6 @@ def doctor_document(
     ----------
     findings
         Findings of the examination. None when nothing was heard; ``problem`` then gives the reason.
-    commands
-        Commands to type next.
     """
     if findings is None:
         assert problem is not None

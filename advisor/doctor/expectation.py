@@ -81,8 +81,6 @@ def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float 
 
     Parameters
     ----------
-    assumed
-        Assumed model of the aircraft, and noise of its instruments.
     rates_hz
         Rates of new values of ``elevator``, ``q`` and, where measured, ``alpha`` and ``a_z``.
     airspeed_m_s

@@ -33,15 +33,7 @@ class ExaminedInput:
 
 
 def next_commands(findings: Examination, examined: ExaminedInput) -> tuple[str, str, str]:
-    """Return the next three commands, in their order.
-
-    Parameters
-    ----------
-    findings
-        Findings of the examination.
-    examined
-        Target of the examination, and its aircraft file.
-    """
+    """Return the next three commands, in their order."""
     return _after_log(findings, examined) if examined.is_log else _after_link(findings, examined)
 
 

@@ -108,11 +108,6 @@ class Survey:
 
     ATTITUDE is the clock, as everywhere in the advisor. A message without a stamp takes the stamp of the
     ATTITUDE before it. A stream without ATTITUDE is counted by its times of arrival.
-
-    Parameters
-    ----------
-    vehicle
-        Vehicle whose messages count.
     """
 
     def __init__(self, vehicle: Vehicle) -> None:

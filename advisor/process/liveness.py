@@ -46,8 +46,6 @@ class Watch:
 
     Parameters
     ----------
-    process
-        Process whose messages are watched.
     tell
         Called with the message's age, s, at every check at which the newest message is old. The calls come
         from a thread of the watch.

@@ -26,8 +26,6 @@ def read_yaml(path: Path, mend: str = "See the example in the README.") -> Any:
 
     Parameters
     ----------
-    path
-        File to read.
     mend
         Sentence with the remedy for a refused file.
 

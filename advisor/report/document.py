@@ -38,8 +38,6 @@ def analysis_document(
         Aircraft with reference data for non-dimensional coefficients.
     left_out
         Reasons why logs are not used, by flight. ``usable`` is false if no log is used.
-    notes
-        Sentences about the series of logs.
     """
     several = len(files) > 1
     read = [*state.elevator_notes, *state.reader_notes, *state.mark_notes] if state else []

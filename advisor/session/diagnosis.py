@@ -57,15 +57,7 @@ def diagnosed(
     target_system: int | None = None,
     tell: Callable[[str, float], None] = lambda *_: None,
 ) -> Document:
-    """Diagnose logs against the aircraft file's simulator; return ``advisor.gap/1`` with the next steps.
-
-    Parameters
-    ----------
-    by_hand
-        Decisions by hand on each log.
-    reading
-        Options of the command line by which the logs are read.
-    """
+    """Diagnose logs against the aircraft file's simulator; return ``advisor.gap/1`` with the next steps."""
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.process.parts import FailedPart, attempt
     from advisor.report.gap_document import gap_document

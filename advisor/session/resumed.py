@@ -33,8 +33,6 @@ class ResumedSource:
     ----------
     logs
         Logs of earlier flights, the oldest first, only read.
-    link
-        Link to the vehicle in flight.
     """
 
     def __init__(self, logs: Sequence[Path], link: Source) -> None:

@@ -23,8 +23,6 @@ def contradicted(diagnosis: Diagnosis, removed: float) -> Diagnosis:
 
     Parameters
     ----------
-    diagnosis
-        Diagnosis with the numbers of the remaining corrections and the original answer.
     removed
         Share of the gap on held-out manoeuvres that the remaining corrections remove.
     """

@@ -33,8 +33,6 @@ class ModelExchange:
     ----------
     instance
         Model of FMPy, initialised and in event mode.
-    description
-        Model description of the FMU.
     """
 
     def __init__(self, instance: Any, description: Any) -> None:

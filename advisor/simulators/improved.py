@@ -59,8 +59,6 @@ def in_simulator(
         Held-out manoeuvres with the diagnosis of the others; None if nothing was found.
     flying
         Simulator with the manoeuvres to fly.
-    surrogate
-        Linear surrogate of the simulator.
     as_flown
         Manoeuvre as the simulator flew it, by manoeuvre number.
     """

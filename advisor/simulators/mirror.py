@@ -92,14 +92,10 @@ def mirrored(
 
     Parameters
     ----------
-    whole
-        Diagnosis of the flight against the simulator.
     maneuvers
         Manoeuvres of the flight, as logged.
     flying, replays
         Simulator, and its replays without added effects.
-    aircraft
-        Aircraft file of the crew.
     as_flown
         Difference of simulator and surrogate that the diagnosis removed, by manoeuvre number.
     """

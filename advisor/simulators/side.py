@@ -52,8 +52,6 @@ def side_without_difference(
 
     Parameters
     ----------
-    maneuvers
-        Manoeuvres of aileron and rudder.
     aircraft
         Aircraft file of the crew. The servos of the file are applied before the simulator; the file's model
         is not used.

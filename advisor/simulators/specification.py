@@ -36,8 +36,6 @@ def simulator_of(specification: str, aircraft: Aircraft, read_log: ReadLog) -> S
     ----------
     specification
         Specification as the user wrote it.
-    aircraft
-        Aircraft file of the crew.
     read_log
         Function that reads a log written by the simulator.
 

@@ -42,8 +42,6 @@ def with_static_errors(
 
     Parameters
     ----------
-    examined
-        Evidence of the diagnosis.
     trims
         Trims of simulator and aircraft; empty for a simulator without trim.
     """

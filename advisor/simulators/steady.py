@@ -23,8 +23,6 @@ def steady(rates: Callable[[FloatArray], FloatArray], start: FloatArray) -> Floa
     ----------
     rates
         Function that returns the rates for the unknowns, both of shape (n,).
-    start
-        Unknowns at which the search starts.
     """
     at = start
     for _ in range(_ROUNDS):

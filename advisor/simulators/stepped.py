@@ -54,10 +54,6 @@ class Stepped:
 
     Parameters
     ----------
-    environment
-        Environment to be wrapped.
-    description
-        Name of the environment in every sentence.
     dt
         Time step, s.
     controls

@@ -31,10 +31,6 @@ def without_worse(
 
     Parameters
     ----------
-    whole
-        Diagnosis of all manoeuvres.
-    unseen
-        Held-out manoeuvres, with the diagnosis of the others.
     measure
         Function that measures the gap of the held-out manoeuvres with the others' answer.
     """

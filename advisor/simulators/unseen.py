@@ -150,8 +150,6 @@ def unknown_offset(whole: Diagnosis, model: Diagnosis | None) -> float:
 
     Parameters
     ----------
-    whole
-        Diagnosis of the data.
     model
         Diagnosis on which the model is based; None for a simulator as given.
     """

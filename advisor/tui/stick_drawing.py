@@ -46,8 +46,6 @@ def stick_drawing(
         Steps in order: whether the step is nose up (stick back) or to the right, and its duration, s.
     width
         Columns of the drawing. Without room the drawing is empty.
-    sides
-        Names of the directions above and below trim.
     """
     shortest = min(duration for _, duration in steps)
     lengths = [round(_UNIT_COLUMNS * duration / shortest) for _, duration in steps]

@@ -59,17 +59,7 @@ def _dots(x: float, top: float, cell: str) -> list[str]:
 
 
 def picture_of(strips: Sequence[Strip], width: int, title: str) -> str:
-    """Draw lines of a terminal as SVG.
-
-    Parameters
-    ----------
-    strips
-        The lines, from the top.
-    width
-        Cells of the widest line.
-    title
-        Title above the picture.
-    """
+    """Draw lines of a terminal as SVG."""
     console = Console(
         width=width,
         height=len(strips),

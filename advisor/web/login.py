@@ -36,13 +36,7 @@ class _Turn:
 
 
 class Login:
-    """Asks for the password once in each browser.
-
-    Parameters
-    ----------
-    access
-        Holder of the password.
-    """
+    """Asks for the password once in each browser."""
 
     def __init__(self, access: Access) -> None:
         self._access = access

@@ -23,8 +23,6 @@ class PageProcess(AppService):
         Address of the campaign for the process.
     socket
         The page's own WebSocket, which is closed when the process ends.
-    downloads
-        Passes files from the application to the browser.
     """
 
     def __init__(self, door: Door, socket: web.WebSocketResponse, downloads: DownloadManager) -> None:

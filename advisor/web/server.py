@@ -39,15 +39,7 @@ def _reason(error: OSError) -> str:
 
 
 class WebServer:
-    """Serves a site from the start of the context to its end.
-
-    Parameters
-    ----------
-    site
-        Site to serve.
-    at
-        Socket that is already listening.
-    """
+    """Serves a site from the start of the context to its end."""
 
     def __init__(self, site: Site, at: socket.socket) -> None:
         self._site, self._at = site, at

@@ -78,12 +78,6 @@ def serve(
 
     Parameters
     ----------
-    place
-        Address of the pages, and access to them.
-    task
-        Campaign and source.
-    aircraft
-        Content of the aircraft file.
     title
         Name of the log or of the connection.
     tempo

@@ -97,8 +97,6 @@ class Audience:
 
     Parameters
     ----------
-    viewing
-        First message to each page.
     shared
         Campaign that all pages show. None: each page has a campaign of its own.
     make_conductor

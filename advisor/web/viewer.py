@@ -41,8 +41,6 @@ class ViewerApp(AdvisorApp):
 
     Parameters
     ----------
-    viewing
-        First message of the server.
     conductor
         Conductor that speaks with the campaign in the server.
     """

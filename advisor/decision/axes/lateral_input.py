@@ -68,14 +68,8 @@ def next_lateral(
 
     Parameters
     ----------
-    control
-        Control whose derivatives are least known.
     percent
         Error of the worst derivative of this control, % of its tolerance; infinite if unknown.
-    flown
-        All inputs so far, both accepted and refused.
-    holding_back
-        Derivative that delays the stop.
     """
     ends_deg = getattr(aircraft, control).ends_deg
     travel = min(map(abs, map(radians, ends_deg))) if ends_deg and 0.0 not in ends_deg else FULL_TRAVEL_RAD

@@ -68,14 +68,6 @@ def lateral_flight_test(
     ----------
     history
         Estimate of every manoeuvre in the order flown; None for a refused manoeuvre.
-    joint
-        Joint estimate over the accepted manoeuvres.
-    aircraft
-        Aircraft file of the crew, with its tolerance.
-    flown
-        Inputs of all manoeuvres, both accepted and refused.
-    heard
-        Criterion that the crew heard after each earlier manoeuvre.
     change
         Change of the aircraft between manoeuvres; None if noise explains all differences.
     """

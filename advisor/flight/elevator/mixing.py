@@ -65,8 +65,6 @@ class Mixing:
 
         Parameters
         ----------
-        new
-            Newest samples of the outputs.
         loop_is_closed
             Whether an autopilot closes a loop, so that the elevator answers the pitch rate.
         """

@@ -64,8 +64,6 @@ def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) ->
     ----------
     channels
         Samples of each channel, by the channel's name.
-    earlier
-        Pooled evidence from earlier records of these instruments.
     """
     work = Work(dict(channels), earlier or {})
     if _attitude_and_rate(work) and hold_force_unit(work):

@@ -145,8 +145,6 @@ def examine_side(channels: Mapping[str, Channel], earlier: Evidence | None = Non
     ----------
     channels
         Samples of each channel, by the channel's name.
-    earlier
-        Pooled evidence from earlier records of these instruments.
     """
     work = Work(dict(channels), earlier or {})
     if _bank_and_rate(work) and hold_force_unit(work):

@@ -59,8 +59,6 @@ def excitation(maneuver: Maneuver, loop: Loop = PITCH) -> Excitation | None:
     maneuver
         Record with the channels of the control and of the rate. Without the angle channel, the integral of
         the rate is used.
-    loop
-        Control, and the rate that responds.
 
     Returns
     -------

@@ -38,8 +38,6 @@ def explained_by_feedback(
 
     Parameters
     ----------
-    span
-        Extent of the movement.
     elevator
         Elevator channel, rad.
     motion

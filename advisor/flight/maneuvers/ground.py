@@ -39,8 +39,6 @@ def why_on_ground(span: Span, cut: Cut, limits: Limits) -> str | None:
 
     Parameters
     ----------
-    span
-        The movement of the elevator.
     cut
         Function that returns ``landed_state``, ``armed``, ``groundspeed``, ``airspeed``, ``height`` and ``q``
         if received.

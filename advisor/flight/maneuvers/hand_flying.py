@@ -32,15 +32,7 @@ level flight while the control moves."""
 
 
 def flown_elsewhere(maneuver: Maneuver, limits: Limits) -> str | None:
-    """Return in words how a slow movement was outside the model's limits; None for any other movement.
-
-    Parameters
-    ----------
-    maneuver
-        Record of the movement.
-    limits
-        Limits of bank and air speed in the aircraft file.
-    """
+    """Return in words how a slow movement was outside the model's limits; None for any other movement."""
     return None if _is_abrupt(maneuver) else next(_outside(maneuver, limits), None)
 
 

@@ -98,8 +98,6 @@ def marked_span(mark: Mark, elevator: Channel | None) -> Span:
 
     Parameters
     ----------
-    mark
-        Marked stretch, in seconds since boot.
     elevator
         Elevator from one lead-in before the mark to the mark's end, rad. None if the channel was not
         received.

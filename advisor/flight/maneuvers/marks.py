@@ -84,13 +84,7 @@ class Due:
 
 
 class Marks:
-    """Marks of one stream, and the segmenter's spans that they may replace.
-
-    Parameters
-    ----------
-    given
-        Marks that are known before the stream begins.
-    """
+    """Marks of one stream, and the segmenter's spans that they may replace."""
 
     def __init__(self, given: Sequence[Mark] = ()) -> None:
         self._given = list(given)

@@ -33,8 +33,6 @@ def at_steady_speed(span: Span, airspeed: Channel | None, change_percent: float)
 
     Parameters
     ----------
-    span
-        Extent of the movement with its free response.
     airspeed
         Air speed during the record, m/s. None without a received air speed.
     change_percent

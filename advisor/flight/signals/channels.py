@@ -144,8 +144,6 @@ def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    columns
-        Messages of one type.
     master_s
         Shape (n,): master clock at the arrival of each message, s since boot.
     """

@@ -41,13 +41,7 @@ class MasterStamps:
 
 
 class BootClock:
-    """Unwrapping of ``time_boot_ms`` and detection of reboots.
-
-    Parameters
-    ----------
-    boot
-        Number of the first power-on.
-    """
+    """Unwrapping of ``time_boot_ms`` and detection of reboots."""
 
     def __init__(self, boot: int = 0) -> None:
         self.boot = boot

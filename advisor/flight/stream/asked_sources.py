@@ -13,13 +13,7 @@ _ANY = ("auto", "none", "derived")
 
 
 class AskedSources:
-    """Reports which named sources of the aircraft file have sent no value.
-
-    Parameters
-    ----------
-    aircraft
-        The aircraft file.
-    """
+    """Reports which named sources of the aircraft file have sent no value."""
 
     def __init__(self, aircraft: Aircraft) -> None:
         stated = {"alpha": aircraft.alpha.source, "beta": aircraft.beta.source}

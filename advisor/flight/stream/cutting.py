@@ -39,8 +39,6 @@ class Cutting:
 
     Parameters
     ----------
-    tracks, who
-        Channels and identity of the vehicle.
     aircraft
         Aircraft file, with the elevator's sign and the limits of the model.
     breaks

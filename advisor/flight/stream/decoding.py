@@ -23,12 +23,8 @@ def decoded(columns: Columns, t: FloatArray, aircraft: Aircraft, companion: bool
 
     Parameters
     ----------
-    columns
-        Messages of one type.
     t
         Shape (n,): vehicle time of each message, s since boot.
-    aircraft
-        Aircraft file, with its air speed and the names of its vanes.
     companion
         Whether another component than the autopilot sent the messages.
     """
@@ -56,8 +52,6 @@ def power_on(
     ----------
     boot
         Number of the power-on.
-    tracks, who
-        Channels and identity of the vehicle.
     is_backwards
         Whether the elevator was found to move opposite to its nominal sign.
     clock

@@ -25,8 +25,6 @@ class ElevatorPath:
         Mixer that forms the elevator from several outputs.
     marks
         Marked stretches of the stream. A movement in a marked stretch is not reported separately.
-    cutting
-        Cutter that turns movements into manoeuvres and activities.
     """
 
     def __init__(self, tracks: Tracks, mixing: Mixing, marks: Marks, cutting: Cutting) -> None:
@@ -71,8 +69,6 @@ class ElevatorPath:
 
         Parameters
         ----------
-        moved
-            Samples of the outputs.
         closes_loop
             Whether the autopilot closes a loop over the elevator.
         """

@@ -37,8 +37,6 @@ class Identity:
 
     Parameters
     ----------
-    aircraft
-        Aircraft file, with its elevator, aileron and rudder.
     target_system
         System id to follow; None for the first vehicle that sends.
     """

@@ -34,12 +34,8 @@ class SidePath:
 
     Parameters
     ----------
-    tracks
-        Channels of the vehicle.
     marks
         Marked stretches. A movement in a marked stretch is not reported separately.
-    cutting
-        Cutter that returns the record of a manoeuvre.
     """
 
     def __init__(self, tracks: Tracks, marks: Marks, cutting: Cutting) -> None:

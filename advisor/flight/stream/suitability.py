@@ -43,14 +43,8 @@ def problems(
 
     Parameters
     ----------
-    vehicle, other_systems
-        Vehicle that is followed, and system ids of the other vehicles heard.
     elevator
         Outputs of the elevator, or the reason why they are unknown.
-    channels
-        Best arrival status of every channel.
-    maneuvers
-        Number of manoeuvres found.
     activities
         Number of elevator movements that were no test inputs, by the reason in words.
     still

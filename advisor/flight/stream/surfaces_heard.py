@@ -32,17 +32,7 @@ def speakers(vehicle: Vehicle) -> tuple[tuple[int, int], ...]:
 
 
 class SurfacesHeard:
-    """Elevator, aileron and rudder among the servo outputs.
-
-    Parameters
-    ----------
-    aircraft
-        Aircraft file, with its elevator, aileron and rudder.
-    parameters
-        Received parameters, to which new ones are added.
-    finder
-        Followed vehicle.
-    """
+    """Elevator, aileron and rudder among the servo outputs."""
 
     def __init__(self, aircraft: Aircraft, parameters: Parameters, finder: VehicleFinder) -> None:
         self._aircraft, self._parameters, self._finder = aircraft, parameters, finder
@@ -84,8 +74,6 @@ class SurfacesHeard:
 
         Parameters
         ----------
-        columns
-            PARAM_VALUE messages.
         now_s
             Vehicle time of the newest sample, s since boot.
         flown

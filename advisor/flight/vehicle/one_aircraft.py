@@ -20,13 +20,7 @@ class OneAircraft:
         self._elevator: tuple[str, Surface] | None = None
 
     def refuse(self, name: str, vehicle: Vehicle) -> Problem | None:
-        """Return a problem if the vehicle of a flight is certainly another aircraft; else None.
-
-        Parameters
-        ----------
-        name
-            Name of the log.
-        """
+        """Return a problem if the vehicle of a flight is certainly another aircraft; else None."""
         first_name, first = self._vehicle = self._vehicle or (name, vehicle)
         if _kind(vehicle) == _kind(first):
             return None

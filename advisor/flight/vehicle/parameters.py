@@ -115,12 +115,8 @@ def filter_delay_s(channel: str, source: str, autopilot: str, stated: Mapping[st
 
     Parameters
     ----------
-    channel, source
-        Name of the channel, and its message and field.
     autopilot
         Name of the autopilot in the vehicle's identity.
-    stated
-        Value of each parameter, by its name.
     """
     if channel not in _RATES + _FORCES:
         return 0.0

@@ -22,8 +22,6 @@ def pieces(columns: Sequence[Columns], by_second: bool = False) -> Iterator[list
 
     Parameters
     ----------
-    columns
-        Messages of all senders, in one batch.
     by_second
         Whether the batch is also divided at each second of arrival, for the comparison of vehicles.
     """

@@ -68,13 +68,6 @@ class Calibration:
     def carried_over(self, measured: Scale, other: Scale) -> "Calibration":
         """Return this calibration for another output of the linkage, relative to TRIM, with the sign of
         REVERSED.
-
-        Parameters
-        ----------
-        measured
-            Scale of the calibrated output.
-        other
-            Scale of the other output.
         """
         turn = 1.0 if measured.reversed == other.reversed else -1.0
         moved = ((other.trim_us + turn * (pwm - measured.trim_us), deg) for pwm, deg in self.pairs)

@@ -20,12 +20,8 @@ def limits(names: Names, stated: Mapping[str, float], usual: Scale) -> tuple[Sca
 
     Parameters
     ----------
-    names
-        Names of the parameters of the limits.
     stated
         Values of the vehicle's parameters, by name.
-    usual
-        Limits that replace unstated ones, and the direction of the output.
     """
     known = [stated.get(name) for name in names]
     wrong = _contradiction(names, known)

@@ -57,10 +57,6 @@ def infer(
 
     Parameters
     ----------
-    problem, baseline
-        Flight data, and the plain model fitted to these data.
-    aircraft
-        The aircraft file, whose effects are part of every model.
     kinematics
         Check of α against the motion, which alone shows a constant offset.
     """

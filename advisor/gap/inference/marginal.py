@@ -27,8 +27,6 @@ def marginal(
 
     Parameters
     ----------
-    likelihood
-        Log likelihood of the fit.
     information, gradient
         Shapes (k, k) and (k,): curvature and slope of the log likelihood at the fit, without a prior.
     """

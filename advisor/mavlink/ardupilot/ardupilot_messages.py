@@ -45,15 +45,7 @@ class Known:
 
 
 class Translation:
-    """Conversion of the records in one stretch of a log.
-
-    Parameters
-    ----------
-    read
-        Records of the stretch.
-    known
-        Facts about the log from the earlier stretches.
-    """
+    """Conversion of the records in one stretch of a log."""
 
     def __init__(self, read: Clocked, known: Known) -> None:
         self._tables = dict(read.tables)

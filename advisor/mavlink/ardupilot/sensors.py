@@ -94,12 +94,8 @@ def said(
 
     Parameters
     ----------
-    every
-        Records of all sensors.
     table
         Records of the sensor in use, from :func:`flown`.
-    quantity
-        Name of the measured quantity.
     health
         Fields that state a sensor's health.
     silences
@@ -117,8 +113,6 @@ def silences_in(every: RecordTable, table: RecordTable, before: Sequence[Silence
 
     Parameters
     ----------
-    every
-        Records of all sensors.
     table
         Records of the sensor in use, from :func:`flown`.
     before

@@ -26,8 +26,6 @@ def status_text(text: str, number: int) -> list[Any]:
 
     Parameters
     ----------
-    text
-        Text of the announcement.
     number
         Running number of the announcement, from which the id of a chunked text follows.
     """
@@ -63,8 +61,6 @@ class Announcer(Talker):
         ----------
         maneuver
             Number of the manoeuvre. A second verdict on a manoeuvre is not sent.
-        sentence
-            Sentence of the verdict.
         stop
             Sentence about axes with a complete test; empty without one.
         axis
@@ -110,8 +106,6 @@ class SeparateConnection(Talker):
 
     Parameters
     ----------
-    talker
-        Source of the messages.
     connection
         Connection string, see ``parse_connection``.
 

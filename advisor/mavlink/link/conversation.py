@@ -19,10 +19,6 @@ class Conversation:
 
     Parameters
     ----------
-    talkers
-        Talkers of the link.
-    own
-        Ids of the advisor.
     key
         Signing key of 32 bytes; None for unsigned frames.
     """

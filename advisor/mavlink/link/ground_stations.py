@@ -21,13 +21,7 @@ def is_ground_station(frame: Frame) -> bool:
 
 
 def who_sets_rates(stations: Collection[int]) -> str:
-    """Return a clause about the station that may have changed the rates, with the remedy.
-
-    Parameters
-    ----------
-    stations
-        System ids of the ground stations heard.
-    """
+    """Return a clause about the station that may have changed the rates, with the remedy."""
     if not stations:
         return f"another ground station may set the rates, though none is heard here; {CURE}"
     which = ", ".join(map(str, sorted(stations)))

@@ -18,8 +18,6 @@ class Intake:
 
     Parameters
     ----------
-    crc_extra
-        Seed of the checksum, by message id.
     target_system
         System id of the vehicle; None for the first autopilot that sends.
     signatures

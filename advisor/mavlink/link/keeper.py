@@ -82,13 +82,7 @@ class Reader:
 
 
 class Keeper:
-    """Keeper of one link until a stop, or until no advisor guards it and the vehicle is silent.
-
-    Parameters
-    ----------
-    keeping
-        Description of the link and its recording.
-    """
+    """Keeper of one link until a stop, or until no advisor guards it and the vehicle is silent."""
 
     def __init__(self, keeping: Keeping) -> None:
         self._keeping = keeping

@@ -30,8 +30,6 @@ class KeptLink:
 
     Parameters
     ----------
-    door
-        Address of the process.
     elevator
         Elevator of the aircraft file, which shows which vehicle has one. None to decide by parameters.
     target_system

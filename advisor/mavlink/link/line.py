@@ -18,12 +18,8 @@ class Line:
 
     Parameters
     ----------
-    address
-        Parsed connection string.
     inherited
         File descriptor of another process's UDP socket for the address. None to open a new socket.
-    stop
-        Event that ends every wait.
     """
 
     def __init__(self, address: Address, inherited: int | None, stop: Event) -> None:

@@ -35,8 +35,6 @@ class LinkProcess:
 
     Parameters
     ----------
-    keeping
-        Description of the link and its recording.
     running
         Running process that keeps this link and is unguarded. None to start a new process.
     """

@@ -132,12 +132,8 @@ class RateWatch:
 
         Parameters
         ----------
-        from_vehicle
-            Frames of the vehicle since the last look.
         now_s
             Monotonic seconds.
-        stations
-            System ids of the ground stations on the link.
         """
         if not from_vehicle:
             return []

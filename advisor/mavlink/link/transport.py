@@ -16,8 +16,6 @@ class ConnectionCutError(Exception):
 
     Parameters
     ----------
-    why
-        Reason in words.
     listening
         Whether the transport itself waits for the next caller. Otherwise the caller opens the transport
         again.

@@ -93,8 +93,6 @@ def open_transport(address: Address, inherited: int | None = None) -> Transport:
 
     Parameters
     ----------
-    address
-        Parsed connection string.
     inherited
         File descriptor of another process's UDP socket for this address. None to open a new socket.
 

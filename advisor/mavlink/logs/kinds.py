@@ -51,8 +51,6 @@ def refusal(name: str, beginning: bytes) -> Problem:
 
     Parameters
     ----------
-    name
-        Name of the file in the sentence.
     beginning
         Beginning of the file, in which :func:`recognised` finds no log.
     """

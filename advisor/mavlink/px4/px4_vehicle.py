@@ -113,13 +113,7 @@ def dropouts(log: Any) -> list[str]:
 
 
 def stated(log: Any, further: Mapping[str, float], start_us: int) -> Iterator[TimedMessages]:
-    """Yield PARAM_VALUE of every parameter at the start of the log, then of every change.
-
-    Parameters
-    ----------
-    further
-        Findings of the log reader in the form of parameters.
-    """
+    """Yield PARAM_VALUE of every parameter at the start of the log, then of every change."""
     initial = parameters_of(log)
     rows = [(start_us, name, value) for name, value in (initial | dict(further)).items()]
     rows += [

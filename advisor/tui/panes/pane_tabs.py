@@ -14,8 +14,6 @@ class PaneTabs(Static):
 
     Parameters
     ----------
-    titles
-        Title of each pane.
     short
         Titles for terminals without room for the full ones.
     """

@@ -45,12 +45,8 @@ def paint(chart: Chart, width: int, height: int, base: Style, inks: list[Style])
 
     Parameters
     ----------
-    chart
-        Chart to paint.
     width, height
         Size in cells; where it is too small, a sentence says so.
-    base, inks
-        Style of words and of each ink.
     """
     if not chart.series:
         return Painting(_sentence(f"{chart.y_label}: {chart.why_empty}", width, base))
@@ -206,14 +202,8 @@ def legend(chart: Chart, read: list[str], width: int, style: Style, inks: list[S
 
     Parameters
     ----------
-    chart
-        Chart with the names.
     read
         One text for each series: its value at the cursor, empty without one.
-    width
-        Cells of the line.
-    style, inks
-        Style of words, and of each ink.
     """
     curves = [
         (f"  {_SAMPLE[s.mark]} {s.name} {value}".rstrip(), s.ink)

@@ -48,8 +48,6 @@ def prove_side(
 
     Parameters
     ----------
-    compared
-        The comparison of the whole flight.
     fresh
         Manoeuvres of other logs; None to hold out the last third.
 

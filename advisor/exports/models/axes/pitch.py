@@ -43,8 +43,6 @@ def prove(
 
     Parameters
     ----------
-    flown
-        Manoeuvres of the diagnosis.
     fresh
         Manoeuvres of other logs; None to hold out the last third of ``flown``.
     whole

@@ -132,10 +132,6 @@ def functions_of(
 
     Parameters
     ----------
-    effects
-        Effects of the aircraft file.
-    slopes
-        Slopes of the aircraft to which the functions are added.
     surface
         Property of the elevator's position.
     """

@@ -66,8 +66,6 @@ def settled(
     ----------
     first
         Slopes of the aircraft before any correction, and slopes with the given knobs.
-    targets
-        Target value of each derivative, one per knob.
     surface
         Property of the elevator's position.
     measured
