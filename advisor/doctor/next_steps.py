@@ -38,7 +38,7 @@ def next_commands(findings: Examination, examined: ExaminedInput) -> tuple[str, 
 
 
 def _after_log(findings: Examination, examined: ExaminedInput) -> tuple[str, str, str]:
-    log, aircraft = shlex.quote(examined.target), _aircraft(examined)
+    log, aircraft = shlex.quote(examined.target), shlex.quote(examined.aircraft_file or NEW_FILE)
     chosen = _chosen(findings, examined)
     stopping = {limit.code for limit in findings.limits if limit.stops}
     if examined.aircraft_file is None:
@@ -86,10 +86,6 @@ def _after_link(findings: Examination, examined: ExaminedInput) -> tuple[str, st
     if any(limit.stops for limit in findings.limits):
         return (f"advisor doctor {connection}{rates}{aircraft}{chosen}", live, after)
     return (live, f"advisor analyze {RECORDING}{aircraft}{chosen}", after)
-
-
-def _aircraft(examined: ExaminedInput) -> str:
-    return shlex.quote(examined.aircraft_file or NEW_FILE)
 
 
 def _chosen(findings: Examination, examined: ExaminedInput) -> str:

@@ -50,7 +50,7 @@ def cut_tlog(log: Path, first: int, last: int) -> bytes:
             )
         data = plain.read_bytes()
         needed = sorted({int(at) for columns in _messages(plain) for at in _newest(columns, first)})
-    records = [_record(data, at) for at in needed]
+    records = [data[at - STAMP_BYTES : at + _length(data, at)] for at in needed]
     return b"".join([*records, data[first - STAMP_BYTES : last + _length(data, last)]])
 
 
@@ -76,10 +76,6 @@ def _newest(columns: Columns, first: int) -> IntArray:
     for i, at in enumerate(order.tolist()):
         newest[tuple(key[i] for key in keys)] = at
     return np.array(list(newest.values()), dtype=np.int64)
-
-
-def _record(data: bytes, at: int) -> bytes:
-    return data[at - STAMP_BYTES : at + _length(data, at)]
 
 
 def _length(data: bytes, at: int) -> int:

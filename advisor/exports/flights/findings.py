@@ -123,7 +123,7 @@ def _estimates(axis: _Axis) -> FlightTable:
         """Return an attribute of the estimates by row, shape (n,); NaN for an unidentifiable parameter."""
         return numbers([_told(e, name, values, of) for _, e, name in rows])
 
-    units = texts([axis.units.get(name, _unit_of(name)) for _, _, name in rows])
+    units = texts([axis.units.get(name, name.rpartition("_")[2]) for _, _, name in rows])
     reasons = texts([e.not_identifiable.get(name, "") for _, e, name in rows])
     speeds = numbers([e.airspeed_m_s for _, e, _ in rows])
     which = f"number; {JOINT} is the joint estimate over the accepted manoeuvres"
@@ -151,11 +151,6 @@ def _told(e: Estimate, name: str, values: str, of: tuple[int, ...]) -> float | N
     instrument = e.instrument(name)
     told = {"theta": "value", "std": "std"}.get(values)
     return None if instrument is None or told is None else getattr(instrument, told)
-
-
-def _unit_of(name: str) -> str:
-    """Return the SI unit that ends the name of an instrument's parameter."""
-    return name.rpartition("_")[2]
 
 
 def _residuals(axis: _Axis, record_of: Mapping[tuple[int, int], int]) -> Iterator[FlightTable]:

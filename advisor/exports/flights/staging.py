@@ -29,7 +29,7 @@ def staged(folder: Path, inputs: Sequence[Path] = ()) -> Iterator[Path]:
     ConfigurationError
         The folder cannot be created or written to, or a file would replace an input.
     """
-    made = _missing(folder)
+    made = [path for path in (folder, *folder.parents) if not path.exists()]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         stage = Path(tempfile.mkdtemp(prefix=".export-", dir=folder))
@@ -75,11 +75,6 @@ def refuse_inputs(targets: Sequence[Path], inputs: Sequence[Path]) -> None:
     for target in targets:
         if target.resolve() in read:
             raise ConfigurationError(f"-o: {target} is an input of this command; name another place.")
-
-
-def _missing(folder: Path) -> list[Path]:
-    """Return the missing folders to be created, the innermost first."""
-    return [path for path in (folder, *folder.parents) if not path.exists()]
 
 
 def _refused(folder: Path, error: OSError) -> ConfigurationError:

@@ -217,7 +217,7 @@ def force_against_alpha(channels: Channels) -> Evidence:
         return {"a_z_least": bound}
     by_width = width * float(other.factors[1] - fit.factors[1]) / _STEP
     return {
-        "a_z_least": _lower(bound, together),
+        "a_z_least": bound if bound.value < together.value else together,
         "a_z_most": together,
         "airspeed_scale": Measured(float(fit.factors[1]), hypot(float(fit.factor_stds[1]), by_width)),
     }
@@ -250,7 +250,3 @@ def usable(channels: Channels, *names: str) -> bool:
         and channels[name].largest_gap_s <= _LONGEST_GAP_S
         for name in names
     )
-
-
-def _lower(one: Measured, other: Measured) -> Measured:
-    return one if one.value < other.value else other
