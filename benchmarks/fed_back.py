@@ -23,7 +23,7 @@ from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
-from advisor.report.improved import write_improved
+from advisor.report.improved import improved_file, text_of
 from advisor.words.problems import UnusableInputError
 from benchmarks.gap_score import DRAWS
 from benchmarks.halves import halves_of
@@ -51,7 +51,9 @@ def fed_back(flown: Sequence[Maneuver], fresh: Sequence[Maneuver], aircraft: Air
     if first.verdict not in ("effect", "parameters"):
         return FedBack(first, None)
     with tempfile.TemporaryDirectory() as folder:
-        better = read_aircraft(write_improved(first, aircraft, Path(folder) / "improved.yaml"))
+        improved = Path(folder) / "improved.yaml"
+        improved.write_text(text_of(improved_file(first, aircraft)), encoding="utf-8")
+        better = read_aircraft(improved)
     return FedBack(first, _diagnosed(fresh, better))
 
 

@@ -146,7 +146,6 @@ class Campaign:
         return CampaignState(
             vehicle=stream.vehicle,
             now_s=stream.now_s,
-            duration_s=flights.duration_s,
             mode=stream.mode,
             channels=channels,
             maneuvers=elevator.judged,

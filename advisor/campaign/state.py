@@ -105,8 +105,6 @@ class CampaignState:
     """Vehicle whose messages are read. None before the first heartbeat."""
     now_s: float
     """Vehicle time of the newest sample, seconds since boot."""
-    duration_s: float
-    """Vehicle time received so far, over all power-ons, s."""
     mode: str
     channels: Mapping[str, ChannelStatus]
     maneuvers: tuple[JudgedManeuver, ...]

@@ -11,7 +11,6 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.result import Diagnosis
-from advisor.process.atomic_file import write_atomically
 from advisor.words.plain import plain
 
 
@@ -57,12 +56,6 @@ def _beyond(content: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, A
         elif not isinstance(value, Mapping) and value != usual.get(key):
             found[key] = value
     return found
-
-
-def write_improved(diagnosis: Diagnosis, aircraft: Aircraft, path: Path) -> Path:
-    """Write the improved simulator as a file that ``advisor`` and ``python -m sim`` load."""
-    write_atomically(path, text_of(improved_file(diagnosis, aircraft)))
-    return path
 
 
 def text_of(content: Mapping[str, Any]) -> str:

@@ -1,10 +1,10 @@
 """Interface between the screens and the conductor of the campaign, and the differences between its
 reports."""
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, Protocol
+from typing import Any
 
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import ManeuverVerdict
@@ -43,9 +43,10 @@ class SessionReport:
 Tell = Callable[[SessionReport], object]
 
 
-class Conducting(Protocol):
+class Conducting(ABC):
     """Runs a campaign over a source. Every method except ``run`` returns before its request is done."""
 
+    @abstractmethod
     def run(self, tell: Tell) -> None:
         """Run the campaign until `stop`, in the calling thread. ``tell`` is called with every report.
 
@@ -55,34 +56,13 @@ class Conducting(Protocol):
             The data of the log or link can never be sufficient.
         """
 
+    @abstractmethod
     def stop(self) -> None:
         """End ``run`` at the next possible moment."""
 
-    def decide(self, decision: HandDecision) -> None:
-        """Exclude, include, note, mark, begin or end a marked manoeuvre."""
-
-    def order(self, order: LinkRequest) -> None:
-        """Carry out a crew's request to the link."""
-
-    def jump(self, number: int) -> None:
-        """Play on to just before a manoeuvre, or play to it from the beginning."""
-
-    def seek(self, position_s: float) -> None:
-        """Play on to a position of the replay, s, or play to it from the beginning."""
-
-    def play(self, tempo: Tempo) -> None:
-        """Pause a replay, continue it, or change its speed."""
-
-    def step(self) -> None:
-        """Play the next tenth of a second of a paused replay."""
-
-
-class AskedElsewhere:
-    """Sends each request of a `Conducting` to another process."""
-
     @abstractmethod
     def ask(self, name: str, *arguments: object) -> None:
-        """Send a request: the name of a method of `Conducting`, and its arguments."""
+        """Send a request: the name of a method below, and its arguments."""
 
     def decide(self, decision: HandDecision) -> None:
         """Exclude, include, note, mark, begin or end a marked manoeuvre."""

@@ -9,18 +9,22 @@ from math import inf
 from queue import Empty, SimpleQueue
 from threading import Event
 from time import monotonic
+from typing import TYPE_CHECKING, Any
 
 from advisor.campaign.hand_decisions import NOTHING, ByHand
-from advisor.session.conducting import SessionReport, Tell
-from advisor.session.hand import CampaignLike, HandDecision
-from advisor.session.source import LinkRequest, Playable, Source, Tempo
+from advisor.session.conducting import Conducting, SessionReport, Tell
+from advisor.session.hand import HandDecision
+from advisor.session.source import LinkRequest, Playable, Source
 from advisor.session.timeline import DataBegin, Goal, Position
+
+if TYPE_CHECKING:
+    from advisor.campaign.campaign import Campaign
 
 REPORT_EVERY_S = 0.1
 _READ_TIMEOUT_S = 0.05
 
 
-class Conductor:
+class Conductor(Conducting):
     """Runs a campaign over a source until `stop` is called.
 
     Parameters
@@ -35,12 +39,12 @@ class Conductor:
     """
 
     def __init__(
-        self, source: Source, make_campaign: Callable[[ByHand], CampaignLike], by_hand: ByHand = NOTHING
+        self, source: Source, make_campaign: "Callable[[ByHand], Campaign]", by_hand: ByHand = NOTHING
     ) -> None:
         self._source = source
         self._make_campaign = make_campaign
         self._tell: Tell = lambda report: None
-        self._requests: SimpleQueue[Callable[[CampaignLike], None]] = SimpleQueue()
+        self._requests: SimpleQueue[Callable[[Campaign], None]] = SimpleQueue()
         self._by_hand = by_hand
         self._said_where = ""
         self._pending: list[HandDecision] = []
@@ -66,7 +70,7 @@ class Conductor:
         try:
             while not self._stopped.is_set():
                 self._rewound = False
-                self._play(self._make_campaign(self._by_hand))
+                self._conduct(self._make_campaign(self._by_hand))
         finally:
             self._source.close()
 
@@ -74,33 +78,14 @@ class Conductor:
         """End `run` at the next possible moment."""
         self._stopped.set()
 
-    def decide(self, decision: HandDecision) -> None:
-        """Exclude, include, note, mark, begin or end a marked manoeuvre."""
-        self._requests.put(lambda campaign: self._decide(campaign, decision))
+    def ask(self, name: str, *arguments: Any) -> None:
+        """Store a request for the thread of ``run``. The tempo of a replay changes at once."""
+        if name not in ("play", "step"):
+            self._requests.put(lambda campaign: getattr(self, f"_{name}")(campaign, *arguments))
+        elif isinstance(self._source, Playable):
+            getattr(self._source, name)(*arguments)
 
-    def order(self, order: LinkRequest) -> None:
-        """Carry out a crew's request to the link."""
-        self._requests.put(lambda campaign: self._source.order(order))
-
-    def jump(self, number: int) -> None:
-        """Play on to just before a manoeuvre, or play to it from the beginning."""
-        self._requests.put(lambda campaign: self._jump(campaign, number))
-
-    def seek(self, position_s: float) -> None:
-        """Play on to a position of the replay, s, or play to it from the beginning."""
-        self._requests.put(lambda campaign: self._seek(position_s))
-
-    def play(self, tempo: Tempo) -> None:
-        """Pause a replay, continue it, or change its speed."""
-        if isinstance(self._source, Playable):
-            self._source.play(tempo)
-
-    def step(self) -> None:
-        """Play the next tenth of a second of a paused replay."""
-        if isinstance(self._source, Playable):
-            self._source.step()
-
-    def _play(self, campaign: CampaignLike) -> None:
+    def _conduct(self, campaign: "Campaign") -> None:
         """Run one campaign until a rewind or the stop."""
         ended = False
         if self._goal is None and not campaign.state.serves:
@@ -131,7 +116,7 @@ class Conductor:
             else:
                 self._report_if_due(campaign)
 
-    def _answer(self, campaign: CampaignLike, timeout_s: float) -> None:
+    def _answer(self, campaign: "Campaign", timeout_s: float) -> None:
         """Carry out the requests of the screens, after waiting for the first one."""
         try:
             self._requests.get(timeout=timeout_s or None, block=timeout_s > 0.0)(campaign)
@@ -139,11 +124,11 @@ class Conductor:
             return
         self._report(campaign)
 
-    def _report_if_due(self, campaign: CampaignLike) -> None:
+    def _report_if_due(self, campaign: "Campaign") -> None:
         if monotonic() - self._told_s >= REPORT_EVERY_S:
             self._report(campaign)
 
-    def _report(self, campaign: CampaignLike) -> None:
+    def _report(self, campaign: "Campaign") -> None:
         for sentence in self._source.take_notices():
             campaign.log(f"link: {sentence}")
         state = campaign.state
@@ -152,19 +137,19 @@ class Conductor:
         self._tell(SessionReport(state, self._source.health(), playback, state.notices, problems))
         self._told_s = monotonic()
 
-    def _decide(self, campaign: CampaignLike, decision: HandDecision) -> None:
+    def _decide(self, campaign: "Campaign", decision: HandDecision) -> None:
         """Apply a decision at once, or after a jump back when its manoeuvre has been flown again."""
         self._pending.append(decision)
         self._decide_what_is_due(campaign)
 
-    def _decide_what_is_due(self, campaign: CampaignLike) -> None:
+    def _decide_what_is_due(self, campaign: "Campaign") -> None:
         state = campaign.state
         for decision in [d for d in self._pending if d.due(state)]:
             decision.apply(campaign)
             self._pending.remove(decision)
             self._keep(campaign)
 
-    def _keep(self, campaign: CampaignLike) -> None:
+    def _keep(self, campaign: "Campaign") -> None:
         """Store the decisions by hand for a rewind, and in the file next to the data."""
         if campaign.by_hand != self._by_hand:
             self._by_hand = campaign.by_hand
@@ -173,7 +158,10 @@ class Conductor:
                 self._said_where = where
                 campaign.log(where)
 
-    def _jump(self, campaign: CampaignLike, number: int) -> None:
+    def _order(self, campaign: "Campaign", order: LinkRequest) -> None:
+        self._source.order(order)
+
+    def _jump(self, campaign: "Campaign", number: int) -> None:
         if not isinstance(self._source, Playable):
             return
         known = next((j.maneuver for j in campaign.state.maneuvers if j.maneuver.number == number), None)
@@ -182,7 +170,7 @@ class Conductor:
             self._source.rewind()
             self._rewound = True
 
-    def _seek(self, position_s: float) -> None:
+    def _seek(self, campaign: "Campaign", position_s: float) -> None:
         if not isinstance(self._source, Playable):
             return
         self._hurry_to(Position(position_s))

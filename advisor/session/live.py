@@ -4,52 +4,25 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from shutil import disk_usage
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from advisor.analysis.marks_file import keep_by_hand
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.link.health import LinkNotice, LinkStatistics
+from advisor.mavlink.link.health import LinkStatistics
 from advisor.mavlink.logs.parameter_file import ParameterFiles
 from advisor.process.liveness import OLD_AFTER_S
 from advisor.session.behind import backlog_s
 from advisor.session.source import Condition, LinkHealth, LinkRequest
 
+if TYPE_CHECKING:
+    from advisor.mavlink.link.kept_link import KeptLink
+    from advisor.mavlink.link.link import Link
+
 SILENT_S = 2.0
 LOSS_PERCENT = 5.0
 _DECODED = ("vehicle_messages", "lost", "repeated", "repeated_after_s", "late")
 """Counts that only the reader of the records knows."""
-
-
-class LinkLike(Protocol):
-    """Interface of a link to its readers, in this process or in another."""
-
-    @property
-    def statistics(self) -> LinkStatistics:
-        """Statistics of the link at this moment."""
-
-    @property
-    def read_to_s(self) -> float:
-        """Host time of the newest record that was read, seconds since 1970."""
-
-    @property
-    def catching_up(self) -> bool:
-        """Whether earlier records are still being read."""
-
-    def read(self, timeout_s: float) -> list[Columns]:
-        """Return the next messages in order of arrival; empty if none arrived within the timeout."""
-
-    def take_notices(self) -> list[LinkNotice]:
-        """Return the link's notices since the last call, oldest first."""
-
-    def follow(self, system: int) -> None:
-        """Read the messages of another vehicle."""
-
-    def take_output(self, output: int) -> None:
-        """Use a servo output as the elevator."""
-
-    def ask_for_outputs(self) -> None:
-        """Ask the vehicle once which of its outputs is the elevator."""
 
 
 class LinkSource:
@@ -64,10 +37,10 @@ class LinkSource:
     """
 
     def __init__(
-        self, connection: AbstractContextManager[LinkLike], over: Callable[[], bool] = lambda: False
+        self, connection: "AbstractContextManager[Link | KeptLink]", over: Callable[[], bool] = lambda: False
     ) -> None:
         self._connection, self._over = connection, over
-        self._link: LinkLike | None = None
+        self._link: Link | KeptLink | None = None
         self._files = ParameterFiles()
         self._ended = False
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from queue import Empty, SimpleQueue
 from threading import Event, Lock, Thread
-from typing import IO
+from typing import IO, TYPE_CHECKING
 
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.mavlink.link.health import LinkStatistics
@@ -16,10 +16,12 @@ from advisor.mavlink.link.observer import LinkObserver
 from advisor.process.liveness import Watch
 from advisor.session.behind import BehindTeller
 from advisor.session.child_process import pause_s, said_of, start_child
-from advisor.session.conducting import AskedElsewhere, Changes, SessionReport, Tell
-from advisor.session.hand import CampaignLike
+from advisor.session.conducting import Changes, Conducting, SessionReport, Tell
 from advisor.session.live import renewed
 from advisor.session.source import LinkHealth, Source
+
+if TYPE_CHECKING:
+    from advisor.campaign.campaign import Campaign
 
 Request = tuple[str, tuple[object, ...]]
 """Request to the conductor: the name of a method of `Conducting`, and its arguments."""
@@ -34,7 +36,7 @@ class ConductorTask:
     process uses them."""
 
     open_source: Callable[[], Source]
-    make_campaign: Callable[[ByHand], CampaignLike]
+    make_campaign: "Callable[[ByHand], Campaign]"
     by_hand: ByHand = NOTHING
     """Earlier decisions by hand of the engineer."""
     kept: Callable[[], ByHand] | None = None
@@ -47,7 +49,7 @@ class ConductorTask:
     """Report that is shown until the other process sends one. None: no report is shown before."""
 
 
-class RemoteConductor(AskedElsewhere):
+class RemoteConductor(Conducting):
     """A `Conducting` that sends requests to another process, and receives its reports.
 
     Where the source can be read again from its beginning, the death of the other process ends nothing. The

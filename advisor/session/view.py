@@ -89,7 +89,6 @@ def report_before_first(aircraft: Aircraft, title: str) -> SessionReport:
     state = CampaignState(
         vehicle=None,
         now_s=nan,
-        duration_s=0.0,
         mode="",
         channels={},
         maneuvers=(),

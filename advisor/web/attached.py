@@ -4,7 +4,7 @@ from multiprocessing.connection import Connection
 from threading import Event
 
 from advisor.process.liveness import OLD_AFTER_S
-from advisor.session.conducting import AskedElsewhere, Changes, SessionReport, Tell
+from advisor.session.conducting import Changes, Conducting, SessionReport, Tell
 
 LOOK_EVERY_S = 0.1
 """Time after which a thread without messages tests whether to stop, s."""
@@ -14,7 +14,7 @@ class ServerGoneError(Exception):
     """The server has ended, and with it the campaign that the page shows."""
 
 
-class AttachedConductor(AskedElsewhere):
+class AttachedConductor(Conducting):
     """A `Conducting` whose campaign runs in the server.
 
     Parameters

@@ -13,7 +13,7 @@ from advisor.aircraft_file.read import parse_aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.foresight.plan import foresee_plan
 from advisor.report.gap_document import gap_document
-from advisor.report.improved import improved_file, write_improved
+from advisor.report.improved import improved_file, text_of
 from advisor.words.problems import ConfigurationError
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 from tests.schemas import breaches
@@ -282,7 +282,8 @@ def test_the_improved_simulators_file_keeps_what_else_the_crew_wrote_about_its_a
 
 
 def test_the_improved_simulator_is_a_file_with_the_effect_in_it(delayed, tmp_path):
-    path = write_improved(delayed, Aircraft(name="test"), tmp_path / "improved.yaml")
+    path = tmp_path / "improved.yaml"
+    path.write_text(text_of(improved_file(delayed, Aircraft(name="test"))), encoding="utf-8")
     written = yaml.safe_load(path.read_text())
     assert written["effects"]["transport_delay"]["delay_s"] == pytest.approx(0.06, abs=0.003)
     assert set(written["model"]) == set(PARAMETERS)

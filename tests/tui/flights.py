@@ -192,7 +192,6 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
     return CampaignState(
         vehicle=VEHICLE,
         now_s=flying.span.end_s if flying else now_s,
-        duration_s=now_s,
         mode="MANUAL",
         channels=channels,
         maneuvers=maneuvers,

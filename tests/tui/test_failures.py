@@ -1,7 +1,6 @@
 """What cannot be used ends the screens with its sentence."""
 
 import asyncio
-from dataclasses import replace
 
 import pytest
 
@@ -51,7 +50,7 @@ async def test_a_log_without_what_is_needed_says_so_and_is_answered_for_in_the_e
 
 
 async def test_a_vehicle_is_given_time_to_send_what_is_needed():
-    young = replace(flights.state(0), duration_s=3.0)
+    young = flights.state(0)
     async with stage(young) as here:
         here.campaign.problems.append(Problem("no_elevator", "No elevator is heard.", ""))
         await here.until(lambda: bool(here.app.view.problems))

@@ -9,8 +9,7 @@ from dataclasses import replace
 from typing import Literal
 
 from advisor.aircraft.controls import SideControl
-from advisor.flight.elevator.elevator_outputs import without_calibration
-from advisor.flight.elevator.mixed_parts import parts_of
+from advisor.flight.elevator.elevator_outputs import parts_of, without_calibration
 from advisor.flight.vehicle.surfaces import Calibration, Part, Surface, joined_numbers
 from advisor.flight.vehicle.wiring import Wiring
 

@@ -93,16 +93,6 @@ class Flights:
         self._foreign: Problem | None = None
 
     @property
-    def maneuvers(self) -> int:
-        """Number of manoeuvres found, each counted once."""
-        return len(self._found)
-
-    @property
-    def duration_s(self) -> float:
-        """Vehicle time received so far over all flights, s."""
-        return sum(past.duration_s for past in self._past) + self.stream.duration_s
-
-    @property
     def elevator_notes(self) -> tuple[str, ...]:
         """Sentences about the elevator's outputs and about assumptions, over all flights."""
         return tuple(dict.fromkeys((*self._notes, *self.stream.elevator_notes)))

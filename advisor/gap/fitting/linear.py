@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.fitting.own_prior import own_mean, own_precision
+from advisor.gap.fitting.prior import own_mean, own_precision
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DISTURB_INPUT, INDEX, NUISANCES, OUTPUTS, SPEED

@@ -77,8 +77,6 @@ class SoughtAir:
 
     gain: float = 0.0
     """Log likelihood gain of moving air over coloured instruments, nats."""
-    angle_std: float = 0.0
-    """Standard deviation of the likeliest gust angle, rad."""
     found: MovingAir | None = None
 
 
@@ -94,7 +92,7 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
     if found.gain < CERTAIN and _stands_out(power):
         found = _moving_in(problem, fitted, loudest[:1])
     # A gain that coloured instruments bring alone gives a gust angle of zero, and is no moving air.
-    nothing = SoughtAir(found.gain, found.gust_angle)
+    nothing = SoughtAir(found.gain)
     if found.gain < CERTAIN or found.gust_angle <= 0.0:
         return nothing
     model = with_floor(problem, found.air)

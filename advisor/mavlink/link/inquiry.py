@@ -2,7 +2,7 @@
 
 import struct
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
@@ -40,7 +40,7 @@ class Inquiry(Talker):
         self._begin()
 
     def _begin(self) -> None:
-        self._questions: Questions = ArduPilotQuestions()
+        self._questions: ArduPilotQuestions | Px4Questions = ArduPilotQuestions()
         self._to_ask = self._first_questions()
         self._standing: dict[str, tuple[float, int]] = {}
         self._existing: set[str] = set()
@@ -145,21 +145,6 @@ RENAMED = {
 }
 """New name of each parameter that ArduPilot 4.6 still had under an old name. A vehicle knows only one of both
 names, so both are requested."""
-
-
-class Questions(Protocol):
-    """Parameters to request from one kind of autopilot."""
-
-    outputs: Sequence[str]
-    """Parameters that show which output is the elevator."""
-    first: Sequence[str]
-    """Parameters that are requested in any case."""
-
-    def value(self, payload: bytes) -> float:
-        """Return the value in a PARAM_VALUE."""
-
-    def follow(self, name: str, value: float) -> list[str]:
-        """Return the parameters to request after an answer."""
 
 
 class ArduPilotQuestions:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.flight.elevator.mixed_parts import parts_of
+from advisor.flight.elevator.elevator_outputs import parts_of
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring
 from advisor.flight.vehicle.px4_wiring import px4_wiring
 
