@@ -38,8 +38,6 @@ def lacks_of(aircraft: Aircraft, facts: LogFacts | None = None) -> tuple[Lack, .
 
     Parameters
     ----------
-    aircraft
-        Aircraft file as read.
     facts
         Facts of a log of this aircraft. None: the file is checked without a log.
     """

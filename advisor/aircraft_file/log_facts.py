@@ -93,10 +93,6 @@ def facts_of(
 
     Parameters
     ----------
-    batches
-        Messages of the log, in order of arrival.
-    aircraft
-        Aircraft file that chooses elevator and angle of attack.
     target_system
         System id of the vehicle; None: the first one heard.
 

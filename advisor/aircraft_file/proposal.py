@@ -15,13 +15,7 @@ _FULL_STROKE_DEG = 25.0
 
 
 def proposed(facts: LogFacts, log: str) -> Draft:
-    """Return a draft of an aircraft file with the facts of a log.
-
-    Parameters
-    ----------
-    log
-        Name of the log, for the comments.
-    """
+    """Return a draft of an aircraft file with the facts of a log."""
     draft = Draft(head=_head(facts, log))
     _elevator(facts, draft)
     if facts.sides_unknown is not None:

@@ -43,8 +43,6 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
     ----------
     origin
         Name of the file, or of whatever the content comes from, for the sentence about mistakes.
-    mend
-        Sentence on the remedy for the errors.
 
     Raises
     ------

@@ -39,13 +39,7 @@ Tool = Callable[..., Awaitable[Any]]
 
 
 def server_of(folders: Folders, calls: Calls) -> MCPServer[Any]:
-    """Return the server with its tools.
-
-    Parameters
-    ----------
-    folders
-        Files that the tools may read.
-    """
+    """Return the server with its tools."""
     logs = [str(path) for path in folders.logs()]
     named = ", ".join(logs[:_LISTED]) + (f" and {len(logs) - _LISTED} more" if len(logs) > _LISTED else "")
     told = _INSTRUCTIONS.format(folders=folders.listed, logs=named or "none yet")

@@ -26,8 +26,6 @@ def trend_svg(name: str, unit: str, points: Sequence[Point], since: int | None) 
 
     Parameters
     ----------
-    name, unit
-        Name and unit of the derivative.
     points
         Flights in the order of flying. A flight without a finite interval is left out.
     since

@@ -30,8 +30,6 @@ class Demonstration:
         One of the simulator's aircraft: ``linear`` is the paper's model.
     speed
         Multiple of real time, as ``python -m sim fly --speed`` takes it.
-    record_to
-        File of the recording; None: no recording.
     """
 
     def __init__(self, aircraft: str, speed: float, seed: int, record_to: Path | None = None) -> None:

@@ -43,10 +43,6 @@ class AxisCampaign(ABC):
 
     Parameters
     ----------
-    axis
-        Name of the axis, as it stands in the names of parts that may fail.
-    aircraft
-        The crew's aircraft file.
     parts
         Computes manoeuvres, verdicts and the joint estimate, each of which may fail separately.
     """

@@ -65,21 +65,15 @@ class Campaign:
 
     Parameters
     ----------
-    aircraft
-        The crew's aircraft file.
     target_system
         System id of the vehicle; None: the first one heard.
     settle
         Estimate while a manoeuvre is still being flown, for live faces.
         Verdicts do not depend on the running estimate.
-    tell
-        Called with every event, for example to announce verdicts.
     marks
         Further marks, which replace overlapping marks of ``by_hand`` and are not kept in a file.
     names
         Names of the campaign's logs, in their order; empty for a single log.
-    lateral
-        Whether to judge the manoeuvres of aileron and rudder, too.
     """
 
     def __init__(

@@ -20,13 +20,7 @@ from advisor.words.vehicle_time import CLOCK, clock
 
 
 class EventLog:
-    """Collects the sentences of the event log and deletes the oldest.
-
-    Parameters
-    ----------
-    kept
-        Largest number of sentences in the event log.
-    """
+    """Collects the sentences of the event log and deletes the oldest."""
 
     def __init__(self, kept: int) -> None:
         self._lines: deque[str] = deque(maxlen=kept)

@@ -59,8 +59,6 @@ class Settling:
 
         Parameters
         ----------
-        flying
-            Manoeuvre being flown, up to the newest sample.
         aircraft
             The crew's aircraft, with a servo's lag that earlier manoeuvres told.
         """

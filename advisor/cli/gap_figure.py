@@ -14,13 +14,6 @@ _FORMATS = (".svg", ".png")
 def refuse_figure(figure: Path | None, others: Sequence[Path | None]) -> None:
     """Refuse, before any work, a picture that could not be drawn or written.
 
-    Parameters
-    ----------
-    figure
-        File of the picture. None: no picture is wanted.
-    others
-        Files that the command reads or writes.
-
     Raises
     ------
     ConfigurationError

@@ -50,8 +50,6 @@ def narrate(task: ConductorTask, say: Callable[[str], object], warn: Callable[[s
     ----------
     task
         Campaign and source; the source can be read from its beginning again.
-    say
-        Takes one line of text.
 
     Raises
     ------
@@ -148,8 +146,6 @@ def narrate_here(
 
     Parameters
     ----------
-    say
-        Takes one line of text.
     beat
         Called after each wait for data, at most every ``BEAT_S``. None: a backlog is printed here.
 

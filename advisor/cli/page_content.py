@@ -42,8 +42,6 @@ def gather(
 
     Parameters
     ----------
-    tell
-        Receives each stage of the work as a sentence.
     command
         Command line that repeats the page; None: the one that this process was started with.
 

@@ -62,13 +62,7 @@ def runner_of(workers: int | None, scheduler: str | None, guarded: bool = True) 
 
 
 class Progress:
-    """Progress of the work on standard error: tasks done, rate and expected end.
-
-    Parameters
-    ----------
-    things
-        Name of the tasks in the plural: ``logs``.
-    """
+    """Progress of the work on standard error: tasks done, rate and expected end."""
 
     def __init__(self, total: int, things: str) -> None:
         self._total, self._things, self._done = total, things, 0

@@ -73,16 +73,10 @@ def advise(
     kept
         Reads the decisions by hand since the start, for a source that can be read again from its
         beginning. A picklable source survives the death of the estimating process.
-    names
-        Names of the campaign's logs, in their order.
     logs
         Logs and recordings, flight by flight; panes are saved into the folder of theirs.
     show
         Shows the campaign elsewhere; None: the terminal does, or lines of text come without a terminal.
-    aircraft_file
-        File of the aircraft, for the commands that the screens name.
-    door
-        Address of the process of the link; None without one.
 
     Raises
     ------

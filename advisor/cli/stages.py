@@ -15,11 +15,6 @@ class Stages:
     """Stages of a command's work on standard error, seen on a terminal only.
 
     The line is erased when the context is left, so that the results stand alone.
-
-    Parameters
-    ----------
-    clock
-        Function that returns the time in s since 1970.
     """
 
     def __init__(self, clock: Callable[[], float] = time.time) -> None:

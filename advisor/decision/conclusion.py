@@ -46,11 +46,6 @@ def concluded(
 
     A test stops if the criterion of the chosen rule holds now. A stop that the crew has heard remains valid.
     The stop is withdrawn after a change of the aircraft, or if one of its manoeuvres is no longer usable.
-
-    Parameters
-    ----------
-    change
-        Change of the aircraft between manoeuvres; None if noise explains all differences.
     """
     chosen = criterion.chosen
     changed = change.sentence if change is not None and change.confirmed else ""

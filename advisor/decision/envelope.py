@@ -46,8 +46,6 @@ def incomplete(
 
     Parameters
     ----------
-    maneuver
-        Manoeuvre as cut from the stream.
     needed
         Channels without which no manoeuvre can be judged.
     period_s

@@ -58,8 +58,6 @@ def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | 
 
     Parameters
     ----------
-    maneuver
-        Manoeuvre for which the estimate was made.
     term
         Shape (n,): omitted part of q̇ for a coefficient of one, at the stamps of the fitted pitch rate.
     """

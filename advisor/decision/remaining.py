@@ -113,8 +113,6 @@ def by_scatter(
         the next window.
     next_std
         Shape (8,): standard deviations of that scatter.
-    accepted_share
-        Share of manoeuvres that the rule accepts.
     """
     rng = np.random.default_rng(0)
     centre = np.where(np.isfinite(posterior.theta), posterior.theta, 0.0)

@@ -21,13 +21,7 @@ from advisor.words.quantities import symbol
 def warnings(
     history: Sequence[CandidateManeuver], chosen: RuleProgress, change: Change | None, course: CriterionCourse
 ) -> tuple[str, ...]:
-    """Return sentences about facts that the criterion alone does not show.
-
-    Parameters
-    ----------
-    change
-        Change between manoeuvres; None if noise explains all differences.
-    """
+    """Return sentences about facts that the criterion alone does not show."""
     plan, found = course.plan, []
     if chosen.stopped_at is not None and not chosen.holds:
         found.append(

@@ -49,8 +49,6 @@ class Examiner:
 
     Parameters
     ----------
-    aircraft
-        The crew's aircraft file.
     target_system
         System id of the vehicle; None: the first one heard.
     """

@@ -70,16 +70,12 @@ def diagnose(
     maneuvers
         Manoeuvres of the segmenter, with elevator, α and pitch rate. A single manoeuvre shows where the gap
         lies. One manoeuvre shows no cause, because no manoeuvre remains for the hold-out.
-    aircraft
-        Aircraft file that describes the simulator under diagnosis.
     holdout
         Number of the last manoeuvres that are held out to measure the shrink of the gap. The parameters are
         fitted without the held-out manoeuvres; the effects are selected on all manoeuvres. None: every
         manoeuvre is held out in turn.
     progress
         Function that receives a sentence and the share of the work that is done, 0 to 1.
-    prior
-        Prior probability of each kind of answer.
 
     Raises
     ------

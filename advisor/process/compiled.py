@@ -37,11 +37,6 @@ def kernel(**options: Any) -> Callable[[Function], Function]:
     Numba keeps machine code in ``NUMBA_CACHE_DIR``, next to the module, or in the user's own cache:
     the first that can be written to. Without such a folder each process compiles for itself.
 
-    Parameters
-    ----------
-    options
-        Options of ``numba.njit``, such as ``error_model`` and ``fastmath``.
-
     Returns
     -------
     The decorator of the function, whose own annotations stay.

@@ -37,8 +37,6 @@ def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
 
     Parameters
     ----------
-    tell
-        Called with each sentence about the progress.
     stages
         Kernels to compile. Default: all that commands call.
     """

@@ -54,11 +54,6 @@ def in_order(sentence: Callable[[], str] = lambda: STOPPED) -> Iterator[None]:
     """Let Ctrl-C, SIGTERM and SIGHUP raise :class:`Interrupted` within the block, once.
 
     An ignored signal, as under ``nohup``, stays ignored. A block within another block has no further effect.
-
-    Parameters
-    ----------
-    sentence
-        Returns the sentence for the user when a signal comes.
     """
     before = {kind: signal.getsignal(kind) for kind in _KINDS}
     heard = [kind for kind, handler in before.items() if handler is not signal.SIG_IGN]

@@ -62,13 +62,7 @@ def attempt(part: str, work: Callable[[], _Made]) -> _Made | FailedPart:
 
 
 class Parts:
-    """Computes the parts of one answer, and keeps a list of the failed parts.
-
-    Parameters
-    ----------
-    tell
-        Called with each part that fails for the first time.
-    """
+    """Computes the parts of one answer, and keeps a list of the failed parts."""
 
     def __init__(self, tell: Callable[[FailedPart], object] = lambda failed: None) -> None:
         self._tell = tell

@@ -34,8 +34,6 @@ def analysis_document(
         Campaign at the end of the logs. None if no log could be read.
     files
         Names of the logs as the user gave them, flight by flight.
-    aircraft
-        Aircraft with reference data for non-dimensional coefficients.
     left_out
         Reasons why logs are not used, by flight. ``usable`` is false if no log is used.
     """

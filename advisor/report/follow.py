@@ -36,8 +36,6 @@ def follow(
     ----------
     batches
         Messages in order of arrival. Empty batches represent pauses.
-    say
-        Function that takes one line of text.
     of_log
         Whether the stream is a log, in which nothing can be corrected.
     """

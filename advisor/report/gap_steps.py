@@ -43,14 +43,10 @@ def next_steps(
 
     Parameters
     ----------
-    logs
-        Logs of the diagnosis as the user gave them.
     aircraft_file
         Aircraft file as the user gave it; None without one.
     simulator
         Specification of the simulator; None if the aircraft file's model is the simulator.
-    options
-        Options about the reading of the logs, as the user gave them.
     written
         File of the improved simulator that already exists, so that no step writes it.
     """

@@ -36,11 +36,6 @@ class CampaignFile:
         """Return the aircraft of the flight test, with the stopping rule of the command line if one was
         given.
 
-        Parameters
-        ----------
-        origin
-            Path of the aircraft file, for messages about mistakes.
-
         Raises
         ------
         ConfigurationError

@@ -16,8 +16,6 @@ def start_child(module: str, shows_errors: bool = False) -> "Popen[bytes]":
     ----------
     module
         Name of the module for ``python -m``.
-    shows_errors
-        Whether the process shares this process's standard error.
     """
     return Popen(python_module(module), stdin=PIPE, stdout=PIPE, stderr=None if shows_errors else DEVNULL)
 

@@ -26,15 +26,7 @@ class SessionReport:
     """Reasons for which no manoeuvre can be judged, until the first one is judged."""
 
     def grown_old(self, who: str, age_s: float) -> "SessionReport":
-        """Return the report with a warning of its age.
-
-        Parameters
-        ----------
-        who
-            Process that does not answer.
-        age_s
-            Age of the report, s.
-        """
+        """Return the report with a warning of its age."""
         sentence = f"{who} NOT ANSWERING for {age_s:.0f} s: what stands below is old"
         health = replace(self.health, condition="stale", sentence=sentence, alarm=sentence)
         return replace(self, health=health)

@@ -29,13 +29,9 @@ class Conductor(Conducting):
 
     Parameters
     ----------
-    source : Source
-        Source of the data.
     make_campaign : callable
         Makes a campaign from the decisions by hand. The function is called by ``run``, and again for a
         rewind.
-    by_hand : ByHand
-        Earlier decisions by hand.
     """
 
     def __init__(

@@ -32,8 +32,6 @@ class LinkSource:
     ----------
     connection
         Context that opens the link at the first ``read``.
-    over
-        Function that returns whether the sender has finished. Only a demonstration knows.
     """
 
     def __init__(

@@ -67,10 +67,6 @@ class FmuSimulator:
 
     Parameters
     ----------
-    path : Path
-        FMU to be simulated.
-    variables : FmuVariables
-        Names of the FMU's variables.
     speed_tolerance_percent : float
         Largest difference between the FMU's initial air speed and the flown air speed.
     """

@@ -27,13 +27,7 @@ class EndedError(Exception):
 
 
 class ModelExchange:
-    """States of an initialised FMU for model exchange.
-
-    Parameters
-    ----------
-    instance
-        Model of FMPy, initialised and in event mode.
-    """
+    """States of an initialised FMU for model exchange."""
 
     def __init__(self, instance: Any, description: Any) -> None:
         self._instance = instance

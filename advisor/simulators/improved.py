@@ -57,8 +57,6 @@ def in_simulator(
         Diagnosis of all manoeuvres without the difference between simulator and surrogate.
     unseen
         Held-out manoeuvres with the diagnosis of the others; None if nothing was found.
-    flying
-        Simulator with the manoeuvres to fly.
     as_flown
         Manoeuvre as the simulator flew it, by manoeuvre number.
     """

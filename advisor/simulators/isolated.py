@@ -37,8 +37,6 @@ class Isolated:
         ``module:name`` of the callable that builds the simulator.
     *arguments
         Arguments of ``make``, which must be picklable.
-    description : str
-        Name of the simulator in every sentence.
     speed_limit_s : float
         Largest wall time of one replay or linearisation.
     start_limit_s : float

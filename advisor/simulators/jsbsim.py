@@ -45,11 +45,6 @@ class Jsbsim:
     is kept, with its lag, hysteresis and stops. A flight control with feedback of the motion is bypassed, and
     the surface itself is set. Aileron, rudder and throttle are commanded at the pilot's inputs. Positive
     aileron rolls to the left, and positive rudder yaws to the left.
-
-    Parameters
-    ----------
-    path : Path
-        XML file of the model.
     """
 
     takes_increments = True

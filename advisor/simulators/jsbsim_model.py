@@ -35,13 +35,7 @@ _NAME = re.compile(r"(?<![\w/.-])-?(/?[A-Za-z_][\w.\[\]-]*(?:/[A-Za-z_][\w.\[\]-
 
 
 def foreign_properties(roots: Iterable[ET.Element]) -> tuple[str, ...]:
-    """Return the properties that a model reads but that neither the model nor JSBSim defines.
-
-    Parameters
-    ----------
-    roots
-        Root elements of the model's files.
-    """
+    """Return the properties that a model reads but that neither the model nor JSBSim defines."""
     read: dict[str, None] = {}
     written: set[str] = set()
     for root in roots:

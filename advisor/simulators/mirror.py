@@ -92,8 +92,6 @@ def mirrored(
 
     Parameters
     ----------
-    maneuvers
-        Manoeuvres of the flight, as logged.
     flying, replays
         Simulator, and its replays without added effects.
     as_flown

@@ -24,12 +24,8 @@ def qualified(
 
     Parameters
     ----------
-    problem
-        Manoeuvres of the flight, as measured.
     before, after
         Residuals of the simulator as given, and with the effects; None if nothing was added.
-    kept
-        Indices of the manoeuvres used for the comparison.
     """
     table = []
     for c, channel in enumerate(problem.channels):

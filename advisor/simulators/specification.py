@@ -34,8 +34,6 @@ def simulator_of(specification: str, aircraft: Aircraft, read_log: ReadLog) -> S
 
     Parameters
     ----------
-    specification
-        Specification as the user wrote it.
     read_log
         Function that reads a log written by the simulator.
 

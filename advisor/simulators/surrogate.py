@@ -73,8 +73,6 @@ def surrogate_of(
 
     Parameters
     ----------
-    flights
-        Manoeuvres as flown by the aircraft.
     flown, replays
         Manoeuvres as flown by the simulator (``advisor.simulators.inputs.as_flight``), and the replays.
     command

@@ -28,11 +28,6 @@ def without_worse(
     The candidate sets are the derivatives alone, then one more effect each, in the order of the search. First
     the set with the least gap on manoeuvres held out in turn is kept. Then the set of corrections with the
     least gap on held-out manoeuvres is kept. A sentence names each withdrawn effect.
-
-    Parameters
-    ----------
-    measure
-        Function that measures the gap of the held-out manoeuvres with the others' answer.
     """
     whole = without_raised(whole)
     found = unseen.found

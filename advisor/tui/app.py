@@ -51,14 +51,8 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
     ----------
     conductor : Conducting
         Runs the campaign, started after the first paint in a thread that only listens.
-    aircraft : Aircraft
-        The aircraft file: name, prior model, stop criterion.
-    title : str
-        Name of the source.
     tempo : Tempo, optional
         Start settings of a replay. None if the source is no replay.
-    settings : Settings, optional
-        Theme, first screen, keys.
     logs : sequence of Path
         Logs and recordings, flight by flight, next to which panes are saved. Empty: in the current folder.
     aircraft_file : Path, optional

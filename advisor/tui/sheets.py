@@ -28,13 +28,7 @@ class Sheet(Stylesheet):
 
 
 class Sheets:
-    """The style sheets of all themes.
-
-    Parameters
-    ----------
-    themes : sequence of Theme
-        Themes in the order of preparation.
-    """
+    """The style sheets of all themes."""
 
     def __init__(self, themes: Sequence[Theme]) -> None:
         self._sheets = {theme.name: Sheet(_variables(theme)) for theme in themes}

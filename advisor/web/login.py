@@ -90,10 +90,6 @@ def page(name: str, status: int = 200, **values: object) -> web.Response:
     ----------
     name
         ``screens``, ``login`` or ``message``.
-    status
-        HTTP status.
-    **values
-        Values for the template.
     """
     text = _environment().get_template(f"{name}.html.j2").render(**values)
     return web.Response(text=text, content_type="text/html", status=status)

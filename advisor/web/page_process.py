@@ -19,8 +19,6 @@ class PageProcess(AppService):
 
     Parameters
     ----------
-    door
-        Address of the campaign for the process.
     socket
         The page's own WebSocket, which is closed when the process ends.
     """

@@ -78,8 +78,6 @@ def serve(
 
     Parameters
     ----------
-    title
-        Name of the log or of the connection.
     tempo
         Start settings of each replay. None: the source is a live link.
 

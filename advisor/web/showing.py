@@ -22,11 +22,6 @@ class Showing:
     """Runs a conductor in a thread and keeps its newest report.
 
     A page that receives reports slowly skips some, and never delays another page.
-
-    Parameters
-    ----------
-    conductor
-        Runs the campaign from the start of the context to its end.
     """
 
     def __init__(self, conductor: Conducting) -> None:
@@ -55,13 +50,6 @@ class Showing:
 
     def newer(self, than: int, timeout_s: float) -> tuple[int, SessionReport] | None:
         """Wait for a report that is newer than a known one.
-
-        Parameters
-        ----------
-        than
-            Number of the known report, 0 for none.
-        timeout_s
-            Longest time to wait, s.
 
         Returns
         -------
@@ -99,8 +87,6 @@ class Audience:
     ----------
     shared
         Campaign that all pages show. None: each page has a campaign of its own.
-    make_conductor
-        Makes the conductor of a page's own campaign.
     """
 
     def __init__(

@@ -42,14 +42,6 @@ class Site:
 
     Parameters
     ----------
-    access
-        Access rules for viewers.
-    door
-        Address of the campaign for the process of a page.
-    title
-        Name of the log or of the connection.
-    closed
-        Sentence on a page that has been closed.
     most
         Largest number of pages at once.
     """

@@ -37,13 +37,7 @@ class WatchingEngineerScreen(EngineerScreen):
 
 
 class ViewerApp(AdvisorApp):
-    """The application in a page. The user can leave the page at any time, and the advisor continues.
-
-    Parameters
-    ----------
-    conductor
-        Conductor that speaks with the campaign in the server.
-    """
+    """The application in a page. The user can leave the page at any time, and the advisor continues."""
 
     # Textual looks for them beside this module.
     CSS_PATH: ClassVar[list[str | PurePath]] = [

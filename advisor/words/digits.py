@@ -17,8 +17,6 @@ def distinct_texts(
 
     Parameters
     ----------
-    value, limit
-        Two numbers of one unit.
     digits
         Fewest decimals (``f``) or significant digits (``g``).
 

@@ -6,11 +6,6 @@ def printable(text: str) -> str:
 
     Letters of every script stay. A line break and a tab become a space. Half of a surrogate pair, as in the
     name of a file in another encoding, becomes U+FFFD. Every other character without a shape is dropped.
-
-    Parameters
-    ----------
-    text
-        A file's name, a vehicle's message, a string of a YAML file.
     """
     return text if text.isprintable() else "".join(map(_shown, text))
 

@@ -38,8 +38,6 @@ class LateralCampaign(AxisCampaign):
     aircraft
         The crew's aircraft file. The lateral stopping rule is ``information``, whatever the aircraft file
         chooses for pitch.
-    parts
-        Computes manoeuvres, decision and joint estimate, each of which may fail separately.
     """
 
     def __init__(self, aircraft: Aircraft, parts: Parts) -> None:

@@ -28,12 +28,8 @@ class ElevatorCampaign(AxisCampaign):
 
     Parameters
     ----------
-    aircraft
-        The crew's aircraft file.
     say
         Called with a sentence when the manoeuvres have given new values of the instruments.
-    parts
-        Computes manoeuvres, verdicts and the joint estimate, each of which may fail separately.
     """
 
     def __init__(self, aircraft: Aircraft, say: Callable[[str], object], parts: Parts) -> None:

@@ -56,15 +56,7 @@ _TRIMMING = Reason(
 def judge_lateral(
     maneuver: Maneuver, estimate: LateralEstimate | NoEstimate, aircraft: Aircraft
 ) -> tuple[Reason, ...]:
-    """Return objections to a lateral manoeuvre, the most important first; empty for an accepted one.
-
-    Parameters
-    ----------
-    maneuver
-        Manoeuvre as cut from the stream.
-    estimate
-        Estimate from this manoeuvre alone, or the reason for a missing estimate.
-    """
+    """Return objections to a lateral manoeuvre, the most important first; empty for an accepted one."""
     controls = [name for name in RESPONSES if name in maneuver.channels]
     outside = banked(maneuver, max(BANK_DEG, aircraft.limits.bank_deg), "less aileron, or shorter")
     for name in controls:

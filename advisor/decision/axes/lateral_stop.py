@@ -68,8 +68,6 @@ def lateral_flight_test(
     ----------
     history
         Estimate of every manoeuvre in the order flown; None for a refused manoeuvre.
-    change
-        Change of the aircraft between manoeuvres; None if noise explains all differences.
     """
     accepted = [one for one in history if one is not None]
     shares = shares_of(joint, aircraft.campaign.tolerance_percent)

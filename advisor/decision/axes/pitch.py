@@ -36,17 +36,7 @@ NEEDED = ("elevator", "q")
 def judge_pitch(
     maneuver: Maneuver, estimate: Estimate | NoEstimate, aircraft: Aircraft
 ) -> tuple[Reason, ...]:
-    """Return objections to a manoeuvre of the elevator, the most important first.
-
-    Parameters
-    ----------
-    maneuver
-        Manoeuvre as cut from the stream.
-    estimate
-        Estimate from this manoeuvre alone, or the reason for a missing estimate.
-    aircraft
-        Limits and calibration of the aircraft.
-    """
+    """Return objections to a manoeuvre of the elevator, the most important first."""
     period_s = natural_period(maneuver, estimate)
     x = Examined(
         maneuver,

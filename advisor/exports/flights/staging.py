@@ -21,8 +21,6 @@ def staged(folder: Path, inputs: Sequence[Path] = ()) -> Iterator[Path]:
     ----------
     folder
         Folder for the files, which is created if missing.
-    inputs
-        Files that must not be replaced.
 
     Raises
     ------

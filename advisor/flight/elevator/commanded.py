@@ -57,14 +57,8 @@ def commanded(
 
     Parameters
     ----------
-    surfaces
-        Control surfaces, by the channel's name.
-    pulses
-        Pulse widths of the servo outputs in n messages.
     t
         Shape (n,), vehicle time of the messages, s since boot.
-    autopilot
-        Name of the autopilot in the vehicle's identity.
     """
     found = []
     for channel, surface in surfaces.items():

@@ -25,12 +25,8 @@ def find_elevator(
 
     Parameters
     ----------
-    elevator
-        Elevator of the aircraft file.
     wiring
         Roles and scales of outputs by the vehicle's parameters; may be empty.
-    why
-        Reason for the value of ``elevator.output``, in words.
     """
     if elevator.outputs:
         return _as_listed(elevator.outputs, wiring)

@@ -29,13 +29,7 @@ _CHECK_SIGNS = (
 
 
 class Mixing:
-    """Elevator samples formed from several servo outputs.
-
-    Parameters
-    ----------
-    tracks
-        Channels of the vehicle, with the pitch rate.
-    """
+    """Elevator samples formed from several servo outputs."""
 
     def __init__(self, tracks: Tracks) -> None:
         self._tracks = tracks

@@ -58,13 +58,7 @@ _SPEED_UNITS_M_S = {"knots": 0.514444, "km/h": 1.0 / 3.6, "mph": 0.44704, "ft/s"
 
 
 def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) -> Examined:
-    """Examine the instruments of a record.
-
-    Parameters
-    ----------
-    channels
-        Samples of each channel, by the channel's name.
-    """
+    """Examine the instruments of a record."""
     work = Work(dict(channels), earlier or {})
     if _attitude_and_rate(work) and hold_force_unit(work):
         hold_clocks(work, "q", "theta")

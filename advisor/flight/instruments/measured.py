@@ -81,8 +81,6 @@ def weigh(measured: Measured, factors: Mapping[str, float], width: float, stated
 
     Parameters
     ----------
-    measured
-        Measured scale of the reading relative to the motion.
     factors
         Factor of each hypothesis relative to the stated reading, without ``AS_STATED``.
     width

@@ -139,13 +139,7 @@ _DIRECTION = {
 
 
 def examine_side(channels: Mapping[str, Channel], earlier: Evidence | None = None) -> Examined:
-    """Examine the roll and yaw instruments of a record.
-
-    Parameters
-    ----------
-    channels
-        Samples of each channel, by the channel's name.
-    """
+    """Examine the roll and yaw instruments of a record."""
     work = Work(dict(channels), earlier or {})
     if _bank_and_rate(work) and hold_force_unit(work):
         hold_clocks(work, "p", "bank")

@@ -44,8 +44,6 @@ class FreeResponse:
 
     Parameters
     ----------
-    movement
-        Movement of the elevator that has ended.
     before
         Level of the elevator before the movement, rad.
     samples

@@ -35,17 +35,7 @@ from advisor.flight.vehicle.modes import closes_pitch_loop
 
 
 class Cutting:
-    """Cutter of manoeuvres from the tracks of one vehicle.
-
-    Parameters
-    ----------
-    aircraft
-        Aircraft file, with the elevator's sign and the limits of the model.
-    breaks
-        Breaks in the vehicle's stamps.
-    lateral
-        Whether marks also apply to aileron and rudder.
-    """
+    """Cutter of manoeuvres from the tracks of one vehicle."""
 
     def __init__(
         self, tracks: Tracks, who: Identity, aircraft: Aircraft, breaks: Breaks, lateral: bool = False

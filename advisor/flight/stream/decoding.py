@@ -50,12 +50,8 @@ def power_on(
 
     Parameters
     ----------
-    boot
-        Number of the power-on.
     is_backwards
         Whether the elevator was found to move opposite to its nominal sign.
-    clock
-        Accepted stamps of the vehicle's clock.
     modes
         Vehicle time of each flight mode change, s, and the mode's name.
     """

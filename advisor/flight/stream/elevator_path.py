@@ -19,10 +19,6 @@ class ElevatorPath:
 
     Parameters
     ----------
-    tracks
-        Tracks that store the elevator's samples.
-    mixing
-        Mixer that forms the elevator from several outputs.
     marks
         Marked stretches of the stream. A movement in a marked stretch is not reported separately.
     """

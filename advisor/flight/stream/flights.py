@@ -57,12 +57,8 @@ class Flights:
     ----------
     aircraft, target_system
         Arguments of `FlightStream`, such as the aircraft file.
-    marks
-        Stretches marked as manoeuvres, each on its flight.
     names
         Names of the logs, in their order; empty for a single log.
-    lateral
-        Whether manoeuvres of aileron and rudder are also found.
     """
 
     def __init__(

@@ -142,8 +142,6 @@ class Identity:
 
         Parameters
         ----------
-        piece
-            Messages in order of arrival.
         now_s
             Vehicle time of the newest sample, s since boot.
         flown

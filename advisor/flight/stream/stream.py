@@ -39,13 +39,9 @@ class FlightStream(StreamState):
         Aircraft file, with the elevator's output and calibration, and the source of the angle of attack.
     target_system
         System id to follow; None for the first vehicle that sends.
-    marks
-        Stretches marked as manoeuvres before the stream begins.
     keep_all
         Whether every sample is kept, for ``power_ons``. With all samples, the memory grows with the length of
         the flight.
-    lateral
-        Whether manoeuvres of aileron and rudder are also found.
     """
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:

@@ -47,10 +47,6 @@ def problems(
         Outputs of the elevator, or the reason why they are unknown.
     activities
         Number of elevator movements that were no test inputs, by the reason in words.
-    still
-        Channels that are frozen in flight.
-    seen
-        Names of the messages that the vehicle has sent.
     """
     if vehicle is None:
         return [_no_vehicle(other_systems)]

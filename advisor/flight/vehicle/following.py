@@ -62,10 +62,6 @@ class Following:
         ----------
         piece
             Messages of one second of arrival, from all senders.
-        vehicle
-            Vehicle that has been followed so far.
-        all_heard
-            Every vehicle that has sent a heartbeat.
         """
         second = int(min(float(c.arrival_s[0]) for c in piece))
         found = None

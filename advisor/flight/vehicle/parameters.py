@@ -91,13 +91,6 @@ class Parameters:
     def wiring(self, senders: Sequence[Sender], autopilot: str) -> Wiring:
         """Return the roles and scales of the outputs from these senders' parameters. The last sender
         overrides earlier ones.
-
-        Parameters
-        ----------
-        senders
-            System and component ids that state the vehicle's parameters.
-        autopilot
-            Name of the autopilot in the vehicle's identity.
         """
         stated = self.stated(senders, autopilot)
         find = px4_wiring.px4_wiring if autopilot == "px4" else ardupilot_wiring.ardupilot_wiring
@@ -111,13 +104,7 @@ _UNFILTERED_ON_PX4 = "HIGHRES_IMU"
 
 
 def filter_delay_s(channel: str, source: str, autopilot: str, stated: Mapping[str, float]) -> float:
-    """Return the known delay of a channel due to the autopilot's filters, s; 0 if unknown.
-
-    Parameters
-    ----------
-    autopilot
-        Name of the autopilot in the vehicle's identity.
-    """
+    """Return the known delay of a channel due to the autopilot's filters, s; 0 if unknown."""
     if channel not in _RATES + _FORCES:
         return 0.0
     if autopilot == "px4":

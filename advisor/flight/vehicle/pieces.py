@@ -95,8 +95,6 @@ def by_boot(
     ----------
     component
         Component id of the autopilot, whose ``ATTITUDE`` is the master clock.
-    clock
-        Clock of the vehicle, which the stamps in ``columns`` advance.
     boot
         Number of the present boot, to which messages before the first stamp belong.
     """

@@ -16,13 +16,7 @@ _RECORD = "Record the vehicle's parameters, or give elevator.calibration."
 
 
 def limits(names: Names, stated: Mapping[str, float], usual: Scale) -> tuple[Scale, Problem | None]:
-    """Return the scale of an output, and the problem of its assumed limits; None if all are stated.
-
-    Parameters
-    ----------
-    stated
-        Values of the vehicle's parameters, by name.
-    """
+    """Return the scale of an output, and the problem of its assumed limits; None if all are stated."""
     known = [stated.get(name) for name in names]
     wrong = _contradiction(names, known)
     if wrong:

@@ -14,15 +14,7 @@ _INDEPENDENT = 40.0
 
 
 def form_error(names: Sequence[str], change: float) -> float:
-    """Return the error of the outputs due to an effect's simplified form, as a share of the peaks.
-
-    Parameters
-    ----------
-    names
-        Names of the effect's parameters.
-    change
-        Change of the outputs by the effect, as a share of the peaks.
-    """
+    """Return the error of the outputs due to an effect's simplified form, as a share of the peaks."""
     return change * (_PLAY if "half_width_rad" in names else _FORM)
 
 
@@ -33,8 +25,6 @@ def most_nats(apart: float, *forms: float) -> float:
     ----------
     apart
         Difference between the outputs of both models, as a share of the peaks.
-    forms
-        Errors of the outputs due to the effects' simplified forms, as shares of the peaks.
     """
     error = float(np.linalg.norm((_MODEL, *forms)))
     return 0.5 * _INDEPENDENT * (apart / error) ** 2

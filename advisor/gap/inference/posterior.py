@@ -73,8 +73,6 @@ def rows_of(
 
     Parameters
     ----------
-    prior
-        Prior probability of each kind of answer.
     second
         First effect with its following stage: a second cause leaves another residual.
     """

@@ -24,8 +24,6 @@ def largest_gust(flights: PreparedManeuvers, z_alpha: float) -> float:
 
     Parameters
     ----------
-    flights
-        Manoeuvres of the flight, prepared for the comparison.
     z_alpha
         Lift derivative Z_α, 1/s, of a model that may be wrong.
     """

@@ -91,15 +91,6 @@ def said(
     """Return sentences about the first sensor in use, changes of sensor, and times without a healthy one.
 
     If sensor 0 is always in use, there is no sentence.
-
-    Parameters
-    ----------
-    table
-        Records of the sensor in use, from :func:`flown`.
-    health
-        Fields that state a sensor's health.
-    silences
-        Times without a healthy sensor, from :func:`silences_in`.
     """
     return [
         *_doubts(every, quantity, health),
@@ -113,8 +104,6 @@ def silences_in(every: RecordTable, table: RecordTable, before: Sequence[Silence
 
     Parameters
     ----------
-    table
-        Records of the sensor in use, from :func:`flown`.
     before
         Times without a healthy sensor in the stretch before, of which the last may continue.
     """

@@ -104,11 +104,6 @@ class SeparateConnection(Talker):
     shows a message from its ``--master`` when the text carries the system and component of its vehicle
     (MAVProxy, ``mavproxy_link.py``, ``message_is_from_primary_vehicle``).
 
-    Parameters
-    ----------
-    connection
-        Connection string, see ``parse_connection``.
-
     Raises
     ------
     ConfigurationError

@@ -24,8 +24,6 @@ class Delivery:
 
     Parameters
     ----------
-    messages
-        Message ids to be counted.
     window_s
         Length of a window, s.
     """

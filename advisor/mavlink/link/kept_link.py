@@ -32,8 +32,6 @@ class KeptLink:
     ----------
     elevator
         Elevator of the aircraft file, which shows which vehicle has one. None to decide by parameters.
-    target_system
-        System id of the vehicle; None for the first autopilot that sends.
     """
 
     def __init__(

@@ -58,14 +58,8 @@ class Link:
 
     Parameters
     ----------
-    connection
-        Connection string, see ``parse_connection``.
-    source_system
-        System id of the advisor in all its messages.
     target_system
         System id of the vehicle; None for the first autopilot that sends.
-    record_to
-        File of the recording; None for no recording.
     goes_on
         Whether the file exists and is continued.
     key

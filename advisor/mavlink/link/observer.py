@@ -23,8 +23,6 @@ class LinkObserver:
     ----------
     door
         Address of the process. None if no process keeps a link, so that nothing is reported.
-    tell
-        Function that is called with the health, in a thread of the observer.
     """
 
     def __init__(self, door: Door | None, tell: Callable[[LinkStatistics], object]) -> None:

@@ -16,8 +16,6 @@ class UdpTransport(Transport):
 
     Parameters
     ----------
-    address
-        Address to listen on or to connect to.
     inherited
         File descriptor of another process's socket. None to open a new socket.
     """

@@ -47,13 +47,7 @@ def recognised(beginning: bytes) -> Found | None:
 
 
 def refusal(name: str, beginning: bytes) -> Problem:
-    """Return a problem with the reason why a file is no log, and with the remedy.
-
-    Parameters
-    ----------
-    beginning
-        Beginning of the file, in which :func:`recognised` finds no log.
-    """
+    """Return a problem with the reason why a file is no log, and with the remedy."""
     text = beginning[:1024].lstrip(b"\xef\xbb\xbf \t\r\n").lower()
     if not beginning:
         return Problem("empty", f"{name} is empty.", "Give a log that was recorded to its end.")

@@ -65,8 +65,6 @@ def unpacked(path: Path, beginning: bytes) -> Iterator[Path]:
 
     Parameters
     ----------
-    path
-        A regular file.
     beginning
         Result of :func:`beginning_of`.
 

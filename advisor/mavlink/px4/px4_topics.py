@@ -110,13 +110,7 @@ def rate_hz(topic: Topic) -> float:
 
 
 def best(candidates: Iterable[Topic | None]) -> Topic | None:
-    """Return the first topic that is fast enough, else the fastest; None without any.
-
-    Parameters
-    ----------
-    candidates
-        Topics of one quantity, the preferred first.
-    """
+    """Return the first topic that is fast enough, else the fastest; None without any."""
     found = [topic for topic in candidates if topic is not None]
     fast = [topic for topic in found if rate_hz(topic) >= ENOUGH_HZ]
     return fast[0] if fast else max(found, key=rate_hz, default=None)

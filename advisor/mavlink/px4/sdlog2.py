@@ -45,13 +45,7 @@ def is_sdlog2(tables: Mapping[str, RecordTable]) -> bool:
 
 
 class Sdlog2Messages:
-    """Conversion of the records to the messages that telemetry would have carried.
-
-    Parameters
-    ----------
-    tables
-        Records of the log by name.
-    """
+    """Conversion of the records to the messages that telemetry would have carried."""
 
     def __init__(self, tables: Mapping[str, RecordTable]) -> None:
         known = {

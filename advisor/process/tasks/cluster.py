@@ -165,8 +165,6 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
     ----------
     here
         Version of each package; None for a missing package.
-    workers
-        Package versions in each worker, by the worker's address.
 
     Returns
     -------

@@ -37,8 +37,6 @@ def run_in_processes(
     ----------
     work
         Function of a task. Function, tasks and results can be pickled.
-    executor
-        Makes an executor with a given number of workers.
 
     Notes
     -----

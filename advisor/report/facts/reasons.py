@@ -24,13 +24,7 @@ def in_percent(probability: float) -> str:
 
 
 def how_sure(alternatives: Iterable[tuple[str, float]]) -> str:
-    """Return a sentence about the likeliest alternatives; empty without probabilities.
-
-    Parameters
-    ----------
-    alternatives
-        Alternatives in words with their probabilities, likeliest first.
-    """
+    """Return a sentence about the likeliest alternatives; empty without probabilities."""
     shown = [f"{words} {in_percent(p)}" for words, p in alternatives if is_shown(p)]
     if not shown:
         return ""

@@ -104,10 +104,6 @@ def draw(
     ----------
     name
         Name of the figure in its page, which makes its ids unique.
-    paint
-        Function that draws axes and lines on the empty figure.
-    shown
-        Further arguments of ``paint``.
     """
     with mpl.rc_context(_STYLE), mpl.rc_context({"svg.hashsalt": name}):
         figure = Drawing(figsize=(width_in, height_in), layout="constrained")

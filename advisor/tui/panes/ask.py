@@ -33,10 +33,6 @@ class Ask(Horizontal):
 
         Parameters
         ----------
-        question : str
-            Text of the question.
-        answered : callable
-            Receives the answer, unless it is empty.
         integer : bool
             Whether only whole numbers are accepted.
         """

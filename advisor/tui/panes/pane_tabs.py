@@ -10,13 +10,7 @@ _BRACKETS = 2
 
 
 class PaneTabs(Static):
-    """Numbered names of the panes on one line, with the visible pane in brackets. A click chooses a pane.
-
-    Parameters
-    ----------
-    short
-        Titles for terminals without room for the full ones.
-    """
+    """Numbered names of the panes on one line, with the visible pane in brackets. A click chooses a pane."""
 
     def __init__(self, titles: Sequence[str], short: Sequence[str]) -> None:
         super().__init__()

@@ -77,8 +77,6 @@ def nearest(x: FloatArray, value: float) -> int:
     ----------
     x
         Shape (n,), rising, n at least 1.
-    value
-        Any number.
     """
     at = int(np.searchsorted(x, value))
     if at == 0 or at == len(x):

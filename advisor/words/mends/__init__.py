@@ -26,8 +26,6 @@ def mends_of(autopilot: str, carrier: Carrier, log_profile: int | None = None) -
     ----------
     autopilot
         ``ardupilot``, ``px4``, or another name.
-    carrier
-        Kind of record with the vehicle's messages.
     log_profile
         SDLOG_PROFILE of a PX4 log; None where unknown.
     """

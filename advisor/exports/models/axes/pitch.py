@@ -45,8 +45,6 @@ def prove(
     ----------
     fresh
         Manoeuvres of other logs; None to hold out the last third of ``flown``.
-    whole
-        Comparison of ``flown``.
 
     Raises
     ------
@@ -100,13 +98,7 @@ def prove(
 
 
 def stays_of(proof: Proof, found: Diagnosis, given: Mapping[str, float]) -> Diagnosis:
-    """Return a diagnosis without the withdrawn parts, which its sentence names.
-
-    Parameters
-    ----------
-    given
-        Derivatives of the simulator as given.
-    """
+    """Return a diagnosis without the withdrawn parts, which its sentence names."""
     said = proof.taken_back_said
     if not said:
         return found

@@ -128,13 +128,7 @@ def _note(improvement: Improvement, first: Slopes, targets: Mapping[str, float])
 def functions_of(
     effects: Mapping[str, Mapping[str, float]], slopes: Slopes, surface: str
 ) -> tuple[list[AddedFunction], list[str]]:
-    """Return the functions for effects, and the names of completely represented effects.
-
-    Parameters
-    ----------
-    surface
-        Property of the elevator's position.
-    """
+    """Return the functions for effects, and the names of completely represented effects."""
     functions: list[AddedFunction] = []
     carried = []
     for effect, values in effects.items():

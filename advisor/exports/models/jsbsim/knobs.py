@@ -60,17 +60,7 @@ def settled(
     surface: str,
     measured: Callable[[Sequence[Knob]], Slopes],
 ) -> tuple[list[Knob], Slopes]:
-    """Change the knobs until the aircraft has its target derivatives, for at most ``ROUNDS`` rounds.
-
-    Parameters
-    ----------
-    first
-        Slopes of the aircraft before any correction, and slopes with the given knobs.
-    surface
-        Property of the elevator's position.
-    measured
-        Function that measures the aircraft with given knobs.
-    """
+    """Change the knobs until the aircraft has its target derivatives, for at most ``ROUNDS`` rounds."""
     now, turned = first, list(knobs)
     for _ in range(ROUNDS):
         if not missed(now, targets):

@@ -157,13 +157,7 @@ def _finds_its_throttle(fdm: Any) -> bool:
 
 
 def answer(measure: Callable[[Any, dict[str, Any]], Any]) -> None:
-    """Read one request as JSON from stdin, and answer with one line of JSON, the last on stdout.
-
-    Parameters
-    ----------
-    measure
-        Function that measures a loaded aircraft for a request, and returns a dataclass.
-    """
+    """Read one request as JSON from stdin, and answer with one line of JSON, the last on stdout."""
     told = json.load(sys.stdin)
     foreign = told.pop("foreign")
     model, *places = (told.pop(key) for key in ("model", "aircraft", "engine", "systems"))
