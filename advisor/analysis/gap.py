@@ -14,11 +14,10 @@ from advisor.flight.maneuvers.maneuver import Maneuver, are_one, is_fuller
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.one_aircraft import OneAircraft
 from advisor.flight.vehicle.surfaces import Surface
-from advisor.gap.diagnose import examine
+from advisor.gap.diagnose import examine, without_simulator
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
-from advisor.gap.without_simulator import without_simulator
 from advisor.mavlink.logs.whole import read_whole_log
 from advisor.oem.estimator import estimate_jointly
 from advisor.simulators.agreed import agreeing

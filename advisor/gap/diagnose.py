@@ -16,9 +16,8 @@ from advisor.gap.inference.findings import Circumstances, Findings
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.inference.prior_speed import prior_speed
 from advisor.gap.records.airspeed import measures_speed
-from advisor.gap.records.as_stamped import as_stamped
 from advisor.gap.records.flights import PreparedManeuvers
-from advisor.gap.records.prepare import prepare
+from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.records.usable import usable_of
@@ -194,3 +193,20 @@ def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
     if "alpha" in channels:
         channels["alpha"] = replace(channels["alpha"], y=channels["alpha"].y - offset)
     return replace(maneuver, channels=channels)
+
+
+_NOT_GIVEN = (
+    "No simulator was given: the aircraft file holds no complete model. The flight was compared with a model "
+    "fitted to it. That shows effects beyond eight parameters, and nothing about a simulator's parameters."
+)
+_STATEMENT = (
+    "No simulator was given, so no gap can be stated. A model fitted to this flight leaves no effect to name."
+)
+
+
+def without_simulator(diagnosis: Diagnosis) -> Diagnosis:
+    """Return the diagnosis as a statement about the flight alone, without the claim that there is no gap."""
+    notes = (_NOT_GIVEN, *diagnosis.notes)
+    if diagnosis.verdict != "none":
+        return replace(diagnosis, notes=notes)
+    return replace(diagnosis, verdict="untested", sentence=_STATEMENT, notes=notes)

@@ -19,8 +19,7 @@ from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.inference.findings import Findings
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.records.as_stamped import as_stamped
-from advisor.gap.records.prepare import prepare
+from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
 from advisor.gap.result import Diagnosis, Trace, TrimDifference
 from advisor.gap.search.baseline import base_entries

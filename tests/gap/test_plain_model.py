@@ -15,8 +15,7 @@ from advisor.gap.candidates.nuisances import latency
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.noise.shown_gust import largest_gust
-from advisor.gap.records.as_stamped import as_stamped
-from advisor.gap.records.prepare import prepare
+from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion
 from advisor.gap.records.usable import outputs_of
 from advisor.gap.search.baseline import base_entries, fit_unfiltered

@@ -6,8 +6,8 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
+from advisor.gap.diagnose import without_simulator
 from advisor.gap.result import GapVerdict
-from advisor.gap.without_simulator import without_simulator
 from advisor.report.gap_document import gap_document
 from advisor.report.gap_screen import GapScreen
 from tests.gap.test_report_screen import diagnosis

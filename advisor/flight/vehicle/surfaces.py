@@ -157,7 +157,7 @@ class Surface:
         return self.combined(self.angles(pwm_us))
 
     def without(self, silent: Collection[int]) -> "Surface | None":
-        """Return the surface with only the outputs that carry a pulse; None if a demand has no output left."""
+        """Return the surface with only the outputs that carry a pulse; None if a demand has none left."""
         kept = [part for part in self.parts if part.output not in silent]
         if len(kept) == len(self.parts):
             return self

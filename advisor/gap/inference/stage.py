@@ -4,8 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Generic, Protocol, TypeVar
 
-from advisor.gap.inference.explanation import E
-from advisor.gap.inference.model_error import most_nats
+from advisor.gap.inference.explanation import E, most_nats
 from advisor.gap.inference.residual import Residual
 from advisor.process.parts import Parts
 

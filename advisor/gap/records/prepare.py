@@ -213,3 +213,21 @@ def _with_rows(flight: PreparedManeuver, channels: Sequence[str]) -> PreparedMan
     times = [flight.outputs[c].t for c in channels]
     output = np.repeat([OUTPUTS.index(c) for c in channels], [len(t) for t in times])
     return replace(flight, stamps=np.concatenate(times), output=output.astype(np.int64))
+
+
+_TOGETHER = {"a_z": ("a_z", "a_x")}
+"""Channels of one message, by the name of the channel in the findings."""
+
+
+def as_stamped(maneuver: Maneuver) -> Maneuver:
+    """Return the manoeuvre with the delays that were removed from its channels put back.
+
+    The removed delays differ between manoeuvres, so the diagnosis finds a late stream itself.
+    """
+    channels = dict(maneuver.channels)
+    for finding in maneuver.findings:
+        for name in _TOGETHER.get(finding.channel, (finding.channel,)):
+            if name in channels and finding.removed_s:
+                channels[name] = replace(channels[name], t=channels[name].t + finding.removed_s)
+    findings = tuple(replace(finding, removed_s=0.0) for finding in maneuver.findings)
+    return replace(maneuver, channels=channels, findings=findings)

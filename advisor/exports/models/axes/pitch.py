@@ -18,8 +18,7 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import changes_in, lasting, less_of_the_servo, together
 from advisor.gap.diagnose import Examined
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.records.as_stamped import as_stamped
-from advisor.gap.records.prepare import prepare
+from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.simulators.compare import Compared
