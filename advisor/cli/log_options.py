@@ -60,13 +60,7 @@ class LogsAsked:
         return words
 
     def read_aircraft(self) -> Aircraft:
-        """Read the aircraft file.
-
-        Raises
-        ------
-        ConfigurationError
-            As :func:`advisor.cli.options.read_aircraft`.
-        """
+        """Read the aircraft file."""
         return read_aircraft(self.aircraft_file, self.rule)
 
 

@@ -120,13 +120,7 @@ def _seconds(parts: Sequence[str]) -> float:
 
 
 def refuse_marks_on_several(marks: "Sequence[Mark]", logs: Sequence[Path]) -> None:
-    """Refuse marks of the command line on several logs.
-
-    Raises
-    ------
-    ConfigurationError
-        There are marks, and more than one log.
-    """
+    """Refuse marks of the command line on several logs."""
     if marks and len(logs) > 1:
         raise ConfigurationError(
             "--maneuver does not say in which of several logs: write the marks into LOG.maneuvers.yaml "
@@ -135,13 +129,7 @@ def refuse_marks_on_several(marks: "Sequence[Mark]", logs: Sequence[Path]) -> No
 
 
 def decided_on(log: Path, no_marks: bool) -> "ByHand":
-    """Return the decisions by hand on a log, from the file next to the log.
-
-    Raises
-    ------
-    ConfigurationError
-        As :func:`advisor.analysis.marks_file.read_by_hand`.
-    """
+    """Return the decisions by hand on a log, from the file next to the log."""
     from advisor.analysis.marks_file import read_by_hand
     from advisor.campaign.hand_decisions import NOTHING
 
@@ -149,13 +137,7 @@ def decided_on(log: Path, no_marks: bool) -> "ByHand":
 
 
 def read_aircraft(aircraft_file: Path | None, rule: Rule | None = None) -> Aircraft:
-    """Read the aircraft file, and let the rule of the command line override the file's.
-
-    Raises
-    ------
-    ConfigurationError
-        As :func:`advisor.aircraft_file.read.load_aircraft`.
-    """
+    """Read the aircraft file, and let the rule of the command line override the file's."""
     aircraft = Aircraft()
     if aircraft_file is not None:
         from advisor.aircraft_file.read import load_aircraft

@@ -64,13 +64,7 @@ def _refuse(inputs: Sequence[Path], out: Path) -> None:
 
 
 def refuse_missing_libraries(command: str) -> None:
-    """Refuse a command that draws pages where the libraries for pages are missing.
-
-    Raises
-    ------
-    ConfigurationError
-        A library is missing.
-    """
+    """Refuse a command that draws pages where the libraries for pages are missing."""
     missing = [name for name in _NEEDED if find_spec(name) is None]
     if missing:
         raise ConfigurationError(

@@ -89,13 +89,7 @@ class _Loader(_Parser):  # type: ignore[misc]
     """Safe YAML loader that refuses a repeated key of a section."""
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
-        """Build one section of the settings.
-
-        Raises
-        ------
-        _Refused
-            The section repeats a key.
-        """
+        """Build one section of the settings."""
         said: set[Hashable] = set()
         for key_node, _ in node.value:
             key = (key_node.tag, str(key_node.value))

@@ -43,13 +43,7 @@ class ResumedSource:
         self._notices: list[str] = []
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
-        """Return the next batch, beginning with the earlier flights.
-
-        Raises
-        ------
-        UnusableInputError
-            The link can never serve.
-        """
+        """Return the next batch, beginning with the earlier flights."""
         if self._past is not None:
             batch = next(self._past, None)
             if batch is not None:
