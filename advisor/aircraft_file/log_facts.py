@@ -91,10 +91,7 @@ def facts_of(
 ) -> LogFacts:
     """Return the facts of a log about its aircraft.
 
-    Parameters
-    ----------
-    target_system
-        System id of the vehicle; None: the first one heard.
+    ``target_system``: system id of the vehicle; None: the first one heard.
 
     Raises
     ------

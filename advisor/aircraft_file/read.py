@@ -39,10 +39,7 @@ def load_aircraft(path: Path | None) -> Aircraft:
 def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") -> Aircraft:
     """Turn the parsed YAML into an aircraft.
 
-    Parameters
-    ----------
-    origin
-        Name of the file, or of whatever the content comes from, for the sentence about mistakes.
+    ``origin``: name of the file, or of whatever the content comes from, for the sentence about mistakes.
 
     Raises
     ------

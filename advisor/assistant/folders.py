@@ -26,10 +26,7 @@ class Folders:
     def file(self, name: str) -> Path:
         """Return a file inside the folders, with links resolved.
 
-        Parameters
-        ----------
-        name
-            Absolute path, or path relative to one of the folders.
+        ``name``: absolute path, or path relative to one of the folders.
 
         Raises
         ------

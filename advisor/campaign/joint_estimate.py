@@ -50,10 +50,7 @@ class _Joint:
 class Together:
     """Estimates manoeuvres jointly and keeps the newest joint estimate.
 
-    Parameters
-    ----------
-    aircraft
-        The crew's aircraft, without quantities identified during the flight.
+    ``aircraft``: the crew's aircraft, without quantities identified during the flight.
     """
 
     def __init__(self, aircraft: Aircraft) -> None:

@@ -57,10 +57,7 @@ class Settling:
     def follow(self, flying: Maneuver | None, aircraft: Aircraft, model: Estimate | None) -> Settled | None:
         """Return the estimate from the data so far; None if there is none.
 
-        Parameters
-        ----------
-        aircraft
-            The crew's aircraft, with a servo's lag that earlier manoeuvres told.
+        ``aircraft``: the crew's aircraft, with a servo's lag that earlier manoeuvres told.
         """
         if flying is None:
             self._number, self._settled = None, None

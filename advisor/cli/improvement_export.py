@@ -31,10 +31,7 @@ def orders_of(
 ) -> "list[ExportOrder]":
     """Read and check all orders before any work.
 
-    Parameters
-    ----------
-    inputs
-        Files that the command reads, or that another option writes. No order may name one of them.
+    ``inputs``: files that the command reads, or that another option writes. No order may name one of them.
     """
     if not exports:
         return []

@@ -46,10 +46,7 @@ BEAT_S = 0.5
 def narrate(task: ConductorTask, say: Callable[[str], object], warn: Callable[[str], object]) -> None:
     """Conduct a campaign in another process, to the end of its source.
 
-    Parameters
-    ----------
-    task
-        Campaign and source; the source can be read from its beginning again.
+    ``task``: campaign and source; the source can be read from its beginning again.
 
     Raises
     ------
@@ -144,10 +141,7 @@ def narrate_here(
 ) -> None:
     """Conduct a campaign in this process, to the end of its source.
 
-    Parameters
-    ----------
-    beat
-        Called after each wait for data, at most every ``BEAT_S``. None: a backlog is printed here.
+    ``beat``: called after each wait for data, at most every ``BEAT_S``. None: a backlog is printed here.
     """
     from advisor.report.follow import follow
 

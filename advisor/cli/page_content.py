@@ -40,10 +40,7 @@ def gather(
 ) -> tuple[Content, list[str]]:
     """Return the content of the page, and sentences on logs that do not count.
 
-    Parameters
-    ----------
-    command
-        Command line that repeats the page; None: the one that this process was started with.
+    ``command``: command line that repeats the page; None: the one that this process was started with.
 
     Raises
     ------

@@ -35,10 +35,8 @@ def running_options(command: F) -> F:
 def runner_of(workers: int | None, scheduler: str | None, guarded: bool = True) -> "Runner":
     """Return the way to do tasks that the options ask for.
 
-    Parameters
-    ----------
-    guarded
-        Whether a single worker also gets a process of its own, so that its death costs its task only.
+    ``guarded``: whether a single worker also gets a process of its own, so that its death costs its task
+    only.
 
     Raises
     ------

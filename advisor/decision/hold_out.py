@@ -42,10 +42,7 @@ def predict_last(usable: Sequence[CandidateManeuver]) -> Mapping[str, PredictedO
     Trim, initial state and biases are estimated for each manoeuvre. These parameters come from the
     manoeuvre's own fit, minus the response of its own derivatives.
 
-    Parameters
-    ----------
-    usable
-        Manoeuvres, each with an estimate, in the order flown.
+    ``usable``: manoeuvres, each with an estimate, in the order flown.
 
     Returns
     -------

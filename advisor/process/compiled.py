@@ -57,10 +57,7 @@ def kernel(**options: Any) -> Callable[[Function], Function]:
 def key_of(module: str) -> str:
     """Return the hash of the texts of an imported module and of all modules of its package that it imports.
 
-    Parameters
-    ----------
-    module
-        Name of a module that is being imported, directly or by another module's imports.
+    ``module``: name of a module that is being imported, directly or by another module's imports.
 
     Returns
     -------

@@ -80,10 +80,7 @@ class Watch:
     def heard(self, patient: bool = False) -> None:
         """Record the arrival of a message.
 
-        Parameters
-        ----------
-        patient
-            Whether the process is reading the earlier recording, which may take long.
+        ``patient``: whether the process is reading the earlier recording, which may take long.
         """
         self._limit_s = START_S if patient else ENDED_AFTER_S
         self._messages += 1

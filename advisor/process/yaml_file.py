@@ -24,10 +24,7 @@ _Parser: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 def read_yaml(path: Path, mend: str = "See the example in the README.") -> Any:
     """Return the content of a YAML file; None for an empty one.
 
-    Parameters
-    ----------
-    mend
-        Sentence with the remedy for a refused file.
+    ``mend``: sentence with the remedy for a refused file.
 
     Raises
     ------

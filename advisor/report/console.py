@@ -14,10 +14,7 @@ class PlainConsole(Console):
     Without Unicode, cells are spelled in ASCII before their widths are measured, so that columns stay
     aligned.
 
-    Parameters
-    ----------
-    soft_wrap
-        Whether the terminal wraps long lines.
+    ``soft_wrap``: whether the terminal wraps long lines.
     """
 
     def __init__(self, soft_wrap: bool = False) -> None:

@@ -28,10 +28,7 @@ _DECODED = ("vehicle_messages", "lost", "repeated", "repeated_after_s", "late")
 class LinkSource:
     """Source that reads a live link. The source ends when the sender has finished.
 
-    Parameters
-    ----------
-    connection
-        Context that opens the link at the first ``read``.
+    ``connection``: context that opens the link at the first ``read``.
     """
 
     def __init__(

@@ -29,10 +29,7 @@ def stretches(batches: Iterable[list[Columns]]) -> Iterator[list[Columns]]:
 class ResumedSource:
     """Delivers the logs of earlier flights, then the messages of a link as the last flight.
 
-    Parameters
-    ----------
-    logs
-        Logs of earlier flights, the oldest first, only read.
+    ``logs``: logs of earlier flights, the oldest first, only read.
     """
 
     def __init__(self, logs: Sequence[Path], link: Source) -> None:

@@ -15,10 +15,7 @@ def agreeing(found: Diagnosis, logged: Estimate | NoEstimate) -> Diagnosis:
     lower bound of both errors. A derivative whose wider interval contains the simulator's value is not stated
     as changed.
 
-    Parameters
-    ----------
-    logged
-        Estimate from all manoeuvres together, as logged.
+    ``logged``: estimate from all manoeuvres together, as logged.
     """
     if isinstance(logged, NoEstimate):
         return found

@@ -32,10 +32,7 @@ ReadLog = Callable[[Path], list[Maneuver]]
 def simulator_of(specification: str, aircraft: Aircraft, read_log: ReadLog) -> Simulator:
     """Make the simulator that a specification names.
 
-    Parameters
-    ----------
-    read_log
-        Function that reads a log written by the simulator.
+    ``read_log``: function that reads a log written by the simulator.
 
     Raises
     ------

@@ -17,10 +17,7 @@ class ServerGoneError(Exception):
 class AttachedConductor(Conducting):
     """A `Conducting` whose campaign runs in the server.
 
-    Parameters
-    ----------
-    connection
-        Connection to the server, after its first message `Viewing`.
+    ``connection``: connection to the server, after its first message `Viewing`.
     """
 
     def __init__(self, connection: Connection) -> None:

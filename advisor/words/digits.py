@@ -15,10 +15,7 @@ def distinct_texts(
 
     "1.9 s (at least 1.9)" contradicts itself; "1.86 s (at least 1.90)" does not.
 
-    Parameters
-    ----------
-    digits
-        Fewest decimals (``f``) or significant digits (``g``).
+    ``digits``: fewest decimals (``f``) or significant digits (``g``).
 
     Returns
     -------

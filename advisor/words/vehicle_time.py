@@ -14,10 +14,7 @@ def clock(seconds: float) -> str:
 
     Minutes continue beyond 60, so that one multiplication gives the seconds of a document.
 
-    Parameters
-    ----------
-    seconds
-        Vehicle time, s since power-on; NaN before the vehicle's clock is heard.
+    ``seconds``: vehicle time, s since power-on; NaN before the vehicle's clock is heard.
     """
     if not isfinite(seconds):
         return "–"

@@ -32,10 +32,7 @@ def estimate_copies(
 ) -> list[Estimate]:
     """Measure a flight ``copies`` times and estimate each measurement on its own.
 
-    Parameters
-    ----------
-    noise
-        Standard deviation of the measurement noise, broadcastable to (n, 2), white and Gaussian.
+    ``noise``: standard deviation of the measurement noise, broadcastable to (n, 2), white and Gaussian.
 
     Raises
     ------
@@ -189,11 +186,8 @@ def outcome(
 ) -> RuleOutcome:
     """Return the outcome of one campaign under ``rule``, by the functions that judge in flight.
 
-    Parameters
-    ----------
-    maneuvers
-        What was flown, for the response that the rule ``information`` predicts; without it that rule asks
-        for the named derivatives alone.
+    ``maneuvers``: what was flown, for the response that the rule ``information`` predicts; without it that
+    rule asks for the named derivatives alone.
     """
     accepted = [r.accepted for r in MANEUVER_RULES[rule]([e.cost for e in campaign])]
     taken: list[Estimate] = []

@@ -17,10 +17,7 @@ def staged(folder: Path, inputs: Sequence[Path] = ()) -> Iterator[Path]:
 
     Existing files of equal name are replaced. After any failure, everything below ``folder`` is unchanged.
 
-    Parameters
-    ----------
-    folder
-        Folder for the files, which is created if missing.
+    ``folder``: folder for the files, which is created if missing.
 
     Raises
     ------

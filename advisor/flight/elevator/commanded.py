@@ -55,10 +55,7 @@ def commanded(
 
     Pulses outside a calibration give the deflection at its end.
 
-    Parameters
-    ----------
-    t
-        Shape (n,), vehicle time of the messages, s since boot.
+    ``t``, shape (n,), vehicle time of the messages, s since boot.
     """
     found = []
     for channel, surface in surfaces.items():

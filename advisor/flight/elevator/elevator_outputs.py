@@ -23,10 +23,7 @@ def find_elevator(
 ) -> Surface | Problem:
     """Return the outputs of the elevator with their scales, or a problem.
 
-    Parameters
-    ----------
-    wiring
-        Roles and scales of outputs by the vehicle's parameters; may be empty.
+    ``wiring``: roles and scales of outputs by the vehicle's parameters; may be empty.
     """
     if elevator.outputs:
         return _as_listed(elevator.outputs, wiring)

@@ -54,11 +54,8 @@ class Excitation:
 def excitation(maneuver: Maneuver, loop: Loop = PITCH) -> Excitation | None:
     """Return the information of a movement about the short period.
 
-    Parameters
-    ----------
-    maneuver
-        Record with the channels of the control and of the rate. Without the angle channel, the integral of
-        the rate is used.
+    ``maneuver``: record with the channels of the control and of the rate. Without the angle channel, the
+    integral of the rate is used.
 
     Returns
     -------

@@ -96,11 +96,8 @@ _BEFORE_S = 0.3
 def marked_span(mark: Mark, elevator: Channel | None) -> Span:
     """Return the extent of the manoeuvre in a marked stretch.
 
-    Parameters
-    ----------
-    elevator
-        Elevator from one lead-in before the mark to the mark's end, rad. None if the channel was not
-        received.
+    ``elevator``: elevator from one lead-in before the mark to the mark's end, rad. None if the channel was
+    not received.
 
     Returns
     -------

@@ -72,10 +72,7 @@ class SideInput:
 def first_input(pending: Sequence[SideMovement]) -> tuple[SideInput, list[SideMovement]]:
     """Return the first input among the movements, and the remaining movements.
 
-    Parameters
-    ----------
-    pending
-        At least one movement, in order of onset. Small movements during a larger one are dropped.
+    ``pending``: at least one movement, in order of onset. Small movements during a larger one are dropped.
     """
     first, *others = pending
     group = [first]

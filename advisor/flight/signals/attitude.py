@@ -43,10 +43,7 @@ class Attitudes:
 def euler_angles(q: FloatArray) -> dict[str, FloatArray]:
     """Return roll, pitch and yaw of attitude quaternions, rad, each of shape (n,).
 
-    Parameters
-    ----------
-    q
-        Shape (4, n): components w, x, y, z of the rotation from north-east-down into body axes.
+    ``q``, shape (4, n): components w, x, y, z of the rotation from north-east-down into body axes.
     """
     w, x, y, z = q
     return {

@@ -32,10 +32,7 @@ LOOPS: dict[str, Loop] = {"aileron": ROLL, "rudder": YAW}
 class SidePath:
     """Lateral manoeuvres in the samples of aileron and rudder.
 
-    Parameters
-    ----------
-    marks
-        Marked stretches. A movement in a marked stretch is not reported separately.
+    ``marks``: marked stretches. A movement in a marked stretch is not reported separately.
     """
 
     def __init__(self, tracks: Tracks, marks: Marks, cutting: Cutting) -> None:

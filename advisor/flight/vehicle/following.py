@@ -40,10 +40,7 @@ def chosen(text: bytes, what: bytes) -> int | None:
 class Following:
     """Comparison of the vehicles once a second of arrival.
 
-    Parameters
-    ----------
-    has_elevator
-        Function that returns whether the elevator's outputs of a vehicle are known.
+    ``has_elevator``: function that returns whether the elevator's outputs of a vehicle are known.
     """
 
     def __init__(self, has_elevator: Callable[[Vehicle], bool]) -> None:
@@ -58,10 +55,7 @@ class Following:
     ) -> Vehicle | None:
         """Return the vehicle that replaces ``vehicle`` after these messages; None to keep ``vehicle``.
 
-        Parameters
-        ----------
-        piece
-            Messages of one second of arrival, from all senders.
+        ``piece``: messages of one second of arrival, from all senders.
         """
         second = int(min(float(c.arrival_s[0]) for c in piece))
         found = None

@@ -69,10 +69,7 @@ def is_aircraft(autopilot: int, kind: int) -> bool:
 class VehicleFinder:
     """Choice of the vehicle among all senders of heartbeats.
 
-    Parameters
-    ----------
-    target_system
-        System id that the user asked for. None for the first vehicle that sends.
+    ``target_system``: system id that the user asked for. None for the first vehicle that sends.
     """
 
     def __init__(self, target_system: int | None = None) -> None:

@@ -55,10 +55,7 @@ def infer(
 ) -> Inference:
     """Return the posterior of all explanations of a flight.
 
-    Parameters
-    ----------
-    kinematics
-        Check of α against the motion, which alone shows a constant offset.
+    ``kinematics``: check of α against the motion, which alone shows a constant offset.
     """
     begun = FlightProblem.of(problem, baseline)
     table, laws = _table(problem, begun, aircraft)

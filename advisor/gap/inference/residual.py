@@ -44,10 +44,7 @@ class Residual:
 def residual_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> Residual:
     """Return the disturbance that explains the residual of a fit.
 
-    Parameters
-    ----------
-    heat
-        Number of white-noise nats that count as one nat (``evidence.temperature``).
+    ``heat``: number of white-noise nats that count as one nat (``evidence.temperature``).
     """
     assert problem.instruments is not None
     probes = probe_blocks(problem, fitted, innovation_noise(problem))

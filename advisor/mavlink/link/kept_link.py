@@ -28,10 +28,8 @@ class KeptLink:
     A restarted reader therefore arrives at an equal campaign. After a restart of the link's process, the
     reader continues at its position.
 
-    Parameters
-    ----------
-    elevator
-        Elevator of the aircraft file, which shows which vehicle has one. None to decide by parameters.
+    ``elevator``: elevator of the aircraft file, which shows which vehicle has one. None to decide by
+    parameters.
     """
 
     def __init__(

@@ -16,10 +16,7 @@ _TRY_EVERY_S = 0.2
 class Line:
     """One connection that is kept open.
 
-    Parameters
-    ----------
-    inherited
-        File descriptor of another process's UDP socket for the address. None to open a new socket.
+    ``inherited``: file descriptor of another process's UDP socket for the address. None to open a new socket.
     """
 
     def __init__(self, address: Address, inherited: int | None, stop: Event) -> None:

@@ -130,10 +130,7 @@ class RateWatch:
     def look(self, from_vehicle: list[Frame], now_s: float, stations: Collection[int] = ()) -> list[str]:
         """Return sentences about streams that slowed down or recovered in the vehicle's newest frames.
 
-        Parameters
-        ----------
-        now_s
-            Monotonic seconds.
+        ``now_s``: monotonic seconds.
         """
         if not from_vehicle:
             return []

@@ -41,10 +41,7 @@ class Talker(ABC):
 class Packer:
     """Packer of messages into frames, with separate sequence numbers for each sender.
 
-    Parameters
-    ----------
-    key
-        Signing key of 32 bytes; None for unsigned frames.
+    ``key``: signing key of 32 bytes; None for unsigned frames.
     """
 
     def __init__(self, key: bytes | None) -> None:

@@ -48,10 +48,7 @@ class RateRequest(Talker):
     falls is requested again a few times at once, then after rests. At the end every message gets its default
     rate back.
 
-    Parameters
-    ----------
-    rates_hz
-        Requested rate of each message, Hz, by the message's name.
+    ``rates_hz``: requested rate of each message, Hz, by the message's name.
     """
 
     def __init__(self, rates_hz: Mapping[str, float]) -> None:

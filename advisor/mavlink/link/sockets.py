@@ -14,10 +14,7 @@ _MOST_CHUNKS = 512  # taken in one go, so that a flood cannot keep the reader fr
 class UdpTransport(Transport):
     """UDP transport, listening (``udpin``) or connecting (``udpout``).
 
-    Parameters
-    ----------
-    inherited
-        File descriptor of another process's socket. None to open a new socket.
+    ``inherited``: file descriptor of another process's socket. None to open a new socket.
     """
 
     def __init__(self, address: Address, inherited: int | None = None) -> None:

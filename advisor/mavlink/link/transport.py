@@ -14,11 +14,8 @@ Peer = tuple[Any, ...]
 class ConnectionCutError(Exception):
     """The peer or the cable was disconnected.
 
-    Parameters
-    ----------
-    listening
-        Whether the transport itself waits for the next caller. Otherwise the caller opens the transport
-        again.
+    ``listening``: whether the transport itself waits for the next caller. Otherwise the caller opens the
+    transport again.
     """
 
     def __init__(self, why: str, listening: bool = False) -> None:

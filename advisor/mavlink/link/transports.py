@@ -91,10 +91,8 @@ def _is_terminal(path: str) -> bool:
 def open_transport(address: Address, inherited: int | None = None) -> Transport:
     """Open the transport of an address.
 
-    Parameters
-    ----------
-    inherited
-        File descriptor of another process's UDP socket for this address. None to open a new socket.
+    ``inherited``: file descriptor of another process's UDP socket for this address. None to open a new
+    socket.
 
     Raises
     ------

@@ -63,10 +63,7 @@ def beginning_of(path: Path) -> bytes:
 def unpacked(path: Path, beginning: bytes) -> Iterator[Path]:
     """Yield the file itself, or the log inside a packed file, for the duration of the context.
 
-    Parameters
-    ----------
-    beginning
-        Result of :func:`beginning_of`.
+    ``beginning``: result of :func:`beginning_of`.
 
     Raises
     ------

@@ -161,10 +161,7 @@ def _named(packages: Versions) -> Versions:
 def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
     """Compare the package versions in the workers with those of this computer.
 
-    Parameters
-    ----------
-    here
-        Version of each package; None for a missing package.
+    ``here``: version of each package; None for a missing package.
 
     Returns
     -------

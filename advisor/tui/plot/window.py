@@ -73,10 +73,7 @@ class Window:
 def nearest(x: FloatArray, value: float) -> int:
     """Find the index of the element of ``x`` that lies nearest to a value.
 
-    Parameters
-    ----------
-    x
-        Shape (n,), rising, n at least 1.
+    ``x``, shape (n,), rising, n at least 1.
     """
     at = int(np.searchsorted(x, value))
     if at == 0 or at == len(x):

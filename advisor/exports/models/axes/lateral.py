@@ -46,10 +46,7 @@ def prove_side(
 ) -> Proof:
     """Return the proof of roll and yaw improved by some manoeuvres and tested on others.
 
-    Parameters
-    ----------
-    fresh
-        Manoeuvres of other logs; None to hold out the last third.
+    ``fresh``: manoeuvres of other logs; None to hold out the last third.
 
     Raises
     ------

@@ -40,10 +40,7 @@ def prove(
 
     If the fitted manoeuvres give no correction, that of the whole flight is tested, with refitted sizes.
 
-    Parameters
-    ----------
-    fresh
-        Manoeuvres of other logs; None to hold out the last third of ``flown``.
+    ``fresh``: manoeuvres of other logs; None to hold out the last third of ``flown``.
 
     Raises
     ------

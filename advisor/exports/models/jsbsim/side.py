@@ -29,10 +29,7 @@ AXES = {"Y": "SIDE", "L": "ROLL", "N": "YAW"}
 def side_text(name: str, side: SideModel, model: Model, content: bytes) -> Exported:
     """Return the corrected aircraft, measured at the flown speed and height.
 
-    Parameters
-    ----------
-    content
-        Text of the aircraft, with pitch possibly corrected already.
+    ``content``: text of the aircraft, with pitch possibly corrected already.
 
     Raises
     ------
