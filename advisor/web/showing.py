@@ -51,10 +51,7 @@ class Showing:
     def newer(self, than: int, timeout_s: float) -> tuple[int, SessionReport] | None:
         """Wait for a report that is newer than a known one.
 
-        Returns
-        -------
-        tuple of int and Report, or None
-            Newest report and its number. None when no newer picture came in time.
+        Newest report and its number. None when no newer picture came in time.
         """
         with self._changed:
             self._changed.wait_for(lambda: self._number > than or self.failure is not None, timeout_s)

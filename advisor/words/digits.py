@@ -17,10 +17,7 @@ def distinct_texts(
 
     ``digits``: fewest decimals (``f``) or significant digits (``g``).
 
-    Returns
-    -------
-    tuple of str
-        Value and limit with equal numbers of digits. Texts are equal only where both agree to `MOST_DIGITS`.
+    Value and limit with equal numbers of digits. Texts are equal only where both agree to `MOST_DIGITS`.
     """
     for more in (*range(digits, MOST_DIGITS), digits):
         texts = f"{value:.{more}{style}}", f"{limit:.{more}{style}}"

@@ -163,10 +163,7 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
 
     ``here``: version of each package; None for a missing package.
 
-    Returns
-    -------
-    str
-        A caution in one sentence; empty if all versions are equal.
+    A caution in one sentence; empty if all versions are equal.
 
     Raises
     ------

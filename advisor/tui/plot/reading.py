@@ -14,10 +14,7 @@ _DIGITS = 4
 def readings(chart: Chart, y_axis: Axis | LogAxis) -> list[str]:
     """Write the value of each series at the chart's cursor; nothing where no sample is near.
 
-    Returns
-    -------
-    list of str
-        One text a series, in order; all empty without a cursor.
+    One text a series, in order; all empty without a cursor.
     """
     if chart.cursor is None:
         return [""] * len(chart.series)
