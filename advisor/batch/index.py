@@ -165,5 +165,4 @@ def _result(sentence: str) -> str:
 
 
 def _shown(text: str) -> str:
-    """Return a text from outside the advisor, escaped for a page."""
     return escape(printable(text))

@@ -266,7 +266,6 @@ class Campaign:
         half.exclude(number, because)
 
     def _half(self, axis: AxisName) -> AxisCampaign:
-        """Return the campaign of an axis."""
         return self._lateral if axis == "lateral" and self._lateral is not None else self._elevator
 
     def _take(self, events: Sequence[FlightEvent]) -> list[CampaignEvent]:
@@ -359,7 +358,6 @@ class Campaign:
 
     @property
     def _stream(self) -> FlightStream:
-        """Message stream of the current flight."""
         return self._flights.stream
 
     @property

@@ -162,7 +162,6 @@ def _throttle(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
 
 
 def _at_fit(maneuver: Maneuver, estimate: Estimate, name: str) -> FloatArray:
-    """Return a channel at the stamps of the fitted pitch rate."""
     channel = maneuver.channels[name]
     return np.interp(estimate.fits[0]["q"].t, channel.t, channel.y)
 

@@ -261,7 +261,6 @@ def _arrival(name: str, sender: _Sender, pauses: Sequence[_Pause]) -> Arrival:
 
 
 def _intervals(t: FloatArray, boot: NDArray[np.int64]) -> FloatArray:
-    """Return times between neighbouring stamps of one boot."""
     same = np.diff(boot) == 0
     intervals: FloatArray = np.diff(t)[same]
     return intervals

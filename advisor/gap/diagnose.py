@@ -107,7 +107,6 @@ def _explained(
     prior: FieldPrior,
     progress: Progress,
 ) -> Examined:
-    """Return the diagnosis of the manoeuvres with its findings."""
     flights = prepare(maneuvers, aircraft)
     _refuse(flights, maneuvers)
     arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m

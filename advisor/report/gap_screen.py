@@ -120,7 +120,6 @@ class GapScreen:
             yield unseen(self.diagnosis.cannot_see)
 
     def _more(self) -> str:
-        """Return the line about the parts that are not shown."""
         notes, hidden = _notes(self.diagnosis), self.diagnosis.cannot_see
         return (
             f"--all adds the gap in time and by manoeuvre, the fidelity by channel, {len(notes)} notes and "
@@ -141,7 +140,6 @@ def _answer(d: Diagnosis) -> Iterator[Text]:
 
 
 def _notes(d: Diagnosis) -> list[str]:
-    """Return the notes on instruments, noise floor and method."""
     floor = d.gap.floor_note and f"Noise floor {d.gap.floor_note}."
     return [note for note in (d.kinematics.sentence, floor, *d.notes) if note]
 

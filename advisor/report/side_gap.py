@@ -43,7 +43,6 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
 
 
 def _title(found: SideGap) -> str:
-    """Return the title above the answer."""
     return title_of_verdict(
         found.verdict or "untested", found.diagnosis.answers if found.diagnosis is not None else ()
     )

@@ -85,7 +85,6 @@ def diagnosed(
 
 
 def _diagnosed_sideways(logs: Sequence[Path], aircraft: Aircraft) -> Document:
-    """Diagnose roll and yaw from logs."""
     from advisor.analysis.side_gap import compare_side_logs
     from advisor.process.parts import FailedPart, attempt
     from advisor.report.gap_document import gap_document

@@ -241,7 +241,6 @@ def _integrated(rate: FloatArray, t: FloatArray) -> FloatArray:
 
 
 def _slope(x: FloatArray, y: FloatArray) -> float:
-    """Return the regression slope of y on x."""
     return float(x @ y / max(float(x @ x), 1e-300))
 
 

@@ -181,7 +181,6 @@ class Jsbsim:
         return math.copysign(1.0 / throw, seen[-1.0][1] - seen[1.0][1])
 
     def _motion(self) -> tuple[float, ...]:
-        """Return the motion's quantities in the order of ``_MOTION``."""
         fdm = self._flight.fdm
         acceleration = FOOT_M / fdm["inertia/mass-slugs"]
         return (

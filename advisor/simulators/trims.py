@@ -32,7 +32,6 @@ def trim_differences(
 
 
 def _of_the_flight(flight: PreparedManeuver, maneuver: Maneuver, aircraft: Aircraft) -> Mapping[str, float]:
-    """Return the measured trim before the first step of a manoeuvre."""
     trim = {"alpha": flight.alpha_trim} if "alpha" in flight.outputs else {}
     if aircraft.elevator.is_calibrated:
         trim["elevator"] = flight.u_trim

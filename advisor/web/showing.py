@@ -119,7 +119,6 @@ class Audience:
             self._pages[-1].start()
 
     def _serve(self, connection: Connection) -> None:
-        """Serve one page from its connection to its end."""
         gone = Event()
         own = None if self._shared is not None else Showing(self._make_conductor())
         with suppress(OSError), connection, own or nullcontext():

@@ -90,7 +90,6 @@ class LateralCampaign(AxisCampaign):
         return self._by(self._joint_estimate if self._may_stop else None, heard)
 
     def _by(self, joint: LateralEstimate | None, heard: Sequence[Heard]) -> FlightTestVerdict:
-        """Return the decision from a joint estimate."""
         return self._parts.make(
             "lateral, stop or continue",
             lambda: lateral_flight_test(

@@ -93,7 +93,6 @@ def lateral_flight_test(
 
 
 def _flown_fewer_than(n: int, accepted: Sequence[LateralEstimate]) -> list[str]:
-    """Return the controls with fewer than ``n`` accepted manoeuvres."""
     return [name for name in LATERAL.inputs if sum(name in one.flown for one in accepted) < n]
 
 

@@ -189,7 +189,6 @@ def _records(
 
 
 def _measures(output: str, fits: Sequence[ChannelFit | None]) -> list[Column]:
-    """Return the columns with the fit measures of an output."""
     return [
         Column(
             f"{measure}_{output}",

@@ -83,7 +83,6 @@ def _is_of_record(table: FlightTable) -> bool:
 
 
 def _of_record(table: FlightTable, number: int) -> FlightTable:
-    """Return the rows of one record, in the order of their times."""
     rows = np.flatnonzero(table["record"] == number)
     rows = rows[np.argsort(table[_TIMES.get(table.name, "t_boot_s")][rows], kind="stable")]
     columns = tuple(Column(c.name, c.values[rows], c.unit, c.about) for c in table.columns)

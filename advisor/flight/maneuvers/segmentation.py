@@ -169,7 +169,6 @@ class Segmenter:
             self._forget_all()
 
     def _advance(self, i: int) -> None:
-        """Process the stored sample ``i``."""
         samples = self._samples
         t, u = float(samples.t[i]), float(samples.y[i])
         if self._base is None:
@@ -268,7 +267,6 @@ class Segmenter:
         return _HOLD_S[1] if single else max(_HOLD_S[0], _LONGER * self._longest_hold_s)
 
     def _follow(self, response: FreeResponse, t: float, u: float) -> None:
-        """Process a sample of a free response."""
         ended = response.take(t, u)
         if ended is None:
             return

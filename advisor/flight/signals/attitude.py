@@ -68,7 +68,6 @@ def _as_attitude(c: Columns, rows: int) -> Columns:
 
 
 def _joined(first: Columns, then: Columns) -> Columns:
-    """Return two batches of one message type, one after the other."""
     return replace(
         then,
         order=np.concatenate([first.order, then.order]),

@@ -137,7 +137,6 @@ class Flights:
         return events
 
     def _end(self) -> list[FlightEvent]:
-        """End a flight before the next one begins."""
         events = self.finish()
         if self.flight == self._told_of:
             self._past.append(self._so_far(self.stream.channels, over=True))

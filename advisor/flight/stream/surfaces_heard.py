@@ -128,7 +128,6 @@ class SurfacesHeard:
         )
 
     def _notice(self, name: str, value: float, text: str) -> list[FlightEvent]:
-        """Return one notice about a parameter's value."""
         if (name, value) in self._said_of:
             return []
         self._said_of.add((name, value))

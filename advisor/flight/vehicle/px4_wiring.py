@@ -120,7 +120,6 @@ def allocation(parameters: Parameters) -> dict[int, Torque]:
 
 
 def _stated_limits(parameters: Parameters) -> frozenset[int]:
-    """Return the outputs with both limits stated."""
     return frozenset(
         16 * bank + k
         for bank, group in enumerate(banks(parameters))

@@ -124,6 +124,5 @@ def _longer(flights: PreparedManeuvers, one: Variant, course: Course) -> tuple[V
 
 
 def _span_of(flights: PreparedManeuvers) -> float:
-    """Return the time from the first manoeuvre to the last, in s."""
     t = starts_of(flights)
     return max(float(t[-1] - t[0]), 1.0)

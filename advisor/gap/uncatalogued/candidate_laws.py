@@ -108,7 +108,6 @@ def stops(
 
 
 def _scale(name: str, block: str, channel: str) -> Variant:
-    """Return a scale error of a reading."""
     entries = (f"{channel}_scale",)
     return Variant(name, block, ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.03, entries=entries)
 

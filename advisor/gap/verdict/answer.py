@@ -194,7 +194,6 @@ def _diagnosed(
 
 
 def _of_the_air(sought: SoughtAir) -> Iterator[Decision]:
-    """Yield the decision on moving air, if the air moves."""
     if sought.found is not None:
         name = "gust" if sought.found.gust else "turbulence"
         yield Decision(name, "likelihood", sought.found.gain, CERTAIN, "nats")

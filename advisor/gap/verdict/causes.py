@@ -177,7 +177,6 @@ def with_model_errors(cause: Cause, problem: EffectProblem) -> Cause:
 
 
 def _model_error(name: str, value: float) -> float:
-    """Return the standard deviation of a size due to model errors."""
     return float(np.hypot(_SHAPE_ERROR * value, _TIME_ERROR_S if name in _TIMES else 0.0))
 
 

@@ -190,5 +190,4 @@ def unusual_signs(model: Mapping[str, float]) -> tuple[str, ...]:
 
 
 def _mean_speed(flights: PreparedManeuvers) -> float:
-    """Return the mean air speed over all manoeuvres, m/s."""
     return float(np.mean([np.mean(flight.slow[SPEED]) for flight in flights.flights]))

@@ -142,6 +142,5 @@ def _batch(columns: Iterator[Columns], names: set[str] | None, part: Stretch) ->
 
 
 def _within(part: Stretch, columns: Columns) -> Columns:
-    """Return the messages whose position lies in the part."""
     inside = (columns.order >= part.begins) & (columns.order < part.ends)
     return columns if inside.all() else cut(columns, inside)

@@ -153,7 +153,6 @@ class KeptLink:
             yield unread
 
     def _hear(self, timeout_s: float) -> bytes:
-        """Return the next records of the process, or nothing after the timeout."""
         if self._connection is None:
             return b""
         try:

@@ -159,7 +159,6 @@ class LinkProcess:
                 self._process.wait(PATIENCE_S)
 
     def _look_after(self) -> None:
-        """Restart the process after an unwanted end."""
         while not self._stopping.is_set():
             with contextlib.suppress(OSError, EOFError):
                 if self._guard is not None and self._hangs(self._guard):

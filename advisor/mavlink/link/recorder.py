@@ -185,7 +185,6 @@ class Recorder:
         self._say(f"recording to {self.path} goes on: {what}")
 
     def _look_at_space(self) -> None:
-        """Warn once when little space is left."""
         with contextlib.suppress(OSError):
             free = shutil.disk_usage(self.path.parent).free
             if free < LITTLE_SPACE_BYTES and not self._little_told:

@@ -130,7 +130,6 @@ def _copy(packed: IO[bytes] | gzip.GzipFile, name: str, packed_bytes: int, to: P
 
 
 def _only_log(archive: zipfile.ZipFile, name: str) -> zipfile.ZipInfo:
-    """Return the one member of an archive that is a log."""
     logs = []
     for member in archive.infolist()[:_MOST_MEMBERS]:
         if member.is_dir() or member.filename.startswith("__MACOSX/"):

@@ -146,7 +146,6 @@ def _of_servos(servos: Topic, parameters: Mapping[str, float]) -> list[TimedMess
 
 
 def _of_command(command: "Command") -> TimedMessages:
-    """Return the pitch command as the pulses of output 1."""
     return _pulses(0, published_us(command.topic), {1: 1500.0 + 500.0 * command.axes["pitch"]})
 
 

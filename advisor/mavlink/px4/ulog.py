@@ -158,7 +158,6 @@ def _nothing_in(path: Path) -> UnusableInputError:
 
 
 def _columns(log: Any) -> list[Columns]:
-    """Return every message from the topics, numbered by time."""
     topics = topics_of(log)
     messages = translate(log, topics)
     time_us = np.concatenate([m.time_us for m in messages])

@@ -69,7 +69,6 @@ def _blocks(content: Content) -> Iterator[Block]:
 
 
 def _heard(power_on: PowerOn) -> dict[str, Channel]:
-    """Return the channels with a course."""
     return {name: channel for name, channel in power_on.channels.items() if len(channel) > 1}
 
 

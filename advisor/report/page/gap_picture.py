@@ -62,7 +62,6 @@ def _small_across(across: int) -> int:
 
 
 def _small(found: Document) -> str:
-    """Return the channel of the small pictures."""
     there = {trace["channel"] for trace in found["traces"]}
     return next(name for name in _SHOWN_SMALL if name in there)
 

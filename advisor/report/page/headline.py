@@ -44,7 +44,6 @@ def _blocks(content: Content) -> Iterator[Block]:
 
 
 def _flown(content: Content) -> Table:
-    """Return the table of flights with date, duration, vehicle and firmware, aircraft and mass."""
     mass = content.aircraft.reference.mass_kg
     weighs = "mass not given" if mass is None else f"{mass:g} kg"
     rows = []

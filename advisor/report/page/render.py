@@ -75,5 +75,4 @@ def _kind(block: Block) -> str:
 
 
 def _cell(text: str) -> str:
-    """Return a cell of a Markdown table."""
     return text.replace("|", "\\|").replace("\n", " ")

@@ -158,7 +158,6 @@ with 0 takes the second away.
         return np.zeros(0)
 
     def _draw(self) -> None:
-        """Draw as many outputs as fit into the pane."""
         inputs = [name for name in self._axis.inputs if self._has(name)] or self._axis.inputs[:1]
         each = max(_ROWS_OF_INPUT, self.size.height // _SHARE_OF_INPUT)
         above = each * len(inputs)

@@ -117,7 +117,6 @@ findings.
             plot.chart = _chart(name, mine[name]) if name in mine else _empty(name)
 
     def _plots(self, *, sideways: bool) -> Iterator[tuple[str, Plot]]:
-        """Yield each channel of an axis with its plot."""
         for place, name in zip(_SHOWN, _SHOWN_SIDEWAYS if sideways else _SHOWN, strict=True):
             yield name, self.query_one(f"#gap-{place}", Plot)
 

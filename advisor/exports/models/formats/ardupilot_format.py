@@ -108,7 +108,6 @@ def _commented(head: list[str]) -> str:
 
 
 def _pitch(pitch: Improvement, aircraft: Aircraft) -> Part:
-    """Return lift, drag and pitching moment."""
     reference = pitch.reference
     found = pitch.coefficients()
     travel = travel_of(aircraft, "elevator")
@@ -144,7 +143,6 @@ def _pitch(pitch: Improvement, aircraft: Aircraft) -> Part:
 
 
 def _side(side: SideModel, aircraft: Aircraft) -> Part:
-    """Return side force, roll and yaw."""
     reference = aircraft.reference
     area, span = reference.wing_area_m2 or math.nan, reference.span_m or math.nan
     speed = side.true_airspeed_m_s

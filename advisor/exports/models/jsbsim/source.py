@@ -145,7 +145,6 @@ def _variable(function: ET.Element) -> str | None:
 
 
 def _multiply(function: ET.Element, factor: Factor) -> None:
-    """Multiply a function's result by the factor."""
     said = ("description", "documentation", "notes")
     computed = [e for e in function if e.tag not in said and isinstance(e.tag, str)]
     product = ET.Element("product")
