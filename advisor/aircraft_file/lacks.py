@@ -36,7 +36,10 @@ class Lack:
 def lacks_of(aircraft: Aircraft, facts: LogFacts | None = None) -> tuple[Lack, ...]:
     """Return the missing keys of a file, in the order of the file, after the keys that contradict the log.
 
-    ``facts``: facts of a log of this aircraft. None: the file is checked without a log.
+    Parameters
+    ----------
+    facts
+        Facts of a log of this aircraft. None: the file is checked without a log.
     """
     found = [
         Lack(key.path, key.cost, key.mend)

@@ -91,7 +91,10 @@ def facts_of(
 ) -> LogFacts:
     """Return the facts of a log about its aircraft.
 
-    ``target_system``: system id of the vehicle; None: the first one heard.
+    Parameters
+    ----------
+    target_system
+        System id of the vehicle; None: the first one heard.
 
     Raises
     ------

@@ -39,7 +39,10 @@ def load_aircraft(path: Path | None) -> Aircraft:
 def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") -> Aircraft:
     """Turn the parsed YAML into an aircraft.
 
-    ``origin``: name of the file, or of whatever the content comes from, for the sentence about mistakes.
+    Parameters
+    ----------
+    origin
+        Name of the file, or of whatever the content comes from, for the sentence about mistakes.
 
     Raises
     ------

@@ -12,7 +12,13 @@ from advisor.process.children import python_module
 
 
 class Calls:
-    """Runs the advisor's commands, one at a time. ``limit_s``: time after which a command is ended, s."""
+    """Runs the advisor's commands, one at a time.
+
+    Parameters
+    ----------
+    limit_s
+        Time after which a command is ended, s.
+    """
 
     def __init__(self, limit_s: float) -> None:
         self._limit_s = limit_s

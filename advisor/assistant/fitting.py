@@ -23,7 +23,10 @@ _DIGITS = 7
 def part_of(document: Any, path: str) -> Any:
     """Return a part of a document.
 
-    ``path``: keys and list positions with dots between: ``lateral.maneuvers.2``. Empty: the whole document.
+    Parameters
+    ----------
+    path
+        Keys and list positions with dots between: ``lateral.maneuvers.2``. Empty: the whole document.
     """
     found = document
     for step in filter(None, path.split(".")):
@@ -45,7 +48,10 @@ def written(document: Any, path: str = "", without: Sequence[str] = ()) -> str:
     The largest parts of the document are shortened first. A sentence in the place of a part names the path to
     ask for.
 
-    ``without``: keys of the document and of its blocks that only a request by path answers.
+    Parameters
+    ----------
+    without
+        Keys of the document and of its blocks that only a request by path answers.
     """
     whole = _rounded(part_of(document, path))
     if not path:

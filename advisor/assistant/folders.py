@@ -26,7 +26,10 @@ class Folders:
     def file(self, name: str) -> Path:
         """Return a file inside the folders, with links resolved.
 
-        ``name``: absolute path, or path relative to one of the folders.
+        Parameters
+        ----------
+        name
+            Absolute path, or path relative to one of the folders.
 
         Raises
         ------

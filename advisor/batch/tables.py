@@ -100,7 +100,10 @@ def mixed_up(flights: Sequence[Analyzed]) -> list[str]:
 def tables_of(flights: Sequence[Analyzed]) -> Dataset:
     """Return tables with a row for each flight, manoeuvre, and parameter of a change.
 
-    ``flights``: in the order of flying; flights are numbered from 1.
+    Parameters
+    ----------
+    flights
+        In the order of flying; flights are numbered from 1.
     """
     about = {"advisor": __version__, "logs": [{"file": f.log, "sha256": f.sha256} for f in flights]}
     return Dataset((), (_flights(flights), _maneuvers(flights), _changes(changes_of(flights))), about)

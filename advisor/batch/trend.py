@@ -28,7 +28,10 @@ class ChangeOverFlights:
 def change_over_flights(flights: Sequence[tuple[int, Estimate]]) -> ChangeOverFlights | None:
     """Return the most significant change over the flights of one aircraft; None when noise explains all.
 
-    ``flights``: number and joint estimate of each flight, in the order of flying.
+    Parameters
+    ----------
+    flights
+        Number and joint estimate of each flight, in the order of flying.
     """
     change = find_change([CandidateManeuver(estimate) for _, estimate in flights])
     if change is None:
@@ -47,7 +50,10 @@ def lying_apart(flights: Sequence[tuple[int, Estimate]]) -> str:
     """Return a sentence on the two flights whose 95 % intervals of one derivative lie farthest apart; empty
     where all intervals of every derivative overlap.
 
-    ``flights``: number and joint estimate of each flight, in the order of flying.
+    Parameters
+    ----------
+    flights
+        Number and joint estimate of each flight, in the order of flying.
     """
     posteriors = posteriors_at_one_speed([estimate for _, estimate in flights])
     farthest, sentence = 1.0, ""

@@ -41,7 +41,10 @@ class Flown:
 class AxisCampaign(ABC):
     """Judges the manoeuvres of one axis, and decides whether the test of this axis may stop.
 
-    ``parts``: computes manoeuvres, verdicts and the joint estimate, each of which may fail separately.
+    Parameters
+    ----------
+    parts
+        Computes manoeuvres, verdicts and the joint estimate, each of which may fail separately.
     """
 
     def __init__(self, axis: str, aircraft: Aircraft, plan: CampaignPlan, parts: Parts) -> None:

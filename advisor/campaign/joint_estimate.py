@@ -50,7 +50,10 @@ class _Joint:
 class Together:
     """Estimates manoeuvres jointly and keeps the newest joint estimate.
 
-    ``aircraft``: the crew's aircraft, without quantities identified during the flight.
+    Parameters
+    ----------
+    aircraft
+        The crew's aircraft, without quantities identified during the flight.
     """
 
     def __init__(self, aircraft: Aircraft) -> None:

@@ -57,7 +57,10 @@ class Settling:
     def follow(self, flying: Maneuver | None, aircraft: Aircraft, model: Estimate | None) -> Settled | None:
         """Return the estimate from the data so far; None if there is none.
 
-        ``aircraft``: the crew's aircraft, with a servo's lag that earlier manoeuvres told.
+        Parameters
+        ----------
+        aircraft
+            The crew's aircraft, with a servo's lag that earlier manoeuvres told.
         """
         if flying is None:
             self._number, self._settled = None, None

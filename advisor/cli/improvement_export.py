@@ -31,7 +31,10 @@ def orders_of(
 ) -> "list[ExportOrder]":
     """Read and check all orders before any work.
 
-    ``inputs``: files that the command reads, or that another option writes. No order may name one of them.
+    Parameters
+    ----------
+    inputs
+        Files that the command reads, or that another option writes. No order may name one of them.
     """
     if not exports:
         return []

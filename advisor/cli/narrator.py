@@ -46,7 +46,10 @@ BEAT_S = 0.5
 def narrate(task: ConductorTask, say: Callable[[str], object], warn: Callable[[str], object]) -> None:
     """Conduct a campaign in another process, to the end of its source.
 
-    ``task``: campaign and source; the source can be read from its beginning again.
+    Parameters
+    ----------
+    task
+        Campaign and source; the source can be read from its beginning again.
 
     Raises
     ------
@@ -141,7 +144,10 @@ def narrate_here(
 ) -> None:
     """Conduct a campaign in this process, to the end of its source.
 
-    ``beat``: called after each wait for data, at most every ``BEAT_S``. None: a backlog is printed here.
+    Parameters
+    ----------
+    beat
+        Called after each wait for data, at most every ``BEAT_S``. None: a backlog is printed here.
     """
     from advisor.report.follow import follow
 

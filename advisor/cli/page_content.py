@@ -40,7 +40,10 @@ def gather(
 ) -> tuple[Content, list[str]]:
     """Return the content of the page, and sentences on logs that do not count.
 
-    ``command``: command line that repeats the page; None: the one that this process was started with.
+    Parameters
+    ----------
+    command
+        Command line that repeats the page; None: the one that this process was started with.
 
     Raises
     ------

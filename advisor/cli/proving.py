@@ -36,7 +36,10 @@ def proof_of(
 ) -> "Proof | None":
     """Return the proof that was asked for; None where none was, or nothing can be proved, which is said.
 
-    ``prove``: proves on named logs, none for the last third of the flight, and tells its progress.
+    Parameters
+    ----------
+    prove
+        Proves on named logs, none for the last third of the flight, and tells its progress.
     """
     if not proving:
         return None

@@ -35,8 +35,10 @@ def running_options(command: F) -> F:
 def runner_of(workers: int | None, scheduler: str | None, guarded: bool = True) -> "Runner":
     """Return the way to do tasks that the options ask for.
 
-    ``guarded``: whether a single worker also gets a process of its own, so that its death costs its task
-    only.
+    Parameters
+    ----------
+    guarded
+        Whether a single worker also gets a process of its own, so that its death costs its task only.
 
     Raises
     ------

@@ -117,8 +117,10 @@ def response_from_trim(
 ) -> FloatArray | None:
     """Return the outputs (n,) of one manoeuvre that begins in equilibrium; None for a diverging model.
 
-    ``sensitivities``: array (n, N_PARAMETERS) that receives the sensitivities. None if sensitivities are not
-    needed.
+    Parameters
+    ----------
+    sensitivities
+        Array (n, N_PARAMETERS) that receives the sensitivities. None if sensitivities are not needed.
     """
     local = local_at_trim(theta, assembly)
     if local is None:

@@ -52,8 +52,11 @@ def stays(heard: Sequence[Heard], rule: str, usable: AbstractSet[int]) -> bool:
 def as_heard(found: RuleProgress, rule: str, heard: Sequence[Heard]) -> RuleProgress:
     """Return the progress of a rule with the history that the crew heard.
 
-    ``heard``: criterion that the crew heard after each of the first manoeuvres. All other fields are equal to
-    those of ``found``.
+    Parameters
+    ----------
+    heard
+        Criterion that the crew heard after each of the first manoeuvres. All other fields are equal to those
+        of ``found``.
     """
     n, flown = len(heard), len(found.hindsight_percent)
     stopped = first_stop(heard, rule)
@@ -70,7 +73,10 @@ def spoken_after(before: Heard | None, found: Remaining | None) -> Remaining | N
 
     A forecast that jumps has no value for the crew. The next forecast is announced again.
 
-    ``before``: criterion that the crew heard after the manoeuvre before the newest one.
+    Parameters
+    ----------
+    before
+        Criterion that the crew heard after the manoeuvre before the newest one.
     """
     last = before.remaining if before is not None else None
     if found is None or last is None or last.median is None or last.p90 is None:

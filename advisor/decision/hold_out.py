@@ -42,7 +42,10 @@ def predict_last(usable: Sequence[CandidateManeuver]) -> Mapping[str, PredictedO
     Trim, initial state and biases are estimated for each manoeuvre. These parameters come from the
     manoeuvre's own fit, minus the response of its own derivatives.
 
-    ``usable``: manoeuvres, each with an estimate, in the order flown.
+    Parameters
+    ----------
+    usable
+        Manoeuvres, each with an estimate, in the order flown.
 
     Prediction of each output by its name; empty with too few earlier manoeuvres, or for a diverging model.
     """

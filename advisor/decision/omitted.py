@@ -56,7 +56,10 @@ def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | 
     """Return the bias due to an omitted moment; None for a constant moment, for too short a fit,
     and for a model whose response overflows.
 
-    ``term``, shape (n,): omitted part of q̇ for a coefficient of one, at the stamps of the fitted pitch rate.
+    Parameters
+    ----------
+    term
+        Shape (n,): omitted part of q̇ for a coefficient of one, at the stamps of the fitted pitch rate.
     """
     fits = estimate.fits[0]
     t = fits["q"].t

@@ -34,7 +34,10 @@ def continuous_improvement(costs: Costs) -> tuple[RuleResult, ...]:
     The first usable manoeuvre has no predecessor and is accepted. Costs below `LEAST_COST`, from data without
     noise, are treated as equal.
 
-    ``costs``: cost J = det R of every manoeuvre in the order flown; None for an unusable manoeuvre.
+    Parameters
+    ----------
+    costs
+        Cost J = det R of every manoeuvre in the order flown; None for an unusable manoeuvre.
     """
     results = []
     limit: float | None = None
@@ -52,7 +55,10 @@ def separate_computation(costs: Costs) -> tuple[RuleResult, ...]:
 
     The first usable manoeuvre has no predecessor and is accepted.
 
-    ``costs``: costs of the manoeuvres, as for `continuous_improvement`.
+    Parameters
+    ----------
+    costs
+        Costs of the manoeuvres, as for `continuous_improvement`.
     """
     results = []
     earlier: list[float] = []

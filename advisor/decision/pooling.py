@@ -153,7 +153,10 @@ def pool(posteriors: Sequence[Posterior]) -> Posterior:
     intercepts of each manoeuvre are first corrected by the other manoeuvres' information on its derivatives.
     The instruments' error is common to all estimates, so more estimates do not average it out.
 
-    ``posteriors``: at least one estimate.
+    Parameters
+    ----------
+    posteriors
+        At least one estimate.
     """
     shared, names = pool_shared(posteriors), posteriors[0].names
     d, c = _places(names)

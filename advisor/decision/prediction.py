@@ -64,8 +64,11 @@ class Prediction:
     def percent(self, covariance: FloatArray) -> Mapping[str, float]:
         """Return the largest half-width of the 95 % band, in percent of the peak, for each output.
 
-        ``covariance``, shape (6, 6): covariance of ``DERIVATIVES``, infinite on the diagonal for an unknown
-        derivative. The band of an output that depends on an unknown derivative is infinite.
+        Parameters
+        ----------
+        covariance
+            Shape (6, 6): covariance of ``DERIVATIVES``, infinite on the diagonal for an unknown derivative.
+            The band of an output that depends on an unknown derivative is infinite.
         """
         known = np.isfinite(np.diag(covariance))
         inside = np.where(np.outer(known, known), covariance, 0.0)
@@ -120,8 +123,11 @@ def missed_percent(
     """Return the largest distance between the predicted and the estimated response to a manoeuvre, in percent
     of its peak.
 
-    ``predicted`` and ``found``, shape (6,): derivatives from the earlier manoeuvres and from the manoeuvre
-    itself, at ``airspeed_m_s``.
+    Parameters
+    ----------
+    predicted, found
+        Shape (6,): derivatives from the earlier manoeuvres and from the manoeuvre itself, at
+        ``airspeed_m_s``.
 
     Largest distance over all outputs. NaN for an unknown input or a diverging model.
     """

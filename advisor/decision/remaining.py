@@ -53,7 +53,10 @@ def by_information(known: Knowledge, next_covariance: FloatArray, odds: Odds) ->
     """Return the simulated number of further manoeuvres until every tolerance is met and the newest one is
     predicted.
 
-    ``next_covariance``, shape (8, 8): covariance of the expected errors of each further manoeuvre.
+    Parameters
+    ----------
+    next_covariance
+        Shape (8, 8): covariance of the expected errors of each further manoeuvre.
     """
     good = 1 if np.isnan(known.surprise) or not known.predicted else 0
     while good <= MOST and share_after(known, next_covariance, good) >= 1.0:

@@ -33,7 +33,10 @@ def flight_test(
 ) -> FlightTestVerdict:
     """Return whether testing may stop, and the next input, after the last manoeuvre of ``history``.
 
-    ``course``: cache of earlier decisions, which changes no verdict.
+    Parameters
+    ----------
+    course
+        Cache of earlier decisions, which changes no verdict.
     """
     course = course or CriterionCourse(plan)
     by_rule: dict[str, RuleProgress] = {

@@ -19,7 +19,10 @@ def doctor_document(
 ) -> dict[str, Any]:
     """Build the document of ``advisor doctor --json``.
 
-    ``findings``: findings of the examination. None when nothing was heard; ``problem`` then gives the reason.
+    Parameters
+    ----------
+    findings
+        Findings of the examination. None when nothing was heard; ``problem`` then gives the reason.
     """
     if findings is None:
         assert problem is not None

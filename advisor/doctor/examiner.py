@@ -47,7 +47,10 @@ _DERIVED_RENEWAL_HZ = 20.0  # ArduPilot refreshes AOA_SSA no faster; on the grou
 class Examiner:
     """Collects the messages of a log or link, then returns the findings.
 
-    ``target_system``: system id of the vehicle; None: the first one heard.
+    Parameters
+    ----------
+    target_system
+        System id of the vehicle; None: the first one heard.
     """
 
     def __init__(self, aircraft: Aircraft, target_system: int | None = None) -> None:

@@ -50,8 +50,11 @@ def rate_limits(
 ) -> list[Limit]:
     """Return a defect for every channel that is too slow for this aircraft.
 
-    ``paced``: elevator and q, with alpha and a_z where measured. A slow alpha prevents nothing where a_z and
-    air speed are measured.
+    Parameters
+    ----------
+    paced
+        Elevator and q, with alpha and a_z where measured. A slow alpha prevents nothing where a_z and air
+        speed are measured.
     """
     period_s = 2.0 * np.pi / frequency(assumed.model)
     fewest_hz = max(SLOWEST_HZ, needed_hz(period_s))

@@ -35,7 +35,10 @@ def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
     A file in the folder of the machine code records the compilation. A kernel with changed source is compiled
     again at its next call, with this file or without.
 
-    ``stages``: kernels to compile. Default: all that commands call.
+    Parameters
+    ----------
+    stages
+        Kernels to compile. Default: all that commands call.
     """
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return

@@ -80,7 +80,10 @@ class Watch:
     def heard(self, patient: bool = False) -> None:
         """Record the arrival of a message.
 
-        ``patient``: whether the process is reading the earlier recording, which may take long.
+        Parameters
+        ----------
+        patient
+            Whether the process is reading the earlier recording, which may take long.
         """
         self._limit_s = START_S if patient else ENDED_AFTER_S
         self._messages += 1

@@ -24,7 +24,10 @@ _Parser: type[Any] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 def read_yaml(path: Path, mend: str = "See the example in the README.") -> Any:
     """Return the content of a YAML file; None for an empty one.
 
-    ``mend``: sentence with the remedy for a refused file.
+    Parameters
+    ----------
+    mend
+        Sentence with the remedy for a refused file.
 
     Raises
     ------

@@ -14,7 +14,10 @@ class PlainConsole(Console):
     Without Unicode, cells are spelled in ASCII before their widths are measured, so that columns stay
     aligned.
 
-    ``soft_wrap``: whether the terminal wraps long lines.
+    Parameters
+    ----------
+    soft_wrap
+        Whether the terminal wraps long lines.
     """
 
     def __init__(self, soft_wrap: bool = False) -> None:

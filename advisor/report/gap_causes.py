@@ -25,7 +25,10 @@ PRESENT = "●"
 def ranking(causes: Sequence[Cause], before: float) -> Iterator[RenderableType]:
     """Yield the causes as a table, the unlikely ones in one line, and sentences about similar effects.
 
-    ``before``: gap of the simulator as given; a larger gap is marked.
+    Parameters
+    ----------
+    before
+        Gap of the simulator as given; a larger gap is marked.
     """
     likely = [c for c in causes if c.present or c.probability >= _LIKELY]
     if likely:

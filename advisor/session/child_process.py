@@ -12,7 +12,10 @@ _LONGEST_PAUSE_S = 10.0
 def start_child(module: str, shows_errors: bool = False) -> "Popen[bytes]":
     """Start a module of the advisor as a process that exchanges pickles over its standard streams.
 
-    ``module``: name of the module for ``python -m``.
+    Parameters
+    ----------
+    module
+        Name of the module for ``python -m``.
     """
     return Popen(python_module(module), stdin=PIPE, stdout=PIPE, stderr=None if shows_errors else DEVNULL)
 

@@ -27,8 +27,11 @@ _READ_TIMEOUT_S = 0.05
 class Conductor(Conducting):
     """Runs a campaign over a source until `stop` is called.
 
-    ``make_campaign``: makes a campaign from the decisions by hand. The function is called by ``run``, and
-    again for a rewind.
+    Parameters
+    ----------
+    make_campaign : callable
+        Makes a campaign from the decisions by hand. The function is called by ``run``, and again for a
+        rewind.
     """
 
     def __init__(
@@ -49,7 +52,10 @@ class Conductor(Conducting):
     def run(self, tell: Tell) -> None:
         """Run the campaign until `stop`. The calling thread is the working thread.
 
-        ``tell``: receives a `SessionReport` at most every `REPORT_EVERY_S`, in this thread.
+        Parameters
+        ----------
+        tell : callable
+            Receives a `SessionReport` at most every `REPORT_EVERY_S`, in this thread.
         """
         self._tell = tell
         try:

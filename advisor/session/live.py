@@ -28,7 +28,10 @@ _DECODED = ("vehicle_messages", "lost", "repeated", "repeated_after_s", "late")
 class LinkSource:
     """Source that reads a live link. The source ends when the sender has finished.
 
-    ``connection``: context that opens the link at the first ``read``.
+    Parameters
+    ----------
+    connection
+        Context that opens the link at the first ``read``.
     """
 
     def __init__(

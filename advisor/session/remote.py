@@ -57,7 +57,10 @@ class RemoteConductor(Conducting):
     is ended and restarted likewise, and meanwhile the last report is passed on with its age. The health of a
     link comes directly from the process of the link, so that a slow estimate never makes it old.
 
-    ``task``: task for the process that ``run`` starts.
+    Parameters
+    ----------
+    task : Task
+        Task for the process that ``run`` starts.
     """
 
     def __init__(self, task: ConductorTask) -> None:

@@ -29,7 +29,10 @@ def stretches(batches: Iterable[list[Columns]]) -> Iterator[list[Columns]]:
 class ResumedSource:
     """Delivers the logs of earlier flights, then the messages of a link as the last flight.
 
-    ``logs``: logs of earlier flights, the oldest first, only read.
+    Parameters
+    ----------
+    logs
+        Logs of earlier flights, the oldest first, only read.
     """
 
     def __init__(self, logs: Sequence[Path], link: Source) -> None:

@@ -15,8 +15,11 @@ LONGEST_SILENCE_S = 2.0
 class Timeline:
     """Columns of a log, divided into parts by replay time. Each message is delivered once and in order.
 
-    ``columns``: one complete log, or several logs in the order of the flights. One message type may come in
-    several pieces.
+    Parameters
+    ----------
+    columns : sequence of Columns
+        One complete log, or several logs in the order of the flights. One message type may come in several
+        pieces.
     """
 
     def __init__(self, columns: Sequence[Columns]) -> None:

@@ -15,7 +15,10 @@ def agreeing(found: Diagnosis, logged: Estimate | NoEstimate) -> Diagnosis:
     lower bound of both errors. A derivative whose wider interval contains the simulator's value is not stated
     as changed.
 
-    ``logged``: estimate from all manoeuvres together, as logged.
+    Parameters
+    ----------
+    logged
+        Estimate from all manoeuvres together, as logged.
     """
     if isinstance(logged, NoEstimate):
         return found

@@ -21,7 +21,10 @@ def contradicted(diagnosis: Diagnosis, removed: float) -> Diagnosis:
     The answer's probability goes to the remaining corrections, if these remove half of the gap. Otherwise the
     probability goes to an effect without a name, in the answer's block.
 
-    ``removed``: share of the gap on held-out manoeuvres that the remaining corrections remove.
+    Parameters
+    ----------
+    removed
+        Share of the gap on held-out manoeuvres that the remaining corrections remove.
     """
     d = diagnosis
     given_up = d.answer or PARAMETERS

@@ -65,8 +65,10 @@ class FmuSimulator:
     Inputs are held over each communication step at their mean. Increments are those of the state in the
     middle of the step, extrapolated by the last step's rates.
 
-    ``speed_tolerance_percent``: largest difference between the FMU's initial air speed and the flown air
-    speed.
+    Parameters
+    ----------
+    speed_tolerance_percent : float
+        Largest difference between the FMU's initial air speed and the flown air speed.
     """
 
     speed_limit_s = 20.0

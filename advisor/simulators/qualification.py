@@ -22,8 +22,10 @@ def qualified(
 ) -> tuple[Qualification, ...]:
     """Return every channel compared with its tolerance.
 
-    ``before`` and ``after``: residuals of the simulator as given, and with the effects; None if nothing was
-    added.
+    Parameters
+    ----------
+    before, after
+        Residuals of the simulator as given, and with the effects; None if nothing was added.
     """
     table = []
     for c, channel in enumerate(problem.channels):

@@ -50,8 +50,11 @@ def side_without_difference(
 ) -> tuple[list[Maneuver], Aircraft]:
     """Return the manoeuvres without the difference between simulator and surrogate, and the surrogate's file.
 
-    ``aircraft``: aircraft file of the crew. The servos of the file are applied before the simulator; the
-    file's model is not used.
+    Parameters
+    ----------
+    aircraft
+        Aircraft file of the crew. The servos of the file are applied before the simulator; the file's model
+        is not used.
 
     Raises
     ------

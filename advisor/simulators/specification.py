@@ -32,7 +32,10 @@ ReadLog = Callable[[Path], list[Maneuver]]
 def simulator_of(specification: str, aircraft: Aircraft, read_log: ReadLog) -> Simulator:
     """Make the simulator that a specification names.
 
-    ``read_log``: function that reads a log written by the simulator.
+    Parameters
+    ----------
+    read_log
+        Function that reads a log written by the simulator.
 
     Raises
     ------

@@ -40,7 +40,10 @@ def with_static_errors(
     """Return the diagnosis with its static errors first, and with withdrawn corrections last, in the
     sentence.
 
-    ``trims``: trims of simulator and aircraft; empty for a simulator without trim.
+    Parameters
+    ----------
+    trims
+        Trims of simulator and aircraft; empty for a simulator without trim.
     """
     told = (*_of_the_trims(trims), *_of_the_speed(examined), *_of_numbers_together(diagnosis, examined))
     sentence = " ".join([*told, diagnosis.sentence, *diagnosis.taken_back])

@@ -19,7 +19,10 @@ _LONGEST_MOVE = 0.1
 def steady(rates: Callable[[FloatArray], FloatArray], start: FloatArray) -> FloatArray | None:
     """Return the unknowns for which all rates are zero (Newton's method); None if none are found.
 
-    ``rates``: function that returns the rates for the unknowns, both of shape (n,).
+    Parameters
+    ----------
+    rates
+        Function that returns the rates for the unknowns, both of shape (n,).
     """
     at = start
     for _ in range(_ROUNDS):
@@ -40,7 +43,10 @@ def midway(
 ) -> State:
     """Return the state in the middle of the next step, extrapolated by the last step's rates.
 
-    ``rows``: motion after each step: α, q, θ, a_z, air speed and height, then other quantities.
+    Parameters
+    ----------
+    rows
+        Motion after each step: α, q, θ, a_z, air speed and height, then other quantities.
     """
     before, now = rows[-2] if len(rows) > 1 else rows[-1], rows[-1]
     alpha_dot, q_dot = ((now[i] - before[i]) / step_s for i in (0, 1))

@@ -135,7 +135,10 @@ def predicted(
     Only initial state, trim and offsets of each manoeuvre are refitted, weighted by ``floor``, shape
     (channels,).
 
-    ``offset_rad``: offset of α that was removed from the data and that the model does not contain.
+    Parameters
+    ----------
+    offset_rad
+        Offset of α that was removed from the data and that the model does not contain.
     """
     plain = replace(problem, whitening=None)
     held = own_refitted(plain, point, floor)
@@ -145,7 +148,10 @@ def predicted(
 def unknown_offset(whole: Diagnosis, model: Diagnosis | None) -> float:
     """Return the offset of α that was removed from the data and that ``model`` does not contain, rad.
 
-    ``model``: diagnosis on which the model is based; None for a simulator as given.
+    Parameters
+    ----------
+    model
+        Diagnosis on which the model is based; None for a simulator as given.
     """
     removed = whole.effects.get(_OFFSET, {}).get("bias_rad", 0.0)
     known = 0.0 if model is None else model.effects.get(_OFFSET, {}).get("bias_rad", 0.0)

@@ -28,7 +28,10 @@ def on_this_computer(host: str) -> bool:
 def checked_origin(address: str) -> str:
     """Return the address of a proxy in the form that browsers send as ``Origin``.
 
-    ``address``: as a user writes it: ``https://flight.example`` or ``https://flight.example:8443/``.
+    Parameters
+    ----------
+    address
+        As a user writes it: ``https://flight.example`` or ``https://flight.example:8443/``.
 
     Raises
     ------
@@ -67,7 +70,10 @@ class Access:
         Without a password only the names of this computer are allowed. A foreign page can give its own name
         the address 127.0.0.1 (DNS rebinding), and would read the screens otherwise.
 
-        ``host``: the request's ``Host``, with or without a port.
+        Parameters
+        ----------
+        host
+            The request's ``Host``, with or without a port.
         """
         try:
             return self.password is not None or urlsplit(f"//{host}").hostname in _HERE

@@ -17,7 +17,10 @@ class ServerGoneError(Exception):
 class AttachedConductor(Conducting):
     """A `Conducting` whose campaign runs in the server.
 
-    ``connection``: connection to the server, after its first message `Viewing`.
+    Parameters
+    ----------
+    connection
+        Connection to the server, after its first message `Viewing`.
     """
 
     def __init__(self, connection: Connection) -> None:

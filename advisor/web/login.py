@@ -84,6 +84,12 @@ def _environment() -> jinja2.Environment:
 
 
 def page(name: str, status: int = 200, **values: object) -> web.Response:
-    """Return the page from a template. ``name``: ``screens``, ``login`` or ``message``."""
+    """Return the page from a template.
+
+    Parameters
+    ----------
+    name
+        ``screens``, ``login`` or ``message``.
+    """
     text = _environment().get_template(f"{name}.html.j2").render(**values)
     return web.Response(text=text, content_type="text/html", status=status)

@@ -17,7 +17,10 @@ from advisor.web.viewing import ADDRESS, KEY
 class PageProcess(AppService):
     """Runs the screens for one browser page, from `start` to `end`.
 
-    ``socket``: the page's own WebSocket, which is closed when the process ends.
+    Parameters
+    ----------
+    socket
+        The page's own WebSocket, which is closed when the process ends.
     """
 
     def __init__(self, door: Door, socket: web.WebSocketResponse, downloads: DownloadManager) -> None:

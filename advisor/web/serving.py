@@ -76,7 +76,10 @@ def serve(
     On a live link all pages show one campaign, which one process estimates. In a replay each page has a
     campaign of its own.
 
-    ``tempo``: start settings of each replay. None: the source is a live link.
+    Parameters
+    ----------
+    tempo
+        Start settings of each replay. None: the source is a live link.
     """
     from advisor.tui.settings import load_settings
     from advisor.web.server import WebServer

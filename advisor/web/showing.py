@@ -80,7 +80,10 @@ _BY_HAND = frozenset({"decide", "order"})
 class Audience:
     """Accepts pages, sends reports to each, and receives the requests of each.
 
-    ``shared``: campaign that all pages show. None: each page has a campaign of its own.
+    Parameters
+    ----------
+    shared
+        Campaign that all pages show. None: each page has a campaign of its own.
     """
 
     def __init__(

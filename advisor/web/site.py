@@ -38,7 +38,13 @@ _HEADERS = {
 
 
 class Site:
-    """The pages of one campaign. ``most``: largest number of pages at once."""
+    """The pages of one campaign.
+
+    Parameters
+    ----------
+    most
+        Largest number of pages at once.
+    """
 
     def __init__(self, access: Access, door: Door, title: str, closed: str, most: int) -> None:
         self._access, self._door, self._most = access, door, most

@@ -19,7 +19,10 @@ def is_decided(answers: Answers) -> bool:
 def title(stated: str, likely: str, answers: Answers) -> str:
     """Return the title above an answer.
 
-    ``stated`` and ``likely``: titles of the likeliest answer where it is sure, and where it is only likely.
+    Parameters
+    ----------
+    stated, likely
+        Titles of the likeliest answer where it is sure, and where it is only likely.
     """
     if len(answers) > 1 and not is_decided(answers):
         return f"NOT DECIDED BETWEEN {answers[0][0]} AND {answers[1][0]}".upper()

@@ -15,7 +15,10 @@ def distinct_texts(
 
     "1.9 s (at least 1.9)" contradicts itself; "1.86 s (at least 1.90)" does not.
 
-    ``digits``: fewest decimals (``f``) or significant digits (``g``).
+    Parameters
+    ----------
+    digits
+        Fewest decimals (``f``) or significant digits (``g``).
 
     Value and limit with equal numbers of digits. Texts are equal only where both agree to `MOST_DIGITS`.
     """

@@ -14,7 +14,10 @@ def clock(seconds: float) -> str:
 
     Minutes continue beyond 60, so that one multiplication gives the seconds of a document.
 
-    ``seconds``: vehicle time, s since power-on; NaN before the vehicle's clock is heard.
+    Parameters
+    ----------
+    seconds
+        Vehicle time, s since power-on; NaN before the vehicle's clock is heard.
     """
     if not isfinite(seconds):
         return "–"

@@ -32,7 +32,10 @@ def estimate_copies(
 ) -> list[Estimate]:
     """Measure a flight ``copies`` times and estimate each measurement on its own.
 
-    ``noise``: standard deviation of the measurement noise, broadcastable to (n, 2), white and Gaussian.
+    Parameters
+    ----------
+    noise
+        Standard deviation of the measurement noise, broadcastable to (n, 2), white and Gaussian.
 
     Raises
     ------
@@ -186,8 +189,11 @@ def outcome(
 ) -> RuleOutcome:
     """Return the outcome of one campaign under ``rule``, by the functions that judge in flight.
 
-    ``maneuvers``: what was flown, for the response that the rule ``information`` predicts; without it that
-    rule asks for the named derivatives alone.
+    Parameters
+    ----------
+    maneuvers
+        What was flown, for the response that the rule ``information`` predicts; without it that rule asks
+        for the named derivatives alone.
     """
     accepted = [r.accepted for r in MANEUVER_RULES[rule]([e.cost for e in campaign])]
     taken: list[Estimate] = []

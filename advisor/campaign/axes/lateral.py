@@ -33,8 +33,11 @@ represented. With three manoeuvres, one may contradict two that agree."""
 class LateralCampaign(AxisCampaign):
     """Estimates and judges each lateral manoeuvre as it arrives.
 
-    ``aircraft``: the crew's aircraft file. The lateral stopping rule is ``information``, whatever the
-    aircraft file chooses for pitch.
+    Parameters
+    ----------
+    aircraft
+        The crew's aircraft file. The lateral stopping rule is ``information``, whatever the aircraft file
+        chooses for pitch.
     """
 
     def __init__(self, aircraft: Aircraft, parts: Parts) -> None:
@@ -71,8 +74,11 @@ class LateralCampaign(AxisCampaign):
         """Return the lateral state after the newest manoeuvre; the identical object until a manoeuvre is
         added.
 
-        ``unknown``: reason for which the output of aileron or rudder cannot be identified. None: the outputs
-        of aileron and rudder are known.
+        Parameters
+        ----------
+        unknown
+            Reason for which the output of aileron or rudder cannot be identified. None: the outputs of
+            aileron and rudder are known.
         """
         if self._state is None or unknown != self._unknown:
             self._unknown = unknown

@@ -26,7 +26,10 @@ class ElevatorCampaign(AxisCampaign):
     """Estimates and judges each elevator manoeuvre as it arrives, and improves the instruments' values with
     it.
 
-    ``say``: called with a sentence when the manoeuvres have given new values of the instruments.
+    Parameters
+    ----------
+    say
+        Called with a sentence when the manoeuvres have given new values of the instruments.
     """
 
     def __init__(self, aircraft: Aircraft, say: Callable[[str], object], parts: Parts) -> None:

@@ -66,7 +66,10 @@ def next_lateral(
 ) -> NextInput:
     """Return the next lateral input.
 
-    ``percent``: error of the worst derivative of this control, % of its tolerance; infinite if unknown.
+    Parameters
+    ----------
+    percent
+        Error of the worst derivative of this control, % of its tolerance; infinite if unknown.
     """
     ends_deg = getattr(aircraft, control).ends_deg
     travel = min(map(abs, map(radians, ends_deg))) if ends_deg and 0.0 not in ends_deg else FULL_TRAVEL_RAD

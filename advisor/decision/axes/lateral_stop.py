@@ -64,7 +64,10 @@ def lateral_flight_test(
 ) -> FlightTestVerdict:
     """Return the verdict on the lateral test, with the next input.
 
-    ``history``: estimate of every manoeuvre in the order flown; None for a refused manoeuvre.
+    Parameters
+    ----------
+    history
+        Estimate of every manoeuvre in the order flown; None for a refused manoeuvre.
     """
     accepted = [one for one in history if one is not None]
     shares = shares_of(joint, aircraft.campaign.tolerance_percent)

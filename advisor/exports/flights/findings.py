@@ -47,7 +47,10 @@ class _Axis(NamedTuple):
 def findings(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> Iterator[FlightTable]:
     """Yield the tables of pitch, and those of roll and yaw if a lateral manoeuvre was flown.
 
-    ``record_of``: number of each record by (flight, power-on), both counted from 0.
+    Parameters
+    ----------
+    record_of
+        Number of each record by (flight, power-on), both counted from 0.
     """
     axes = [_Axis(state.maneuvers, state.model, PARAMETER_UNITS, OUTPUTS)]
     side = state.lateral

@@ -17,7 +17,10 @@ def staged(folder: Path, inputs: Sequence[Path] = ()) -> Iterator[Path]:
 
     Existing files of equal name are replaced. After any failure, everything below ``folder`` is unchanged.
 
-    ``folder``: folder for the files, which is created if missing.
+    Parameters
+    ----------
+    folder
+        Folder for the files, which is created if missing.
 
     Raises
     ------

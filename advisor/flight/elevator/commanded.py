@@ -55,7 +55,10 @@ def commanded(
 
     Pulses outside a calibration give the deflection at its end.
 
-    ``t``, shape (n,), vehicle time of the messages, s since boot.
+    Parameters
+    ----------
+    t
+        Shape (n,), vehicle time of the messages, s since boot.
     """
     found = []
     for channel, surface in surfaces.items():

@@ -23,7 +23,10 @@ def find_elevator(
 ) -> Surface | Problem:
     """Return the outputs of the elevator with their scales, or a problem.
 
-    ``wiring``: roles and scales of outputs by the vehicle's parameters; may be empty.
+    Parameters
+    ----------
+    wiring
+        Roles and scales of outputs by the vehicle's parameters; may be empty.
     """
     if elevator.outputs:
         return _as_listed(elevator.outputs, wiring)

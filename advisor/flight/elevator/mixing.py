@@ -57,7 +57,10 @@ class Mixing:
     def take(self, new: Commanded, loop_is_closed: bool) -> Iterator[Decoded | Notice]:
         """Yield elevator samples with known signs, and notices about the signs.
 
-        ``loop_is_closed``: whether an autopilot closes a loop, so that the elevator answers the pitch rate.
+        Parameters
+        ----------
+        loop_is_closed
+            Whether an autopilot closes a loop, so that the elevator answers the pitch rate.
         """
         surface = new.surface
         if self._waiting and self._waiting[0].surface != surface:

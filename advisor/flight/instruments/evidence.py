@@ -171,7 +171,10 @@ def stds_of_delays(covariance: FloatArray) -> tuple[float, float] | None:
 
     None if rounding errors dominate a variance, as in a damaged record.
 
-    ``covariance``, shape (2, 2): covariance of the two delays, s².
+    Parameters
+    ----------
+    covariance
+        Shape (2, 2): covariance of the two delays, s².
     """
     variances = np.array([covariance[0, 0] + covariance[1, 1] - 2.0 * covariance[0, 1], covariance[1, 1]])
     if not np.all(variances > 0.0):

@@ -54,8 +54,11 @@ class Excitation:
 def excitation(maneuver: Maneuver, loop: Loop = PITCH) -> Excitation | None:
     """Return the information of a movement about the short period.
 
-    ``maneuver``: record with the channels of the control and of the rate. Without the angle channel, the
-    integral of the rate is used.
+    Parameters
+    ----------
+    maneuver
+        Record with the channels of the control and of the rate. Without the angle channel, the integral of
+        the rate is used.
 
     None if the rate is missing or never changes. The error is infinite for too few samples.
     """

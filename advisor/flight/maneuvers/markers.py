@@ -96,8 +96,11 @@ _BEFORE_S = 0.3
 def marked_span(mark: Mark, elevator: Channel | None) -> Span:
     """Return the extent of the manoeuvre in a marked stretch.
 
-    ``elevator``: elevator from one lead-in before the mark to the mark's end, rad. None if the channel was
-    not received.
+    Parameters
+    ----------
+    elevator
+        Elevator from one lead-in before the mark to the mark's end, rad. None if the channel was not
+        received.
 
     Span whose record begins up to one lead-in before the mark. A constant elevator has no step, so its mark
     has no input.

@@ -72,7 +72,10 @@ class SideInput:
 def first_input(pending: Sequence[SideMovement]) -> tuple[SideInput, list[SideMovement]]:
     """Return the first input among the movements, and the remaining movements.
 
-    ``pending``: at least one movement, in order of onset. Small movements during a larger one are dropped.
+    Parameters
+    ----------
+    pending
+        At least one movement, in order of onset. Small movements during a larger one are dropped.
     """
     first, *others = pending
     group = [first]

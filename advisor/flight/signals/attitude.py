@@ -43,7 +43,10 @@ class Attitudes:
 def euler_angles(q: FloatArray) -> dict[str, FloatArray]:
     """Return roll, pitch and yaw of attitude quaternions, rad, each of shape (n,).
 
-    ``q``, shape (4, n): components w, x, y, z of the rotation from north-east-down into body axes.
+    Parameters
+    ----------
+    q
+        Shape (4, n): components w, x, y, z of the rotation from north-east-down into body axes.
     """
     w, x, y, z = q
     return {

@@ -142,7 +142,10 @@ class Decoded:
 def stamps(columns: Columns, master_s: FloatArray) -> FloatArray:
     """Return the vehicle time of each message, shape (n,), s since boot; NaN for an implausible stamp.
 
-    ``master_s``, shape (n,): master clock at the arrival of each message, s since boot.
+    Parameters
+    ----------
+    master_s
+        Shape (n,): master clock at the arrival of each message, s since boot.
     """
     field, tick_s = _STAMPS.get(columns.name, ("", 0.0))
     if field not in columns.fields:

@@ -57,7 +57,10 @@ class BootClock:
     def advance(self, time_boot_ms: IntArray) -> MasterStamps:
         """Take stamps in order of arrival, and return the vehicle times.
 
-        ``time_boot_ms``, shape (n,): stamps as received, ms.
+        Parameters
+        ----------
+        time_boot_ms
+            Shape (n,): stamps as received, ms.
         """
         newest_ms = time_boot_ms[:1] if self._newest_ms is None else self._newest_ms
         ahead_ms = np.diff(time_boot_ms, prepend=newest_ms)

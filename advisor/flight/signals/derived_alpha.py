@@ -96,7 +96,10 @@ def derived_alpha(
     """Return θ − γ with sin γ = climb rate / air speed, rad; in a bank, the α that gives γ. The angle is NaN
     at too low an air speed.
 
-    ``climb_m_s``, ``airspeed_m_s``, ``theta``, ``bank``, shape (n,) each, at equal times; angles in rad.
+    Parameters
+    ----------
+    climb_m_s, airspeed_m_s, theta, bank
+        Shape (n,) each, at equal times; angles in rad.
     """
     flying = airspeed_m_s > SLOWEST_FLIGHT_M_S
     sine = np.divide(climb_m_s, airspeed_m_s, out=np.zeros_like(airspeed_m_s), where=flying)

@@ -21,7 +21,10 @@ def gravity_in_plane(theta: FloatArray, bank: FloatArray) -> tuple[FloatArray, F
     In a bank a part of gravity acts sideways. Along the path gravity is −size · sin(up − α), across it size ·
     cos(up − α). With level wings ``up`` is the pitch angle.
 
-    ``theta`` and ``bank``, shape (n,): pitch angle and bank, rad.
+    Parameters
+    ----------
+    theta, bank
+        Shape (n,): pitch angle and bank, rad.
 
     Returns
     -------

@@ -11,6 +11,9 @@ _MEDIAN = 0.6745
 def robust_std(departures: FloatArray) -> float:
     """Return the standard deviation of normal noise from the median absolute deviation, robust to outliers.
 
-    ``departures``, shape (n,), n > 0: samples minus their centre.
+    Parameters
+    ----------
+    departures
+        Shape (n,), n > 0: samples minus their centre.
     """
     return float(np.median(np.abs(departures))) / _MEDIAN

@@ -8,7 +8,10 @@ from advisor.flight.signals.messages import FloatArray
 class Samples:
     """Samples of a signal in the order of their stamps. The oldest samples are dropped.
 
-    ``keep_s``: least time for which samples are kept, s.
+    Parameters
+    ----------
+    keep_s
+        Least time for which samples are kept, s.
     """
 
     def __init__(self, keep_s: float) -> None:

@@ -78,7 +78,10 @@ class ChannelStatus:
     def at_best(self, earlier: "ChannelStatus | None" = None) -> "ChannelStatus":
         """Return the status with the best rate and the range of this source over all boots.
 
-        ``earlier``: earlier result of this method for the channel.
+        Parameters
+        ----------
+        earlier
+            Earlier result of this method for the channel.
         """
         best = replace(self, rate_hz=self.best_hz)
         if earlier is None or earlier.source != self.source:

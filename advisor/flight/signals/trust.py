@@ -83,7 +83,10 @@ class Distrust:
 def frozen(ranges: Mapping[str, tuple[float, float]]) -> list[Distrust]:
     """Return the channels that are frozen while pitch angle or pitch rate show motion.
 
-    ``ranges``: lowest and highest value of each channel over one flight, SI, by the channel's name.
+    Parameters
+    ----------
+    ranges
+        Lowest and highest value of each channel over one flight, SI, by the channel's name.
     """
     moves = [ranges[name][1] - ranges[name][0] > MOVED_RAD for name in ("theta", "q") if name in ranges]
     if not any(moves):

@@ -17,7 +17,10 @@ from advisor.flight.stream.cutting import Cutting
 class ElevatorPath:
     """Elevator samples from servo outputs, the movements in them, and their events.
 
-    ``marks``: marked stretches of the stream. A movement in a marked stretch is not reported separately.
+    Parameters
+    ----------
+    marks
+        Marked stretches of the stream. A movement in a marked stretch is not reported separately.
     """
 
     def __init__(self, tracks: Tracks, mixing: Mixing, marks: Marks, cutting: Cutting) -> None:
@@ -60,7 +63,10 @@ class ElevatorPath:
     def feed(self, moved: Sequence[Commanded], closes_loop: bool) -> list[FlightEvent]:
         """Form the elevator's samples from its outputs, and process them.
 
-        ``closes_loop``: whether the autopilot closes a loop over the elevator.
+        Parameters
+        ----------
+        closes_loop
+            Whether the autopilot closes a loop over the elevator.
         """
         events: list[FlightEvent] = []
         arrived = [new for new in moved if len(new.t)]
@@ -77,7 +83,10 @@ class ElevatorPath:
     def finish(self, master_s: float) -> list[FlightEvent]:
         """Handle the end of the samples, and close every open movement.
 
-        ``master_s``: vehicle time of the newest message, s since boot.
+        Parameters
+        ----------
+        master_s
+            Vehicle time of the newest message, s since boot.
         """
         events = self._follow(self._mixing.finish())
         due = self._marks.finish(master_s)

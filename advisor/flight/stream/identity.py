@@ -35,7 +35,10 @@ _ON_ROTORS = (1, 2, 3)
 class Identity:
     """Collection of the messages that identify the vehicle.
 
-    ``target_system``: system id to follow; None for the first vehicle that sends.
+    Parameters
+    ----------
+    target_system
+        System id to follow; None for the first vehicle that sends.
     """
 
     def __init__(self, aircraft: Aircraft, target_system: int | None) -> None:

@@ -24,7 +24,10 @@ class InstrumentWatch:
 
     The stretches end at fixed vehicle times, so that the batches of a log change no result.
 
-    ``cut``: function that returns a stretch of a channel by name, start and end, s.
+    Parameters
+    ----------
+    cut
+        Function that returns a stretch of a channel by name, start and end, s.
     """
 
     def __init__(self, cut: Callable[[str, float, float], Channel | None]) -> None:

@@ -34,8 +34,10 @@ Judge = Callable[[Mapping[str, ChannelStatus], float], Sequence[Problem]]
 class Service:
     """Watch of the arriving messages, which reports when they become unusable and usable again.
 
-    ``judge``: function that returns the problems of a stream with these recent channels, at a time of
-    arrival, s.
+    Parameters
+    ----------
+    judge
+        Function that returns the problems of a stream with these recent channels, at a time of arrival, s.
     """
 
     def __init__(self, judge: Judge) -> None:

@@ -32,7 +32,10 @@ LOOPS: dict[str, Loop] = {"aileron": ROLL, "rudder": YAW}
 class SidePath:
     """Lateral manoeuvres in the samples of aileron and rudder.
 
-    ``marks``: marked stretches. A movement in a marked stretch is not reported separately.
+    Parameters
+    ----------
+    marks
+        Marked stretches. A movement in a marked stretch is not reported separately.
     """
 
     def __init__(self, tracks: Tracks, marks: Marks, cutting: Cutting) -> None:

@@ -45,7 +45,10 @@ class Breaks:
     def take(self, t: FloatArray, arrival_s: FloatArray) -> list[Stretch]:
         """Take elevator samples, and return the gaps that the advisor has caused.
 
-        ``t`` and ``arrival_s``: vehicle times and host times of arrival of the samples, s.
+        Parameters
+        ----------
+        t, arrival_s : shape (n,)
+            Vehicle times and host times of arrival of the samples, s.
         """
         stamps = np.concatenate(([self._last_s], t))
         newest = np.fmax.accumulate(stamps)

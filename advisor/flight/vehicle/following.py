@@ -40,7 +40,10 @@ def chosen(text: bytes, what: bytes) -> int | None:
 class Following:
     """Comparison of the vehicles once a second of arrival.
 
-    ``has_elevator``: function that returns whether the elevator's outputs of a vehicle are known.
+    Parameters
+    ----------
+    has_elevator
+        Function that returns whether the elevator's outputs of a vehicle are known.
     """
 
     def __init__(self, has_elevator: Callable[[Vehicle], bool]) -> None:
@@ -55,7 +58,10 @@ class Following:
     ) -> Vehicle | None:
         """Return the vehicle that replaces ``vehicle`` after these messages; None to keep ``vehicle``.
 
-        ``piece``: messages of one second of arrival, from all senders.
+        Parameters
+        ----------
+        piece
+            Messages of one second of arrival, from all senders.
         """
         second = int(min(float(c.arrival_s[0]) for c in piece))
         found = None

@@ -97,8 +97,10 @@ def stays(
 ) -> Iterator[tuple[float, float, str]]:
     """Yield begin, end and mode of each stay in a flight mode between two times, s since boot.
 
-    ``changes``: begin of each mode, never falling, and its name. A time that is not finite lies before the
-    first time.
+    Parameters
+    ----------
+    changes
+        Begin of each mode, never falling, and its name. A time that is not finite lies before the first time.
     """
     named = [(max(t, begin_s) if isfinite(t) else begin_s, name) for t, name in changes]
     for (start_s, name), (next_s, _) in pairwise([*named, (inf, "")]):

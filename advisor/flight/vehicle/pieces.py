@@ -20,8 +20,10 @@ _STATES = {"HEARTBEAT": "custom_mode", "EXTENDED_SYS_STATE": "vtol_state"}
 def pieces(columns: Sequence[Columns], by_second: bool = False) -> Iterator[list[Columns]]:
     """Yield the batch in order of arrival, divided before every change of vehicle, mode or parameter.
 
-    ``by_second``: whether the batch is also divided at each second of arrival, for the comparison of
-    vehicles.
+    Parameters
+    ----------
+    by_second
+        Whether the batch is also divided at each second of arrival, for the comparison of vehicles.
     """
     filled = [c for c in columns if len(c)]
     if not filled:

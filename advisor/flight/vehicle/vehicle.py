@@ -69,7 +69,10 @@ def is_aircraft(autopilot: int, kind: int) -> bool:
 class VehicleFinder:
     """Choice of the vehicle among all senders of heartbeats.
 
-    ``target_system``: system id that the user asked for. None for the first vehicle that sends.
+    Parameters
+    ----------
+    target_system
+        System id that the user asked for. None for the first vehicle that sends.
     """
 
     def __init__(self, target_system: int | None = None) -> None:

@@ -22,7 +22,10 @@ def colour_of(problem: EffectProblem, fitted: EffectFit) -> float:
 def covariance_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> FloatArray:
     """Return the posterior covariance of the shared parameters, shape (k, k).
 
-    ``heat``: number of nats of white-noise likelihood that count as one nat.
+    Parameters
+    ----------
+    heat
+        Number of nats of white-noise likelihood that count as one nat.
     """
     precision, _ = problem.prior_of(fitted.point)
     information = (fitted.information - np.diag(precision)) / heat + np.diag(precision)

@@ -55,7 +55,10 @@ def infer(
 ) -> Inference:
     """Return the posterior of all explanations of a flight.
 
-    ``kinematics``: check of α against the motion, which alone shows a constant offset.
+    Parameters
+    ----------
+    kinematics
+        Check of α against the motion, which alone shows a constant offset.
     """
     begun = FlightProblem.of(problem, baseline)
     table, laws = _table(problem, begun, aircraft)

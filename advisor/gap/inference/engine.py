@@ -42,7 +42,10 @@ def decided(
 ) -> Decided[E]:
     """Return the posterior after the first stage, with a second cause if the answer is an effect.
 
-    ``beyond``: function that adds explanations outside the models to the rows of the first stage.
+    Parameters
+    ----------
+    beyond
+        Function that adds explanations outside the models to the rows of the first stage.
     """
     lead = _lead(flight, stage)
     pair = None if lead is None else (lead, stage_of(flight, lead, _SECOND))

@@ -97,7 +97,10 @@ def evidence_of(problem: FlightProblem, fitted: EffectFit, heat: float, narrower
 
     At the fit the gradient of the log likelihood balances that of the fit's prior.
 
-    ``narrower``: factor on the prior widths of the effect that was added last.
+    Parameters
+    ----------
+    narrower
+        Factor on the prior widths of the effect that was added last.
     """
     precision, pull = problem.prior_of(fitted.point)
     widths = (ERROR_IF_RIGHT, ERROR_IF_WRONG) if problem.is_stated else (_UNSTATED, _UNSTATED)

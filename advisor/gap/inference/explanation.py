@@ -113,7 +113,10 @@ def form_error(names: Sequence[str], change: float) -> float:
 def most_nats(apart: float, *forms: float) -> float:
     """Return the largest log likelihood difference, nats, that two models can have.
 
-    ``apart``: difference between the outputs of both models, as a share of the peaks.
+    Parameters
+    ----------
+    apart
+        Difference between the outputs of both models, as a share of the peaks.
     """
     error = float(np.linalg.norm((_MODEL, *forms)))
     return 0.5 * _INDEPENDENT * (apart / error) ** 2

@@ -25,8 +25,10 @@ def marginal(
     Where the two priors differ, the file states a derivative, which is integrated as right and as wrong. All
     derivatives of the file are right in half of the flights.
 
-    ``information`` and ``gradient``: shapes (k, k) and (k,): curvature and slope of the log likelihood at the
-    fit, without a prior.
+    Parameters
+    ----------
+    information, gradient
+        Shapes (k, k) and (k,): curvature and slope of the log likelihood at the fit, without a prior.
     """
     stated = right.precision != wrong.precision
     others, both = np.flatnonzero(~stated), np.flatnonzero(stated)

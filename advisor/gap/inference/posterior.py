@@ -71,7 +71,10 @@ def rows_of(
 ) -> list[Row[E]]:
     """Return the rows of all alternatives after one stage.
 
-    ``second``: first effect with its following stage: a second cause leaves another residual.
+    Parameters
+    ----------
+    second
+        First effect with its following stage: a second cause leaves another residual.
     """
     ways = [*_ways(flight, stage, prior)]
     if second is not None:

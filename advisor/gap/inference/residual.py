@@ -44,7 +44,10 @@ class Residual:
 def residual_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> Residual:
     """Return the disturbance that explains the residual of a fit.
 
-    ``heat``: number of white-noise nats that count as one nat (``evidence.temperature``).
+    Parameters
+    ----------
+    heat
+        Number of white-noise nats that count as one nat (``evidence.temperature``).
     """
     assert problem.instruments is not None
     probes = probe_blocks(problem, fitted, innovation_noise(problem))

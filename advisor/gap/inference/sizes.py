@@ -54,7 +54,10 @@ _OF_RANGE = 0.5
 def with_sizes(variant: Variant, derivatives: FloatArray, flights: PreparedManeuvers) -> Variant:
     """Return the variant with a Gaussian prior about zero on each parameter that has none.
 
-    ``derivatives``, shape (6,): derivatives of the simulator, or fitted derivatives if the file states none.
+    Parameters
+    ----------
+    derivatives
+        Shape (6,): derivatives of the simulator, or fitted derivatives if the file states none.
     """
     if variant.prior_std:
         return variant

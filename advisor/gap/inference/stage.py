@@ -147,8 +147,10 @@ def within_model_error(flight: Flight[E], everyone: Sequence[E], error: float) -
     Residuals cannot distinguish two models whose outputs differ by less than the simulator's error. More
     samples do not help to distinguish such models. The prior still distinguishes such models.
 
-    ``error``: error of the outputs due to the forms of effects common to all explanations, as a share of the
-    peaks.
+    Parameters
+    ----------
+    error
+        Error of the outputs due to the forms of effects common to all explanations, as a share of the peaks.
     """
     best = max(everyone, key=lambda one: one.likelihood)
 

@@ -64,7 +64,10 @@ def probe_blocks(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -
 
     With a filter in the problem, the disturbance exceeds the noise that the filter assumes.
 
-    ``noise``, shape (channels,): noise of the innovations; without a filter, noise of the instruments alone.
+    Parameters
+    ----------
+    noise
+        Shape (channels,): noise of the innovations; without a filter, noise of the instruments alone.
     """
     shown = {*problem.channels, *(["air"] if problem.flights.shows_air else [])}
     needed = {**SENSOR_CHANNELS, "air": "air"}

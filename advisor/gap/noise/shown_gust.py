@@ -22,7 +22,10 @@ def largest_gust(flights: PreparedManeuvers, z_alpha: float) -> float:
     A gust moves the vane, and the lift follows the gust. A fit with a wrong model can require a gust of any
     size.
 
-    ``z_alpha``: lift derivative Z_α, 1/s, of a model that may be wrong.
+    Parameters
+    ----------
+    z_alpha
+        Lift derivative Z_α, 1/s, of a model that may be wrong.
     """
     shown = [LARGEST_GUST_RAD]
     if "alpha" in flights.channels and not flights.alpha_is_derived:

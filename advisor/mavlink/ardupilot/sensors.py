@@ -102,7 +102,10 @@ def said(
 def silences_in(every: RecordTable, table: RecordTable, before: Sequence[Silence] = ()) -> list[Silence]:
     """Return the times without a healthy sensor.
 
-    ``before``: times without a healthy sensor in the stretch before, of which the last may continue.
+    Parameters
+    ----------
+    before
+        Times without a healthy sensor in the stretch before, of which the last may continue.
     """
     found = []
     for first, last in _silent(every, table):

@@ -24,7 +24,10 @@ def status_text(text: str, number: int) -> list[Any]:
     other than 0. The first chunk that is not full ends the text. Texts are cut to ``MOST_CHUNKS``
     chunks and written in ASCII, which every ground station shows.
 
-    ``number``: running number of the announcement, from which the id of a chunked text follows.
+    Parameters
+    ----------
+    number
+        Running number of the announcement, from which the id of a chunked text follows.
     """
     data = plain(" ".join(text.split())).encode("ascii")
     if len(data) >= CHUNK_BYTES * MOST_CHUNKS:

@@ -45,9 +45,12 @@ class Address:
 def parse_connection(text: str) -> Address:
     """Read a connection string.
 
-    ``text``: string in pymavlink's form (``udpin:``, ``udpout:``, ``udp:``, ``tcp:``, ``tcpin:``,
-    ``/dev/ttyX,57600``, bare ``host:port`` listens on UDP) or MAVSDK's (``udpin://``, ``udpout://``,
-    ``tcpout://``, ``serial://device:baud``).
+    Parameters
+    ----------
+    text
+        String in pymavlink's form (``udpin:``, ``udpout:``, ``udp:``, ``tcp:``, ``tcpin:``,
+        ``/dev/ttyX,57600``, bare ``host:port`` listens on UDP) or MAVSDK's
+        (``udpin://``, ``udpout://``, ``tcpout://``, ``serial://device:baud``).
 
     Raises
     ------

@@ -17,7 +17,10 @@ Send = Callable[[bytes], bool]
 class Conversation:
     """All talkers of one link, with their messages packed under the talkers' ids.
 
-    ``key``: signing key of 32 bytes; None for unsigned frames.
+    Parameters
+    ----------
+    key
+        Signing key of 32 bytes; None for unsigned frames.
     """
 
     def __init__(self, talkers: Iterable[Talker], own: Ids, key: bytes | None) -> None:

@@ -22,7 +22,10 @@ class Delivery:
     A window ends after its length by the clock of arrival. Rates are computed with the vehicle's clock, or
     with the clock of arrival without it.
 
-    ``window_s``: length of a window, s.
+    Parameters
+    ----------
+    window_s
+        Length of a window, s.
     """
 
     def __init__(self, messages: Collection[int], window_s: float) -> None:

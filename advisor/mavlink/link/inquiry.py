@@ -27,8 +27,11 @@ class Inquiry(Talker):
     advisor like every other message of the link. Here an answer only determines the next request. If another
     vehicle is followed later, its parameters are requested too.
 
-    ``outputs_only``: whether only the outputs are requested, without stream rates, the ground station's id
-    and the firmware.
+    Parameters
+    ----------
+    outputs_only
+        Whether only the outputs are requested, without stream rates, the ground station's id and the
+        firmware.
     """
 
     def __init__(self, outputs_only: bool = False) -> None:

@@ -28,8 +28,10 @@ class KeptLink:
     A restarted reader therefore arrives at an equal campaign. After a restart of the link's process, the
     reader continues at its position.
 
-    ``elevator``: elevator of the aircraft file, which shows which vehicle has one. None to decide by
-    parameters.
+    Parameters
+    ----------
+    elevator
+        Elevator of the aircraft file, which shows which vehicle has one. None to decide by parameters.
     """
 
     def __init__(

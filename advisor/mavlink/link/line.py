@@ -16,7 +16,10 @@ _TRY_EVERY_S = 0.2
 class Line:
     """One connection that is kept open.
 
-    ``inherited``: file descriptor of another process's UDP socket for the address. None to open a new socket.
+    Parameters
+    ----------
+    inherited
+        File descriptor of another process's UDP socket for the address. None to open a new socket.
     """
 
     def __init__(self, address: Address, inherited: int | None, stop: Event) -> None:

@@ -33,7 +33,10 @@ PATIENCE_S = 10.0
 class LinkProcess:
     """Supervisor of a link's process, which starts, restarts and stops it.
 
-    ``running``: running process that keeps this link and is unguarded. None to start a new process.
+    Parameters
+    ----------
+    running
+        Running process that keeps this link and is unguarded. None to start a new process.
     """
 
     def __init__(self, keeping: Keeping, running: RunningLink | None = None) -> None:
@@ -50,8 +53,10 @@ class LinkProcess:
     def link(self, elevator: Elevator | None = None) -> KeptLink:
         """Return a new reader of the link, which can be handed to another process before its first read.
 
-        ``elevator``: elevator of the aircraft file, which shows which vehicle has one. None to decide by
-        parameters.
+        Parameters
+        ----------
+        elevator
+            Elevator of the aircraft file, which shows which vehicle has one. None to decide by parameters.
         """
         return KeptLink(self._keeping.door, elevator, self._keeping.target_system)
 

@@ -130,7 +130,10 @@ class RateWatch:
     def look(self, from_vehicle: list[Frame], now_s: float, stations: Collection[int] = ()) -> list[str]:
         """Return sentences about streams that slowed down or recovered in the vehicle's newest frames.
 
-        ``now_s``: monotonic seconds.
+        Parameters
+        ----------
+        now_s
+            Monotonic seconds.
         """
         if not from_vehicle:
             return []

@@ -19,7 +19,10 @@ class LinkObserver:
 
     Neither estimates nor waiting records delay these reports.
 
-    ``door``: address of the process. None if no process keeps a link, so that nothing is reported.
+    Parameters
+    ----------
+    door
+        Address of the process. None if no process keeps a link, so that nothing is reported.
     """
 
     def __init__(self, door: Door | None, tell: Callable[[LinkStatistics], object]) -> None:

@@ -41,7 +41,10 @@ class Talker(ABC):
 class Packer:
     """Packer of messages into frames, with separate sequence numbers for each sender.
 
-    ``key``: signing key of 32 bytes; None for unsigned frames.
+    Parameters
+    ----------
+    key
+        Signing key of 32 bytes; None for unsigned frames.
     """
 
     def __init__(self, key: bytes | None) -> None:

@@ -48,7 +48,10 @@ class RateRequest(Talker):
     falls is requested again a few times at once, then after rests. At the end every message gets its default
     rate back.
 
-    ``rates_hz``: requested rate of each message, Hz, by the message's name.
+    Parameters
+    ----------
+    rates_hz
+        Requested rate of each message, Hz, by the message's name.
     """
 
     def __init__(self, rates_hz: Mapping[str, float]) -> None:

@@ -14,7 +14,10 @@ _MOST_CHUNKS = 512  # taken in one go, so that a flood cannot keep the reader fr
 class UdpTransport(Transport):
     """UDP transport, listening (``udpin``) or connecting (``udpout``).
 
-    ``inherited``: file descriptor of another process's socket. None to open a new socket.
+    Parameters
+    ----------
+    inherited
+        File descriptor of another process's socket. None to open a new socket.
     """
 
     def __init__(self, address: Address, inherited: int | None = None) -> None:

@@ -14,8 +14,11 @@ Peer = tuple[Any, ...]
 class ConnectionCutError(Exception):
     """The peer or the cable was disconnected.
 
-    ``listening``: whether the transport itself waits for the next caller. Otherwise the caller opens the
-    transport again.
+    Parameters
+    ----------
+    listening
+        Whether the transport itself waits for the next caller. Otherwise the caller opens the transport
+        again.
     """
 
     def __init__(self, why: str, listening: bool = False) -> None:

@@ -91,8 +91,10 @@ def _is_terminal(path: str) -> bool:
 def open_transport(address: Address, inherited: int | None = None) -> Transport:
     """Open the transport of an address.
 
-    ``inherited``: file descriptor of another process's UDP socket for this address. None to open a new
-    socket.
+    Parameters
+    ----------
+    inherited
+        File descriptor of another process's UDP socket for this address. None to open a new socket.
 
     Raises
     ------

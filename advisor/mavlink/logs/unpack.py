@@ -63,7 +63,10 @@ def beginning_of(path: Path) -> bytes:
 def unpacked(path: Path, beginning: bytes) -> Iterator[Path]:
     """Yield the file itself, or the log inside a packed file, for the duration of the context.
 
-    ``beginning``: result of :func:`beginning_of`.
+    Parameters
+    ----------
+    beginning
+        Result of :func:`beginning_of`.
 
     Raises
     ------

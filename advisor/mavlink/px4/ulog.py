@@ -39,7 +39,10 @@ _RATES = ("rollspeed", "pitchspeed", "yawspeed")
 def motion(topics: Topics, is_turned: bool = False) -> Iterator[TimedMessages]:
     """Yield attitude, specific force, static pressure and height, if the log has their values.
 
-    ``is_turned``: whether the board is mounted rotated, so that a raw sensor's axes differ from the body's.
+    Parameters
+    ----------
+    is_turned
+        Whether the board is mounted rotated, so that a raw sensor's axes differ from the body's.
     """
     yield from _attitude(topics)
     yield from _highres_imu(topics, is_turned)

@@ -71,8 +71,10 @@ def message(
 def side_by_side(*records: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     """Return the fields of several records in separate rows, with NaN for fields that a record lacks.
 
-    ``records``: values of each field of record k, shape (n_k,), by the field's name. Every record contains
-    the stamps.
+    Parameters
+    ----------
+    records
+        Values of each field of record k, shape (n_k,), by the field's name. Every record contains the stamps.
     """
     rows = [len(next(iter(record.values()))) for record in records]
     return {

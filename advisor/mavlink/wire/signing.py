@@ -62,7 +62,10 @@ def signing_time(unix_s: float) -> int:
 class SignatureCheck:
     """Check of one frame after another, which remembers every stream's newest time against replays.
 
-    ``key``: signing key of 32 bytes.
+    Parameters
+    ----------
+    key
+        Signing key of 32 bytes.
     """
 
     def __init__(self, key: bytes) -> None:

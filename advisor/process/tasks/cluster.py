@@ -161,7 +161,10 @@ def _named(packages: Versions) -> Versions:
 def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
     """Compare the package versions in the workers with those of this computer.
 
-    ``here``: version of each package; None for a missing package.
+    Parameters
+    ----------
+    here
+        Version of each package; None for a missing package.
 
     A caution in one sentence; empty if all versions are equal.
 

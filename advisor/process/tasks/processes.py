@@ -33,7 +33,10 @@ def run_in_processes(
 ) -> Iterator[tuple[T, R | Exception]]:
     """Do all tasks; yield each with its result, or with the error that ended it, in the order of completion.
 
-    ``work``: function of a task. Function, tasks and results can be pickled.
+    Parameters
+    ----------
+    work
+        Function of a task. Function, tasks and results can be pickled.
 
     Notes
     -----

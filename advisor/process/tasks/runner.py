@@ -31,7 +31,10 @@ def results_in_order(
 ) -> list[R]:
     """Do all tasks and return their results in the order of the tasks, independent of which ends first.
 
-    ``tell``: called with the index of each task in ``tasks`` when the task is done.
+    Parameters
+    ----------
+    tell
+        Called with the index of each task in ``tasks`` when the task is done.
 
     Raises
     ------

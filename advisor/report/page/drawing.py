@@ -100,7 +100,10 @@ def draw(
 ) -> str:
     """Return a figure as an SVG element.
 
-    ``name``: name of the figure in its page, which makes its ids unique.
+    Parameters
+    ----------
+    name
+        Name of the figure in its page, which makes its ids unique.
     """
     with mpl.rc_context(_STYLE), mpl.rc_context({"svg.hashsalt": name}):
         figure = Drawing(figsize=(width_in, height_in), layout="constrained")

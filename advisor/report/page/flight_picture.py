@@ -188,7 +188,10 @@ def _as_judged(channel: Channel, judged: Sequence[JudgedManeuver]) -> Channel:
 def thinned(channel: Channel, bins: int) -> tuple[FloatArray, FloatArray]:
     """Return times and values that draw an equal curve from the extremes of each bin, with breaks in gaps.
 
-    ``bins``: number of stretches with equal numbers of samples.
+    Parameters
+    ----------
+    bins
+        Number of stretches with equal numbers of samples.
     """
     t, y = channel.t, channel.y
     if len(t) > 2 * bins:

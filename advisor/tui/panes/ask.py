@@ -31,7 +31,10 @@ class Ask(Horizontal):
     def put(self, question: str, answered: Callable[[str], object], *, integer: bool = False) -> None:
         """Show a question and take the keys. An open question is replaced.
 
-        ``integer``: whether only whole numbers are accepted.
+        Parameters
+        ----------
+        integer : bool
+            Whether only whole numbers are accepted.
         """
         if not self.has_class("-open"):
             self._focused_before = self.screen.focused

@@ -43,7 +43,10 @@ class Painting:
 def paint(chart: Chart, width: int, height: int, base: Style, inks: list[Style]) -> Painting:
     """Paint a chart on ``width`` x ``height`` cells.
 
-    ``width`` and ``height``: size in cells; where it is too small, a sentence says so.
+    Parameters
+    ----------
+    width, height
+        Size in cells; where it is too small, a sentence says so.
     """
     if not chart.series:
         return Painting(_sentence(f"{chart.y_label}: {chart.why_empty}", width, base))
@@ -197,7 +200,10 @@ _SAMPLE = {"line": "──", "joined": "──", "points": "∙∙", "stems": "�
 def legend(chart: Chart, read: list[str], width: int, style: Style, inks: list[Style]) -> Strip:
     """Compose the line, from left to right as far as there is room.
 
-    ``read``: one text for each series: its value at the cursor, empty without one.
+    Parameters
+    ----------
+    read
+        One text for each series: its value at the cursor, empty without one.
     """
     curves = [
         (f"  {_SAMPLE[s.mark]} {s.name} {value}".rstrip(), s.ink)

@@ -73,7 +73,10 @@ class Window:
 def nearest(x: FloatArray, value: float) -> int:
     """Find the index of the element of ``x`` that lies nearest to a value.
 
-    ``x``, shape (n,), rising, n at least 1.
+    Parameters
+    ----------
+    x
+        Shape (n,), rising, n at least 1.
     """
     at = int(np.searchsorted(x, value))
     if at == 0 or at == len(x):

@@ -44,7 +44,10 @@ The set for system identification has ``vehicle_torque_setpoint`` at full rate.
 class Ulog(Mends):
     """Topics of PX4's own log.
 
-    ``profile``: SDLOG_PROFILE of the log; None where unknown. No advice names a bit that is set.
+    Parameters
+    ----------
+    profile
+        SDLOG_PROFILE of the log; None where unknown. No advice names a bit that is set.
     """
 
     names = _TOPICS

@@ -46,7 +46,10 @@ def prove_side(
 ) -> Proof:
     """Return the proof of roll and yaw improved by some manoeuvres and tested on others.
 
-    ``fresh``: manoeuvres of other logs; None to hold out the last third.
+    Parameters
+    ----------
+    fresh
+        Manoeuvres of other logs; None to hold out the last third.
 
     Raises
     ------

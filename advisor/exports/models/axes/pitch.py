@@ -40,7 +40,10 @@ def prove(
 
     If the fitted manoeuvres give no correction, that of the whole flight is tested, with refitted sizes.
 
-    ``fresh``: manoeuvres of other logs; None to hold out the last third of ``flown``.
+    Parameters
+    ----------
+    fresh
+        Manoeuvres of other logs; None to hold out the last third of ``flown``.
 
     Raises
     ------

@@ -29,7 +29,10 @@ AXES = {"Y": "SIDE", "L": "ROLL", "N": "YAW"}
 def side_text(name: str, side: SideModel, model: Model, content: bytes) -> Exported:
     """Return the corrected aircraft, measured at the flown speed and height.
 
-    ``content``: text of the aircraft, with pitch possibly corrected already.
+    Parameters
+    ----------
+    content
+        Text of the aircraft, with pitch possibly corrected already.
 
     Raises
     ------
