@@ -171,7 +171,13 @@ def compare_flown(
     progress: Callable[[str, float], None] = lambda *_: None,
     prior: FieldPrior = FIELD,
 ) -> Compared:
-    """Diagnose the gap of manoeuvres to a simulator, or to the aircraft file's model where there is none."""
+    """Diagnose the gap of manoeuvres to a simulator, or to the aircraft file's model where there is none.
+
+    Raises
+    ------
+    UnusableInputError
+        The manoeuvres cannot serve, or the simulator does not fly.
+    """
     chosen = without_refused(flown.maneuvers, aircraft)
     if simulator is not None and not isinstance(simulator, LinearSimulator):
         progress("comparing the air speed with the motion", 0.02)

@@ -95,7 +95,13 @@ class LogSeries:
         return read_whole_log(self.logs[flight], [self.logs[n] for n in others])
 
     def load(self) -> list[Columns]:
-        """Return the messages of all logs that can be read."""
+        """Return the messages of all logs that can be read.
+
+        Raises
+        ------
+        UnusableInputError
+            No log can be read.
+        """
         columns = [column for batch in self.batches() for column in batch]
         if len(self.unreadable) == len(self.logs):
             raise UnusableInputError.of(list(self.unreadable.values()))
@@ -107,7 +113,13 @@ class LogSeries:
         return [*([self.order_said] if self.reordered else []), *wrong]
 
     def read_by_hand(self) -> ByHand:
-        """Return the decisions by hand on every log."""
+        """Return the decisions by hand on every log.
+
+        Raises
+        ------
+        ConfigurationError
+            As :func:`advisor.analysis.marks_file.read_by_hand`.
+        """
         return on_all([read_by_hand(log) for log in self.logs])
 
 

@@ -27,6 +27,11 @@ def part_of(document: Any, path: str) -> Any:
     ----------
     path
         Keys and list positions with dots between: ``lateral.maneuvers.2``. Empty: the whole document.
+
+    Raises
+    ------
+    RefusedError
+        The document has no such part.
     """
     found = document
     for step in filter(None, path.split(".")):

@@ -32,7 +32,13 @@ def refuse_figure(figure: Path | None, others: Sequence[Path | None]) -> None:
 
 
 def write_figure(figure: Path | None, document: Callable[[], Mapping[str, Any]]) -> None:
-    """Write the picture of an axis's document, if one is wanted."""
+    """Write the picture of an axis's document, if one is wanted.
+
+    Raises
+    ------
+    ConfigurationError
+        The file cannot be written.
+    """
     if figure is None:
         return
     from advisor.report.page.gap_picture import write_gap_picture

@@ -65,7 +65,13 @@ class LazyCommands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Return the command that the first word names; refuse another word with a guess."""
+        """Return the command that the first word names; refuse another word with a guess.
+
+        Raises
+        ------
+        UsageError
+            There is no such command.
+        """
         near = get_close_matches(args[0], COMMANDS, 1)
         if args[0] not in COMMANDS and near and not ctx.resilient_parsing:
             ctx.fail(f"No such command {args[0]!r}: did you mean {near[0]}?")

@@ -35,6 +35,11 @@ def orders_of(
     ----------
     inputs
         Files that the command reads, or that another option writes. No order may name one of them.
+
+    Raises
+    ------
+    ConfigurationError
+        An order cannot be carried out.
     """
     if not exports:
         return []

@@ -60,7 +60,13 @@ class LogsAsked:
         return words
 
     def read_aircraft(self) -> Aircraft:
-        """Read the aircraft file."""
+        """Read the aircraft file.
+
+        Raises
+        ------
+        ConfigurationError
+            As :func:`advisor.cli.options.read_aircraft`.
+        """
         return read_aircraft(self.aircraft_file, self.rule)
 
 

@@ -148,6 +148,11 @@ def narrate_here(
     ----------
     beat
         Called after each wait for data, at most every ``BEAT_S``. None: a backlog is printed here.
+
+    Raises
+    ------
+    UnusableInputError
+        The source can never be used, or has ended without anything to judge.
     """
     from advisor.report.follow import follow
 

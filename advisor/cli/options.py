@@ -120,7 +120,13 @@ def _seconds(parts: Sequence[str]) -> float:
 
 
 def refuse_marks_on_several(marks: "Sequence[Mark]", logs: Sequence[Path]) -> None:
-    """Refuse marks of the command line on several logs."""
+    """Refuse marks of the command line on several logs.
+
+    Raises
+    ------
+    ConfigurationError
+        There are marks, and more than one log.
+    """
     if marks and len(logs) > 1:
         raise ConfigurationError(
             "--maneuver does not say in which of several logs: write the marks into LOG.maneuvers.yaml "
@@ -129,7 +135,13 @@ def refuse_marks_on_several(marks: "Sequence[Mark]", logs: Sequence[Path]) -> No
 
 
 def decided_on(log: Path, no_marks: bool) -> "ByHand":
-    """Return the decisions by hand on a log, from the file next to the log."""
+    """Return the decisions by hand on a log, from the file next to the log.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`advisor.analysis.marks_file.read_by_hand`.
+    """
     from advisor.analysis.marks_file import read_by_hand
     from advisor.campaign.hand_decisions import NOTHING
 
@@ -137,7 +149,13 @@ def decided_on(log: Path, no_marks: bool) -> "ByHand":
 
 
 def read_aircraft(aircraft_file: Path | None, rule: Rule | None = None) -> Aircraft:
-    """Read the aircraft file, and let the rule of the command line override the file's."""
+    """Read the aircraft file, and let the rule of the command line override the file's.
+
+    Raises
+    ------
+    ConfigurationError
+        As :func:`advisor.aircraft_file.read.load_aircraft`.
+    """
     aircraft = Aircraft()
     if aircraft_file is not None:
         from advisor.aircraft_file.read import load_aircraft

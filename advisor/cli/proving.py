@@ -25,7 +25,13 @@ prove_option = click.option(
 
 
 def refuse_proving(proving: Sequence[str]) -> None:
-    """Refuse a log that is not there, before any work."""
+    """Refuse a log that is not there, before any work.
+
+    Raises
+    ------
+    ConfigurationError
+        A log is missing.
+    """
     missing = next((log for log in proving if log and not Path(log).is_file()), None)
     if missing is not None:
         raise ConfigurationError(f"--prove: there is no log {missing}; name another one, or none.")

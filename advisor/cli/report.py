@@ -64,7 +64,13 @@ def _refuse(inputs: Sequence[Path], out: Path) -> None:
 
 
 def refuse_missing_libraries(command: str) -> None:
-    """Refuse a command that draws pages where the libraries for pages are missing."""
+    """Refuse a command that draws pages where the libraries for pages are missing.
+
+    Raises
+    ------
+    ConfigurationError
+        A library is missing.
+    """
     missing = [name for name in _NEEDED if find_spec(name) is None]
     if missing:
         raise ConfigurationError(

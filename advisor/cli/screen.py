@@ -77,6 +77,11 @@ def advise(
         Logs and recordings, flight by flight; panes are saved into the folder of theirs.
     show
         Shows the campaign elsewhere; None: the terminal does, or lines of text come without a terminal.
+
+    Raises
+    ------
+    UnusableInputError
+        The source can never serve, or has ended without anything to judge.
     """
     from advisor.campaign.hand_decisions import NOTHING
     from advisor.cli.narrator import narrate, narrate_here

@@ -91,7 +91,13 @@ def examine(
     progress: Progress = lambda *_: None,
     prior: FieldPrior = FIELD,
 ) -> Examined:
-    """Return the diagnosis of ``diagnose`` together with its findings, for flights in a user's simulator."""
+    """Return the diagnosis of ``diagnose`` together with its findings, for flights in a user's simulator.
+
+    Raises
+    ------
+    UnusableInputError
+        No usable manoeuvre, or no angle of attack.
+    """
     progress("checking the angle of attack against the motion", 0.0)
     maneuvers = [as_stamped(m) for m in maneuvers]
     aircraft = _with_speed(usable_of(maneuvers), aircraft)

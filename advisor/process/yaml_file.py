@@ -89,7 +89,13 @@ class _Loader(_Parser):  # type: ignore[misc]
     """Safe YAML loader that refuses a repeated key of a section."""
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
-        """Build one section of the settings."""
+        """Build one section of the settings.
+
+        Raises
+        ------
+        _Refused
+            The section repeats a key.
+        """
         said: set[Hashable] = set()
         for key_node, _ in node.value:
             key = (key_node.tag, str(key_node.value))

@@ -35,7 +35,13 @@ _ALIKE = 2
 def print_foresight(
     aircraft: Aircraft, plan: str, rate_hz: float, amplitude_deg: float, without: str, as_json: bool
 ) -> int:
-    """Print the smallest detectable size and the similar effects of every effect, and return exit code 0."""
+    """Print the smallest detectable size and the similar effects of every effect, and return exit code 0.
+
+    Raises
+    ------
+    ConfigurationError
+        The aircraft file has no complete ``model``, or the plan cannot be flown or sampled.
+    """
     inputs = [name.strip() for name in plan.split(",") if name.strip()]
     absent = [name.strip() for name in without.split(",") if name.strip()]
     found = foresee_plan(aircraft, inputs, rate_hz, amplitude_deg, absent)

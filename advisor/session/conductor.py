@@ -56,6 +56,11 @@ class Conductor(Conducting):
         ----------
         tell : callable
             Receives a `SessionReport` at most every `REPORT_EVERY_S`, in this thread.
+
+        Raises
+        ------
+        UnusableInputError
+            The source's data can never be sufficient.
         """
         self._tell = tell
         try:

@@ -43,7 +43,13 @@ class LinkSource:
         self._ended = False
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
-        """Return the next batch; None when the sender has finished and everything was read."""
+        """Return the next batch; None when the sender has finished and everything was read.
+
+        Raises
+        ------
+        UnusableInputError
+            The connection cannot be opened.
+        """
         if self._link is None:
             self._link = self._connection.__enter__()
         over = self._over()

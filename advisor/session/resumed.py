@@ -43,7 +43,13 @@ class ResumedSource:
         self._notices: list[str] = []
 
     def read(self, timeout_s: float) -> Sequence[Columns] | None:
-        """Return the next batch, beginning with the earlier flights."""
+        """Return the next batch, beginning with the earlier flights.
+
+        Raises
+        ------
+        UnusableInputError
+            The link can never serve.
+        """
         if self._past is not None:
             batch = next(self._past, None)
             if batch is not None:

@@ -49,7 +49,13 @@ def still_air_said(simulator: Simulator, winds: Mapping[int, tuple[float, float]
 
 
 def refuse_unknown_air(description: str, heights_m: Mapping[int, float | None]) -> None:
-    """Refuse manoeuvres in air of unknown density, in which a simulator would fly with other forces."""
+    """Refuse manoeuvres in air of unknown density, in which a simulator would fly with other forces.
+
+    Raises
+    ------
+    UnusableInputError
+        The height of a manoeuvre is unknown.
+    """
     unknown = [number for number, height in heights_m.items() if height is None]
     if unknown:
         raise UnusableInputError(

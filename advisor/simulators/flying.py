@@ -220,7 +220,13 @@ def refuse_wrong_elevator(
 
 
 def refuse_unmoved(description: str, replays: Sequence[Replay], flights: PreparedManeuvers) -> None:
-    """Refuse a simulator whose pitch rate changes by less than the gyro noise of the flight."""
+    """Refuse a simulator whose pitch rate changes by less than the gyro noise of the flight.
+
+    Raises
+    ------
+    UnusableInputError
+        The pitch rate changes by less than the noise in every manoeuvre.
+    """
     noise = float(flights.white[flights.channels.index("q")])
     if max(float(np.ptp(replay.q)) for replay in replays) < noise:
         raise UnusableInputError(

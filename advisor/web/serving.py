@@ -80,6 +80,11 @@ def serve(
     ----------
     tempo
         Start settings of each replay. None: the source is a live link.
+
+    Raises
+    ------
+    UnusableInputError
+        The link can never serve.
     """
     from advisor.tui.settings import load_settings
     from advisor.web.server import WebServer

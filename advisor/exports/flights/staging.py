@@ -62,7 +62,13 @@ def _publish(stage: Path, folder: Path, inputs: Sequence[Path]) -> None:
 
 
 def refuse_inputs(targets: Sequence[Path], inputs: Sequence[Path]) -> None:
-    """Refuse to overwrite an input file."""
+    """Refuse to overwrite an input file.
+
+    Raises
+    ------
+    ConfigurationError
+        A target is one of the inputs.
+    """
     read = {path.resolve() for path in inputs}
     for target in targets:
         if target.resolve() in read:

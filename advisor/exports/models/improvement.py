@@ -191,7 +191,13 @@ def zero_said(parameter: str) -> str:
 
 
 def require_reference(reference: Reference, keys: tuple[str, ...]) -> None:
-    """Refuse an aircraft file without the quantities that coefficients need."""
+    """Refuse an aircraft file without the quantities that coefficients need.
+
+    Raises
+    ------
+    ConfigurationError
+        Keys of ``reference`` are missing. The error message names the missing keys.
+    """
     missing = missing_reference(reference, keys)
     if missing:
         raise ConfigurationError(

@@ -125,7 +125,13 @@ def lines_of(proof: Proof) -> Iterator[str]:
 
 
 def parted(maneuvers: Sequence[Maneuver]) -> tuple[Sequence[Maneuver], Sequence[Maneuver]]:
-    """Return the manoeuvres for the fit, and the held-out last third."""
+    """Return the manoeuvres for the fit, and the held-out last third.
+
+    Raises
+    ------
+    UnusableInputError
+        There are too few manoeuvres.
+    """
     count = len(maneuvers)
     kept = max(count // 3, LEAST_KEPT)
     if count - kept < LEAST_FITTED:
@@ -138,7 +144,13 @@ def parted(maneuvers: Sequence[Maneuver]) -> tuple[Sequence[Maneuver], Sequence[
 
 
 def refuse_unimproved(improves: bool, sentence: str, count: int) -> None:
-    """Refuse a proof without an improvement."""
+    """Refuse a proof without an improvement.
+
+    Raises
+    ------
+    UnusableInputError
+        The fit gives no cause and no wrong derivative.
+    """
     if not improves:
         raise UnusableInputError(
             "nothing_to_prove",

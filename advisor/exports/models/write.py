@@ -58,7 +58,13 @@ def order_of(text: str) -> ExportOrder:
 
 
 def refuse(order: ExportOrder, aircraft: Aircraft, axis: AxisAsked) -> None:
-    """Refuse, before the analysis, an export that would fail afterwards."""
+    """Refuse, before the analysis, an export that would fail afterwards.
+
+    Raises
+    ------
+    ConfigurationError
+        The aircraft file lacks required keys, or the file's ending is not supported.
+    """
     format_named(order.format).refuse(order.file, aircraft, axis)
 
 
@@ -89,7 +95,13 @@ def _carried_out(order: ExportOrder, model: FlownModel) -> ExportOutcome:
 
 
 def refuse_models(names: Sequence[str], folder: Path, aircraft: Aircraft) -> None:
-    """Refuse, before the analysis, formats that could not be written afterwards."""
+    """Refuse, before the analysis, formats that could not be written afterwards.
+
+    Raises
+    ------
+    ConfigurationError
+        The aircraft file lacks keys that a format requires.
+    """
     for order in _orders(names, folder):
         refuse(order, aircraft, "both")
 

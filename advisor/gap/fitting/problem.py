@@ -64,7 +64,13 @@ class SearchPoint:
         return slice(begin, begin + len(self.effects[k].names))
 
     def index_of(self, name: str) -> int:
-        """Return the index of the effect with this name."""
+        """Return the index of the effect with this name.
+
+        Raises
+        ------
+        ValueError
+            No effect has the name.
+        """
         return [effect.effect for effect in self.effects].index(name)
 
     def with_effect(

@@ -103,6 +103,11 @@ class SeparateConnection(Talker):
     MAVProxy forwards messages from its ``--out`` to the vehicle, and does not show these messages. MAVProxy
     shows a message from its ``--master`` when the text carries the system and component of its vehicle
     (MAVProxy, ``mavproxy_link.py``, ``message_is_from_primary_vehicle``).
+
+    Raises
+    ------
+    ConfigurationError
+        The connection string names no connection.
     """
 
     def __init__(self, talker: Talker, connection: str) -> None:

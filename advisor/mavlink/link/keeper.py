@@ -109,7 +109,13 @@ class Keeper:
         self._stop = threading.Event()
 
     def start(self) -> Path | None:
-        """Open the link, and return the file of the recording."""
+        """Open the link, and return the file of the recording.
+
+        Raises
+        ------
+        UnusableInputError
+            The connection cannot be opened, or the recording cannot be made.
+        """
         self._link.start()
         self._passed_on = self._hello().before
         Thread(target=self._accept, daemon=True).start()

@@ -76,7 +76,13 @@ class LinkProcess:
         return self._process.pid if self._process else None
 
     def __enter__(self) -> Self:
-        """Start the process."""
+        """Start the process.
+
+        Raises
+        ------
+        UnusableInputError
+            The connection cannot be opened, or the recording cannot be made.
+        """
         if self._running is None:
             self._start()
             # After a restart the process goes on with the recording that the first process made.

@@ -44,6 +44,11 @@ def read_whole_log(
         log without any.
     scanner
         Scanner for a tlog, whose statistics the caller uses.
+
+    Raises
+    ------
+    UnusableInputError
+        As :func:`advisor.mavlink.logs.logs.open_log`.
     """
     batches = open_log(path, scanner=scanner)
     first = next(batches, None)

@@ -72,7 +72,13 @@ def worst(found: Document) -> int:
 
 
 def write_gap_picture(found: Document, path: Path) -> None:
-    """Write the picture into a file, in the format of its ending."""
+    """Write the picture into a file, in the format of its ending.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
     save(path, *_size_in(found, _ACROSS), _paint, found, _ACROSS)
 
 

@@ -28,7 +28,13 @@ class ModelFormat(ABC):
         return (file,)
 
     def refuse(self, file: Path, aircraft: Aircraft, axis: AxisAsked) -> None:  # noqa: B027 - may be empty
-        """Refuse, before the analysis, an export that would fail afterwards."""
+        """Refuse, before the analysis, an export that would fail afterwards.
+
+        Raises
+        ------
+        ConfigurationError
+            The aircraft file lacks required keys, or the file's ending is not supported.
+        """
 
     @abstractmethod
     def made(self, model: FlownModel, file: Path) -> Exported:

@@ -56,12 +56,24 @@ def model_of(what: str) -> Model:
 
 
 def measure(content: bytes, model: Model, asked: Request) -> Slopes:
-    """Return the short-period slopes of an aircraft text, loaded in place of the aircraft."""
+    """Return the short-period slopes of an aircraft text, loaded in place of the aircraft.
+
+    Raises
+    ------
+    ConfigurationError
+        Errors as for ``_answered``.
+    """
     return Slopes(**_answered("slopes", content, model, asdict(asked)))
 
 
 def measure_side(content: bytes, model: Model, asked: SideRequest) -> SideSlopes:
-    """Return the roll and yaw slopes of an aircraft text, loaded in place of the aircraft."""
+    """Return the roll and yaw slopes of an aircraft text, loaded in place of the aircraft.
+
+    Raises
+    ------
+    ConfigurationError
+        Errors as for ``_answered``.
+    """
     return SideSlopes(**_answered("side_slopes", content, model, asdict(asked)))
 
 

@@ -52,7 +52,13 @@ class SideSlopes:
 
 
 def side_measured(fdm: Any, asked: SideRequest) -> SideSlopes:
-    """Return the slopes of a loaded aircraft from perturbations about its trim."""
+    """Return the slopes of a loaded aircraft from perturbations about its trim.
+
+    Raises
+    ------
+    ArithmeticError
+        The aircraft has no trim in this condition, or a control moves nothing.
+    """
     trim = measured(fdm, Request([], "fcs/elevator-pos-rad", asked.airspeed_m_s, asked.height_m, False)).trim
     momentum = float(fdm["inertia/mass-slugs"] * fdm["velocities/vt-fps"])
 
