@@ -4,7 +4,7 @@ import numpy as np
 
 from advisor.model.response import N_SHARED, Grid, Index
 from advisor.oem.arrow import cholesky, normal_equations, solve_lower
-from advisor.oem.gauss_newton import CONVERGED, descend
+from advisor.oem.gauss_newton import CONVERGED, FLAT, descend
 from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
@@ -38,11 +38,11 @@ def solve_each(
     noise = np.full((rows, 2), np.nan)
     iterations = np.full(rows, -1)
     for i in range(rows):
-        optimum = descend(grid, z[i], channel, owner, free, floor, np.zeros(N_SHARED), shared, local)
+        optimum = descend(grid, z[i], channel, owner, free, floor, np.zeros(N_SHARED), shared, local, FLAT)
         if optimum.status != CONVERGED:
             continue
         information, _ = normal_equations(
-            1, z[i] - optimum.fitted, optimum.sensitivities, channel, owner, free, optimum.noise
+            len(local), z[i] - optimum.fitted, optimum.sensitivities, channel, owner, free, optimum.noise
         )
         if not cholesky(information[0]):
             continue

@@ -83,7 +83,7 @@ def descend(
     prior: FloatArray,
     shared: FloatArray,
     local: FloatArray,
-    flat: float = FLAT,
+    flat: float,
 ) -> Optimum:
     """Minimise Σ n_c·log σ_c² from a start. Shapes are as in ``Laid``; ``floor`` (outputs,) is the least σ.
 

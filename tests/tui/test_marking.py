@@ -74,9 +74,8 @@ def opened(log: Path, speed: float, settings: Settings) -> tuple[AdvisorApp, Log
 
 
 async def test_a_mark_made_in_a_replay_is_judged_kept_and_there_again_in_the_next(tmp_path: Path):
-    log = Path(shutil.copy(recorded("linear", 1.0, maneuvers=TWO), tmp_path / "flight.tlog"))
-    engineer = Settings(screen="engineer")
-    app, player = opened(log, 8.0, engineer)
+    log = Path(shutil.copy(recorded("linear", 1.0, maneuvers=TWO[:1]), tmp_path / "flight.tlog"))
+    app, player = opened(log, 8.0, Settings())
     async with app.run_test(size=(80, 24)) as pilot:
         here = Stage(app, pilot, None, player)
         await here.until(lambda: app.view.state.now_s > 26.0, patience_s=60.0)
@@ -88,13 +87,13 @@ async def test_a_mark_made_in_a_replay_is_judged_kept_and_there_again_in_the_nex
         await here.until(lambda: len(app.view.state.maneuvers) == 1, patience_s=60.0)
         marked = app.view.state.maneuvers[0]
         assert marked.maneuver.span.closed_by == "marked by hand"
-        await here.press("n", *"bumpy", "enter")
+        await here.press("space", "e", "n", *"bumpy", "enter")
         await here.until(lambda: "bumpy" in path_beside(log).read_text(encoding="utf-8"))
         await here.until(lambda: "decisions by hand are kept in" in "\n".join(app.view.log))
-    app, player = opened(log, inf, engineer)
+    app, player = opened(log, inf, Settings())
     async with app.run_test(size=(80, 24)) as pilot:
         here = Stage(app, pilot, None, player)
-        await here.until(lambda: len(app.view.state.maneuvers) == 2, patience_s=60.0)
+        await here.until(lambda: app.view.health.condition == "ended", patience_s=60.0)
         again = app.view.state.maneuvers[0]
         assert again.maneuver.span == marked.maneuver.span
         assert again.verdict == marked.verdict

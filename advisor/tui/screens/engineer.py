@@ -5,6 +5,7 @@ from dataclasses import replace
 from textual.app import ComposeResult
 from textual.containers import Container
 from textual.events import Resize
+from textual.geometry import Size
 
 from advisor.campaign.state import AxisName
 from advisor.session.hand import HandDecision, Verb
@@ -43,7 +44,8 @@ _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
     "middle": (Fit, Residuals, Correlation, Courses, Qualities, WholeFlightPane, GapPane),
     "right": (Live, Criterion, Channels, EventLogPane),
 }
-_WIDE, _MEDIUM = (160, 42), (110, 30)
+_LAYOUTS = {"-wide": (160, 42), "-medium": (110, 30), "-narrow": (0, 0)}
+"""Layouts by class, with the least columns and rows of their terminals, the largest first."""
 _LOW = 7
 """Rows of the manoeuvre table above a single pane."""
 _LOW_TABLE = 38
@@ -81,6 +83,7 @@ work on the manoeuvres that are shown.
 
     def compose(self) -> ComposeResult:
         """Lay out the panes in three columns; the style sheet shows those that have room."""
+        self._lay_out(self.app.size)
         yield StatusLine()
         yield Alarm()
         titles = [pane.TITLE.removesuffix(" and link") for pane in PANES]
@@ -99,14 +102,16 @@ work on the manoeuvres that are shown.
 
     def on_resize(self, event: Resize) -> None:
         """Choose the layout that the terminal has room for."""
-        width, height = event.size
-        fits = [width >= w and height >= h for w, h in (_WIDE, _MEDIUM)]
-        self.set_class(fits[0], "-wide")
-        self.set_class(fits[1] and not fits[0], "-medium")
-        self.set_class(not any(fits), "-narrow")
-        self.set_class(height < _LOW_TABLE, "-low")
+        self._lay_out(event.size)
         self._arrange()
         self.call_after_refresh(self._refresh_panes)
+
+    def _lay_out(self, size: Size) -> None:
+        """Name the layout by classes. Every change of the classes restyles all panes."""
+        layout = next(name for name, (w, h) in _LAYOUTS.items() if size.width >= w and size.height >= h)
+        classes = self.classes - {*_LAYOUTS, "-low"} | {layout, *["-low"] * (size.height < _LOW_TABLE)}
+        if classes != self.classes:
+            self.set_classes(classes)
 
     def show(self, view: View) -> None:
         """Update the visible panes."""
