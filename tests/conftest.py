@@ -151,6 +151,16 @@ def recorded_analyses(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(scope="session", autouse=True)
+def recorded_estimates() -> Iterator[None]:
+    """Campaigns read estimates that other tests of this run have made of the same samples."""
+    from tests.recorded import record_estimates
+
+    with pytest.MonkeyPatch.context() as patch:
+        record_estimates(patch)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
 def few_diagnoses(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Let the whole diagnosis fail that is one too many, in whichever process of this run.
 

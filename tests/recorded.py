@@ -1,23 +1,33 @@
-"""Analyses of logs, made once a test run, whichever of its processes asks first.
+"""Analyses of logs and estimates of manoeuvres, made once a test run, whichever of its processes asks first.
 
-Faces and exports are tested on what an analysis says. The estimator is the subject of other tests.
+Faces and exports are tested on what an analysis says, campaigns on what follows from an estimate. The
+estimator is the subject of other tests, which call it themselves.
 """
 
 import fcntl
 import pickle
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial, wraps
+from functools import cache, partial, wraps
 from hashlib import sha256
 from inspect import signature
+from io import BytesIO
+from types import SimpleNamespace
 from typing import Any, TypeVar, cast
 
 import pytest
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import gap, side_gap, whole_flights
 from advisor.analysis.log_series import LogSeries
 from advisor.analysis.whole_flights import WholeFlights
+from advisor.campaign import joint_estimate, single_maneuver
+from advisor.campaign.axes import lateral
 from advisor.cli import analyze, page_content
+from advisor.doctor import examiner
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.oem.estimate import NoEstimate
+from advisor.simulators.linear import LinearSimulator
 from tests.flights import SHARED
 
 Result = TypeVar("Result")
@@ -29,6 +39,7 @@ def use_recorded(patch: pytest.MonkeyPatch) -> None:
     for module in (whole_flights, page_content, side_gap):
         patch.setattr(module, "read_whole", whole)
     patch.setattr(gap, "compare_logs", compared)
+    patch.setattr(gap, "compare_flown", _diagnosed_once(gap.compare_flown))
     patch.setattr(analyze, "_analyze", _once(analyze._analyze))
 
 
@@ -45,21 +56,74 @@ def _once(function: Callable[..., Result]) -> Callable[..., Result]:
             return function(*arguments, **settings)  # which says so
         read = [(log.name, log.read_bytes()) for log in given]
         by_hand = LogSeries(given).read_by_hand()
-        key = sha256(pickle.dumps((function.__qualname__, asked, read, by_hand))).hexdigest()
-        SHARED.mkdir(exist_ok=True)
-        with (SHARED / f"{key}.analysis").open("a+b") as file:
-            fcntl.flock(file, fcntl.LOCK_EX)
-            file.seek(0)
-            known = file.read()
-            result: Any = pickle.loads(known) if known else function(*arguments, **settings)
-            if not known:
-                file.write(pickle.dumps(result))
+        key = (function.__qualname__, asked, read, by_hand)
+        result: Any = _made_once(key, lambda: function(*arguments, **settings))
         # Copies of one log in several folders have one analysis.
         if isinstance(result, WholeFlights):
             result = replace(result, logs=tuple(LogSeries(given).logs))
         return cast("Result", result)
 
     return recalled
+
+
+def _diagnosed_once(compare_flown: Callable[..., Result]) -> Callable[..., Result]:
+    """The diagnosis, kept by the manoeuvres and the aircraft; that of a user's simulator is made anew."""
+
+    def recalled(flown: Any, aircraft: Aircraft, simulator: Any, *settings: Any) -> Result:
+        deciding = [setting for setting in settings if not callable(setting)]
+        make = partial(compare_flown, flown, aircraft, simulator, *settings)
+        if simulator is not None and not isinstance(simulator, LinearSimulator):
+            return make()
+        return _made_once((compare_flown.__qualname__, flown, aircraft, simulator, deciding), make)
+
+    return recalled
+
+
+def record_estimates(patch: pytest.MonkeyPatch) -> None:
+    """Let campaigns and the doctor read estimates that another test of this run has made already."""
+    for module, name in ((single_maneuver, "estimate"), (lateral, "estimate_lateral")):
+        patch.setattr(module, name, _estimated_once(getattr(module, name)))
+    patch.setattr(examiner, "estimate_jointly", _estimated_once(examiner.estimate_jointly))
+    patch.setattr(joint_estimate, "fit_jointly", partial(_fitted_once, joint_estimate.fit_jointly))
+
+
+def _fitted_once(fit_jointly: Callable[..., Any], maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Any:
+    """What a campaign asks of a joint fit: whether it tells the lag, and its estimate."""
+    asked = (tuple(maneuvers), aircraft)
+    fit = cache(lambda: fit_jointly(*asked))
+    told = _made_once(("lag", asked), lambda: getattr(fit(), "tells_lag", fit()))
+    if isinstance(told, NoEstimate):
+        return told
+    return SimpleNamespace(
+        tells_lag=told, estimate=lambda: _made_once(("estimate", asked), lambda: fit().estimate())
+    )
+
+
+def _estimated_once(function: Callable[..., Result]) -> Callable[..., Result]:
+    """The function of manoeuvres and an aircraft, whose result is kept by every sample and number of both."""
+
+    def recalled(flown: Any, aircraft: Aircraft) -> Result:
+        asked = tuple(flown) if isinstance(flown, Sequence) else flown
+        return _made_once((function.__qualname__, asked, aircraft), lambda: function(flown, aircraft))
+
+    return recalled
+
+
+def _made_once(asked: object, make: Callable[[], Result]) -> Result:
+    """A copy of what another test made when it asked the same, or else what is made now."""
+    written = BytesIO()
+    pickler = pickle.Pickler(written)
+    pickler.fast = True  # equal contents are equal bytes, whichever of their parts are one object
+    pickler.dump(asked)
+    SHARED.mkdir(exist_ok=True)
+    with (SHARED / f"{sha256(written.getbuffer()).hexdigest()}.made").open("a+b") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        file.seek(0)
+        known = file.read()
+        result: Result = pickle.loads(known) if known else make()
+        if not known:
+            file.write(pickle.dumps(result))
+    return result
 
 
 def _deciding(argument: Any) -> Any:
