@@ -35,8 +35,9 @@ setup: .venv/.compiled ## build .venv with the advisor in it
 run: setup ## the bundled aircraft flies, the advisor advises (HEADLESS=1: as text)
 	@$(BIN)/advisor demo
 
+# Tests of links and of processes wait for the clock: a third process works meanwhile on two cores.
 test: .venv/.developed ## run all tests (long studies have their own targets)
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 3 --dist loadgroup
 
 check: .venv/.developed format-check files lint types imports sizes english words site test ## format, files, lint, types, import contracts, sizes, English, documentation, tests
 

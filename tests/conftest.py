@@ -55,16 +55,18 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     if not hasattr(session.config, "workerinput"):
         compile_once(print)
         compile_once(print, {"bundled aircraft": Demonstration.fly_once})
-    elif session.config.workerinput["workerid"] == "gw1" and session.config.args == ["tests"]:
-        _import_from_the_end()
+    elif session.config.args == ["tests"]:
+        _import_from_another_place(session.config.workerinput)
 
 
-def _import_from_the_end() -> None:
-    """Import the test files in reverse order, while another process imports from the beginning.
+def _import_from_another_place(process: dict[str, Any]) -> None:
+    """Import all test files, each process beginning at another one.
 
-    Each file's assertions are rewritten at its first import. Two processes share that work and its results.
+    Each file's assertions are rewritten at its first import. The processes share that work and its results.
     """
-    for path in sorted(Path(__file__).parent.rglob("test_*.py"), reverse=True):
+    files = sorted(Path(__file__).parent.rglob("test_*.py"))
+    begin = len(files) * int(process["workerid"].removeprefix("gw")) // process["workercount"]
+    for path in [*files[begin:], *files[:begin]]:
         with suppress(Exception, pytest.skip.Exception):  # collection says what is wrong
             import_module(".".join(("tests", *path.relative_to(Path(__file__).parent).with_suffix("").parts)))
 
