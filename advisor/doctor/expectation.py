@@ -128,7 +128,7 @@ def _errors(
 
     laid = assemble(problem(edges))
     local = local_at_trim(theta, laid)
-    names = [x for x in unknown_instruments(problem(edges), assumed.aircraft) if x.prior is not None]
+    names = [x for x in unknown_instruments(problem(edges), assumed.aircraft) if x.stated is None]
     shifts = _SHIFT_S * np.eye(len(edges))
     ends = [response_from_trim(theta, assemble(problem(edges + s))) for s in (*shifts, *-shifts)]
     if local is None or any(end is None for end in ends):

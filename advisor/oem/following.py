@@ -74,8 +74,8 @@ def _with_priors(solution: Solution, aircraft: Aircraft) -> Iterator[Instrument]
     """Yield the instruments of the command that have a prior or a stated tolerance."""
     for x in unknown_instruments(solution.problem, aircraft):
         width = x.known_to * abs(x.stated or 0.0)
-        if x.name not in OF_ALPHA and (x.prior is not None or width > 0.0):
-            yield x if x.prior is not None else replace(x, prior=Prior(x.read(solution.problem), width))
+        if x.name not in OF_ALPHA and (x.stated is None or width > 0.0):
+            yield x if x.stated is None else replace(x, prior=Prior(x.read(solution.problem), width))
 
 
 CARRY_S = 0.5

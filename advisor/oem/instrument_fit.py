@@ -9,7 +9,8 @@ the knowledge before the flight:
 - *An open parameter*, such as a servo's lag, has the prior of an unmeasured instrument. On a well damped
   aircraft a lag is correlated with M_q and M_δe over a long range, and every interval includes that error.
 - *A stated parameter* is also estimated without the statement. If data and statement agree, the statement is
-  a prior with a width. If they exclude each other, the data decide alone, and the contradiction is reported.
+  a prior with a width. A stated lag of zero that the data doubt is as wide as they are away from zero. If
+  data and statement exclude each other, the data decide alone, and the contradiction is reported.
 """
 
 from collections.abc import Sequence
@@ -145,7 +146,7 @@ def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
     white noise does. A single manoeuvre takes its lag from all manoeuvres, so it has no search for a second
     peak.
     """
-    lag = next((x for x in names if x.name == SERVO_LAG.name and x.prior is not None), None)
+    lag = next((x for x in names if x.name == SERVO_LAG.name and x.stated is None), None)
     if lag is None or len(best.problem.records) == 1 or lag.read(best.problem) < lag.resolution:
         return best
     there = lag.write(best.problem, lag.read(best.problem) / 3.0)
@@ -200,13 +201,13 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
     for one, white_std in zip(alone, white, strict=True):
         x, found = one
         share = min(1.0, float(white_std) / found.std)
-        if x.prior is not None:
+        if x.stated is None or found.contradicts:
             kept.append(one._replace(instrument=weighed(x, share)))
-        elif x.stated is None or found.contradicts:
-            kept.append(one)
-        elif x.known_to * abs(x.stated) > 0.0:
-            # A statement is trusted no better than the data confirm it.
-            width = max(x.known_to * abs(x.stated), abs(found.unstated_value - x.stated))
+            continue
+        # A statement is trusted no better than the data confirm it. A confirmed zero holds exactly.
+        apart = abs(found.unstated_value - x.stated)
+        if x.known_to > 0.0 and (x.stated != 0.0 or apart > found.unstated_std):
+            width = max(x.known_to * abs(x.stated), apart)
             kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, width, share))))
         else:
             problem = x.write(problem, x.stated)
@@ -257,12 +258,12 @@ def identified_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Iden
 
 def _identified(x: Instrument, problem: OutputErrorProblem, std: float) -> Identified:
     value, off = x.read(problem), False
-    if x.prior is not None:
-        # Sound instruments all lie within the prior; a servo's lag with a prior was told by other manoeuvres.
-        odd = abs(value - x.prior.mean) > CONTRADICTS * float(np.hypot(std, x.prior.std))
-        off = odd and x.name == "command_delay_s"
-    elif x.stated is not None:
+    if x.stated is not None:
         apart = abs(value - x.stated)
         excluded = apart > CONTRADICTS * float(np.hypot(std, x.known_to * x.stated))
         off = excluded and not x.at_end(problem, std)
+    elif x.prior is not None:
+        # Sound instruments all lie within the prior; a servo's lag with a prior was told by other manoeuvres.
+        odd = abs(value - x.prior.mean) > CONTRADICTS * float(np.hypot(std, x.prior.std))
+        off = odd and x.name == "command_delay_s"
     return Identified(x, InstrumentEstimate(x.name, value, std, x.stated, value, std, off))

@@ -190,7 +190,9 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
 
 
 def _stated_or_open(x: Instrument, stated: float | None, problem: OutputErrorProblem) -> Instrument:
-    return x.open(problem) if stated is None else replace(x, stated=stated)
+    """Return the instrument with its usual prior, about the stated value if there is one."""
+    usual = x.usual(problem)
+    return replace(x, stated=stated, prior=usual if stated is None else replace(usual, mean=stated))
 
 
 def as_found(problem: OutputErrorProblem, found: FoundInstruments | None) -> OutputErrorProblem:

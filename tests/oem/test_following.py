@@ -138,12 +138,12 @@ def test_natural_sizes_follow_the_poles_and_the_control_power():
 
 def test_correlated_errors_are_named_in_words_and_in_the_document():
     found = estimate(flown(UAV, unit_s=0.4, noise=0.02), AIRCRAFT)
-    assert [pair[:2] for pair in found.correlated] == [("M_q", "M_delta_e")]
-    assert any("correlated above 0.9: M_q and M_δe" in note for note in found.notes)
+    assert ("M_q", "M_delta_e") in [pair[:2] for pair in found.correlated]
+    assert any("correlated above 0.9" in note and "M_q and M_δe" in note for note in found.notes)
     document = identifiability(found)
     assert document["condition"] > 1.0
-    assert document["correlated"][0]["parameters"] == ["M_q", "M_delta_e"]
-    assert 0.9 < document["correlated"][0]["correlation"] < 1.0
+    (told,) = (x for x in document["correlated"] if x["parameters"] == ["M_q", "M_delta_e"])
+    assert 0.9 < told["correlation"] < 1.0
 
 
 def test_errors_that_are_not_correlated_need_no_words():

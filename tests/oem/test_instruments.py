@@ -353,6 +353,27 @@ def test_a_lag_that_the_file_leaves_open_has_one_prior_on_every_axis():
     assert pitch["servo_lag_s"] == roll["aileron_lag_s"] == Prior(0.05, 0.05)
 
 
+def test_a_stated_lag_is_first_estimated_with_the_usual_width_of_servos():
+    stated = Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=0.0))
+    prepared = prepare([equipped(lag_s=0.1, noise=0.02)], stated)
+    (lag,) = (x for x in unknown_instruments(prepared.problem, stated) if x.name == "servo_lag_s")
+    assert (lag.stated, lag.prior) == (0.0, Prior(0.0, 0.05))
+
+
+def test_a_stated_zero_that_noisy_data_doubt_is_a_prior_and_every_interval_contains_the_doubt():
+    stated = Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=0.0))
+    found = estimate(equipped(lag_s=0.04, noise=0.3), stated)
+    lag = found.instrument("servo_lag_s")
+    assert not lag.contradicts
+    assert abs(lag.value - 0.04) < 1.96 * lag.std
+    assert np.all(np.abs(found.theta - UAV)[6:] < 1.96 * found.std[6:])
+
+
+def test_a_stated_zero_that_noisy_data_confirm_holds_exactly():
+    stated = Aircraft(airspeed_m_s=SPEED, elevator=Elevator(lag_s=0.0))
+    assert estimate(equipped(noise=0.3), stated).instrument("servo_lag_s") is None
+
+
 @pytest.mark.parametrize(("instrument", "contradicts"), [(COMMAND_DELAY, True), (SERVO_LAG, False)])
 def test_a_value_far_from_its_prior_contradicts_a_delay_and_not_a_lag_that_other_flights_told(
     instrument, contradicts
