@@ -40,13 +40,6 @@ def judge_campaign(
     return tuple(verdicts)
 
 
-def judge(
-    flown: CandidateManeuver, history: Sequence[CandidateManeuver], plan: CampaignPlan
-) -> ManeuverVerdict:
-    """Return the verdict on the newest manoeuvre from the earlier ones."""
-    return judge_campaign([*history, flown], plan)[-1]
-
-
 def results_of(history: Sequence[CandidateManeuver], rule: Rule) -> tuple[RuleResult, ...]:
     """Return the result of one rule for every manoeuvre."""
     return _results(history, rule, contradicting(history) if rule == "information" else ())

@@ -1,4 +1,4 @@
-"""The short-period model of Eqs. (1)-(3): its matrices, frequency and damping.
+"""The short-period model of Eqs. (1)-(3): its matrices and frequency.
 
     α̇ = Z_0 + Z_α·α + (1 + Z_q)·q + Z_δe·δe          (1)
     q̇ = M_0 + M_α·α + M_q·q + M_δe·δe                (2)
@@ -58,20 +58,7 @@ class ShortPeriod:
         return math.sqrt(stiffness) if stiffness >= 0.0 else math.nan
 
     @property
-    def damping(self) -> float:
-        """Damping ratio -tr A / (2·√det A); NaN when statically unstable."""
-        frequency = self.natural_frequency
-        return -float(np.trace(self.a)) / (2.0 * frequency) if frequency > 0.0 else math.nan
-
-    @property
     def eigenvalues(self) -> tuple[complex, complex]:
         """Both eigenvalues of A in 1/s."""
         first, second = np.linalg.eigvals(self.a)
         return complex(first), complex(second)
-
-    def trim(self) -> tuple[FloatArray, float]:
-        """Return the equilibrium state (2,) with q = 0 and its elevator; the least-norm one of several."""
-        t = self.theta
-        system = np.array([[t[1], t[3]], [t[5], t[7]]])
-        alpha, elevator = np.linalg.lstsq(system, -self.c, rcond=None)[0]
-        return np.array([alpha, 0.0]), float(elevator)

@@ -7,7 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.decision.history import CandidateManeuver
-from advisor.decision.judge import accepted_estimates, judge, judge_campaign
+from advisor.decision.judge import accepted_estimates, judge_campaign
 from advisor.decision.verdict import Reason
 from advisor.oem.estimate import Estimate, NoEstimate
 from tests.decision.campaigns import SAMPLES, drawn, estimate, flown, with_change, with_residual
@@ -145,7 +145,9 @@ def test_a_manoeuvre_that_contradicts_all_the_others_is_refused_by_the_rule_info
 
 
 def test_a_manoeuvre_without_an_estimate_is_refused_with_its_reason() -> None:
-    verdict = judge(CandidateManeuver(NoEstimate("no_input", "the elevator did not move")), [], PLAN)
+    (verdict,) = judge_campaign(
+        [CandidateManeuver(NoEstimate("no_input", "the elevator did not move"))], PLAN
+    )
     assert not verdict.accepted
     assert verdict.reasons[0].code == "no_input"
     assert verdict.sentence == "REPEAT: the elevator did not move"
@@ -172,14 +174,14 @@ def test_including_it_again_restores_the_verdicts() -> None:
 
 def test_judging_one_by_one_and_all_at_once_agree() -> None:
     history = flown([2e-9, 1e-9, 5e-9, 1.9e-9, 0.5e-9])
-    assert [judge(m, history[:i], PLAN) for i, m in enumerate(history)] == list(judge_campaign(history, PLAN))
+    one_by_one = [judge_campaign(history[: i + 1], PLAN)[-1] for i in range(len(history))]
+    assert one_by_one == list(judge_campaign(history, PLAN))
 
 
 def test_cautions_stand_on_the_verdict_once() -> None:
     noted = replace(estimate(), notes=("servo dynamics unknown",))
-    verdict = judge(
-        CandidateManeuver(noted, cautions=("alpha is derived", "servo dynamics unknown")), [], PLAN
-    )
+    flown_once = CandidateManeuver(noted, cautions=("alpha is derived", "servo dynamics unknown"))
+    (verdict,) = judge_campaign([flown_once], PLAN)
     assert verdict.accepted
     assert verdict.cautions == ("alpha is derived", "servo dynamics unknown")
 
