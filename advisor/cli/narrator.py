@@ -31,7 +31,7 @@ from advisor.process.liveness import Beat, Watch
 from advisor.session.behind import BehindTeller, backlog_s
 from advisor.session.child_process import pause_s, said_of, start_child
 from advisor.session.remote import ConductorTask
-from advisor.session.source import Playable, Source
+from advisor.session.source import Source
 from advisor.words.ascii_output import speak_plainly
 from advisor.words.problems import UnusableInputError
 
@@ -155,11 +155,11 @@ def narrate_here(
         The source can never be used, or has ended without anything to judge.
     """
     from advisor.report.follow import follow
+    from advisor.session.replay import LogPlayer
 
+    of_log = isinstance(source, LogPlayer)
     with closing(source):
-        follow(
-            _batches(source, beat or _printing_backlog()), campaign, say, of_log=isinstance(source, Playable)
-        )
+        follow(_batches(source, beat or _printing_backlog()), campaign, say, of_log=of_log)
     if campaign.problems:
         raise UnusableInputError.of(campaign.problems[:1])
 

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.session.conducting import Conducting, SessionReport, Tell
 from advisor.session.hand import HandDecision
-from advisor.session.source import LinkRequest, Playable, Source
+from advisor.session.replay import LogPlayer
+from advisor.session.source import LinkRequest, Source
 from advisor.session.timeline import DataBegin, Goal, Position
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ class Conductor(Conducting):
         self, source: Source, make_campaign: "Callable[[ByHand], Campaign]", by_hand: ByHand = NOTHING
     ) -> None:
         self._source = source
+        self._player = source if isinstance(source, LogPlayer) else None
         self._make_campaign = make_campaign
         self._tell: Tell = lambda report: None
         self._requests: SimpleQueue[Callable[[Campaign], None]] = SimpleQueue()
@@ -78,8 +80,8 @@ class Conductor(Conducting):
         """Store a request for the thread of ``run``. The tempo of a replay changes at once."""
         if name not in ("play", "step"):
             self._requests.put(lambda campaign: getattr(self, f"_{name}")(campaign, *arguments))
-        elif isinstance(self._source, Playable):
-            getattr(self._source, name)(*arguments)
+        elif self._player is not None:
+            getattr(self._player, name)(*arguments)
 
     def _conduct(self, campaign: "Campaign") -> None:
         """Run one campaign until a rewind or the stop."""
@@ -128,7 +130,7 @@ class Conductor(Conducting):
         for sentence in self._source.take_notices():
             campaign.log(f"link: {sentence}")
         state = campaign.state
-        playback = self._source.playback() if isinstance(self._source, Playable) else None
+        playback = self._player.playback() if self._player is not None else None
         problems = () if state.maneuvers else tuple(campaign.problems)
         self._tell(SessionReport(state, self._source.health(), playback, state.notices, problems))
         self._told_s = monotonic()
@@ -158,34 +160,34 @@ class Conductor(Conducting):
         self._source.order(order)
 
     def _jump(self, campaign: "Campaign", number: int) -> None:
-        if not isinstance(self._source, Playable):
+        if self._player is None:
             return
         known = next((j.maneuver for j in campaign.state.maneuvers if j.maneuver.number == number), None)
         self._hurry_to(Goal(number, (*known.power_on, known.span.start_s) if known else None))
         if known:
-            self._source.rewind()
+            self._player.rewind()
             self._rewound = True
 
     def _seek(self, campaign: "Campaign", position_s: float) -> None:
-        if not isinstance(self._source, Playable):
+        if self._player is None:
             return
         self._hurry_to(Position(position_s))
-        if position_s < self._source.playback().position_s:
-            self._source.rewind()
+        if position_s < self._player.playback().position_s:
+            self._player.rewind()
             self._rewound = True
 
     def _hurry_to(self, goal: Goal | DataBegin | Position) -> None:
         """Play a log as fast as possible until the goal is reached. A live link cannot play faster."""
-        if isinstance(self._source, Playable):
+        if self._player is not None:
             self._goal = goal
-            self._source.hurry(True)
+            self._player.hurry(True)
 
     def _position_s(self) -> float:
         """Return the position of the replay, s; 0 on a link."""
-        return self._source.playback().position_s if isinstance(self._source, Playable) else 0.0
+        return self._player.playback().position_s if self._player is not None else 0.0
 
     def _arrive(self) -> None:
         """End the jump, at its goal or at the end of the log."""
-        if self._goal is not None and isinstance(self._source, Playable):
-            self._source.hurry(False)
+        if self._goal is not None and self._player is not None:
+            self._player.hurry(False)
             self._goal = None

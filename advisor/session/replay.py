@@ -20,12 +20,10 @@ def _wait(changed: Event, seconds: float) -> None:
 
 
 class LogPlayer:
-    """A `Playable` source over the messages of a log.
+    """Source over the messages of a log, which can be paused, stepped, played at any speed and restarted.
 
     Parameters
     ----------
-    title : str
-        Name of the log.
     load : callable
         Returns the columns of the log. The function is called once, in the reading thread.
     speed : float
@@ -35,8 +33,6 @@ class LogPlayer:
     keep_beside : sequence of Path
         Logs next to which decisions by hand are kept, flight by flight. Empty: decisions by hand are not
         kept.
-    before : ByHand
-        Earlier decisions by hand.
     said : callable
         Returns sentences on the logs after loading.
     """
@@ -110,12 +106,12 @@ class LogPlayer:
         return Playback(self._position_s, duration_s, self._hurrying)
 
     def play(self, tempo: Tempo) -> None:
-        """Pause or continue the replay, or change its speed."""
+        """Pause or continue the replay, or change its speed. Any thread may call."""
         self._tempo = tempo
         self._changed.set()
 
     def step(self) -> None:
-        """Deliver the next `STEP_S`, paused or not."""
+        """Deliver the next `STEP_S`, paused or not. Any thread may call."""
         self._steps += 1
         self._changed.set()
 
@@ -124,7 +120,7 @@ class LogPlayer:
         self._hurrying = hurrying
 
     def rewind(self) -> None:
-        """Start again with the first record. The call is allowed only between two reads."""
+        """Start again with the first record, between two reads. The caller starts a new campaign."""
         self._position_s, self._ended = 0.0, False
         if self._timeline:
             self._timeline.rewind()

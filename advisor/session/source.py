@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import nan
-from typing import Literal, Protocol, runtime_checkable
+from typing import Literal, Protocol
 
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.signals.messages import Columns
@@ -103,23 +103,3 @@ class Playback:
     """Length of the replay with silences shortened, s."""
     hurrying: bool = False
     """Whether the replay is playing to a position as fast as possible."""
-
-
-@runtime_checkable
-class Playable(Source, Protocol):
-    """A source that can be paused, stepped, played at any speed and started again."""
-
-    def playback(self) -> Playback:
-        """Return the position of the replay."""
-
-    def play(self, tempo: Tempo) -> None:
-        """Change the tempo. Any thread may call."""
-
-    def step(self) -> None:
-        """Deliver the next tenth of a second while paused. Any thread may call."""
-
-    def hurry(self, hurrying: bool) -> None:
-        """Play as fast as possible, paused or not. Afterwards the replay has its tempo again."""
-
-    def rewind(self) -> None:
-        """Start again with the first record. The caller starts a new campaign."""

@@ -14,7 +14,7 @@ from advisor.analysis.marks_file import path_beside, read_by_hand
 from advisor.campaign.hand_decisions import NOTHING, Remark
 from advisor.flight.signals.messages import Columns
 from advisor.session.replay import LogPlayer
-from advisor.session.source import Playable, Tempo
+from advisor.session.source import Tempo
 from advisor.session.timeline import Timeline
 from tests.tui.stand_ins import columns
 
@@ -50,10 +50,6 @@ def played(player: LogPlayer) -> list[int]:
     while (batch := player.read(0.01)) is not None:
         heard += indices(batch)
     return heard
-
-
-def test_a_player_is_a_playable_source():
-    assert isinstance(LogPlayer("x", log), Playable)
 
 
 def test_every_message_is_delivered_once_and_in_order():

@@ -15,7 +15,8 @@ from textual.widget import Widget
 
 from advisor.campaign.state import CampaignState
 from advisor.session.conductor import Conductor
-from advisor.session.source import Playable, Source, Tempo
+from advisor.session.replay import LogPlayer
+from advisor.session.source import Source, Tempo
 from advisor.tui.app import AdvisorApp
 from advisor.tui.panes.lines import Lines
 from advisor.tui.settings import Settings
@@ -85,7 +86,7 @@ async def stage(
     """The application over a campaign that goes through ``states``, shown the first of them."""
     campaign = StagedCampaign(states or (flights.state(),))
     source = source or HandFedSource()
-    tempo = Tempo() if isinstance(source, Playable) else None
+    tempo = Tempo() if isinstance(source, LogPlayer) else None
     app = AdvisorApp(
         Conductor(source, lambda by_hand: campaign),
         flights.AIRCRAFT,
