@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, TypeVar
 
 from advisor.bundled.study import flaws, readings, text
 from advisor.bundled.study.campaigns import RULES, CampaignBlock, CampaignResults, joined, judge, table_blocks
@@ -11,16 +11,7 @@ from advisor.bundled.study.flying import NoiseReading, Scene
 from advisor.bundled.study.readings import NOISE_PERCENT
 from advisor.bundled.study.table import as_document, row
 
-
-class StudyTask(Protocol):
-    """Several campaigns of a study, with all data that determine their result, including the seed."""
-
-    @property
-    def campaigns(self) -> int:
-        """Number of campaigns in the task."""
-
-
-T = TypeVar("T", bound=StudyTask)
+T = TypeVar("T")
 R = TypeVar("R")
 
 
@@ -41,6 +32,7 @@ class Study(Generic[T, R]):
     """Tasks of a study, the work on one task, and the report of all results."""
 
     tasks: Sequence[T]
+    """Several ``campaigns`` each, with all data that determine their result, including the seed."""
     work: Callable[[T], R]
     """Function of a module, so that other processes know it."""
     report: Callable[[Sequence[R]], StudyReport]
