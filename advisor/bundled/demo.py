@@ -7,7 +7,6 @@ like any aircraft's, by MAVLink.
 import subprocess
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import TracebackType
 from typing import TYPE_CHECKING
 
 from advisor.process.children import python_module
@@ -52,9 +51,7 @@ class Demonstration:
         )
         return self._link
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         if self._link is not None:
             self._link.stop()
         if self._process is not None:

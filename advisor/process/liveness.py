@@ -10,7 +10,6 @@ from math import inf, nan
 from subprocess import Popen
 from threading import Event, Thread
 from time import monotonic
-from types import TracebackType
 from typing import Self
 
 OLD_AFTER_S = 3.0
@@ -71,9 +70,7 @@ class Watch:
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._over.set()
         self._thread.join()
 

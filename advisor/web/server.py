@@ -4,7 +4,6 @@ import asyncio
 import os
 import socket
 from threading import Thread
-from types import TracebackType
 from typing import Self
 
 from aiohttp import web
@@ -51,9 +50,7 @@ class WebServer:
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         if self.at_work:
             self._loop.call_soon_threadsafe(self._stop.set)
         self._thread.join()  # every page bounds its own end

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from contextlib import nullcontext, suppress
 from multiprocessing.connection import Connection, Listener
 from threading import Condition, Event, Thread
-from types import TracebackType
 from typing import Self
 
 from advisor.mavlink.link.keeping import new_door
@@ -37,9 +36,7 @@ class Showing:
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.conductor.stop()
         self._thread.join(PATIENCE_S)
 
@@ -100,9 +97,7 @@ class Audience:
         Thread(target=self._accept, name="door", daemon=True).start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._closing.set()
         self._listener.close()
         self.door.clear()

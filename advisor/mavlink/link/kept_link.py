@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from functools import cached_property
 from math import nan
 from multiprocessing.connection import Connection
-from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
 from advisor.aircraft.controls import Elevator
@@ -56,9 +55,7 @@ class KeptLink:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         if self._connection is not None:
             self._connection.close()
 

@@ -14,7 +14,6 @@ from collections import deque
 from collections.abc import Iterable
 from pathlib import Path
 from queue import Empty, Full, Queue
-from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
 from advisor.flight.signals.messages import Columns
@@ -152,9 +151,7 @@ class Link:
     def __enter__(self) -> Self:
         return self.start()
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.stop()
 
     @property

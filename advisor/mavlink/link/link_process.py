@@ -10,7 +10,6 @@ from dataclasses import replace
 from multiprocessing.connection import Connection
 from multiprocessing.reduction import recv_handle
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from advisor.aircraft.controls import Elevator
@@ -92,9 +91,7 @@ class LinkProcess:
         self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
         self._stopping.set()
         if hung_up(error):
             return  # nobody has asked for an end: the link goes on recording by itself

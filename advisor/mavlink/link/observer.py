@@ -4,7 +4,6 @@ import contextlib
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 from threading import Event, Thread
-from types import TracebackType
 from typing import Self
 
 from advisor.mavlink.link.health import LinkStatistics, ReportedHealth
@@ -38,9 +37,7 @@ class LinkObserver:
             self._thread.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._over.set()
         if self._door is not None:
             self._thread.join()
