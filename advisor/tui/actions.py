@@ -3,7 +3,8 @@
 from abc import abstractmethod
 from dataclasses import replace
 from math import inf, isfinite
-from typing import TYPE_CHECKING
+
+from textual.app import App
 
 from advisor.flight.maneuvers.marks import LONGEST_S
 from advisor.session.conducting import Conducting
@@ -13,19 +14,12 @@ from advisor.session.view import View
 from advisor.tui.screens.face import Face
 from advisor.words.vehicle_time import clock
 
-if TYPE_CHECKING:
-    from textual.app import App
-
-    Base = App[None]
-else:
-    Base = object
-
 LINK_ACTIONS = ("follow_another", "ask_for_outputs", "take_guess")
 REPLAY_ACTIONS = ("pause", "step", "faster", "slower", "jump", "jump_by", "seek_by")
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, inf)
 
 
-class _Actions(Base):
+class _Actions(App[None]):
     """Conductor, present moment and last line of the screen, which all actions use."""
 
     conductor: Conducting

@@ -8,7 +8,7 @@ from pathlib import Path, PurePath
 from time import monotonic
 from typing import Any, ClassVar
 
-from textual.app import App, SystemCommand
+from textual.app import SystemCommand
 from textual.binding import BindingType
 from textual.events import Event, Key
 from textual.message import Message
@@ -44,7 +44,7 @@ _ANSWER_S = 0.03
 """Delay of reports after a key, s, so that the key's answer is painted before the reports' changes."""
 
 
-class AdvisorApp(ReplayActions, LinkActions, HandActions, App[None]):
+class AdvisorApp(ReplayActions, LinkActions, HandActions):
     """Shows a campaign on a link, a log or a demonstration, until the user leaves.
 
     Parameters

@@ -31,7 +31,6 @@ from advisor.tui.panes.qualities import Qualities
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.residuals import Residuals
 from advisor.tui.panes.status_line import KeysLine, StatusLine
-from advisor.tui.screens.face import Face
 from advisor.tui.screens.pane_actions import PaneActions
 
 # In the order of their numbers.
@@ -52,7 +51,7 @@ _LOW_TABLE = 38
 """Height of a terminal, in rows, below which the parameter table shows four of its eight rows at once."""
 
 
-class EngineerScreen(Face, PaneActions):
+class EngineerScreen(PaneActions):
     """Fourteen panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
 
     The panes of the middle column share one place: fit, residuals, correlation, history, whole flight.

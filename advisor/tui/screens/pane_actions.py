@@ -1,47 +1,27 @@
 """Actions of keys on one pane: copy, save, bring the next output up, lay something over."""
 
 from abc import abstractmethod
-from collections.abc import Callable
 from io import StringIO
-from typing import TYPE_CHECKING
 
 from advisor.session.view import View
 from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.flight import WholeFlightPane
 from advisor.tui.panes.pane import Pane
+from advisor.tui.screens.face import Face
 from advisor.tui.taking import files_of, pane_name, save
-
-if TYPE_CHECKING:
-    from textual.screen import Screen
-
-    Base = Screen[None]
-else:
-    Base = object
 
 _SAY_S = 8.0
 """Time for which a sentence with a file path is shown, s. A path takes longer to read than a word."""
 
 
-class PaneActions(Base):
-    """Actions of the engineer's screen that concern one pane."""
+class PaneActions(Face):
+    """A screen whose keys act on the pane in front."""
 
     _view: View | None
 
     @abstractmethod
     def pane_in_front(self) -> Pane:
         """Return the pane that has the focus, else the one chosen last."""
-
-    @abstractmethod
-    def ask(self, question: str, answered: Callable[[str], object], *, integer: bool = False) -> None:
-        """Ask for one line at the foot of the screen."""
-
-    @abstractmethod
-    def show(self, view: View) -> None:
-        """Update what is visible."""
-
-    @abstractmethod
-    def say(self, text: str, seconds: float = 3.0) -> None:
-        """Show a text on the last line, for a while."""
 
     def action_copy(self) -> None:
         """Copy the pane to the clipboard of the terminal."""
