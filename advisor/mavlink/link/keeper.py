@@ -22,20 +22,7 @@ from advisor.mavlink.link import running_links
 from advisor.mavlink.link.announce import Announcer, SeparateConnection
 from advisor.mavlink.link.health import LinkNotice
 from advisor.mavlink.link.inquiry import Inquiry
-from advisor.mavlink.link.keeping import (
-    Alive,
-    Announce,
-    AnnounceVerdict,
-    CallOrder,
-    Guard,
-    Heard,
-    Hello,
-    Keeping,
-    Listen,
-    Observe,
-    Stop,
-    Told,
-)
+from advisor.mavlink.link.keeping import AnnounceOrder, CallOrder, Heard, Hello, Keeping, Request, Told
 from advisor.mavlink.link.link import Link
 from advisor.mavlink.link.outgoing import Talker
 from advisor.mavlink.link.rates import STREAMS, RateRequest
@@ -201,25 +188,23 @@ class Keeper:
         with contextlib.suppress(EOFError, OSError):
             while True:
                 match connection.recv():
-                    case Listen():
+                    case Request.LISTEN:
                         self._arrived.put(connection)
-                    case Observe():
+                    case Request.OBSERVE:
                         with self._lock:
                             self._observers.append(Reader(connection))
-                    case Guard():
+                    case Request.GUARD:
                         guards = True
                         self._lend_socket(connection)
                         self._guarded(+1)
-                    case Alive():
+                    case Request.ALIVE:
                         at_work_s = min(self._looked_s, self._link.looked_s)
                         connection.send(time.monotonic() - at_work_s)
-                    case AnnounceVerdict(maneuver, sentence, stop, axis, about) if self._announcer:
-                        self._announcer.judged(maneuver, sentence, stop, axis, about)
-                    case Announce(sentence) if self._announcer:
-                        self._announcer.say(sentence)
+                    case AnnounceOrder(method, arguments) if self._announcer:
+                        getattr(self._announcer, method)(*arguments)
                     case CallOrder(method, arguments):
                         getattr(self._link, method)(*arguments)
-                    case Stop():
+                    case Request.STOP:
                         self._stop.set()
                         return
         if guards:

@@ -5,6 +5,7 @@ import os
 import secrets
 import tempfile
 from dataclasses import dataclass, field
+from enum import Enum
 from multiprocessing.connection import Client, Connection
 from pathlib import Path
 from typing import Literal
@@ -102,27 +103,6 @@ class Told:
 
 
 @dataclass(frozen=True, slots=True)
-class AnnounceVerdict:
-    """Order to announce a verdict, if announcements are on."""
-
-    maneuver: int
-    sentence: str
-    stop: str
-    """Sentence about axes with a complete test; empty without one."""
-    axis: str = ""
-    """Words before the number; empty for the elevator's axis."""
-    about: str = ""
-    """Axis or plan of the sentence ``stop``, which is sent once per axis or plan."""
-
-
-@dataclass(frozen=True, slots=True)
-class Announce:
-    """Order to announce a sentence, if announcements are on."""
-
-    sentence: str
-
-
-@dataclass(frozen=True, slots=True)
 class CallOrder:
     """Order to call one of the link's methods, from a crew or a reader."""
 
@@ -131,29 +111,24 @@ class CallOrder:
 
 
 @dataclass(frozen=True, slots=True)
-class Listen:
-    """Request for all records so far, and for all later ones."""
+class AnnounceOrder:
+    """Order to call one of the methods of ``announce.Announcer``, if announcements are on."""
+
+    method: Literal["judged", "say"]
+    arguments: tuple[object, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Observe:
-    """Request for the link's health only, without records and notices."""
+class Request(Enum):
+    """Request of a caller to the link's process."""
 
-
-@dataclass(frozen=True, slots=True)
-class Guard:
-    """Message that the sender guards the link's process. If the sender ends without ``Stop``, the process is
-    unguarded.
-
-    The answer states whether the descriptor of a UDP socket follows.
-    """
-
-
-@dataclass(frozen=True, slots=True)
-class Alive:
-    """Request for the time since the link's slowest thread last worked. The answer is the time in s."""
-
-
-@dataclass(frozen=True, slots=True)
-class Stop:
-    """Order to close the link and the recording, and to end the process."""
+    LISTEN = "listen"
+    """All records so far, and all later ones."""
+    OBSERVE = "observe"
+    """The link's health only, without records and notices."""
+    GUARD = "guard"
+    """The caller guards the process. A caller that ends without ``STOP`` leaves the process unguarded. The
+    answer states whether the descriptor of a UDP socket follows."""
+    ALIVE = "alive"
+    """Time since the link's slowest thread last worked, s."""
+    STOP = "stop"
+    """Close the link and the recording, and end the process."""

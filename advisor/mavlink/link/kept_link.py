@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Self
 from advisor.aircraft.controls import Elevator
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.health import LinkNotice, LinkStatistics, ReportedHealth
-from advisor.mavlink.link.keeping import AnnounceVerdict, CallOrder, Door, Heard, Hello, Listen, Told
+from advisor.mavlink.link.keeping import AnnounceOrder, CallOrder, Door, Heard, Hello, Request, Told
 from advisor.process.liveness import OLD_AFTER_S
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ class KeptLink:
     def judged(self, maneuver: int, sentence: str, stop: str, axis: str = "", about: str = "") -> None:
         """Request the announcement of a verdict, unless the manoeuvre belongs to a continued recording."""
         if self._connection is not None and self._position > self._before:
-            self._send(AnnounceVerdict(maneuver, sentence, stop, axis, about))
+            self._send(AnnounceOrder("judged", (maneuver, sentence, stop, axis, about)))
 
     def follow(self, system: int) -> None:
         """Follow another vehicle. The stream records the choice; nothing is sent to a vehicle."""
@@ -117,7 +117,7 @@ class KeptLink:
         self._next_try_s = time.monotonic() + RETRY_EVERY_S
         try:
             connection = self._door.open()
-            connection.send(Listen())
+            connection.send(Request.LISTEN)
             hello = connection.recv()
         except (OSError, EOFError):
             return

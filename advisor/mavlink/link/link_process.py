@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Self
 
 from advisor.aircraft.controls import Elevator
-from advisor.mavlink.link.keeping import Alive, Door, Guard, Keeping, Stop
+from advisor.mavlink.link.keeping import Door, Keeping, Request
 from advisor.mavlink.link.kept_link import KeptLink
 from advisor.mavlink.link.running_links import RunningLink
 from advisor.process.children import python_module
@@ -132,7 +132,7 @@ class LinkProcess:
     def _stand_guard(self) -> Connection:
         """Guard the process, and hold its UDP socket for the next process."""
         connection = self._keeping.door.open()
-        connection.send(Guard())
+        connection.send(Request.GUARD)
         if connection.recv():
             self._let_go()
             self._socket = recv_handle(connection)
@@ -147,7 +147,7 @@ class LinkProcess:
     def _hangs(self, guard: Connection) -> bool:
         """Wait until the process ends or hangs for ``HUNG_AFTER_S``, and return whether it hangs."""
         while True:
-            guard.send(Alive())
+            guard.send(Request.ALIVE)
             if not guard.poll(HUNG_AFTER_S):
                 return True
             if guard.recv() >= HUNG_AFTER_S:
@@ -194,4 +194,4 @@ def end(running: RunningLink) -> None:
 def _ask_to_stop(connection: Connection | None) -> None:
     with contextlib.suppress(OSError):
         if connection is not None:
-            connection.send(Stop())
+            connection.send(Request.STOP)

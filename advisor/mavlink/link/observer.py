@@ -7,7 +7,7 @@ from threading import Event, Thread
 from typing import Self
 
 from advisor.mavlink.link.health import LinkStatistics, ReportedHealth
-from advisor.mavlink.link.keeping import Announce, Door, Observe, Told
+from advisor.mavlink.link.keeping import AnnounceOrder, Door, Request, Told
 
 LOOK_EVERY_S = 0.25
 """Longest wait for a report, and time between two attempts to connect, s. Reports come every 0.2 s."""
@@ -46,7 +46,7 @@ class LinkObserver:
         """Request the announcement of a sentence, if announcements are on."""
         with contextlib.suppress(OSError):
             if self._connection is not None:
-                self._connection.send(Announce(sentence))
+                self._connection.send(AnnounceOrder("say", (sentence,)))
 
     def _run(self) -> None:
         while not self._over.is_set():
@@ -60,7 +60,7 @@ class LinkObserver:
     def _observe(self) -> None:
         assert self._door is not None
         with self._door.open() as connection:
-            connection.send(Observe())
+            connection.send(Request.OBSERVE)
             self._connection = connection
             if self._broken:
                 self._health.reconnected()
