@@ -1,7 +1,6 @@
 """The event log of a campaign: sentences, each with the vehicle's time."""
 
 from collections import deque
-from collections.abc import Iterable
 from math import inf, isfinite, nan
 
 from advisor.flight.maneuvers.events import (
@@ -17,23 +16,6 @@ from advisor.flight.maneuvers.events import (
 )
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.vehicle_time import CLOCK, clock
-
-
-class EventLog:
-    """Collects the sentences of the event log and deletes the oldest."""
-
-    def __init__(self, kept: int) -> None:
-        self._lines: deque[str] = deque(maxlen=kept)
-        self.lines: tuple[str, ...] = ()
-        """Sentences of the event log, oldest first; the same object until a sentence is added."""
-
-    def add(self, sentences: Iterable[str]) -> None:
-        """Add sentences to the event log."""
-        further = list(sentences)
-        if further:
-            self._lines.extend(further)
-            self.lines = tuple(self._lines)
-
 
 KEPT = 1000
 """Largest number of sentences in the event log, 0.1 kB each: enough for some hundred manoeuvres."""
@@ -52,15 +34,12 @@ class Journal:
     """
 
     def __init__(self) -> None:
-        self._log = EventLog(KEPT)
+        self._kept: deque[str] = deque(maxlen=KEPT)
+        self.lines: tuple[str, ...] = ()
+        """The newest sentences, oldest first; the same object until a sentence is added."""
         self._newest_s = -inf
         self._vehicle: Vehicle | None = None
         self._last_said: VehicleSaid | None = None
-
-    @property
-    def lines(self) -> tuple[str, ...]:
-        """The newest sentences of the event log, oldest first."""
-        return self._log.lines
 
     def write(self, text: str, at_s: float = nan) -> None:
         """Write a sentence into the event log.
@@ -74,7 +53,8 @@ class Journal:
         """
         when = f"at {clock(at_s)}, " if at_s < self._newest_s - _LATE_S else ""
         self._newest_s = max(self._newest_s, at_s) if isfinite(at_s) else self._newest_s
-        self._log.add([f"{clock(self._newest_s):>{WIDTH}}  {when}{text}"])
+        self._kept.append(f"{clock(self._newest_s):>{WIDTH}}  {when}{text}")
+        self.lines = tuple(self._kept)
 
     def write_of_past(self, text: str, at_s: float) -> None:
         """Write a sentence that states the time of its event itself; the event ended at ``at_s``."""

@@ -1,17 +1,22 @@
-"""An event log keeps its newest sentences."""
+"""The event log keeps its newest sentences."""
 
-from advisor.campaign.journal import EventLog
+import pytest
 
-
-def test_an_event_log_forgets_the_oldest_sentences():
-    log = EventLog(3)
-    log.add(str(k) for k in range(5))
-    assert log.lines == ("2", "3", "4")
+from advisor.campaign import journal
 
 
-def test_an_event_log_keeps_its_lines_until_something_is_added():
-    log = EventLog(3)
-    log.add(["heard"])
+def test_an_event_log_forgets_the_oldest_sentences(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(journal, "KEPT", 3)
+    log = journal.Journal()
+    for k in range(5):
+        log.write(str(k))
+    assert [line.split()[-1] for line in log.lines] == ["2", "3", "4"]
+
+
+def test_an_event_log_keeps_its_lines_until_something_is_added() -> None:
+    log = journal.Journal()
+    log.write("heard")
     lines = log.lines
-    log.add([])
     assert log.lines is lines
+    log.write("heard again")
+    assert log.lines is not lines
