@@ -84,7 +84,12 @@ def pytest_collection_modifyitems() -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Have no collection of garbage examine all that was imported, a third of a second each."""
+    """Have no application find a program that speaks, and no collection of garbage examine all imports.
+
+    Such a collection takes a third of a second.
+    """
+    if sound := sys.modules.get("advisor.tui.sound"):
+        sound._PROGRAMS = ()  # type: ignore[attr-defined]
     gc.freeze()
 
 

@@ -2,11 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.oem.rows import Signal
+
+if TYPE_CHECKING:
+    from advisor.oem.rows import Signal
 
 ORDERS: Mapping[str, tuple[int, ...]] = {
     "3-2-1-1": (3, 2, 1, 1),
@@ -57,9 +60,11 @@ class StepInput:
             for k, units in enumerate(ORDERS[self.order])
         )
 
-    def elevator(self, trim_rad: float, lead_s: float, length_s: float) -> Signal:
+    def elevator(self, trim_rad: float, lead_s: float, length_s: float) -> "Signal":
         """Return the elevator command in rad, trailing edge down positive, with its first step at
         ``lead_s``."""
+        from advisor.oem.rows import Signal  # with the kernels, which the screens do without
+
         side = -1.0 if self.nose_up_first else 1.0
         corners, levels = [0.0], [0.0]
         onset, level = lead_s, 0.0

@@ -58,7 +58,7 @@ def _caller(patch: pytest.MonkeyPatch) -> Callable[..., str]:
     return call
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
     path = tmp_path_factory.mktemp("report") / "twin.yaml"
     path.write_text(AIRCRAFT, encoding="utf-8")

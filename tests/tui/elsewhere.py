@@ -1,6 +1,6 @@
 """What the tests let run in a process of its own, where it must be found by its name.
 
-The estimator takes a second to import: only what estimates imports it.
+The estimator and the readers of logs take a second to import: only what uses them imports them.
 """
 
 import os
@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.logs.logs import open_log
 from advisor.session.replay import LogPlayer
 from advisor.session.source import LinkHealth
 from advisor.words.problems import UnusableInputError
@@ -36,6 +35,8 @@ def first_manoeuvre() -> LogPlayer:
 
 
 def _played(flown_s: float) -> LogPlayer:
+    from advisor.mavlink.logs.logs import open_log
+
     pieces = [piece for batch in open_log(LOG) for piece in batch]
     end_s = min(piece.arrival_s[0] for piece in pieces) + flown_s
     return LogPlayer(LOG.name, lambda: [_until(piece, end_s) for piece in pieces], inf)

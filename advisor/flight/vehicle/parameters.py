@@ -58,6 +58,7 @@ class Parameters:
 
     def __init__(self) -> None:
         self._known: dict[Sender, dict[str, Stated]] = {}
+        self._wired: dict[tuple[object, ...], Wiring] = {}
 
     def news(self, columns: Columns) -> Iterator[tuple[str, Stated | None, Stated]]:
         """Yield name, earlier value and new value of each parameter that changes."""
@@ -73,6 +74,7 @@ class Parameters:
     def keep(self, sender: Sender, name: str, stated: Stated | None) -> None:
         """Store a value as the sender's present one; None removes it."""
         known = self._known.setdefault(sender, {})
+        self._wired.clear()
         if stated is None:
             known.pop(name, None)
         else:
@@ -92,9 +94,11 @@ class Parameters:
         """Return the roles and scales of the outputs from these senders' parameters. The last sender
         overrides earlier ones.
         """
-        stated = self.stated(senders, autopilot)
-        find = px4_wiring.px4_wiring if autopilot == "px4" else ardupilot_wiring.ardupilot_wiring
-        return find(stated)
+        asked = (*senders, autopilot)
+        if asked not in self._wired:
+            find = px4_wiring.px4_wiring if autopilot == "px4" else ardupilot_wiring.ardupilot_wiring
+            self._wired[asked] = find(self.stated(senders, autopilot))
+        return self._wired[asked]
 
 
 _RATES = ("p", "q", "r")

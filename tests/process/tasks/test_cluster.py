@@ -13,13 +13,14 @@ from pathlib import Path
 import dask
 import pytest
 from distributed import LocalCluster
-from threadpoolctl import threadpool_info
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.batch.flight import BatchTask, analyze_shared, sha256_of
 from advisor.process.tasks.cluster import _connected, _named, _versions_on, compare_versions, run_on_cluster
 from advisor.words.problems import ConfigurationError
 from tests.batch.test_command import folder as folder
+from tests.batch.test_command import in_this_process as in_this_process
 from tests.conftest import Advisor
 
 SAME = {"advisor": "1.0", "python": "3.11.2.final.0", "numpy": "2.1"}
@@ -37,12 +38,17 @@ except ConfigurationError as error:
 """A program that does two tasks and says when the first is done."""
 
 
-def started(workers: int) -> LocalCluster:
-    """A cluster of processes on loopback, at ports that the system chooses; a task may kill two workers."""
+def started(workers: int, processes: bool = False) -> LocalCluster:
+    """A cluster on loopback, at ports that the system chooses; a task may kill two workers of its own.
+
+    Workers are threads, whose start takes no seconds, where nothing asks for processes.
+    """
     with dask.config.set({"distributed.scheduler.allowed-failures": 1}):
         return LocalCluster(
             n_workers=workers,
             threads_per_worker=1,
+            processes=processes,
+            protocol="tcp",
             host="127.0.0.1",
             scheduler_port=0,
             dashboard_address="127.0.0.1:0",
@@ -53,6 +59,13 @@ def started(workers: int) -> LocalCluster:
 @pytest.fixture(scope="module")
 def scheduler() -> Iterator[str]:
     with started(workers=1) as cluster:
+        yield cluster.scheduler_address
+
+
+@pytest.fixture(scope="module")
+def other_process() -> Iterator[str]:
+    """The scheduler of a worker that is a process."""
+    with started(workers=1, processes=True) as cluster:
         yield cluster.scheduler_address
 
 
@@ -81,6 +94,7 @@ def tables(out: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in out.glob("*.parquet")}
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_a_cluster_gives_the_tables_of_one_process_and_a_second_run_does_nothing(
     scheduler: str, folder: Path, advisor: Advisor, tmp_path: Path
 ) -> None:
@@ -98,30 +112,31 @@ def test_a_cluster_gives_the_tables_of_one_process_and_a_second_run_does_nothing
 
 
 @pytest.mark.study
-def test_a_cluster_gives_the_study_of_one_process(scheduler: str, advisor: Advisor) -> None:
+def test_a_cluster_gives_the_study_of_one_process(other_process: str, advisor: Advisor) -> None:
     words = ("study", "--campaigns", 10, "--json")
-    shared = advisor(*words, "--scheduler", scheduler)
+    shared = advisor(*words, "--scheduler", other_process)
     assert shared.returncode == 0, shared.stderr
     assert shared.stdout == advisor(*words, "--workers", 1).stdout
 
 
 @pytest.mark.study
-def test_a_worker_that_is_killed_in_the_middle_loses_nothing(scheduler: str, tmp_path: Path) -> None:
+def test_a_worker_that_is_killed_in_the_middle_loses_nothing(other_process: str, tmp_path: Path) -> None:
     marks = [tmp_path / name for name in ("a", "b", "first", "c", "d")]
-    done = dict(run_on_cluster(die_the_first_time, marks, scheduler, pytest.fail))
+    done = dict(run_on_cluster(die_the_first_time, marks, other_process, pytest.fail))
     assert (tmp_path / "first").exists()
     assert done == {mark: mark.name for mark in marks}
 
 
 @pytest.mark.study
-def test_a_task_that_kills_every_worker_costs_itself_only(scheduler: str) -> None:
-    done = dict(run_on_cluster(die_always, [1, 13, 2], scheduler, pytest.fail))
+def test_a_task_that_kills_every_worker_costs_itself_only(other_process: str) -> None:
+    done = dict(run_on_cluster(die_always, [1, 13, 2], other_process, pytest.fail))
     assert isinstance(done.pop(13), BrokenExecutor)
     assert done == {1: 1, 2: 4}
 
 
 def test_linear_algebra_in_a_worker_has_one_thread(scheduler: str) -> None:
-    ((_, threads),) = run_on_cluster(threads_of_linear_algebra, [0], scheduler, pytest.fail)
+    with threadpool_limits(2):
+        ((_, threads),) = run_on_cluster(threads_of_linear_algebra, [0], scheduler, pytest.fail)
     assert isinstance(threads, list)
     assert threads
     assert set(threads) == {1}
