@@ -29,9 +29,10 @@ from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.prediction import predicted_lateral
 from advisor.oem.axes.lateral.problem import LateralProblem, LateralRecord
-from advisor.oem.axes.lateral.solution import LateralSolution, solve_lateral
+from advisor.oem.axes.lateral.solution import solve_lateral
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.rows import Signal
+from advisor.oem.solution import Solution
 from benchmarks.public.segments import is_rolled, maneuver_of, read_segments, rolled
 
 FORTY = ((500.0, -25.0), (1500.0, 0.0), (2500.0, 25.0))
@@ -250,7 +251,7 @@ def bound(campaigns: int) -> Iterator[str]:
                      (("airspeed", 130.0), ("alpha", 0.06), ("theta", 0.06), ("q", 0.0))}  # fmt: skip
             records.append(LateralRecord({control: Signal(t, doublet(t))}, noisy, **still))
         found = solve_lateral(LateralProblem(tuple(records)))
-        if not isinstance(found, LateralSolution):
+        if not isinstance(found, Solution):
             continue
         errors.append(found.theta - truth)
         stated.append(np.sqrt(np.diag(found.widened)[: len(truth)]))

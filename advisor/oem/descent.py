@@ -4,8 +4,9 @@ Every trial lays out the records again with its servos and clocks. All derivativ
 that simulates the outputs computes them. The steps and the damping are those of ``gauss_newton``.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
@@ -43,8 +44,9 @@ class Response(NamedTuple):
     """(N,)."""
     g: FloatArray
     """Shape (N, s + l): derivatives by the shared parameters and by each manoeuvre's local parameters."""
-    columns: FloatArray
-    """Shape (N, k): derivatives by the nuisance parameters."""
+    columns: Callable[[], FloatArray]
+    """Function that returns the derivatives by the nuisance parameters, shape (N, k). A rejected trial step
+    needs none."""
     begun: FloatArray
     """Shape (m, states): rates of the states at the first event of each record. A delay may move this first
     event."""
@@ -78,10 +80,13 @@ class Fit:
     """Records with the present values of servos and clocks."""
     assembly: Any
     optimum: Optimum
-    extra: Extra
-    """Nuisance parameters at their present values."""
-    begun: FloatArray
-    """Shape (m, states): rates of the states at the first event of each record, as in ``Response``."""
+    nuisances: Sequence[Parameter]
+    response: Response
+
+    @property
+    def extra(self) -> Extra:
+        """Nuisance parameters at their present values."""
+        return Extra.of(self.response.columns(), self.problem, self.nuisances)
 
     @property
     def cost(self) -> float:
@@ -112,8 +117,8 @@ class _Setting(NamedTuple):
         cost += float(self.prior.precision @ (shared - self.prior.mean) ** 2)
         cost += penalty(problem, self.nuisances)
         optimum = Optimum(EXHAUSTED, shared, local, noise, cost, 0, y, found.g)
-        extra = Extra.of(found.columns, problem, self.nuisances)
-        return Fit(problem, assembly, optimum, extra, found.begun)
+        found = found._replace(columns=cache(found.columns))
+        return Fit(problem, assembly, optimum, self.nuisances, found)
 
     def step(self, fit: Fit, damping: float) -> "_Step | None":
         """Return the damped step from a fit; None if the data do not determine the step.
@@ -143,7 +148,8 @@ class _Setting(NamedTuple):
         assembly = self.motion.laid(problem)
         local = optimum.local + step.local
         later = self.motion.begins(assembly) - self.motion.begins(fit.assembly)
-        local[:, _initial(self.motion.names, fit.begun.shape[1])] += later[:, None] * fit.begun
+        begun = fit.response.begun
+        local[:, _initial(self.motion.names, begun.shape[1])] += later[:, None] * begun
         return self.at(problem, assembly, optimum.shared + step.shared[:count], local)
 
 

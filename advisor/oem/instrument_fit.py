@@ -31,7 +31,7 @@ from advisor.oem.gauss_newton import CONVERGED
 from advisor.oem.instruments import SERVO_LAG, Instrument, extra_of
 from advisor.oem.prior import about_zero, precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
-from advisor.oem.solution import Solution, evaluate, search, spread_of
+from advisor.oem.solution import LEAST_SHARE, Solution, evaluate, search, spread_of
 from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
@@ -41,8 +41,6 @@ differ by hundreds of times as much."""
 MODEL_ERROR = 1e-3
 """Numerical: error of the model's outputs, relative to their spread. A surface with a lag is taken as linear
 between the grid's stamps (``surface``)."""
-LEAST_SHARE = 0.01
-"""Least factor on a prior's standard deviation in a white-noise fit."""
 CONTRADICTS = 3.0
 """Distance of a stated value from the data's value, in combined standard deviations, that is a
 contradiction."""
@@ -104,7 +102,10 @@ class _Pitch:
         y, g = np.empty(len(laid.z)), np.empty((len(laid.z), N_PARAMETERS))
         if not respond(laid.grid, shared, local, y, g):
             return None
-        columns = extra_of(problem, laid, shared, local, names).columns
+
+        def columns() -> FloatArray:
+            return extra_of(problem, laid, shared, local, names).columns
+
         return Response(y, g, columns, np.empty((laid.maneuvers, 0)))
 
 

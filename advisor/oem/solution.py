@@ -1,25 +1,32 @@
 """Solution of a problem: start, descent, errors, and identifiability."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import OUTPUTS
-from advisor.oem.covariance import REPORTED, Coloured
+from advisor.model.axis import Names
+from advisor.model.short_period import NAMES
+from advisor.oem.covariance import Coloured
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import Evaluated, errors_of
 from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import CONVERGED, FLAT, LEAST_NOISE, OVERFLOW, SINGULAR, Optimum, descend
-from advisor.oem.prior import precision
+from advisor.oem.prior import Priors, precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 from advisor.oem.rows import Laid
 from advisor.oem.start import start
 
-NOTHING_TO_TELL = "The input does not excite the motion enough to distinguish the parameters."
 RUNS_AWAY = NoEstimate(
     "diverged", "The model runs away from its first guess: the record is too long or too noisy."
 )
+NOTHING_TO_TELL = NoEstimate(
+    "singular", "The input does not excite the motion enough to distinguish the parameters."
+)
+LEAST_SHARE = 0.01
+"""Least factor on a prior's standard deviation in a white-noise fit; data without noise have no colour."""
 HEALTHY_ITERATIONS = 12
 """Largest number of iterations of a normal search. A longer search may be in the valley of a second minimum,
 so another start is tried."""
@@ -27,22 +34,31 @@ so another start is tried."""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solution(Evaluated):
-    """Optimum of one short-period problem, with all derived quantities."""
+    """Optimum of one problem of any axis, with all derived quantities."""
 
-    problem: OutputErrorProblem
-    assembly: Assembly
+    problem: Any
+    assembly: Any
+    parameters: Sequence[Any] = ()
+    """Nuisance parameters of the search, each with a name. Their derivatives are the first columns of
+    ``extra``."""
 
     @property
     def residual(self) -> FloatArray:
         """Shape (N,): residual ν̂ = z - ŷ, Eq. (9)."""
-        return self.assembly.z - self.fitted
+        return np.asarray(self.assembly.z - self.fitted)
 
     @property
     def cost(self) -> float:
-        """Cost J = σ_α²·σ_q², Eq. (7); σ_q²·σ_az² without an angle of attack."""
-        noise = dict(zip(OUTPUTS, self.optimum.noise, strict=True))
-        other = "alpha" if noise["alpha"] > 0.0 else "a_z"
-        return float((noise["q"] * noise[other]) ** 2)
+        """Cost J = σ_α²·σ_q², Eq. (7); σ_q²·σ_az² without an angle of attack; σ_p²·σ_r² of roll and yaw."""
+        first, second = self.optimum.noise[self.optimum.noise > 0.0][:2]
+        return float((first * second) ** 2)
+
+    @property
+    def nuisances(self) -> Mapping[str, tuple[float, float]]:
+        """Value and standard deviation of each nuisance parameter, in its unit, by its name."""
+        std = np.sqrt(np.diag(self.widened))[len(self.theta) :]
+        told = zip(self.parameters, std, strict=False)
+        return {x.name: (x.read(self.problem), float(s)) for x, s in told}
 
 
 def solve(
@@ -62,18 +78,15 @@ def solve(
     flat : promised change of log J per sample at which Gauss-Newton stops.
     """
     assembly, optimum = search(problem, begin=begin, flat=flat)
-    return refused(optimum, NOTHING_TO_TELL) or evaluate(problem, assembly, optimum, noise=noise)
+    return refused(optimum) or evaluate(problem, assembly, optimum, noise=noise)
 
 
-def refused(optimum: Optimum, nothing_to_tell: str) -> NoEstimate | None:
-    """Return the reason why a search found no optimum; None for a successful search.
-
-    ``nothing_to_tell`` is the sentence for an input that does not excite the motion enough.
-    """
+def refused(optimum: Optimum) -> NoEstimate | None:
+    """Return the reason why a search found no optimum; None for a successful search."""
     if optimum.status == OVERFLOW:
         return RUNS_AWAY
     if optimum.status == SINGULAR:
-        return NoEstimate("singular", nothing_to_tell)
+        return NOTHING_TO_TELL
     if optimum.status != CONVERGED:
         text = (
             f"The search for the best fit did not converge in {optimum.iterations} iterations:"
@@ -103,41 +116,47 @@ def search(
 
 
 def evaluate(
-    problem: OutputErrorProblem,
-    assembly: Assembly,
+    problem: Any,
+    assembly: Laid,
     optimum: Optimum,
     extra: Extra | None = None,
     noise: Coloured | None = None,
     kept: int | None = None,
+    *,
+    prior: Priors | None = None,
+    parameters: Sequence[Any] = (),
 ) -> Solution | NoEstimate:
     """Return the solution at an optimum, with its errors.
 
     Parameters
     ----------
     extra, noise, kept : arguments of ``evaluation.errors_of``.
+    prior : priors of the derivatives, whose errors count. None: the priors of the short period, whose errors
+        do not.
     """
-    residual, prior = assembly.z - optimum.fitted, precision(problem, optimum.shared)
     errors = errors_of(
         assembly,
-        residual,
+        assembly.z - optimum.fitted,
         optimum.sensitivities,
         optimum.noise,
         extra,
-        prior,
+        precision(problem, optimum.shared) if prior is None else prior.precision,
         fitted=optimum.fitted,
+        prior_share=None if prior is None else prior.share,
         noise=noise,
         kept=kept,
     )
     if errors is None:
-        return NoEstimate("singular", NOTHING_TO_TELL)
-    theta = reported(optimum.shared, optimum.local)
-    return Solution(problem=problem, assembly=assembly, optimum=optimum, theta=theta, extra=extra, **errors)
+        return NOTHING_TO_TELL
+    theta = reported(optimum.shared, optimum.local, assembly.names)
+    found = {"theta": theta, "extra": extra, "parameters": parameters, **errors}
+    return Solution(problem=problem, assembly=assembly, optimum=optimum, **found)
 
 
-def reported(shared: FloatArray, local: FloatArray) -> FloatArray:
-    """Return the eight reported parameters, in the order of ``PARAMETERS``, from the solver's parameters."""
+def reported(shared: FloatArray, local: FloatArray, names: Names = NAMES) -> FloatArray:
+    """Return the reported parameters, shape (p,), from the shared (s,) and local (m, l) parameters."""
     mean = local.mean(axis=0)
-    return np.array([shared[i] if is_shared else mean[i] for is_shared, i in REPORTED])
+    return np.array([shared[i] if is_shared else mean[i] for is_shared, i in names.places])
 
 
 def noise_floor(assembly: Laid) -> FloatArray:

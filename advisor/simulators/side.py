@@ -20,10 +20,11 @@ from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.instruments import FIRST_LAG_S, Nuisance
 from advisor.oem.axes.lateral.prepare import prepare_lateral
 from advisor.oem.axes.lateral.problem import NEEDED, LateralProblem, LateralRecord
-from advisor.oem.axes.lateral.solution import LateralSolution, lateral_not_identifiable, solve_lateral
+from advisor.oem.axes.lateral.solution import lateral_not_identifiable, solve_lateral
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.extra import Prior
 from advisor.oem.rows import Signal
+from advisor.oem.solution import Solution
 from advisor.oem.surface import Servo
 from advisor.simulators.air import refuse_unknown_air, standard_heights, winds
 from advisor.simulators.flying import Progress, without
@@ -145,7 +146,7 @@ def _as_record(replay: Replay, inputs: Inputs, t: FloatArray) -> LateralRecord:
     )
 
 
-def _surrogate(records: tuple[LateralRecord, ...], flown: LateralProblem, said: str) -> LateralSolution:
+def _surrogate(records: tuple[LateralRecord, ...], flown: LateralProblem, said: str) -> Solution:
     """Return the lateral model fitted to the replays, with lag and delay between input and surface."""
     problem = LateralProblem(
         records, flown.reference_airspeed_m_s, servos={name: Servo() for name in LATERAL.inputs}
@@ -162,7 +163,7 @@ def _surrogate(records: tuple[LateralRecord, ...], flown: LateralProblem, said: 
     return found
 
 
-def _file(surrogate: LateralSolution, aircraft: Aircraft, said: str) -> Aircraft:
+def _file(surrogate: Solution, aircraft: Aircraft, said: str) -> Aircraft:
     """Return the aircraft file with the surrogate as its model, and with both servos in series."""
     untold = lateral_not_identifiable(surrogate)
     told = zip(LATERAL.names.reported, surrogate.theta, strict=True)
@@ -187,7 +188,7 @@ def _file(surrogate: LateralSolution, aircraft: Aircraft, said: str) -> Aircraft
     )
 
 
-def _beyond(surrogate: LateralSolution, name: str, least: float, other_s: float = 0.0) -> float:
+def _beyond(surrogate: Solution, name: str, least: float, other_s: float = 0.0) -> float:
     """Return the simulator's lag or delay combined with another time, s; 0 if insignificant."""
     value, std = surrogate.nuisances.get(name, (0.0, 0.0))
     value += other_s
@@ -233,7 +234,7 @@ def _refuse_broken(replay: Replay, said: str, maneuver: Maneuver, duration_s: fl
         )
 
 
-def _refuse_wrong_control(surrogate: LateralSolution, flown: LateralProblem, said: str) -> None:
+def _refuse_wrong_control(surrogate: Solution, flown: LateralProblem, said: str) -> None:
     """Refuse a simulator whose aileron or rudder has a wrong sign or unit."""
     found = dict(zip(LATERAL.names.reported, map(float, surrogate.theta), strict=True))
     for name, (turns, against) in TURNS.items():

@@ -9,8 +9,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.fit import Fit, Known
-from advisor.oem.covariance import Coloured, coloured, colours_of, cramer_rao, influence, widening
-from advisor.oem.evaluation import contributions_of
+from advisor.oem.evaluation import errors_of
 from advisor.oem.scatter_between import widened_by_scatter
 
 
@@ -36,14 +35,12 @@ def information_of(fit: Fit, share: float) -> Information:
 
 def share_of(fit: Fit) -> float:
     """Return the ratio of the derivatives' standard error under white noise to that from the residuals."""
-    told = influence(fit.assembly, fit.sensitivities, fit.noise)
-    if told is None:
+    no_prior = np.zeros(len(fit.point.theta))
+    errors = errors_of(fit.assembly, fit.residual, fit.sensitivities, fit.noise, None, no_prior)
+    if errors is None:
         return 1.0
-    colours = colours_of(fit.assembly, fit.residual, fit.sensitivities)
-    noise = Coloured(colours, widening(fit.assembly, told.rows, colours))
-    bound = np.diag(cramer_rao(fit.assembly, told.rows, fit.noise))
-    pulls = contributions_of(fit.assembly, told.rows, fit.residual)
-    found = np.diag(widened_by_scatter(coloured(fit.assembly, told.rows, noise), pulls))
+    bound = np.diag(errors["covariance_cr"])
+    found = np.diag(widened_by_scatter(errors["covariance"], errors["contributions"]))
     ratio = np.sqrt(bound[found > 0.0] / found[found > 0.0])
     return float(np.clip(np.median(ratio), 0.0, 1.0)) if len(ratio) else 1.0
 

@@ -14,9 +14,8 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.setting import Flown, Place, Setting, laid_out, moved_to
 from advisor.gap.inference.marginal import Prior
 from advisor.model.axes.lateral import LATERAL
-from advisor.model.axis_response import respond_axis
 from advisor.oem.arrow import solved_within, unabsorbed
-from advisor.oem.axes.lateral.motion import FLOOR
+from advisor.oem.axes.lateral.motion import FLOOR, outputs_of, simulate
 from advisor.oem.axes.lateral.problem import LateralAssembly
 from advisor.oem.gauss_newton import weigh
 
@@ -26,7 +25,6 @@ SETTLED = 0.05
 """Decrease of the cost, -2 log likelihood, in one step, below which a fit has converged: far below one
 nat."""
 N = len(LATERAL.shared)
-_NO_MOTION = np.empty((0, 2, len(LATERAL.states)))
 
 
 class Free(NamedTuple):
@@ -143,10 +141,10 @@ class _At(NamedTuple):
 
 def _at(flown: Flown, point: Point, free: Sequence[Free], known: Known) -> _At | None:
     assembly = laid_out(flown, point.setting)
-    y = np.empty(len(assembly.z))
-    g = np.empty((len(y), N + point.local.shape[1]))
-    if not respond_axis(assembly.grid, point.theta, point.local, y, g, _NO_MOTION):
+    found = simulate(assembly, point.theta, point.local)
+    if found is None:
         return None
+    y, g, _motion = found
     y += _added(point, free)
     noise, minus_twice = weigh(assembly.z, y, assembly.channel, FLOOR)
     off = np.concatenate([point.theta, _numbers(point, free)]) - known.mean
@@ -243,11 +241,7 @@ def _added(point: Point, free: Sequence[Free]) -> FloatArray:
 
 def outputs(flown: Flown, point: Point) -> FloatArray:
     """Return the simulated outputs (N,) at a point of the parameters."""
-    assembly = laid_out(flown, point.setting)
-    y = np.empty(len(assembly.z))
-    no_slopes = np.empty((0, N + point.local.shape[1]))
-    respond_axis(assembly.grid, point.theta, point.local, y, no_slopes, _NO_MOTION)
-    return y
+    return outputs_of(laid_out(flown, point.setting), point.theta, point.local)
 
 
 def _numbers(point: Point, free: Sequence[Free]) -> FloatArray:

@@ -18,14 +18,16 @@ from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
 from advisor.oem.axes.lateral.instruments import nuisances_of
 from advisor.oem.axes.lateral.prepare import prepare_lateral
-from advisor.oem.axes.lateral.solution import LateralSolution, N, lateral_not_identifiable, solve_lateral
+from advisor.oem.axes.lateral.solution import lateral_not_identifiable, solve_lateral
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import channel_fits
 from advisor.oem.flying_qualities import Quality
 from advisor.oem.identifiability import correlated
 from advisor.oem.prediction import prediction_band
 from advisor.oem.scatter_between import widened_by_scatter
+from advisor.oem.solution import Solution
 
+N = len(LATERAL.shared)
 _STATES = len(LATERAL.states)
 
 
@@ -112,7 +114,7 @@ def estimate_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Later
     return solution if isinstance(solution, NoEstimate) else _reported(solution)
 
 
-def _reported(solution: LateralSolution) -> LateralEstimate:
+def _reported(solution: Solution) -> LateralEstimate:
     problem = solution.problem
     told = lateral_not_identifiable(solution)
     bound, covariance = solution.covariance_cr[:N, :N], solution.widened[:N, :N]
@@ -138,14 +140,14 @@ def _reported(solution: LateralSolution) -> LateralEstimate:
     )
 
 
-def _airspeed(solution: LateralSolution) -> float:
+def _airspeed(solution: Solution) -> float:
     """Return the air speed of the derivatives, m/s: the reference speed, or the mean of a nearly constant
     speed."""
     problem = solution.problem
     return problem.reference_airspeed_m_s or float(np.mean([np.mean(r.airspeed.y) for r in problem.records]))
 
 
-def _trim(solution: LateralSolution) -> Trim:
+def _trim(solution: Solution) -> Trim:
     records = solution.problem.records
     alpha, theta = (
         float(np.mean([np.mean(getattr(record, name).y) for record in records]))

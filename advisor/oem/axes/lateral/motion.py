@@ -9,7 +9,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.axis_response import respond_axis
 from advisor.oem.axes.lateral.instruments import Nuisance, columns_of
-from advisor.oem.axes.lateral.problem import CAUSES, LateralAssembly, LateralProblem, assemble_lateral
+from advisor.oem.axes.lateral.problem import LateralAssembly, LateralProblem, assemble_lateral
 from advisor.oem.descent import Response
 
 LEAST_NOISE = {"p": 5e-4, "r": 5e-4, "bank": 5e-4, "a_y": 0.01, "beta": 5e-4}
@@ -51,23 +51,33 @@ class LateralMotion:
         /,
     ) -> Response | None:
         """Return the response of the model; None where the simulation diverges."""
-        y, g = np.empty(len(laid.z)), np.empty((len(laid.z), _ALL + len(CAUSES)))
-        motion = np.empty((len(laid.grid.step_s), 2, len(LATERAL.states)))
-        if not respond_axis(laid.grid, shared, local, y, g, motion):
+        found = simulate(laid, shared, local)
+        if found is None:
             return None
+        y, g, motion = found
 
         def by_speed() -> FloatArray:
             faster = replace(problem, airspeed_excess=problem.airspeed_excess + _SPEED_STEP)
-            return (_outputs_at(faster, shared, local) - y) / _SPEED_STEP
+            return (outputs_of(assemble_lateral(faster), shared, local) - y) / _SPEED_STEP
 
-        columns = columns_of(laid, g[:, _ALL:], motion, nuisances, by_speed)
+        def columns() -> FloatArray:
+            return columns_of(laid, g[:, _ALL:], motion, nuisances, by_speed)
+
         return Response(y, g[:, :_ALL], columns, motion[laid.grid.first[:-1], 1])
 
 
-def _outputs_at(problem: LateralProblem, shared: FloatArray, local: FloatArray) -> FloatArray:
-    """Return the simulated outputs (N,) of a problem, without their derivatives."""
-    assembly = assemble_lateral(problem)
-    y = np.empty(len(assembly.z))
-    nothing = np.empty((0, _ALL + len(CAUSES)))
-    respond_axis(assembly.grid, shared, local, y, nothing, np.empty((0, 2, len(LATERAL.states))))
+def simulate(
+    laid: LateralAssembly, shared: FloatArray, local: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+    """Return the simulated outputs (N,), their derivatives (N, 15 + l + k) by all parameters and causes, and
+    the motion (E, 2, 4) of ``respond_axis``; None where the simulation diverges."""
+    y, g = np.empty(len(laid.z)), np.empty((len(laid.z), _ALL + laid.grid.changed.shape[1]))
+    motion = np.empty((len(laid.grid.step_s), 2, len(LATERAL.states)))
+    return (y, g, motion) if respond_axis(laid.grid, shared, local, y, g, motion) else None
+
+
+def outputs_of(laid: LateralAssembly, shared: FloatArray, local: FloatArray) -> FloatArray:
+    """Return the simulated outputs (N,) without their derivatives."""
+    y = np.empty(len(laid.z))
+    respond_axis(laid.grid, shared, local, y, np.empty((0, _ALL)), np.empty((0, 2, len(LATERAL.states))))
     return y

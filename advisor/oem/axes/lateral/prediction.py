@@ -10,11 +10,11 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL
-from advisor.model.axis_response import respond_axis
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.instruments import nuisances_of
+from advisor.oem.axes.lateral.motion import outputs_of, simulate
 from advisor.oem.axes.lateral.prepare import prepare_lateral
-from advisor.oem.axes.lateral.problem import CAUSES, LateralAssembly, LateralProblem, assemble_lateral
+from advisor.oem.axes.lateral.problem import LateralAssembly, LateralProblem, assemble_lateral
 from advisor.oem.axes.lateral.start import lateral_start
 from advisor.oem.estimate import ChannelFit, NoEstimate
 
@@ -72,11 +72,11 @@ def _refitted(
     weight = np.array([1.0 / noise[LATERAL.outputs[c]] for c in assembly.channel])
     local = lateral_start(problem)[1]
     local[0, : len(LATERAL.constants)] = 0.0
-    y, g = np.empty(len(assembly.z)), np.empty((len(assembly.z), n + local.shape[1] + len(CAUSES)))
-    motion = np.empty((0, 2, len(LATERAL.states)))
     for _ in range(ROUNDS):
-        respond_axis(assembly.grid, theta, local, y, g, motion)
+        found = simulate(assembly, theta, local)
+        if found is None:
+            break
+        y, g, _motion = found
         step = np.linalg.lstsq(g[:, own] * weight[:, None], (assembly.z - y) * weight, rcond=None)[0]
         local[0, own - n] += step
-    respond_axis(assembly.grid, theta, local, y, g, motion)
-    return y
+    return outputs_of(assembly, theta, local)

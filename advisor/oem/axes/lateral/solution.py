@@ -5,33 +5,26 @@ coloured residuals look too accurate relative to a prior. A first fit gives the 
 second and third fit weight the priors by the noise colour of the fit before.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
 from advisor.oem.axes.lateral.instruments import Nuisance, begun
 from advisor.oem.axes.lateral.motion import FLOOR, LateralMotion
-from advisor.oem.axes.lateral.problem import LateralAssembly, LateralProblem
+from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.axes.lateral.start import lateral_start
 from advisor.oem.descent import Fit, descended
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.evaluation import Evaluated, errors_of
-from advisor.oem.extra import Extra
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
-from advisor.oem.solution import RUNS_AWAY, refused
+from advisor.oem.solution import LEAST_SHARE, RUNS_AWAY, Solution, evaluate, refused
 from advisor.words.quantiles import NORMAL_95
 
-N = len(LATERAL.shared)
 FIRST_LOOK = 8
 """Iterations of the first fit, whose residuals give the first colour of the noise. With servos and clocks
 fixed, a longer search may leave physical values. In a rudder doublet L_p of -10 1/s became -220 1/s."""
-NOTHING_TO_TELL = "The inputs do not excite roll and yaw enough."
-LEAST_SHARE = 0.01
-"""Least factor on a prior's standard deviation in a white-noise fit; data without noise have no colour."""
 WITHOUT_FORCE = (
     "neither a lateral acceleration nor a sideslip was recorded, so that only the modes are told; record a_y"
 )
@@ -39,27 +32,7 @@ _MOTION = LateralMotion()
 _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LateralSolution(Evaluated):
-    """Optimum of one lateral problem, with its errors."""
-
-    problem: LateralProblem
-    assembly: LateralAssembly
-    extra: Extra
-    """Nuisance parameters at their estimated values."""
-    nuisances: Mapping[str, tuple[float, float]]
-    """Value and standard deviation of each nuisance parameter, in its unit, by its name."""
-
-    @property
-    def cost(self) -> float:
-        """Cost J = σ_p²·σ_r² of the fit."""
-        noise = dict(zip(LATERAL.outputs, self.optimum.noise, strict=True))
-        return float((noise["p"] * noise["r"]) ** 2)
-
-
-def solve_lateral(
-    problem: LateralProblem, nuisances: Sequence[Nuisance] = ()
-) -> LateralSolution | NoEstimate:
+def solve_lateral(problem: LateralProblem, nuisances: Sequence[Nuisance] = ()) -> Solution | NoEstimate:
     """Estimate the lateral derivatives of a problem.
 
     Parameters
@@ -70,9 +43,9 @@ def solve_lateral(
     start = lateral_start(problem)
     prior = priors_of(problem, start[0])
     fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
-    if isinstance(fit, NoEstimate):
-        return fit
-    solution = RUNS_AWAY if _has_diverged(fit) else _evaluated(fit, prior, ())
+    if isinstance(fit, NoEstimate) or _has_diverged(fit):
+        return RUNS_AWAY
+    solution = _evaluated(fit, prior)
     for _ in range(2):
         if isinstance(solution, NoEstimate):
             return solution
@@ -82,10 +55,10 @@ def solve_lateral(
         fit = descended(_MOTION, problem, weighed, prior, start)
         if isinstance(fit, NoEstimate):
             return fit
-        if (why := refused(fit.optimum, NOTHING_TO_TELL)) is not None:
+        if (why := refused(fit.optimum)) is not None:
             return why
         problem, start = fit.problem, fit.place
-        solution = _evaluated(fit, prior, weighed)
+        solution = _evaluated(fit, prior)
     return solution
 
 
@@ -100,52 +73,26 @@ def _has_diverged(fit: Fit) -> bool:
     return not gain >= 0.0
 
 
-def _share(solution: LateralSolution) -> float:
+def _share(solution: Solution) -> float:
     """Return the median ratio of the derivatives' errors under white noise to those under coloured noise."""
-    stated = np.diag(solution.scattered)[:N]
-    ratio = np.diag(solution.covariance_cr)[:N] / np.where(stated > 0.0, stated, np.nan)
+    n = len(solution.theta)
+    stated = np.diag(solution.scattered)[:n]
+    ratio = np.diag(solution.covariance_cr)[:n] / np.where(stated > 0.0, stated, np.nan)
     return float(np.clip(np.sqrt(np.nanmedian(ratio)), LEAST_SHARE, 1.0))
 
 
-def _evaluated(fit: Fit, prior: Priors, nuisances: Sequence[Nuisance]) -> LateralSolution | NoEstimate:
-    problem, assembly, optimum, extra = fit.problem, fit.assembly, fit.optimum, fit.extra
-    g, residual = optimum.sensitivities, assembly.z - optimum.fitted
-    errors = errors_of(
-        assembly,
-        residual,
-        g,
-        optimum.noise,
-        extra,
-        prior.precision,
-        fitted=optimum.fitted,
-        prior_share=prior.share,
-    )
-    if errors is None:
-        return NoEstimate("singular", NOTHING_TO_TELL)
-    errors["covariance"] = _at_least(errors["covariance_cr"], errors["covariance"])
-    solution = LateralSolution(
-        problem=problem,
-        assembly=assembly,
-        optimum=optimum,
-        theta=optimum.shared,
-        extra=extra,
-        nuisances={},
-        **errors,
-    )
-    std = np.sqrt(np.diag(solution.widened))[N:]
-    told = {x.name: (x.read(problem), float(s)) for x, s in zip(nuisances, std, strict=True)}
-    return replace(solution, nuisances=told)
-
-
-def _at_least(bound: FloatArray, covariance: FloatArray) -> FloatArray:
-    """Return the covariance with no error below that of ``bound``, because instruments have a noise floor."""
-    stated = np.diag(covariance)
-    ratio = np.divide(np.diag(bound), stated, out=np.ones_like(stated), where=stated > 0.0)
+def _evaluated(fit: Fit, prior: Priors) -> Solution | NoEstimate:
+    """Return the solution at a fit, with no error below the bound, because instruments have a noise floor."""
+    found = evaluate(fit.problem, fit.assembly, fit.optimum, fit.extra, prior=prior, parameters=fit.nuisances)
+    if isinstance(found, NoEstimate):
+        return found
+    bound, stated = np.diag(found.covariance_cr), np.diag(found.covariance)
+    ratio = np.divide(bound, stated, out=np.ones_like(stated), where=stated > 0.0)
     factor = np.sqrt(np.maximum(ratio, 1.0))
-    return np.asarray(covariance * np.outer(factor, factor))
+    return replace(found, covariance=found.covariance * np.outer(factor, factor))
 
 
-def lateral_not_identifiable(solution: LateralSolution) -> dict[str, str]:
+def lateral_not_identifiable(solution: Solution) -> dict[str, str]:
     """Return the reason why a derivative has no usable value, by the derivative's name."""
     if not solution.problem.tells_force:
         return dict.fromkeys(LATERAL.names.reported, WITHOUT_FORCE)

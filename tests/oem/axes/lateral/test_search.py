@@ -57,7 +57,7 @@ def test_derivatives_by_servos_clocks_and_arms_are_those_of_differences(waving, 
         moved = x.write(problem, x.read(problem) + sign * step)
         there = local.copy()
         since = assemble_lateral(moved).begin - assemble_lateral(problem).begin
-        there[:, 3:7] += since[:, None] * still(problem, (), local).begun
+        there[:, 3:7] += since[:, None] * still(problem, (), local).response.begun
         ends.append(still(moved, (), there).optimum.fitted)
     by_difference = (ends[1] - ends[0]) / (2.0 * step)
     for rows in assemble_lateral(problem).rows[0].values():

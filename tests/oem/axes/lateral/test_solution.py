@@ -9,7 +9,6 @@ from advisor.oem.axes.lateral.instruments import Nuisance
 from advisor.oem.axes.lateral.motion import LateralMotion
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.axes.lateral.solution import (
-    LateralSolution,
     lateral_not_identifiable,
     solve_lateral,
 )
@@ -17,7 +16,7 @@ from advisor.oem.descent import descended
 from advisor.oem.extra import Prior
 from advisor.oem.prior import priors_of
 from advisor.oem.rows import Signal
-from advisor.oem.solution import RUNS_AWAY
+from advisor.oem.solution import RUNS_AWAY, Solution
 from tests.oem.axes.lateral.builders import (
     JET,
     aileron_doublet,
@@ -34,7 +33,7 @@ WITHOUT_VANE = ("p", "r", "bank", "a_y")
 
 def solved(problem):
     solution = solve_lateral(problem)
-    assert isinstance(solution, LateralSolution), solution
+    assert isinstance(solution, Solution), solution
     return solution
 
 
