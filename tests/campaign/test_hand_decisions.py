@@ -107,9 +107,8 @@ def test_a_mark_in_the_file_gives_way_to_one_on_the_command_line_and_that_is_tol
 
 
 @pytest.mark.parametrize("command", ["analyze", "gap", "replay"])
-def test_a_time_that_the_log_does_not_hold_is_told_with_exit_code_3(
-    advisor: Advisor, log: Path, command: str
-) -> None:
+def test_a_time_that_the_log_does_not_hold_is_told_with_exit_code_3(advisor: Advisor, command: str) -> None:
+    log = recorded("linear", 1.0, maneuvers=TWO[:1])
     speed = ["--speed", "max"] if command == "replay" else []
     result = advisor(command, log, *speed, "--maneuver", "4000:4012")
     assert result.returncode == 3
