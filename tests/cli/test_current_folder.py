@@ -24,15 +24,21 @@ SHORT = ROOT / "logs" / "arduplane-default-rates.tlog"
 STARTERS = ROOT / "advisor" / "process" / "children.py"
 
 
+@pytest.fixture(scope="session")
+def names() -> set[str]:
+    """Every module that Python, the advisor or its libraries import by name."""
+    return (set(sys.stdlib_module_names) | set(packages_distributions())) - {"__main__"}
+
+
 @pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """A folder with a file for every module that Python, the advisor or its libraries import by name."""
-    place = tmp_path / "logs of others"
+def folder(names: set[str], tmp_path: Path) -> Path:
+    """A folder with a file for each of these modules, which notes that it was run."""
+    place, note = tmp_path / "logs of others", tmp_path / "note.py"
     place.mkdir()
-    names = set(sys.stdlib_module_names) | set(packages_distributions())
-    for name in names - {"__main__"}:
-        note = f"open({str(place / 'RAN')!r}, 'a').write({name!r} + chr(10))\nraise ImportError({name!r})\n"
-        (place / f"{name}.py").write_text(note)
+    ran = str(place / "RAN")
+    note.write_text(f"open({ran!r}, 'a').write(__name__ + chr(10))\nraise ImportError(__name__)\n")
+    for name in names:
+        os.link(note, place / f"{name}.py")
     (place / ".numba_config.yaml").write_text(f"cache_dir: {place / 'machine-code'}\n")
     return place
 
