@@ -2,10 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from statistics import fmean
 from typing import Any
-
-import numpy as np
 
 from advisor.gap.alternative import Weighed
 from advisor.gap.axes.lateral.comparison import SideGap
@@ -13,7 +10,6 @@ from advisor.gap.axes.lateral.diagnosis import SideDiagnosis
 from advisor.gap.axes.lateral.flight import LIKELY
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.verdict.text import title_of_verdict
-from advisor.model.axes.lateral import LATERAL
 from advisor.report.facts.gap import changes, counted
 from advisor.report.facts.reasons import how_sure, in_percent
 from advisor.report.facts.sizes import named, sizes_of, with_error
@@ -94,7 +90,13 @@ def side_gap_document(found: SideGap) -> dict[str, Any]:
             "before": size["before"],
             "by_channel": gap.before if gap and mean else {},
             "by_channel_after": gap.after if gap and mean else {},
-            **_of_maneuvers(found),
+            "floor": gap.floor if gap else {},
+            "by_maneuver": [
+                {"number": number, "before": before, "after": after}
+                for number, (before, after) in zip(found.maneuvers, gap.by_maneuver, strict=True)
+            ]
+            if gap
+            else [],
         },
         "parameters_changed": [changed_document(one) for one in found.derivatives if one.differs],
         "parameters_compared": [changed_document(one) for one in found.derivatives],
@@ -105,21 +107,6 @@ def side_gap_document(found: SideGap) -> dict[str, Any]:
     if found.verdict is None:  # nothing was weighed against a simulator
         document["how_sure"] = ""
     return document | {"traces": traces_document(found.traces)}
-
-
-def _of_maneuvers(found: SideGap) -> dict[str, Any]:
-    """Return the noise floor of each output, SI, and the simulator's gap of each manoeuvre."""
-    if found.diagnosis is None or not found.traces:
-        return {"floor": {}, "by_maneuver": []}
-    noise = dict(zip(LATERAL.outputs, found.diagnosis.fits[-1].noise.tolist(), strict=True))
-    gaps: dict[int, list[float]] = {}
-    for one in found.traces:
-        excess = float(np.mean((one.measured - one.before) ** 2)) / noise[one.channel] ** 2 - 1.0
-        gaps.setdefault(one.number, []).append(max(excess, 0.0))
-    return {
-        "floor": {one.channel: noise[one.channel] for one in found.traces},
-        "by_maneuver": [{"number": number, "before": fmean(each)} for number, each in gaps.items()],
-    }
 
 
 def _diagnosis_document(found: SideDiagnosis | None) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from advisor.gap.axes.lateral.flight import SideFlight, SideModel
 from advisor.gap.axes.lateral.gusts import coloured_likelihood
 from advisor.gap.axes.lateral.laws import side_laws
 from advisor.gap.axes.lateral.models import Case, base_of, free_near
-from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT
 from advisor.gap.inference.engine import Decided, decided, first_stage
 from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.posterior import NONE, relabelled
@@ -79,7 +79,12 @@ class SideDiagnosis(Weighed):
     before: Mapping[str, float] = field(default_factory=dict)
     """Gap of the simulator in each output: mean square error over mean square noise, minus 1."""
     after: Mapping[str, float] = field(default_factory=dict)
-    """Gap with the flight's derivatives in each output; every manoeuvre is predicted from all others."""
+    """Gap of the chosen model in each output; every manoeuvre is predicted from all others."""
+    by_maneuver: tuple[tuple[float, float], ...] = ()
+    """Mean gap over the outputs of each manoeuvre, for the simulator and for the chosen model. NaN with a
+    single manoeuvre."""
+    floor: Mapping[str, float] = field(default_factory=dict)
+    """Noise of each output, SI."""
     waterfall: tuple[tuple[str, float], ...] = ()
     """Remaining gap after each effect: the mean square error over that of the whole model, minus 1."""
     fits: tuple[Fit, ...] = ()
@@ -87,14 +92,12 @@ class SideDiagnosis(Weighed):
 
     @property
     def mean_gap(self) -> tuple[float, float] | None:
-        """Mean gap over the outputs, for the simulator and for the flight's derivatives; None without
-        both."""
+        """Mean gap over the outputs, for the simulator and for the chosen model; None without both."""
         return (fmean(self.before.values()), fmean(self.after.values())) if self.after else None
 
     @property
     def shrink_percent(self) -> float | None:
-        """Share of the simulator's mean gap that the flight's derivatives remove, per cent; None without a
-        gap."""
+        """Share of the simulator's mean gap that the chosen model removes, per cent; None without a gap."""
         gap = self.mean_gap
         return 100.0 * (1.0 - gap[1] / gap[0]) if gap and gap[0] > 0.0 else None
 
@@ -151,24 +154,39 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
     flight = SideFlight(case, plain, table, list(side_laws(case, plain)))
     found = decided(flight, first_stage(flight), prior, lambda rows: [_named_air(row) for row in rows])
     told = weighed(found.posteriors[0])
-    unseen_by = squares_of(plain, information_of(plain, 1.0), case.prior_of(ERROR_IF_WRONG, plain.free))
+    model, last = found.chosen[-1], found.chosen[-1].fit
+    known = case.prior_of(model.tolerance, last.free)
+    unseen_by = squares_of(last, information_of(last, found.heat**-0.5), known)
+    before, each_before = _gap(last, _sums(last, as_given.residual**2))
+    after, each_after = _gap(last, unseen_by.held_out) if len(case.flown) > 1 else ({}, [np.nan])
     return SideDiagnosis(
         evidence=told.evidence, failed=found.failed, why=told.why, answer=told.answer, rival=told.rival,
         decisions=told.decisions, causes=tuple(_causes(case, found, as_given))[:MOST_CAUSES],
         peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain), cannot_see=unseen(case.flown),
-        before=_gap(plain, np.asarray(np.bincount(plain.assembly.channel, as_given.residual**2), float)),
-        after=_gap(plain, np.sum(unseen_by.held_out, axis=0)) if len(case.flown) > 1 else {},
-        waterfall=_waterfall(found.chosen[1:]), fits=(as_given, found.chosen[-1].fit),
+        before=before, after=after, by_maneuver=tuple(zip(each_before, each_after, strict=True)),
+        floor={name: float(last.noise[LATERAL.outputs.index(name)]) for name in before},
+        waterfall=_waterfall(found.chosen[1:]), fits=(as_given, last),
     )  # fmt: skip
 
 
-def _gap(plain: Fit, squares: FloatArray) -> Mapping[str, float]:
-    """Return the gap of each output from the sums of squares of its error, shape (outputs,)."""
-    counts = np.bincount(plain.assembly.channel)
-    return {
-        LATERAL.outputs[k]: max(0.0, float(squares[k] / counts[k] / plain.noise[k] ** 2) - 1.0)
-        for k in np.flatnonzero(counts)
-    }
+def _sums(fit: Fit, values: FloatArray) -> FloatArray:
+    """Return the sums (m, outputs) of values (N,) over each manoeuvre and output."""
+    sums = np.zeros((fit.assembly.maneuvers, len(fit.noise)))
+    np.add.at(sums, (fit.assembly.owner, fit.assembly.channel), values)
+    return sums
+
+
+def _gap(fit: Fit, squares: FloatArray) -> tuple[Mapping[str, float], list[float]]:
+    """Return the gap of each output, and the mean gap of each manoeuvre, from sums of squared errors.
+
+    ``squares`` has shape (m, outputs).
+    """
+    counts = _sums(fit, np.ones(len(fit.residual)))
+    with np.errstate(divide="ignore", invalid="ignore"):  # an output without a sample has no gap
+        each = np.maximum(0.0, squares / counts / fit.noise**2 - 1.0)
+        whole = np.maximum(0.0, squares.sum(axis=0) / counts.sum(axis=0) / fit.noise**2 - 1.0)
+    measured = np.flatnonzero(counts.sum(axis=0))
+    return {LATERAL.outputs[k]: float(whole[k]) for k in measured}, np.nanmean(each, axis=1).tolist()
 
 
 def _named_air(row: Row[SideModel]) -> Row[SideModel]:

@@ -61,6 +61,9 @@ def test_a_weak_aileron_in_the_simulator_is_named_and_leaves_a_gap_on_unseen_fli
     )
     assert document["shrink"]["holdout"] == [1, 2, 3]
     assert document["shrink"]["percent"] > 80.0
+    each = document["gap"]["by_maneuver"]
+    assert [one["number"] for one in each] == [1, 2, 3]
+    assert all(one["after"] < one["before"] for one in each)
     low, high = changed["L_delta_a"]["ci95"]
     assert low < JET["L_delta_a"] < high
 

@@ -53,6 +53,7 @@ def weighed(shares):
 
 DIAGNOSIS = SideDiagnosis(
     causes=(PLAY,), peaks=PEAKS, peaks_by_numbers=PEAKS, cannot_see={},
+    by_maneuver=((3.0, 0.5), (2.0, 0.4), (4.0, 0.6)),
     **weighed(
         {"aileron_actuator_backlash": 0.7, "none": 0.2, "parameters": 0.05, "aileron_actuator_lag": 0.05}
     ),
@@ -236,6 +237,11 @@ def test_a_second_cause_is_as_probable_as_both_together(monkeypatch):
     monkeypatch.setattr(diagnosis, "_cause", lambda case, one, fit, tolerance, p, share, present: p)
     case = SimpleNamespace(fit=lambda *_: None)
     assert list(diagnosis._causes(case, found, None)) == [pytest.approx(0.9), pytest.approx(0.45)]
+
+
+def test_each_manoeuvre_has_its_gap_before_and_after():
+    (one, *_) = side_gap_document(FOUND)["gap"]["by_maneuver"]
+    assert one == {"number": 1, "before": 3.0, "after": 0.5}
 
 
 def test_a_gap_that_no_other_manoeuvre_has_seen_is_stated_by_no_channel():
