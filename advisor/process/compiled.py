@@ -8,6 +8,7 @@ that it imports, directly or through others. A contract of imports (``pyproject.
 
 import ast
 import hashlib
+import pickle
 import sys
 from collections.abc import Callable
 from contextlib import suppress
@@ -22,6 +23,7 @@ _yaml = sys.modules.get("yaml")
 sys.modules["yaml"] = None  # type: ignore[assignment]
 try:
     import numba
+    from numba.core import caching
 finally:
     if _yaml is None:
         del sys.modules["yaml"]
@@ -52,10 +54,42 @@ def kernel(**options: Any) -> Callable[[Function], Function]:
         if found is not function:  # NUMBA_DISABLE_JIT leaves functions as they are.
             with suppress(RuntimeError):  # numba finds no folder to write to
                 found.enable_caching()
+                found._cache._cache_file.__class__ = _Kept
                 found._cache._cache_file._source_stamp = key_of(function.__module__)
         return cast("Function", found)
 
     return compiled
+
+
+_CacheFile: Any = caching.IndexDataCacheFile
+
+
+class _Kept(_CacheFile):  # type: ignore[misc]
+    """Machine code on disk. A full disk keeps none, and a file that is cut off counts as none."""
+
+    def save(self, key: Any, data: Any) -> None:
+        """Save the code before the index that calls the code fresh.
+
+        Numba writes the index first. A disk that is full in between would leave old code under a fresh index.
+        """
+        kept = self._load_index()
+        free = (self._data_name(n) for n in range(1, len(kept) + 2))
+        name = kept.get(key) or next(one for one in free if one not in kept.values())
+        with suppress(OSError):
+            self._save_data(name, data)
+            self._save_index(kept | {key: name})
+
+    def _load_index(self) -> Any:
+        try:
+            return super()._load_index()
+        except (pickle.UnpicklingError, EOFError):
+            return {}
+
+    def _load_data(self, name: str) -> Any:
+        try:
+            return super()._load_data(name)
+        except (pickle.UnpicklingError, EOFError):
+            return None
 
 
 @cache

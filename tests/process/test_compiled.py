@@ -15,8 +15,10 @@ pytestmark = pytest.mark.xdist_group("compiled")
 ROOT = Path(__file__).parents[2]
 
 _CALL = """
-import sys
+import os, resource, sys
 sys.path[:0] = sys.argv[1:]
+if "at_most" in os.environ:  # bytes of a file, as on a full disk
+    resource.setrlimit(resource.RLIMIT_FSIZE, (int(os.environ["at_most"]), resource.RLIM_INFINITY))
 from flown.motion import moved
 print(moved(1.0), sum(moved.stats.cache_hits.values()))
 """
@@ -48,6 +50,21 @@ def test_a_kernel_runs_where_no_folder_can_keep_its_machine_code(folder: Path) -
     nowhere.touch()
     (folder / "flown" / "__pycache__").touch()  # a file in the way: not even root can write into it
     assert _call(folder, NUMBA_CACHE_DIR="", HOME=str(nowhere), XDG_CACHE_HOME=str(nowhere)) == (2.0, 0)
+
+
+def test_a_full_disk_keeps_no_machine_code_and_never_calls_old_code_fresh(folder: Path) -> None:
+    _write(folder, unit=10.0)
+    assert _call(folder, at_most="2000") == (20.0, 0)
+    assert _call(folder) == (20.0, 0)
+    assert _call(folder) == (20.0, 1)
+
+
+@pytest.mark.parametrize("kind", ["nbi", "nbc"])
+def test_a_file_of_machine_code_that_is_cut_off_is_written_again(folder: Path, kind: str) -> None:
+    (file,) = (folder / "flown" / "__pycache__").glob(f"*.{kind}")
+    file.write_bytes(file.read_bytes()[:-20])
+    assert _call(folder) == (2.0, 0)
+    assert _call(folder) == (2.0, 1)
 
 
 def test_a_kernel_is_loaded_where_only_a_module_changed_that_it_does_not_import(folder: Path) -> None:
