@@ -7,6 +7,7 @@ estimator is the subject of other tests, which call it themselves.
 import fcntl
 import pickle
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache, partial, wraps
 from hashlib import sha256
@@ -119,13 +120,17 @@ def _made_once(asked: object, make: Callable[[], Result]) -> Result:
     pickler.fast = True  # equal contents are equal bytes, whichever of their parts are one object
     pickler.dump(asked)
     SHARED.mkdir(exist_ok=True)
-    with (SHARED / f"{sha256(written.getbuffer()).hexdigest()}.made").open("a+b") as file:
+    with (SHARED / f"{sha256(written.getbuffer()).hexdigest()}.made").open("a+b", buffering=0) as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         file.seek(0)
         known = file.read()
         result: Result = pickle.loads(known) if known else make()
         if not known:
-            file.write(pickle.dumps(result))
+            kept, room = pickle.dumps(result), 0
+            with suppress(OSError):  # a test lets no file grow
+                room = file.write(kept)
+            if room < len(kept):
+                file.truncate(0)
     return result
 
 
