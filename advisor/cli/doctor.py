@@ -133,6 +133,6 @@ def _examine_link(
         while time.monotonic() < until_s:
             examiner.feed(link.read(0.1))
         for notice in link.take_notices():
-            click.echo(notice.text, err=True)
+            click.echo(notice, err=True)
         came = link.statistics
         return examiner.findings(came.lost_percent, came.repeated_percent, came.repeated_after_s)

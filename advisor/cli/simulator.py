@@ -111,7 +111,7 @@ def fly(log: Path, master: str, target_system: int | None) -> int:
         while not replay.done:
             link.read(0.02)
             for notice in link.take_notices():
-                click.echo(printable(notice.text), err=True)
+                click.echo(printable(notice), err=True)
     if replay.refused:
         click.echo(
             f"The vehicle on {printable(master)} has no parameter of a simulation: nothing was sent. "

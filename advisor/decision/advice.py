@@ -53,7 +53,7 @@ def next_input(
     chosen = choice[0] if choice else None
     spoken = chosen.spoken(conditions.travel_rad) if chosen else mend or "the elevator's last input again"
     remaining, held_by = forecast(history, course), _held_by(history, plan, known)
-    return NextInput(f"next: {spoken}", remaining, held_by, chosen, conditions.travel_rad)
+    return NextInput(f"next: {spoken}", remaining, held_by, chosen)
 
 
 def _choose(conditions: Conditions, known: Knowledge, plan: CampaignPlan) -> Choice | None:
@@ -101,7 +101,7 @@ def _first_input(aircraft: Aircraft) -> NextInput:
             unit = max(round(0.5 * np.pi / frequency, 1), 0.2)
     travel = travel_of(aircraft, 0.0)
     gentle = StepInput("3-2-1-1", unit, GENTLE * travel, nose_up_first=True)
-    return NextInput(f"next: {gentle.spoken(travel)}, to begin gently", None, None, gentle, travel)
+    return NextInput(f"next: {gentle.spoken(travel)}, to begin gently", None, None, gentle)
 
 
 def _same_but_better(flown: CandidateManeuver) -> str:

@@ -143,8 +143,6 @@ class NextInput:
     """Name of the parameter or predicted output that delays the stop."""
     input: "StepInput | None" = None
     """Input in the advice; None if the advice names none."""
-    travel_rad: float | None = None
-    """Elevator travel of 100 % stick, rad; None without an input."""
 
     @property
     def foretold(self) -> str:

@@ -70,7 +70,7 @@ class LinkSource:
 
     def take_notices(self) -> Sequence[str]:
         """Return the notices of the link since the last call."""
-        return [notice.text for notice in self._link.take_notices()] if self._link is not None else ()
+        return self._link.take_notices() if self._link is not None else ()
 
     def order(self, order: LinkRequest) -> None:
         """Send a crew's request to the link."""

@@ -111,7 +111,7 @@ def test_equal_states_give_identical_parts_so_that_nothing_is_painted_again():
 
 def test_a_lateral_input_is_drawn_with_right_above_and_left_below():
     flown = StepInput("doublet", 1.0, np.radians(10.0), nose_up_first=True, control="aileron")
-    advised = NextInput(f"next: {flown.spoken(np.radians(25.0))}", None, None, flown, np.radians(25.0))
+    advised = NextInput(f"next: {flown.spoken(np.radians(25.0))}", None, None, flown)
     first, second, *lines = drawn(advised, 60, large=True).split("\n")
     said = " ".join(f"{first}{second}".split())
     assert max(len(first), len(second)) <= 60

@@ -81,7 +81,7 @@ def next_lateral(
     gently = ", to begin gently" if before is None else ""
     remedy = f"; {flown[-1].remedy}" if before is not None and flown[-1].remedy else ""
     said = f"{wanted.spoken(travel)}{gently}, {_after(control, wanted.unit_s)}{remedy}"
-    return NextInput(f"next: {said}", None, holding_back, wanted, travel)
+    return NextInput(f"next: {said}", None, holding_back, wanted)
 
 
 def _larger(before: FlownInput, percent: float, aircraft: Aircraft) -> float:

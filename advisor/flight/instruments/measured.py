@@ -63,8 +63,6 @@ class Weighed:
     """Name of the likeliest hypothesis."""
     factor: float
     """Factor of the likeliest hypothesis, or the measured scale for ``ANY``."""
-    probability: float
-    """Posterior probability of the likeliest hypothesis, ``best``."""
     stated_probability: float
     """Posterior probability that the instrument reads as stated (``AS_STATED``)."""
     resolved: bool
@@ -101,7 +99,7 @@ def weigh(measured: Measured, factors: Mapping[str, float], width: float, stated
     best = max(likelihood, key=lambda name: likelihood[name])
     factor = candidates.get(best, measured.value)
     resolved = abs(measured.value) >= _RESOLVED_SIGMAS * measured.std
-    return Weighed(best, factor, likelihood[best] / total, likelihood[AS_STATED] / total, resolved)
+    return Weighed(best, factor, likelihood[AS_STATED] / total, resolved)
 
 
 def _normal(distance: float, std: float) -> float:

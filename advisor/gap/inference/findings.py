@@ -3,7 +3,6 @@
 from dataclasses import dataclass, field
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.known import Effects
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
@@ -57,8 +56,6 @@ class Circumstances:
     """Wind that changes with height; None without significant shear."""
     weight: WeightReading | None = None
     """Weight that the accelerometer reads; None with too few manoeuvres for a reading."""
-    known: Effects = field(default_factory=dict)
-    """Effects of the aircraft file."""
     left_aside: tuple[str, ...] = ()
     """Changes in flight of the aircraft file that this flight does not show."""
 

@@ -14,15 +14,6 @@ RATE_WINDOW_S = 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class LinkNotice:
-    """A message about the link for the crew."""
-
-    at_s: float
-    """Host time of the notice, seconds since 1970."""
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
 class LinkStatistics:
     """Counts of a link at one moment."""
 
@@ -44,7 +35,6 @@ class LinkStatistics:
     late: int = 0
     """Number of the vehicle's frames that arrived after a later one."""
     bad_crc: int = 0
-    garbage_bytes: int = 0
     refused: Mapping[str, int] = field(default_factory=dict)
     """Number of refused frames by reason: ``unsigned``, ``forged``, ``replayed``."""
     silent_s: float = 0.0

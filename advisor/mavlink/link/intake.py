@@ -32,7 +32,6 @@ class Intake:
         self._signatures = signatures
         self._cutters: dict[Peer, FrameCutter] = {}
         self._bad_crc = 0
-        self._garbage_bytes = 0
         self.counters = LinkCounters()
         self.ground_stations: set[int] = set()
         """System ids of the ground stations on the link."""
@@ -70,18 +69,12 @@ class Intake:
         """Drop incomplete frames after a cut of the connection."""
         for cutter in self._cutters.values():
             self._bad_crc += cutter.bad_crc
-            self._garbage_bytes += cutter.garbage_bytes
         self._cutters.clear()
 
     @property
     def bad_crc(self) -> int:
         """Number of frames with a wrong checksum."""
         return self._bad_crc + sum(cutter.bad_crc for cutter in tuple(self._cutters.values()))
-
-    @property
-    def garbage_bytes(self) -> int:
-        """Number of bytes outside any frame."""
-        return self._garbage_bytes + sum(cutter.garbage_bytes for cutter in tuple(self._cutters.values()))
 
     def _cutter(self, peer: Peer) -> FrameCutter:
         cutter = self._cutters.get(peer)

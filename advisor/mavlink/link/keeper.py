@@ -20,7 +20,6 @@ from threading import Thread
 
 from advisor.mavlink.link import running_links
 from advisor.mavlink.link.announce import Announcer, SeparateConnection
-from advisor.mavlink.link.health import LinkNotice
 from advisor.mavlink.link.inquiry import Inquiry
 from advisor.mavlink.link.keeping import AnnounceOrder, CallOrder, Heard, Hello, Keeping, Request, Told
 from advisor.mavlink.link.link import Link
@@ -150,7 +149,7 @@ class Keeper:
         return Hello(recorder.path, recorded.written, recorded.unsaved, recorder.before)
 
     def _tell(self) -> None:
-        notices: tuple[LinkNotice, ...] = tuple(self._link.take_notices()) if self._readers else ()
+        notices: tuple[str, ...] = tuple(self._link.take_notices()) if self._readers else ()
         statistics = self._link.statistics
         self._send(Told(statistics, notices))
         with self._lock:

@@ -10,7 +10,7 @@ from multiprocessing.connection import Client, Connection
 from pathlib import Path
 from typing import Literal
 
-from advisor.mavlink.link.health import LinkNotice, LinkStatistics
+from advisor.mavlink.link.health import LinkStatistics
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ class Told:
     """Health of the link, several times a second, with the notices since the last one."""
 
     statistics: LinkStatistics
-    notices: tuple[LinkNotice, ...]
+    notices: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)

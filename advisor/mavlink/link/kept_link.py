@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 
 from advisor.aircraft.controls import Elevator
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.link.health import LinkNotice, LinkStatistics, ReportedHealth
+from advisor.mavlink.link.health import LinkStatistics, ReportedHealth
 from advisor.mavlink.link.keeping import AnnounceOrder, CallOrder, Door, Heard, Hello, Request, Told
 from advisor.process.liveness import OLD_AFTER_S
 
@@ -44,7 +44,7 @@ class KeptLink:
         """Number of bytes of the recording read so far."""
         self._before = self._process = 0
         self._next_try_s = 0.0
-        self._notices: list[LinkNotice] = []
+        self._notices: list[str] = []
         self._broken = False
         self._health = ReportedHealth()
         self.read_to_s = nan
@@ -80,7 +80,7 @@ class KeptLink:
         """Health of the link in the newest report."""
         return self._decoding.counted(self._health.statistics)
 
-    def take_notices(self) -> list[LinkNotice]:
+    def take_notices(self) -> list[str]:
         """Return the notices since the last call, oldest first."""
         notices, self._notices = self._notices, []
         return notices
@@ -194,4 +194,4 @@ class KeptLink:
         self._say("the process of the link has ended; it is started again")
 
     def _say(self, text: str) -> None:
-        self._notices.append(LinkNotice(time.time(), text))
+        self._notices.append(text)

@@ -21,7 +21,7 @@ from advisor.flight.vehicle.breaks import DOWN
 from advisor.flight.vehicle.following import FOLLOW, TAKE
 from advisor.mavlink.link.connection import parse_connection
 from advisor.mavlink.link.conversation import Conversation
-from advisor.mavlink.link.health import LinkNotice, LinkStatistics
+from advisor.mavlink.link.health import LinkStatistics
 from advisor.mavlink.link.inquiry import Inquiry
 from advisor.mavlink.link.intake import Intake
 from advisor.mavlink.link.line import Line
@@ -101,7 +101,7 @@ class Link:
         self._decoding: Decoding | None = None
         self._orders: deque[bytes | Talker | Ids] = deque()
         self._watch = LinkWatch(connection)
-        self._notices: deque[LinkNotice] = deque(maxlen=1000)
+        self._notices: deque[str] = deque(maxlen=1000)
         self._motion = MotionNow()
         self._queue: Queue[tuple[float, bytes]] = Queue(QUEUE_LENGTH)
         """Batches of records, each with the host time at which it was passed on, s."""
@@ -135,7 +135,7 @@ class Link:
             self._orders.append(DOWN)
         if self.address.speaks_first:
             text = f"{self.address.text} is told our address by a heartbeat once a second"
-            self._say([text], time.monotonic())
+            self._say([text])
         self._thread.start()
         return self
 
@@ -214,7 +214,7 @@ class Link:
         """Request once from the vehicle which output is its elevator."""
         self._orders.append(Inquiry(outputs_only=True))
 
-    def take_notices(self) -> list[LinkNotice]:
+    def take_notices(self) -> list[str]:
         """Return the notices since the last call, oldest first."""
         notices = []
         while self._notices:
@@ -232,7 +232,6 @@ class Link:
             messages=counters.messages,
             messages_per_s=counters.rate(now_s),
             bad_crc=self._intake.bad_crc,
-            garbage_bytes=self._intake.garbage_bytes,
             refused=dict(counters.refused),
             silent_s=self._watch.silent_s(now_s),
             reconnects=self._watch.reconnects,
@@ -267,8 +266,8 @@ class Link:
             batch += self._records((frame.raw for frame in frames), now_s, _HEARD)
             batch += self._records(self._obey(), now_s, _SENT_BY_US)
             batch += self._records(self._talk(frames, now_s), now_s, _SENT_BY_US)
-            self._say(self._watch.look(self._intake, frames, now_s), now_s)
-            self._say(self._recorder.take_notices() if self._recorder else (), now_s)
+            self._say(self._watch.look(self._intake, frames, now_s))
+            self._say(self._recorder.take_notices() if self._recorder else ())
             if self._intake.vehicle is not None:
                 self._motion.look(frames, self._intake.vehicle[0])
             if batch and now_s - since_s >= BATCH_S:
@@ -290,7 +289,7 @@ class Link:
             if sent is None:
                 break
             frames = self._take_frames(wait_s=0.02)
-            self._say(self._conversation.hear(frames, self._intake.vehicle, now_s), now_s)
+            self._say(self._conversation.hear(frames, self._intake.vehicle, now_s))
             records += self._records((frame.raw for frame in frames), now_s, _HEARD)
             records += self._records(sent, now_s, _SENT_BY_US)
         return bytes(records)
@@ -300,7 +299,7 @@ class Link:
             pieces = self._line.take(wait_s)
         except ConnectionCutError as cut:
             self._intake.forget_pieces()
-            self._say([self._watch.cut(str(cut), time.monotonic())], time.monotonic())
+            self._say([self._watch.cut(str(cut), time.monotonic())])
             return []
         return self._intake.take(pieces, time.monotonic()) if pieces else []
 
@@ -320,7 +319,7 @@ class Link:
         return texts
 
     def _talk(self, frames: list[Frame], now_s: float) -> list[bytes]:
-        self._say(self._conversation.hear(frames, self._intake.vehicle, now_s), now_s)
+        self._say(self._conversation.hear(frames, self._intake.vehicle, now_s))
         unix_s, reachable = now_s + self._unix_offset_s, self._reachable(now_s)
         return self._conversation.speak(self._intake.vehicle, reachable, now_s, unix_s, self._send)
 
@@ -348,5 +347,5 @@ class Link:
                 self._queue.put((self.newest_s, records), timeout=0.2)
                 return
 
-    def _say(self, texts: Iterable[str], now_s: float) -> None:
-        self._notices.extend(LinkNotice(now_s + self._unix_offset_s, printable(text)) for text in texts)
+    def _say(self, texts: Iterable[str]) -> None:
+        self._notices.extend(map(printable, texts))

@@ -51,8 +51,6 @@ class FrameCutter:
         self._in_step = True
         self.bad_crc = 0
         """Number of frames with a wrong checksum."""
-        self.garbage_bytes = 0
-        """Number of bytes outside any frame."""
 
     def feed(self, data: bytes) -> list[Frame]:
         """Process the next bytes, and return the frames that they complete."""
@@ -80,10 +78,8 @@ class FrameCutter:
         """Drop the byte at ``i``, and return the next place where a frame may start."""
         v1, v2 = buffer.find(MAGIC_V1, i + 1), buffer.find(MAGIC_V2, i + 1)
         found = [k for k in (v1, v2) if k >= 0]
-        following = min(found) if found else len(buffer)
-        self.garbage_bytes += following - i
         self._in_step = False
-        return following
+        return min(found) if found else len(buffer)
 
     def _check(self, buffer: bytes, i: int, total: int) -> Frame | None:
         signed = False

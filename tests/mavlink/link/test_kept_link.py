@@ -77,7 +77,7 @@ def test_what_arrives_while_the_process_is_dead_is_heard_by_the_next_one(
         kill(process.pid)
         vehicle.send(*(attitude(i) for i in range(100, 200)))
         assert heard(link, 100) == list(range(100, 200))
-        said = " ".join(notice.text for notice in link.take_notices())
+        said = " ".join(link.take_notices())
     assert "has ended and was started again; the recording goes on" in said
 
 
@@ -118,7 +118,7 @@ def test_a_process_that_hangs_is_told_of_and_replaced(
         assert heard(link, 100) == list(range(100, 200))
         assert process.pid != hung
         wait_until(lambda: not link.read(0.05) and link.statistics.unanswered_s < 0.5)
-        said = [notice.text for notice in link.take_notices()]
+        said = link.take_notices()
     assert "the process of the link has not answered for 0 s" in said
     assert "the process of the link answers again" in said
 

@@ -44,7 +44,7 @@ def vehicle(port: int) -> Iterator[UdpVehicle]:
 
 
 def notices(link: Link) -> str:
-    return "; ".join(notice.text for notice in link.take_notices())
+    return "; ".join(link.take_notices())
 
 
 def stamps(columns: list[Columns]) -> list[float]:
@@ -157,7 +157,6 @@ def test_a_serial_line_is_read_and_its_cable_may_be_pulled_and_plugged_in_again(
     with Link(f"serial://{device}:57600") as link:
         os.write(far, b"\x00\x01boot noise" + sender.pack(heartbeat()) + sender.pack(attitude(60)))
         wait_until(lambda: stamps(link.read()) == [60.0])
-        assert link.statistics.garbage_bytes == 12
         os.close(near)
         os.close(far)
         wait_until(lambda: not link.statistics.connected)
