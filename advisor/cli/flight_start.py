@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from advisor.cli.options import NEWEST
-from advisor.mavlink.link.keeping import Keeping, new_door
+from advisor.mavlink.link.keeping import Keeping
 from advisor.mavlink.link.link_process import LinkProcess, end
 from advisor.mavlink.link.recording_file import default_recording, recordings_folder, writable_folder
 from advisor.mavlink.link.running_links import RunningLink, running_alone
@@ -27,18 +27,6 @@ class Start:
     """Whether the recording exists and is appended to."""
     earlier: tuple[Path, ...] = ()
     """Logs of earlier flights of the campaign, only read."""
-
-
-@dataclass(frozen=True, slots=True)
-class Speaking:
-    """Messages that the advisor sends on the link: requests, announcements, signature."""
-
-    source_system: int
-    signing_key: bytes | None = None
-    request_rates: bool = False
-    announce: bool = False
-    announce_to: str | None = None
-    """Connection to a ground station for announcements. None: announcements go over the link."""
 
 
 def start_of(
@@ -95,7 +83,7 @@ def start_of(
 
 
 @contextmanager
-def started(start: Start, speaking: Speaking) -> Iterator[LinkProcess]:
+def started(start: Start, keeping: Keeping) -> Iterator[LinkProcess]:
     """Start the process of the link, or take over the running one. The process ends with the context.
 
     Raises
@@ -103,18 +91,6 @@ def started(start: Start, speaking: Speaking) -> Iterator[LinkProcess]:
     UnusableInputError
         The connection cannot be opened, or the recording cannot be made or taken up.
     """
-    keeping = Keeping(
-        start.campaign.master,
-        new_door(),
-        speaking.source_system,
-        start.campaign.target_system,
-        start.recording,
-        start.goes_on,
-        speaking.signing_key,
-        speaking.request_rates,
-        speaking.announce or speaking.announce_to is not None,
-        speaking.announce_to,
-    )
     running = _left_alone(start)
     if running is not None:
         keeping = replace(keeping, door=running.door)

@@ -94,8 +94,9 @@ def command(
     if asked.logs and resume is None:
         raise ConfigurationError(_without_resume(str(asked.logs[0])))
     from advisor.campaign.hand_decisions import NOTHING
-    from advisor.cli.flight_start import Speaking, start_of, started
+    from advisor.cli.flight_start import start_of, started
     from advisor.mavlink.link.connection import parse_connection
+    from advisor.mavlink.link.keeping import Keeping, new_door
     from advisor.mavlink.wire.signing import read_key
     from advisor.process.yaml_file import read_yaml
     from advisor.session.campaign_file import CampaignFile
@@ -109,11 +110,13 @@ def command(
     # A recording that exists and is not taken up is another flight's, and so are the decisions on it.
     mine = start.goes_on or not (start.recording and start.recording.exists())
     by_hand = NOTHING if asked.no_marks else _decided((*start.earlier, start.recording if mine else None))
-    speaking = Speaking(
-        source_system, read_key(signing_key) if signing_key else None, request_rates, announce, announce_to
-    )
+    keeping = Keeping(
+        start.campaign.master, new_door(), source_system, start.campaign.target_system, start.recording,
+        start.goes_on, read_key(signing_key) if signing_key else None, request_rates,
+        announce or announce_to is not None, announce_to,
+    )  # fmt: skip
     recordings: list[Path] = []
-    with in_order(partial(_ended, recordings)), started(start, speaking) as process:
+    with in_order(partial(_ended, recordings)), started(start, keeping) as process:
         recordings += [process.recording] if process.recording else []
         click.echo(_recorded(recordings), err=True)
         link = process.link(aircraft.elevator)
