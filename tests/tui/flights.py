@@ -168,7 +168,6 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
             Remaining(2, 4),
             "Z_delta_e",
             StepInput("3-2-1-1", 0.4, np.radians(15.0), nose_up_first=False),
-            np.radians(25.0),
         ),
         warnings=("Z_q is near zero: the criterion of Eq. (12) cannot fall for it.",),
     )
