@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.cli.batch_reports import ReportTask, page_of, write_reports
+from advisor.cli.batch_reports import page_of, write_reports
 from advisor.cli.options import UNUSABLE, aircraft_option, read_aircraft, refuse_unwritable_folder, writing
 from advisor.cli.report import refuse_missing_libraries
 from advisor.cli.running import Progress, runner_of, running_options
@@ -19,7 +19,6 @@ from advisor.words.problems import ConfigurationError, Problem, UnusableInputErr
 
 if TYPE_CHECKING:
     from advisor.batch.flight import Analyzed, BatchTask
-    from advisor.cli.batch_reports import Run as RunReports
 
     Run = Callable[[Sequence[BatchTask]], Iterator[tuple[BatchTask, Analyzed | Exception]]]
 
@@ -87,16 +86,9 @@ def command(
     with writing("-o", out):
         (out / KEPT).mkdir(parents=True, exist_ok=True)
         results |= _analyzed(tasks, out, run)
-        pages = _reports(tasks, results, out, partial(runner, page_of)) if with_reports else {}
+        usable = [task for task in tasks if results[task.log].usable]
+        pages = write_reports(usable, out, partial(runner, page_of)) if with_reports else {}
     return _told([results[log] for log in logs if log in results], out, pages)
-
-
-def _reports(
-    tasks: "Sequence[BatchTask]", results: "Mapping[Path, Analyzed]", out: Path, run: "RunReports"
-) -> Mapping[Path, str]:
-    """Write the pages of the logs that count, and return them by their log."""
-    usable = [task for task in tasks if results[task.log].usable]
-    return write_reports([ReportTask(t.log, t.aircraft, t.aircraft_path, t.key) for t in usable], out, run)
 
 
 def _tasks(

@@ -15,7 +15,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.batch.flight import Analyzed, BatchTask, failed, kept, sha256_of
 from advisor.batch.logs import AircraftMap, find_logs, read_map
 from advisor.batch.tables import aircraft_of, is_whole, mixed_up
-from advisor.cli.batch_reports import ReportTask, write_reports
+from advisor.cli.batch_reports import write_reports
 from advisor.process.tasks import processes
 from advisor.process.tasks.runner import run_here
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
@@ -310,14 +310,15 @@ def test_results_below_a_file_are_refused_in_one_sentence(
 
 def test_each_flight_that_counts_has_a_report_that_is_written_once(tmp_path: Path) -> None:
     log, other = tmp_path / "one.tlog", tmp_path / "two.tlog"
-    tasks = [ReportTask(one, Aircraft(), None, one.stem) for one in (log, other)]
+    tasks = [BatchTask(one, Aircraft(), "", one.stem) for one in (log, other)]
     asked: list[str] = []
 
-    def run(tasks: Sequence[ReportTask]) -> Iterator[tuple[ReportTask, str | Exception]]:
-        asked.extend(task.key for task in tasks)
+    def run(tasks: Sequence[BatchTask]) -> Iterator[tuple[BatchTask, str | Exception]]:
+        asked.extend(task.sha256 for task in tasks)
         yield from ((task, "page" if task.log == log else ValueError("no fit")) for task in tasks)
 
+    place = f"reports/{tasks[0].key}.html"
     for _ in range(2):
-        assert write_reports(tasks, tmp_path, run) == {log: "reports/one.html"}
-    assert (tmp_path / "reports/one.html").read_text() == "page"
+        assert write_reports(tasks, tmp_path, run) == {log: place}
+    assert (tmp_path / place).read_text() == "page"
     assert asked == ["one", "two", "two"]
