@@ -48,16 +48,6 @@ def test_what_a_user_s_simulator_does_beyond_its_surrogate_is_part_of_all_three_
     assert second.measured == pytest.approx(MEASURED[4:])
 
 
-def test_the_gap_of_each_manoeuvre_is_the_simulator_s_error_over_the_noise():
-    flights = [flown(3), flown(5)]
-    document = side_gap_document(replace(ANSWERED, traces=side_traces(ANSWERED, flights, flights)))
-    assert document["gap"]["by_maneuver"] == [
-        {"number": 3, "before": pytest.approx(3.0)},
-        {"number": 5, "before": pytest.approx(15.0)},
-    ]
-    assert document["gap"]["floor"] == {"p": 0.05}
-
-
 def test_without_a_diagnosis_there_is_no_curve():
     assert side_traces(replace(FOUND, diagnosis=None), [], []) == ()
     assert side_gap_document(FOUND)["traces"] == []

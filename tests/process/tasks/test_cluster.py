@@ -17,7 +17,14 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.batch.flight import BatchTask, analyze_shared, sha256_of
-from advisor.process.tasks.cluster import _connected, _named, _versions_on, compare_versions, run_on_cluster
+from advisor.process.tasks.cluster import (
+    _connected,
+    _named,
+    _pinned,
+    _versions_on,
+    compare_versions,
+    run_on_cluster,
+)
 from advisor.words.problems import ConfigurationError
 from tests.batch.test_command import folder as folder
 from tests.batch.test_command import in_this_process as in_this_process
@@ -134,11 +141,16 @@ def test_a_task_that_kills_every_worker_costs_itself_only(other_process: str) ->
     assert done == {1: 1, 2: 4}
 
 
-def test_linear_algebra_in_a_worker_has_one_thread(scheduler: str) -> None:
-    with threadpool_limits(2):
-        ((_, threads),) = run_on_cluster(threads_of_linear_algebra, [0], scheduler, pytest.fail)
+@pytest.mark.study
+def test_linear_algebra_in_a_worker_has_one_thread(other_process: str) -> None:
+    ((_, threads),) = run_on_cluster(threads_of_linear_algebra, [0], other_process, pytest.fail)
     assert isinstance(threads, list)
-    assert threads
+    assert set(threads) == {1}
+
+
+def test_a_task_has_one_thread_for_linear_algebra() -> None:
+    with threadpool_limits(2):
+        threads = _pinned(threads_of_linear_algebra, 0)
     assert set(threads) == {1}
 
 

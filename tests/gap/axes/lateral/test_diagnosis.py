@@ -14,7 +14,7 @@ from advisor.gap.alternative import Alternative, AlternativeEvidence, together
 from advisor.gap.axes.lateral import diagnosis
 from advisor.gap.axes.lateral import flight as flight_of_side
 from advisor.gap.axes.lateral.comparison import SideGap
-from advisor.gap.axes.lateral.diagnosis import SideCause, SideDiagnosis, diagnose_side
+from advisor.gap.axes.lateral.diagnosis import SideCause, SideDiagnosis, _gap, _sums, diagnose_side
 from advisor.gap.axes.lateral.evidence import Gain
 from advisor.gap.axes.lateral.fit import Fit, Free
 from advisor.gap.axes.lateral.flight import SideFlight, SideModel
@@ -237,6 +237,16 @@ def test_a_second_cause_is_as_probable_as_both_together(monkeypatch):
     monkeypatch.setattr(diagnosis, "_cause", lambda case, one, fit, tolerance, p, share, present: p)
     case = SimpleNamespace(fit=lambda *_: None)
     assert list(diagnosis._causes(case, found, None)) == [pytest.approx(0.9), pytest.approx(0.45)]
+
+
+def test_the_gap_of_an_output_and_of_a_manoeuvre_is_the_mean_square_error_over_the_noise_minus_one():
+    owner, channel = np.array([0, 0, 0, 0, 1, 1]), np.array([1, 1, 2, 2, 1, 1])
+    laid = SimpleNamespace(maneuvers=2, owner=owner, channel=channel)
+    error, noise = np.array([0.1, 0.1, 0.3, 0.3, 0.2, 0.2]), np.array([0.0, 0.05, 0.1, 0.1, 0.1])
+    fit = SimpleNamespace(assembly=laid, noise=noise, residual=error)
+    outputs, maneuvers_ = _gap(fit, _sums(fit, error**2))
+    assert outputs == {"r": pytest.approx(9.0), "bank": pytest.approx(8.0)}
+    assert maneuvers_ == [pytest.approx((3.0 + 8.0) / 2.0), pytest.approx(15.0)]
 
 
 def test_each_manoeuvre_has_its_gap_before_and_after():
