@@ -35,6 +35,8 @@ class Draft:
 def aircraft_text(draft: Draft) -> str:
     """Return the text of an aircraft file from its draft.
 
+    Returns
+    -------
     YAML that ``advisor.aircraft_file.read.parse_aircraft`` reads. A key without a value is a comment.
     """
     lines = [line for sentence in draft.head for line in _commented(sentence)]

@@ -13,6 +13,8 @@ from advisor.words.problems import ConfigurationError
 def ask() -> dict[str, Any]:
     """Ask for every key that a crew fills in.
 
+    Returns
+    -------
     Path of the key to its value; a key that the user does not know is missing.
 
     Raises

@@ -52,14 +52,17 @@ class Expectation:
 def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Expectation | None:
     """Return the expected errors of the eight parameters from one manoeuvre with this elevator.
 
-    None if the input cannot separate the parameters, or the model diverges.
-
     Parameters
     ----------
     theta
         Shape (8,): present estimate of the aircraft.
     elevator
         Elevator command including trim; the record begins in the model's equilibrium.
+
+    Returns
+    -------
+    Expectation or None
+        None if the input cannot separate the parameters, or the model diverges.
     """
     steps = dict(zip(("alpha", "q"), instruments.step_s, strict=True))
     if instruments.specific_force is not None:
@@ -87,8 +90,6 @@ def foresee(
 ) -> Expectation | None:
     """Return the expected errors of one manoeuvre at the stamps of an assembly.
 
-    None if the input cannot separate the parameters, or the model diverges.
-
     Parameters
     ----------
     theta
@@ -99,6 +100,11 @@ def foresee(
         Precision of the parameters before the flight, as in :func:`advisor.oem.covariance.influence`.
     extra
         Additional estimated parameters, such as a servo's lag.
+
+    Returns
+    -------
+    Expectation or None
+        None if the input cannot separate the parameters, or the model diverges.
     """
     sensitivities = np.empty((len(assembly.z), N_PARAMETERS))
     y = response_from_trim(theta, assembly, sensitivities)

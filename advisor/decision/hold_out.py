@@ -47,7 +47,11 @@ def predict_last(usable: Sequence[CandidateManeuver]) -> Mapping[str, PredictedO
     usable
         Manoeuvres, each with an estimate, in the order flown.
 
-    Prediction of each output by its name; empty with too few earlier manoeuvres, or for a diverging model.
+    Returns
+    -------
+    Mapping
+        Prediction of each output by its name; empty with too few earlier manoeuvres, or for a diverging
+        model.
     """
     last = usable[-1] if len(usable) > FEWEST else None
     if last is None or last.maneuver is None or not isinstance(last.estimate, Estimate):

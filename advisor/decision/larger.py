@@ -31,14 +31,17 @@ def larger_and_agreeing(
 ) -> Larger | None:
     """Return the newest manoeuvre's relative size if it is larger than the limit-setting one and predicted.
 
-    None if the manoeuvre is not larger at the printed precision, or contradicts the earlier ones.
-
     Parameters
     ----------
     history
         Manoeuvres up to the newest one, which the paper's rule ``course.plan.rule`` refused.
     accepted
         Whether the paper's rule accepts each manoeuvre.
+
+    Returns
+    -------
+    Larger or None
+        None if the manoeuvre is not larger at the printed precision, or contradicts the earlier ones.
     """
     before, newest = history[:-1], history[-1]
     setters = [i for i, flown in enumerate(before) if flown.usable]

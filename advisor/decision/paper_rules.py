@@ -92,8 +92,6 @@ deviation."""
 def scatter_by_parameter(theta: FloatArray, criterion: Criterion = "eq12") -> FloatArray:
     """Return the scatter of each parameter over a window of estimates, relative to its mean.
 
-    Shape (8,): relative scatter of each parameter. The scatter is infinite for a mean of exactly zero.
-
     Parameters
     ----------
     theta
@@ -102,6 +100,11 @@ def scatter_by_parameter(theta: FloatArray, criterion: Criterion = "eq12") -> Fl
         ``eq12``: 5·σ/|θ̄| with the sample standard deviation (n − 1 in its denominator).
         ``eq13``: 5·Σ(θ̂ − θ̄)²/(n·|θ̄|), the form that the paper prints. Eq. (13) is not dimensionless and
         depends on the parameters' units (rad and s here).
+
+    Returns
+    -------
+    FloatArray
+        Shape (8,): relative scatter of each parameter. The scatter is infinite for a mean of exactly zero.
     """
     mean = theta.mean(axis=0)
     spread = theta.std(axis=0, ddof=1) if criterion == "eq12" else theta.var(axis=0)

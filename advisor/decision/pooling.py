@@ -179,8 +179,11 @@ def pool(posteriors: Sequence[Posterior]) -> Posterior:
 def disagreement(one: Shared, other: Shared) -> tuple[float, int]:
     """Return the distance between two independent estimates of the derivatives.
 
-    Squared Mahalanobis distance over the derivatives known to both, and their number. The distance is
-    χ²-distributed with that many degrees of freedom if only noise separates both estimates.
+    Returns
+    -------
+    tuple of float and int
+        Squared Mahalanobis distance over the derivatives known to both, and their number. The distance is
+        χ²-distributed with that many degrees of freedom if only noise separates both estimates.
     """
     return _distance(one.theta - other.theta, information_of(one.covariance + other.covariance))
 

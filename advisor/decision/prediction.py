@@ -129,7 +129,10 @@ def missed_percent(
         Shape (6,): derivatives from the earlier manoeuvres and from the manoeuvre itself, at
         ``airspeed_m_s``.
 
-    Largest distance over all outputs. NaN for an unknown input or a diverging model.
+    Returns
+    -------
+    float
+        Largest distance over all outputs. NaN for an unknown input or a diverging model.
     """
     expected = response_to(flown, predicted, airspeed_m_s)
     actual = response_to(flown, found, airspeed_m_s)

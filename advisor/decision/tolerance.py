@@ -35,8 +35,11 @@ def tolerances(theta: FloatArray, prediction: Prediction, plan: CampaignPlan) ->
     δ fades linearly up to 3·δ. An entry of ``plan.tolerance`` replaces the computed tolerance. Noise is not
     included, because a bad manoeuvre must not widen a tolerance.
 
-    Shape (8,): tolerance in each parameter's unit. The tolerance is infinite for a derivative without effect
-    on the response.
+    Returns
+    -------
+    FloatArray
+        Shape (8,): tolerance in each parameter's unit. The tolerance is infinite for a derivative without
+        effect on the response.
     """
     size = np.abs(theta)
     tolerance: FloatArray = 0.01 * plan.tolerance_percent * SHARE * size

@@ -39,11 +39,6 @@ def kernel(**options: Any) -> Callable[[Function], Function]:
     Numba keeps machine code in ``NUMBA_CACHE_DIR``, next to the module, or in the user's own cache:
     the first that can be written to. Without such a folder each process compiles for itself.
 
-    Parameters
-    ----------
-    options
-        Options of ``numba.njit``, such as ``error_model`` and ``fastmath``.
-
     Returns
     -------
     The decorator of the function, whose own annotations stay.
@@ -96,10 +91,7 @@ class _Kept(_CacheFile):  # type: ignore[misc]
 def key_of(module: str) -> str:
     """Return the hash of the texts of an imported module and of all modules of its package that it imports.
 
-    Parameters
-    ----------
-    module
-        Name of a module that is being imported, directly or by another module's imports.
+    ``module``: name of a module that is being imported, directly or by another module's imports.
 
     Returns
     -------

@@ -106,8 +106,6 @@ class AsGiven:
 def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool = False) -> list[FloatArray]:
     """Return the simulator outputs minus those of a surrogate with equal effects, by manoeuvre.
 
-    A manoeuvre's α, q, a_z and θ on its grid, each of shape (4, n + 1).
-
     Parameters
     ----------
     replays
@@ -116,6 +114,10 @@ def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool 
         Shape (manoeuvres, entries): inputs of the surrogate, including effects around and in the simulator.
     held
         Whether the command was held between its stamps.
+
+    Returns
+    -------
+    A manoeuvre's α, q, a_z and θ on its grid, each of shape (4, n + 1).
     """
     problem = EffectProblem(flying.flights, p, held)
     found = []

@@ -48,7 +48,10 @@ class Showing:
     def newer(self, than: int, timeout_s: float) -> tuple[int, SessionReport] | None:
         """Wait for a report that is newer than a known one.
 
-        Newest report and its number. None when no newer picture came in time.
+        Returns
+        -------
+        tuple of int and Report, or None
+            Newest report and its number. None when no newer picture came in time.
         """
         with self._changed:
             self._changed.wait_for(lambda: self._number > than or self.failure is not None, timeout_s)

@@ -20,7 +20,10 @@ def distinct_texts(
     digits
         Fewest decimals (``f``) or significant digits (``g``).
 
-    Value and limit with equal numbers of digits. Texts are equal only where both agree to `MOST_DIGITS`.
+    Returns
+    -------
+    tuple of str
+        Value and limit with equal numbers of digits. Texts are equal only where both agree to `MOST_DIGITS`.
     """
     for more in (*range(digits, MOST_DIGITS), digits):
         texts = f"{value:.{more}{style}}", f"{limit:.{more}{style}}"

@@ -118,7 +118,10 @@ def respond(aircraft: ShortPeriod, elevator: FloatArray, state: FloatArray, step
 
     The matrix exponential of the system augmented by the input and its slope (Van Loan, 1978).
 
-    Shape (n, 2): α and q at the samples.
+    Returns
+    -------
+    FloatArray
+        Shape (n, 2): α and q at the samples.
     """
     p = aircraft
     augmented = np.zeros((5, 5))

@@ -23,14 +23,17 @@ messages give identity, mode and parameters of the vehicle."""
 def cut_tlog(log: Path, first: int, last: int) -> bytes:
     """Return the packets of a tlog between two positions, after the newest earlier heartbeats and parameters.
 
-    Whole records of the log, unchanged: time stamp and frame.
-
     Parameters
     ----------
     log
         A tlog, packed or not.
     first, last
         Positions of the first and the last packet's frame in the unpacked log, bytes.
+
+    Returns
+    -------
+    bytes
+        Whole records of the log, unchanged: time stamp and frame.
 
     Raises
     ------

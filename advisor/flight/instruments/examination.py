@@ -85,7 +85,10 @@ def _attitude_and_rate(work: Work) -> bool:
 def hold_rate(work: Work, known: Measured | None, rate: str, angle: str) -> str | None:
     """Compare a rate with its angle by the ratio of their movements, and report a wrong unit or scale.
 
-    None if sign and unit agree; the ratio in words for a reversed sign; else an empty string.
+    Returns
+    -------
+    str or None
+        None if sign and unit agree; the ratio in words for a reversed sign; else an empty string.
     """
     if known is None or not work.has(rate, angle):
         return None

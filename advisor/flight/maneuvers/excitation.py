@@ -60,7 +60,10 @@ def excitation(maneuver: Maneuver, loop: Loop = PITCH) -> Excitation | None:
         Record with the channels of the control and of the rate. Without the angle channel, the integral of
         the rate is used.
 
-    None if the rate is missing or never changes. The error is infinite for too few samples.
+    Returns
+    -------
+    Excitation or None
+        None if the rate is missing or never changes. The error is infinite for too few samples.
     """
     elevator, q = maneuver.channels.get(loop.control), maneuver.channels.get(loop.rate)
     if elevator is None or q is None or len(elevator) < 3 or len(q) < 3 or np.ptp(q.y) == 0.0:

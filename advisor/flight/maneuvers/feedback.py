@@ -36,8 +36,6 @@ def explained_by_feedback(
 ) -> float:
     """Return the share of a movement's variation that feedback of the motion explains, 0 to 1.
 
-    The share is 0 if the movement does not bring the pitch angle back to its earlier median.
-
     Parameters
     ----------
     elevator
@@ -49,6 +47,11 @@ def explained_by_feedback(
         Elevator's effect on the pitch rate. Only the sign is used; 0 means unknown.
     loop
         Another control, whose rate and angle replace q and θ.
+
+    Returns
+    -------
+    float
+        The share is 0 if the movement does not bring the pitch angle back to its earlier median.
     """
     moved = elevator.cut(span.start_s, span.end_s)
     if not {loop.rate, loop.angle} <= motion.keys() or effect == 0.0 or len(moved) < _FEWEST:

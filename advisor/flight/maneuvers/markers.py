@@ -102,8 +102,11 @@ def marked_span(mark: Mark, elevator: Channel | None) -> Span:
         Elevator from one lead-in before the mark to the mark's end, rad. None if the channel was not
         received.
 
-    Span whose record begins up to one lead-in before the mark. A constant elevator has no step, so its mark
-    has no input.
+    Returns
+    -------
+    Span
+        Span whose record begins up to one lead-in before the mark. A constant elevator has no step, so its
+        mark has no input.
     """
     if elevator is None:
         return Span(mark.start_s, mark.start_s, mark.end_s, mark.end_s, "other", (), MARKED[mark.by])

@@ -33,15 +33,18 @@ def median(x: FloatArray) -> float:
 def is_still(u: FloatArray, amplitude: float) -> bool:
     """Return whether the elevator is at rest in a window, relative to a movement of this amplitude.
 
-    True if spread and drift of the elevator in the window are small. White noise may have a spread up to
-    ``STILL_SPREAD``. The means over thirds show a drift in one direction.
-
     Parameters
     ----------
     u
         Shape (n,): elevator in the window, rad.
     amplitude
         Largest deviation of the movement, rad.
+
+    Returns
+    -------
+    bool
+        True if spread and drift of the elevator in the window are small. White noise may have a spread up to
+        ``STILL_SPREAD``. The means over thirds show a drift in one direction.
     """
     if len(u) < 3 or float(u.std()) > STILL_SPREAD * amplitude:
         return False
@@ -108,8 +111,6 @@ class Movement:
 def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | None) -> Movement | None:
     """Return a description of the movement in a stretch that begins at rest.
 
-    None if the elevator did not move.
-
     Parameters
     ----------
     t, u
@@ -118,6 +119,11 @@ def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | Non
         Level of the earlier rest, rad.
     rest
         Newest samples of ``u``, at which the elevator is at rest. None if the movement was cut off.
+
+    Returns
+    -------
+    Movement or None
+        None if the elevator did not move.
     """
     after = before if rest is None else median(rest)
     quiet = 0.0 if rest is None else float(np.std(rest))

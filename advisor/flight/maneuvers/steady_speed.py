@@ -31,9 +31,6 @@ def speed_before(airspeed: Channel, span: Span) -> float:
 def at_steady_speed(span: Span, airspeed: Channel | None, change_percent: float) -> Span:
     """Return the span up to the time at which the air speed leaves its value before the first step.
 
-    The span is unchanged if the speed leaves its limits during the input. A step held for the least free
-    response counts as an input with its response.
-
     Parameters
     ----------
     airspeed
@@ -41,6 +38,12 @@ def at_steady_speed(span: Span, airspeed: Channel | None, change_percent: float)
     change_percent
         Largest change of the air speed that the user allows, % of its value before the first step. The span
         ends at a change of ``FOLLOWED_PERCENT`` at the latest.
+
+    Returns
+    -------
+    Span
+        The span is unchanged if the speed leaves its limits during the input. A step held for the least free
+        response counts as an input with its response.
     """
     if airspeed is None or len(airspeed) < 2 or not (trim := speed_before(airspeed, span)) > 0.0:
         return span

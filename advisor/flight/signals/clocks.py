@@ -111,9 +111,6 @@ class BootClock:
 def place(ticks: IntArray, tick_s: float, master_s: FloatArray) -> FloatArray:
     """Return stamps of any counter of at least 32 bits on the master clock.
 
-    Shape (n,): vehicle times, s since boot. NaN if no number of wraps brings the stamp near the master clock,
-    as for another clock. The master clock replaces a stamp that is zero or a time of day.
-
     Parameters
     ----------
     ticks
@@ -122,6 +119,12 @@ def place(ticks: IntArray, tick_s: float, master_s: FloatArray) -> FloatArray:
         Length of a tick, s.
     master_s
         Shape (n,): master clock at the arrival of each message, s since boot.
+
+    Returns
+    -------
+    FloatArray
+        Shape (n,): vehicle times, s since boot. NaN if no number of wraps brings the stamp near the master
+        clock, as for another clock. The master clock replaces a stamp that is zero or a time of day.
     """
     wrap_s = 2.0**32 * tick_s
     raw_s = ticks.astype(np.float64) * tick_s

@@ -69,6 +69,8 @@ class SearchStep:
 def own_eliminated(block: Linear, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the normal equations of one manoeuvre without its nuisance parameters (Schur complement).
 
+    Returns
+    -------
     Shape (k + 1, k + 1), with the residual as last row and column. The second result is the response of the
     nuisance parameters, shape (m, k + 1).
     """

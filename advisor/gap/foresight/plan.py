@@ -52,6 +52,8 @@ def foresee_plan(
 ) -> list[Foreseen]:
     """Return for every effect the smallest size that a plan could detect, and the similar effects.
 
+    Returns
+    -------
     One entry for each effect of the catalogue, in its order.
 
     Raises

@@ -79,9 +79,6 @@ def speed_error_factors(
 ) -> list[FloatArray]:
     """Return the uncertainty of level, slope and curvature of each manoeuvre's air speed due to sensor noise.
 
-    Per manoeuvre a factor of the covariance of the three coefficients, shape (3, 3), m/s. Time runs from -1
-    at the start of the record to 1 at its end. Shape (0, 0) where the samples are too few.
-
     Parameters
     ----------
     stamps, residuals
@@ -89,6 +86,11 @@ def speed_error_factors(
         the smoothed air speed. Size and correlation of the noise are estimated over all manoeuvres.
     durations_s
         Length of each manoeuvre's record, s.
+
+    Returns
+    -------
+    Per manoeuvre a factor of the covariance of the three coefficients, shape (3, 3), m/s. Time runs from -1
+    at the start of the record to 1 at its end. Shape (0, 0) where the samples are too few.
     """
     spare = sum(max(len(e) - 3, 0) for e in residuals)
     power = sum(float(e @ e) for e in residuals)

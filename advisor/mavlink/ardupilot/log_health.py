@@ -88,8 +88,11 @@ def sweeps(tables: Mapping[str, RecordTable]) -> Iterator[Said]:
 def lost_texts(tables: Mapping[str, RecordTable]) -> Iterator[tuple[int, int, bytes]]:
     """Yield the begin and end texts of sweeps that MSG lacks, according to SIDS.
 
-    Each entry is the record's position in the file, its time in us since boot, and the text. A sweep without
-    a sample in SIDD has no known end, and yields no text.
+    Yields
+    ------
+    tuple of int, int and bytes
+        Each entry is the record's position in the file, its time in us since boot, and the text. A sweep
+        without a sample in SIDD has no known end, and yields no text.
     """
     if not {"SIDS", "SIDD"} <= tables.keys() or _told(tables) >= len(tables["SIDS"]):
         return

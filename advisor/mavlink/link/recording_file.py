@@ -19,14 +19,17 @@ _TAIL_BYTES = 65_536
 def default_recording(folder: Path | None = None, now: datetime | None = None) -> Path:
     """Return the path of a recording that the user does not name.
 
-    One file for each flight, named by the start in UTC.
-
     Parameters
     ----------
     folder
         Folder of the recording; None for the user's recordings folder.
     now
         Start of the flight; None for this moment.
+
+    Returns
+    -------
+    Path
+        One file for each flight, named by the start in UTC.
     """
     stamp = (now or datetime.now(UTC)).strftime("%Y-%m-%dT%H-%M-%SZ")
     return (folder or recordings_folder()) / f"{stamp}.tlog"

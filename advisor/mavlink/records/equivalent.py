@@ -99,14 +99,17 @@ def system_id(parameter: object) -> int:
 def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:
     """Return the newest of ``values`` before each index ``at``.
 
-    NaN before the first value.
-
     Parameters
     ----------
     at : shape (n,)
         Arrival indices at which values are needed.
     order, values : shape (m,)
         Rising arrival indices, and the values that arrived there.
+
+    Returns
+    -------
+    shape (n,)
+        NaN before the first value.
     """
     known = np.concatenate([[np.nan], np.asarray(values, dtype=np.float64)])
     return known[np.searchsorted(order, at, side="right")]

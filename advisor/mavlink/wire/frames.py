@@ -100,7 +100,10 @@ class FrameScanner:
     def feed(self, data: bytes) -> list[Columns]:
         """Process the next bytes of the stream, and return the messages that they complete.
 
-        One column set per message and sender; ``order`` is the frame's position in the stream, bytes.
+        Returns
+        -------
+        list of Columns
+            One column set per message and sender; ``order`` is the frame's position in the stream, bytes.
         """
         return self._scan(self._tail + data, final=False)
 

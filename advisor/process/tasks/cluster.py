@@ -166,7 +166,10 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
     here
         Version of each package; None for a missing package.
 
-    A caution in one sentence; empty if all versions are equal.
+    Returns
+    -------
+    str
+        A caution in one sentence; empty if all versions are equal.
 
     Raises
     ------

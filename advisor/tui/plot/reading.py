@@ -14,7 +14,10 @@ _DIGITS = 4
 def readings(chart: Chart, y_axis: Axis | LogAxis) -> list[str]:
     """Write the value of each series at the chart's cursor; nothing where no sample is near.
 
-    One text a series, in order; all empty without a cursor.
+    Returns
+    -------
+    list of str
+        One text a series, in order; all empty without a cursor.
     """
     if chart.cursor is None:
         return [""] * len(chart.series)
