@@ -50,8 +50,9 @@ async def test_no_pane_is_blank_and_every_axis_carries_its_unit_at_any_size(stat
     async with stage(state, size=size, settings=Settings(screen="engineer")) as here:
         for key, _ in keys.PANES[1:]:
             await here.press(key)
+            # A busy machine lays a pane out after it is shown.
+            await here.until(lambda: all(inside(here, pane) for pane in panes(here)))
             for pane in panes(here):
-                assert inside(here, pane), (pane, pane.region)
                 said = [str(w.render()) for w in pane.query(Lines) if shown(w)]
                 said += [text(plot) for plot in pane.query(Plot) if shown(plot)]
                 said += [str(pane.border_subtitle)]
