@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal, TypeVar
+from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -98,6 +98,16 @@ def side_traces(found: SideGap, flown: Sequence[Maneuver], compared: Sequence[Ma
     return tuple(traces)
 
 
+class AxisFlown(NamedTuple):
+    """The axis that the logs let a diagnosis judge, with what was read to decide it."""
+
+    axis: Literal["pitch", "lateral"]
+    elevator: GapFlights | None
+    """Manoeuvres of the elevator, if they can be read."""
+    state: CampaignState | None = None
+    """State of the campaign with both axes, if the axis is lateral."""
+
+
 def axis_flown(
     logs: Sequence[Path],
     aircraft: Aircraft,
@@ -105,8 +115,8 @@ def axis_flown(
     by_hand: Sequence[ByHand] = (),
     marks: Sequence[Mark] = (),
     no_marks: bool = False,
-) -> tuple[Literal["pitch", "lateral"], GapFlights | None]:
-    """Return the axis for the diagnosis, and the elevator's manoeuvres if they can be read.
+) -> AxisFlown:
+    """Return the axis for the diagnosis, with what was read on the way.
 
     The axis is pitch, unless the elevator has no accepted manoeuvre and aileron or rudder has one.
     """
@@ -115,14 +125,15 @@ def axis_flown(
         flown = maneuvers_of(logs, aircraft, target_system, by_hand)
         chosen = without_refused(flown.maneuvers, aircraft)
         if len(chosen.although_refused) < len(chosen.maneuvers):
-            return "pitch", flown
+            return AxisFlown("pitch", flown)
     except UnusableInputError:
         pass  # The diagnosis of pitch gives the reason, where roll and yaw have no manoeuvre either.
     try:
-        accepted_of(read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral").state)
+        state = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral").state
+        accepted_of(state)
     except UnusableInputError:
-        return "pitch", flown
-    return "lateral", flown
+        return AxisFlown("pitch", flown)
+    return AxisFlown("lateral", flown, state)
 
 
 def beside_simulator(

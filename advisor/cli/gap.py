@@ -23,7 +23,7 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 
 if TYPE_CHECKING:
     from advisor.aircraft.aircraft import Aircraft
-    from advisor.analysis.gap import GapFlights
+    from advisor.analysis.side_gap import AxisFlown
     from advisor.campaign.hand_decisions import ByHand
     from advisor.exports.models.flown import FlownModel, SideModel
     from advisor.exports.models.formats import AxisAsked
@@ -168,14 +168,14 @@ def command(
     orders = orders_of(exports, aircraft, [*asked.inputs, out], axis or "pitch")  # before the logs are read
     decided = [decided_on(log, asked.no_marks) for log in asked.logs]
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
-    flown = None
+    flown = state = None
     if axis is None and not (holdout or everything):
-        axis, flown = _axis_flown(asked, aircraft, by_hand)
+        axis, flown, state = _axis_flown(asked, aircraft, by_hand)
     if axis == "lateral":
         orders = orders_of(exports, aircraft, [*asked.inputs, out], axis)
         from advisor.cli.side_gap import compare_lateral
 
-        return compare_lateral(asked, aircraft, as_json, prior, out, orders, proving, why, figure)
+        return compare_lateral(asked, aircraft, as_json, prior, out, orders, proving, why, figure, state)
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.exports.models.flown import FlownModel
     from advisor.gap.inference.prior import FIELD, field_prior
@@ -238,20 +238,16 @@ def command(
     return USAGE if any(one.problem for one in outcomes) else 0
 
 
-def _axis_flown(
-    asked: LogsAsked, aircraft: "Aircraft", by_hand: "Sequence[ByHand]"
-) -> "tuple[AxisAsked, GapFlights | None]":
-    """Return the axis to diagnose, said where it is not pitch, and the elevator's manoeuvres."""
+def _axis_flown(asked: LogsAsked, aircraft: "Aircraft", by_hand: "Sequence[ByHand]") -> "AxisFlown":
+    """Return the axis to diagnose, said where it is not pitch, with what was read."""
     from advisor.analysis.side_gap import axis_flown
 
     with Stages() as tell:
         tell("reading", 0.0)
-        axis, flown = axis_flown(
-            asked.logs, aircraft, asked.target_system, by_hand, asked.marks, asked.no_marks
-        )
-    if axis == "lateral":
+        found = axis_flown(asked.logs, aircraft, asked.target_system, by_hand, asked.marks, asked.no_marks)
+    if found.axis == "lateral":
         click.echo(_LATERAL, err=True)
-    return axis, flown
+    return found
 
 
 def compared_or_code(part: str, compare: "Callable[[], Found]", as_json: bool) -> "Found | int":

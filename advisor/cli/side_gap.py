@@ -9,8 +9,9 @@ from pathlib import Path
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.side_gap import SideCompared, accepted_of, compare_side_logs
+from advisor.analysis.side_gap import SideCompared, accepted_of, compare_side_flown, compare_side_logs
 from advisor.analysis.whole_flights import read_whole
+from advisor.campaign.state import CampaignState
 from advisor.cli.gap import compared_or_code, write_improved
 from advisor.cli.gap_figure import write_figure
 from advisor.cli.improvement_export import listed, write_exports
@@ -41,14 +42,20 @@ def compare_lateral(
     proving: Sequence[str] = (),
     why: bool = False,
     figure: Path | None = None,
+    state: CampaignState | None = None,
 ) -> int:
-    """Compare roll and yaw of the aircraft file with the flight, print the result and write the files."""
+    """Compare roll and yaw of the aircraft file with the flight, print the result and write the files.
+
+    ``state``: the logs' campaign with both axes, if they are already read.
+    """
     shares = FIELD if prior is None else field_prior(prior)
     with Stages() as tell:
-        tell("reading", 0.0)
-        compared = compared_or_code(
-            "lateral, diagnosis",
-            lambda: compare_side_logs(
+
+        def compare() -> SideCompared:
+            if state is not None:
+                return compare_side_flown(state, aircraft, shares, tell)
+            tell("reading", 0.0)
+            return compare_side_logs(
                 asked.logs,
                 aircraft,
                 asked.target_system,
@@ -56,9 +63,9 @@ def compare_lateral(
                 no_marks=asked.no_marks,
                 prior=shares,
                 progress=tell,
-            ),
-            as_json,
-        )
+            )
+
+        compared = compared_or_code("lateral, diagnosis", compare, as_json)
     if isinstance(compared, int):
         return compared
     proof = proof_of(proving, partial(_prove, asked, compared, shares))

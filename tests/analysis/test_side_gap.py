@@ -5,9 +5,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import side_gap
+from advisor.cli import side_gap as side_gap_command
+from advisor.cli.group import advisor
 from advisor.gap.axes.lateral.comparison import SideGap
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
@@ -116,3 +119,23 @@ def test_the_axis_is_pitch_unless_roll_and_yaw_alone_have_accepted_manoeuvres(
         lambda m, _: SimpleNamespace(maneuvers=m, although_refused=tuple(range(refused))),
     )
     assert side_gap.axis_flown([Path("a.tlog")], Aircraft())[0] == axis
+
+
+def test_a_flight_that_roll_and_yaw_answer_is_read_once(monkeypatch):
+    state, compared = SimpleNamespace(), []
+
+    def no_elevator(*_):
+        raise UnusableInputError("no_maneuver", "none", "fly")
+
+    def compare(found, *_):
+        compared.append(found)
+        raise UnusableInputError("no_gap", "nothing to compare", "fly")
+
+    monkeypatch.setattr(side_gap, "maneuvers_of", no_elevator)
+    monkeypatch.setattr(side_gap, "read_whole", lambda *_, **__: SimpleNamespace(state=state))
+    monkeypatch.setattr(side_gap, "accepted_of", lambda _: [0])
+    monkeypatch.setattr(side_gap_command, "read_whole", None)
+    monkeypatch.setattr(side_gap_command, "compare_side_logs", None)
+    monkeypatch.setattr(side_gap_command, "compare_side_flown", compare)
+    CliRunner().invoke(advisor, ["gap", "logs/bundled-demo.tlog"])
+    assert compared == [state]
