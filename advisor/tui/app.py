@@ -21,12 +21,11 @@ from advisor.session.source import Tempo
 from advisor.session.view import SideView, View, view_before_first
 from advisor.tui import keys
 from advisor.tui.actions import LINK_ACTIONS, REPLAY_ACTIONS, HandActions, LinkActions, ReplayActions
-from advisor.tui.explaining import commands, explanation
+from advisor.tui.explaining import Explain, commands, explanation
 from advisor.tui.garbage_collection import Garbage
 from advisor.tui.panes.flight import WholeFlightPane
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.screens.engineer import EngineerScreen
-from advisor.tui.screens.explain import Explain
 from advisor.tui.screens.face import Face
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings

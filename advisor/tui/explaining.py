@@ -1,16 +1,18 @@
-"""Keys that work now, and the help for the focused pane."""
+"""Keys that work now, and the help for the focused pane with its page."""
 
 import re
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 from rich.style import Style
 from rich.text import Text
-from textual.app import App, SystemCommand
-from textual.binding import Binding
-from textual.screen import Screen
+from textual.app import App, ComposeResult, SystemCommand
+from textual.binding import Binding, BindingType
+from textual.containers import VerticalScroll
+from textual.screen import ModalScreen, Screen
+from textual.widgets import Static
 
 from advisor.tui.keys import ACTIONS, ENGINEER
 
@@ -112,3 +114,18 @@ def _append_marked(page: Text, line: str) -> None:
         page.append(mark[kind], _STYLES[kind])
         end = mark.end()
     page.append(line[end:])
+
+
+class Explain(ModalScreen[None]):
+    """Shows a text. Each of the keys escape, q and ? closes the page."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,question_mark", "dismiss", "Close")]
+
+    def __init__(self, page: Text) -> None:
+        super().__init__()
+        self._page = page
+
+    def compose(self) -> ComposeResult:
+        """Yield the text in a scrolling container."""
+        with VerticalScroll(id="help"):
+            yield Static(self._page)

@@ -12,9 +12,9 @@ from rich.console import Console
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.cli.group import advisor
+from advisor.gap.candidates.distinguish import need_of
 from advisor.gap.diagnose import diagnose
 from advisor.gap.effects import EFFECTS
-from advisor.gap.foresight.needs import need_of
 from advisor.gap.foresight.plan import foresee_flights, foresee_plan
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import prior_derivatives

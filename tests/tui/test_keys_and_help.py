@@ -9,12 +9,11 @@ from textual.widgets import DataTable, Static
 from advisor.session.replay import LogPlayer
 from advisor.session.source import LinkHealth
 from advisor.tui import keys
-from advisor.tui.explaining import keys_at_hand
+from advisor.tui.explaining import Explain, keys_at_hand
 from advisor.tui.panes.ask import Ask
 from advisor.tui.panes.pane import Pane
 from advisor.tui.panes.status_line import KeysLine
 from advisor.tui.screens.engineer import PANES, EngineerScreen
-from advisor.tui.screens.explain import Explain
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings
 from advisor.words.vehicle_time import clock

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.candidates.distinguish import way_to_distinguish
+from advisor.gap.candidates.distinguish import ONE_IMU, OTHERWISE, hidden_from, need_of, way_to_distinguish
 from advisor.gap.decision import LEAST_GAIN, LEAST_SIGMA
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.foresight.needs import ONE_IMU, OTHERWISE, hidden_from, need_of
 from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.floor import floor_margins

@@ -16,13 +16,12 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.alpha_offset import least_offset_rad
-from advisor.gap.candidates.distinguish import way_to_distinguish
+from advisor.gap.candidates.distinguish import need_of, way_to_distinguish
 from advisor.gap.decision import CERTAIN
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.linear import pulse_response
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.foresight.foresee import Foreseen, Signature
-from advisor.gap.foresight.needs import need_of
 from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.noise.probes import disturbance_columns
 from advisor.gap.records.flights import SPEED_CHANGE, PreparedManeuver, PreparedManeuvers
