@@ -50,7 +50,8 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
         Lists every mistake with its path, e.g. ``elevator.calibration[1]``.
     """
     reader = _reader()
-    content = _without_empty(content)
+    # "elevator:" with nothing under it is a section that the user leaves for later.
+    content = {k: v for k, v in content.items() if v is not None} if isinstance(content, dict) else content
     mistakes: list[str] = []
     while True:
         try:
@@ -77,11 +78,6 @@ def aircraft_schema() -> dict[str, Any]:
     schema = _reader().json_schema()
     schema["properties"]["effects"] |= effects_schema()
     return schema
-
-
-def _without_empty(content: Any) -> Any:
-    # "elevator:" with nothing under it is a section that the user leaves for later.
-    return {k: v for k, v in content.items() if v is not None} if isinstance(content, dict) else content
 
 
 def _without(content: Any, locations: list[tuple[int | str, ...]]) -> Any:

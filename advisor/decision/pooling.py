@@ -141,11 +141,6 @@ def _covariances(estimates: Sequence[Estimate]) -> FloatArray:
     return np.array([e.own_covariance_cr * np.outer(median, median) for e in estimates])
 
 
-def pool_shared(posteriors: Sequence[Posterior]) -> Shared:
-    """Return the information-weighted mean of the derivatives of at least one estimate."""
-    return _Summed.of(posteriors).pooled().shared
-
-
 def pool(posteriors: Sequence[Posterior]) -> Posterior:
     """Return the information-weighted mean of several estimates, each with separate intercepts.
 
@@ -158,7 +153,7 @@ def pool(posteriors: Sequence[Posterior]) -> Posterior:
     posteriors
         At least one estimate.
     """
-    shared, names = pool_shared(posteriors), posteriors[0].names
+    shared, names = _Summed.of(posteriors).pooled().shared, posteriors[0].names
     d, c = _places(names)
     n, values = len(posteriors), np.array([posterior.theta for posterior in posteriors])
     covariances = np.array([posterior.covariance for posterior in posteriors])

@@ -78,19 +78,15 @@ def read_campaign(recording: Path) -> CampaignFile | None:
     if not path.exists():
         return None
     content = read_yaml(path, "Fix the file, or move it away and give the options again.")
-    if not _is_campaign(content):
-        raise ConfigurationError(
-            f"{path}: must hold master and may hold {', '.join(_KEYS[1:])}. Move the file away and give the "
-            "options again."
-        )
-    return CampaignFile(**content)
-
-
-def _is_campaign(content: Any) -> bool:
-    return (
+    if not (
         isinstance(content, dict)
         and set(content) <= set(_KEYS)
         and isinstance(content.get("master"), str)
         and content.get("rule") in (None, *get_args(Rule))
         and isinstance(content.get("target_system", 1), int)
-    )
+    ):
+        raise ConfigurationError(
+            f"{path}: must hold master and may hold {', '.join(_KEYS[1:])}. Move the file away and give the "
+            "options again."
+        )
+    return CampaignFile(**content)

@@ -31,7 +31,9 @@ class Sheets:
     """The style sheets of all themes."""
 
     def __init__(self, themes: Sequence[Theme]) -> None:
-        self._sheets = {theme.name: Sheet(_variables(theme)) for theme in themes}
+        self._sheets = {
+            theme.name: Sheet({**theme.to_color_system().generate(), **theme.variables}) for theme in themes
+        }
 
     def of(self, theme: str, now: Stylesheet) -> Sheet:
         """Return the sheet of a theme, with everything that the present sheet has read, in equal order."""
@@ -47,8 +49,3 @@ class Sheets:
         if theme is not None:
             self.of(theme, now).parse()
         return theme is not None
-
-
-def _variables(theme: Theme) -> dict[str, str]:
-    """Return the variables of a theme, as `App.get_css_variables` returns them for the present theme."""
-    return {**theme.to_color_system().generate(), **theme.variables}

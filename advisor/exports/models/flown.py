@@ -25,7 +25,6 @@ from advisor.gap.result import Diagnosis, Value
 from advisor.model.axes.lateral import LATERAL, Trim
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.solution import WITHOUT_FORCE
-from advisor.oem.estimate import Estimate
 from advisor.process.atomic_file import write_atomically
 from advisor.report.improved import file_content, improved_file, text_of
 from advisor.report.qualities import trim_of
@@ -153,16 +152,14 @@ def _pitch(state: CampaignState, aircraft: Aircraft) -> Improvement | None:
         model={name: Value(value, std) for name, value, std in values},
         prior=aircraft.model,
         airspeed_m_s=estimate.airspeed_m_s,
-        servo=replace(servo_of(aircraft.elevator, {}), lag_s=_lag_of(estimate, aircraft)),
+        servo=replace(
+            servo_of(aircraft.elevator, {}), lag_s=estimate.servo_lag_s or aircraft.elevator.lag_s or 0.0
+        ),
         effects={},
         reference=aircraft.reference,
         elevator=aircraft.elevator,
         air=air_flown(joined, aircraft.reference.air_temperature_c),
     )
-
-
-def _lag_of(estimate: Estimate, aircraft: Aircraft) -> float:
-    return estimate.servo_lag_s or aircraft.elevator.lag_s or 0.0
 
 
 def side_flown(lateral: LateralState | None, aircraft: Aircraft) -> SideModel | None:

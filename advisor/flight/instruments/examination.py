@@ -35,7 +35,6 @@ from advisor.flight.instruments.examined import (
     with_error,
 )
 from advisor.flight.instruments.measured import ANY, Evidence, Measured, Weighed, weigh
-from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 
 _GYRO_WIDTH = 0.05
@@ -236,7 +235,9 @@ def _clock_of_force(work: Work, told: Mapping[str, Measured]) -> bool:
         return True
     # A force as late as the pitch rate would have shown: nothing else but the pitch rate is late.
     if late_rate is not None and exact and most is not None and SIGMAS * most.std < FILTER_S + range_s:
-        work.findings[work.findings.index(late_rate)] = _used(late_rate)
+        work.findings[work.findings.index(late_rate)] = replace(
+            late_rate, used=True, text=late_rate.text + ALLOWED
+        )
     return False
 
 
@@ -294,7 +295,3 @@ def _name_speed(work: Work, weighed: Weighed, known: Measured, by: str) -> None:
             "airspeed", "unit", "m/s", weighed.best, known, f"the air speed is in {weighed.best}: {told_so}",
             "send the air speed in m/s",
         )  # fmt: skip
-
-
-def _used(finding: InstrumentFinding) -> InstrumentFinding:
-    return replace(finding, used=True, text=finding.text + ALLOWED)

@@ -89,7 +89,7 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
     power = np.mean(before / floor**2, axis=1)
     loudest = np.argsort(-power, kind="stable")[:AIR_MANEUVERS]
     found = _moving_in(problem, fitted, loudest)
-    if found.gain < CERTAIN and _stands_out(power):
+    if found.gain < CERTAIN and np.max(power) > _STANDS_OUT * np.median(power):
         found = _moving_in(problem, fitted, loudest[:1])
     # A gain that coloured instruments bring alone gives a gust angle of zero, and is no moving air.
     nothing = SoughtAir(found.gain)
@@ -121,11 +121,6 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
         instruments=instruments,
     )  # fmt: skip
     return replace(nothing, found=air)
-
-
-def _stands_out(powers: FloatArray) -> bool:
-    """Return whether the largest power, of shape (manoeuvres,), far exceeds the median."""
-    return bool(np.max(powers) > _STANDS_OUT * np.median(powers))
 
 
 def _moving_in(problem: EffectProblem, fitted: EffectFit, maneuvers: Iterable[int]) -> Turbulence:
