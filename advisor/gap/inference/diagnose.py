@@ -110,13 +110,16 @@ def _with_offset(
     told = [row for row in rows if row.alternative == NONE]
     share = float(np.log(prior.effect / max(names, 1) / prior.none))
     return [
-        *(_gaining(row, max(0.0, gain + share)) if row.alternative != NONE else row for row in rows),
-        *(relabelled(_gaining(row, gain + share), stated_as("alpha_bias")) for row in told),
+        *(
+            _gaining(row, "offset", max(0.0, gain + share)) if row.alternative != NONE else row
+            for row in rows
+        ),
+        *(relabelled(_gaining(row, "offset", gain + share), stated_as("alpha_bias")) for row in told),
     ]
 
 
-def _gaining(row: Row[PitchModel], nats: float) -> Row[PitchModel]:
-    return replace(row, terms={**row.terms, "offset": nats})
+def _gaining(row: Row[PitchModel], term: str, nats: float) -> Row[PitchModel]:
+    return replace(row, terms={**row.terms, term: nats})
 
 
 def _known_air(problem: EffectProblem, aircraft: Aircraft) -> float:
@@ -142,7 +145,7 @@ def _with_air(
         by_air = whole_gap(left, floor) - whole_gap(np.minimum(beyond, left), floor)
         return whole_gap(plain.held_out.mean_square, floor) - whole_gap(left, floor) < by_air
 
-    return [relabelled(row, name) if outweighed(row) else row for row in rows]
+    return [_gaining(relabelled(row, name), "steady", air.steady) if outweighed(row) else row for row in rows]
 
 
 def floor_of(problem: EffectProblem, last: EffectFit, held_out: HeldOut) -> FloatArray:

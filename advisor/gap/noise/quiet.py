@@ -24,7 +24,7 @@ from advisor.gap.noise.stamps import stamp_variance
 from advisor.gap.records.floor import stated_floor
 from advisor.gap.simulator.layout import DERIVATIVES, OUTPUTS, SPEED, short_period
 from advisor.oem.innovations import AirModel
-from advisor.oem.turbulence import Rows, cost_of, find_turbulence, spread_of
+from advisor.oem.turbulence import Rows, Turbulence, cost_of, find_turbulence, spread_of
 
 _LEAST_SAMPLES = 50
 """Record: least number of a channel's samples in quiet stretches for an estimate of its noise."""
@@ -64,21 +64,31 @@ def whitening_of(problem: EffectProblem, fitted: EffectFit, first_look: bool = F
 
 def noise_in_quiet(problem: EffectProblem, fitted: EffectFit) -> AirModel | None:
     """Return coloured instruments or moving air in quiet stretches; None for white noise."""
-    if not problem.flights.shows_air:
-        return None
-    parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, fitted, i)]
-    rows = _without_offsets(parts)
+    rows = quiet_rows(problem, fitted)
     if not rows:
         return None
-    white = instrument_noise(problem)
-    system = system_of(problem, fitted)
-    # A gust in a quiet stretch does not represent the noise of the flight.
-    loud = np.array([float(np.mean((r.residual / white[r.channel]) ** 2)) for r in rows])
-    rows = [r for r, power in zip(rows, loud, strict=True) if power <= _LONE * np.median(loud)]
-    found = find_turbulence(rows, system, white, bool(_seen(problem)))
-    plain = cost_of(rows, system, AirModel.still(spread_of(rows)))
-    gain = 0.5 * (plain - cost_of(rows, system, found.air))
+    found = air_in_quiet(problem, fitted, rows)
+    plain = cost_of(rows, system_of(problem, fitted), AirModel.still(spread_of(rows)))
+    gain = 0.5 * (plain - cost_of(rows, system_of(problem, fitted), found.air))
     return with_floor(problem, found.air) if gain > LEAST_GAIN else None
+
+
+def quiet_rows(problem: EffectProblem, fitted: EffectFit) -> list[Rows]:
+    """Return the residuals of the quiet stretches without offsets; empty where the records show no air."""
+    if not problem.flights.shows_air:
+        return []
+    parts = [part for i in range(len(problem.flights)) for part in _quiet_parts(problem, fitted, i)]
+    rows = _without_offsets(parts)
+    # A gust in a quiet stretch does not represent the noise of the flight.
+    white = instrument_noise(problem)
+    loud = np.array([float(np.mean((r.residual / white[r.channel]) ** 2)) for r in rows])
+    return [r for r, power in zip(rows, loud, strict=True) if power <= _LONE * np.median(loud)]
+
+
+def air_in_quiet(problem: EffectProblem, fitted: EffectFit, rows: Sequence[Rows]) -> Turbulence:
+    """Return the noise models of quiet stretches, with and without moving air."""
+    white = instrument_noise(problem)
+    return find_turbulence(rows, system_of(problem, fitted), white, bool(_seen(problem)))
 
 
 def loudness(problem: EffectProblem, fitted: EffectFit) -> float:

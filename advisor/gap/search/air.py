@@ -16,7 +16,14 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.probes import KNOTS_S, DisturbanceCourse, disturbance_courses
-from advisor.gap.noise.quiet import instrument_noise, rows_of, system_of, with_floor
+from advisor.gap.noise.quiet import (
+    air_in_quiet,
+    instrument_noise,
+    quiet_rows,
+    rows_of,
+    system_of,
+    with_floor,
+)
 from advisor.gap.noise.shown_gust import largest_gust
 from advisor.model.response import OUTPUTS
 from advisor.oem.turbulence import Turbulence, find_turbulence
@@ -64,6 +71,8 @@ class MovingAir:
     channels' units."""
     instruments: FloatArray
     """Shape (channels,): instrument noise in addition to moving air."""
+    steady: float
+    """Log density, nats, at most 0, of air that is stronger in the manoeuvres than in the quiet stretches."""
 
     @property
     def is_natural(self) -> bool:
@@ -118,9 +127,29 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
         gust=gust, gust_number=flight.number,
         gust_angle=float(course.knots[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
         mean_square_beyond_air=_mean_square(problem, course.residuals), residuals=course.residuals,
-        instruments=instruments,
+        instruments=instruments, steady=0.0 if gust else _steady(problem, fitted, found),
     )  # fmt: skip
     return replace(nothing, found=air)
+
+
+def _steady(problem: EffectProblem, fitted: EffectFit, found: Turbulence) -> float:
+    """Return the log density of turbulence of equal strength with and without an input, relative to its peak.
+
+    Turbulence does not know when the elevator moves. A disturbance that the elevator drives rests with the
+    elevator. Air with correlation time T shows T_record / T independent squares in a record (Bendat and
+    Piersol, *Random Data*, chapter 8), so the log of its standard deviation is known to (2 n)^-1/2.
+    """
+    rows = quiet_rows(problem, fitted)
+    if not rows:
+        return 0.0
+    quiet = air_in_quiet(problem, fitted, rows)
+    lengths = (
+        sum(float(row.t[-1] - row.t[0]) for row in rows),
+        sum(flight.duration_s for flight in problem.flights.flights[:AIR_MANEUVERS]),
+    )
+    variance = sum(found.air.gust_memory_s / (2.0 * max(length, 1e-9)) for length in lengths)
+    excess = np.log(found.gust_angle / max(quiet.gust_angle, LEAST_GUST_ANGLE))
+    return float(-0.5 * max(excess, 0.0) ** 2 / variance)
 
 
 def _moving_in(problem: EffectProblem, fitted: EffectFit, maneuvers: Iterable[int]) -> Turbulence:

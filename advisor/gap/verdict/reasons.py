@@ -27,6 +27,7 @@ _WORDS = {
     "second": "second cause in addition",
     "air": "how often the air moves",
     "offset": "offset of the angle of attack by the flight path",
+    "steady": "air as strong before and after the input as during it",
     "gap": "visible gap of the simulator as given",
     "rest": "other ways in which each may be true",
 }
