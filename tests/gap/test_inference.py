@@ -154,7 +154,7 @@ def test_moving_air_is_the_answer_where_it_removes_more_of_the_gap_than_the_effe
         return SimpleNamespace(mean_square=np.array([1.0 + gap]))
 
     air = SimpleNamespace(
-        is_natural=False, gust=False, angle_std=0.02, mean_square_beyond_air=np.array([2.0])
+        is_natural=False, gust=False, angle_std=0.02, mean_square_beyond_air=np.array([2.0]), steady=0.0
     )
     late = SimpleNamespace(name="transport_delay", held_out=mean_square(left))
     rows = [Row(DELAY, late, {"fit": 0.0}), Row(MOMENT, late, {"fit": 0.0})]

@@ -136,8 +136,8 @@ def _steady(problem: EffectProblem, fitted: EffectFit, found: Turbulence) -> flo
     """Return the log density of turbulence of equal strength with and without an input, relative to its peak.
 
     Turbulence does not know when the elevator moves. A disturbance that the elevator drives rests with the
-    elevator. Air with correlation time T shows T_record / T independent squares in a record (Bendat and
-    Piersol, *Random Data*, chapter 8), so the log of its standard deviation is known to (2 n)^-1/2.
+    elevator. A record shows one independent square per correlation time of the air. The log of a standard
+    deviation from n squares is known to (2 n)^-1/2 (Bendat and Piersol, *Random Data*, chapter 8).
     """
     rows = quiet_rows(problem, fitted)
     if not rows:
