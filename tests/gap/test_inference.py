@@ -154,13 +154,15 @@ def test_moving_air_is_the_answer_where_it_removes_more_of_the_gap_than_the_effe
         return SimpleNamespace(mean_square=np.array([1.0 + gap]))
 
     air = SimpleNamespace(
-        is_natural=False, gust=False, angle_std=0.02, mean_square_beyond_air=np.array([2.0]), steady=0.0
+        is_natural=False, gust=False, angle_std=0.02, mean_square_beyond_air=np.array([2.0]), steady=-3.0
     )
     late = SimpleNamespace(name="transport_delay", held_out=mean_square(left))
     rows = [Row(DELAY, late, {"fit": 0.0}), Row(MOMENT, late, {"fit": 0.0})]
     plain = SimpleNamespace(held_out=mean_square(10.0))
     told = _with_air(rows, plain, SimpleNamespace(found=air), 0.0, np.ones(1))
     assert [row.alternative for row in told] == [named, MOMENT]
+    # Air that rests with the elevator is that much less likely; what is not air loses nothing.
+    assert [row.weight for row in told] == [-3.0 if named != DELAY else 0.0, 0.0]
 
 
 def explanation(alternative=None, nats=0.0, **more):
