@@ -38,7 +38,7 @@ A gap of several manoeuvres takes two: the second search leaves out the manoeuvr
 
 MOST_S = 2.0
 """Processor time that a test may take on a quiet machine, s; what fixtures prepare does not count."""
-NOISE = 2.0
+NOISE = 3.0
 """Factor by which a test may exceed that limit, because processes that share a core cost each other time."""
 SUM_S = 0.08
 """Processor time of the sum in `slowness` on the quiet core that ``MOST_S`` speaks of, s."""

@@ -54,12 +54,11 @@ def test_what_is_being_flown_is_turned_as_soon_as_the_sense_is_known():
     seen = []
     for reversed_is in (1.0, 0.0):
         stream, (batch, *_) = FlightStream(Aircraft()), read(reversed_is)
-        edges = np.linspace(0, max(int(c.order[-1]) for c in batch) + 1, 80).astype(int)
+        edges = np.linspace(0, max(int(c.order[-1]) for c in batch) + 1, 60).astype(int)
         parts = []
         for first, past in pairwise(edges.tolist()):
             stream.feed(rows_between(batch, first, past))
-            flying = stream.so_far()
-            if flying is not None and stream.maneuvers:
+            if stream.maneuvers and (flying := stream.so_far()) is not None:
                 parts.append(flying.channels["elevator"].y)
         seen.append(parts)
     assert len(seen[0]) == len(seen[1]) > 3
