@@ -19,6 +19,7 @@ import click
 import numpy as np
 
 from advisor.cli.running import runner_of
+from advisor.gap.inference.prior import FIELD
 from benchmarks.sealed.answer import answer
 from benchmarks.sealed.generator import COMPARED
 from benchmarks.second_generator.cases import cases as second
@@ -90,6 +91,17 @@ def is_right(one: Mapping[str, Any]) -> bool:
     return name == kind or (kind == "none" and name in truth["background"])
 
 
+def in_the_field(flights: Sequence[Mapping[str, Any]]) -> np.ndarray:
+    """Return weights (flights,) that give each kind of cause its share in the field prior.
+
+    A probability is calibrated where kinds are as frequent as its prior says, and the strata draw far more
+    flights without a name.
+    """
+    names = {"one": "effect", "two": "effect", "outside": "unknown"}
+    kinds = [names.get(kind, kind) for kind in (f["truth"]["kind"] for f in flights)]
+    return np.array([getattr(FIELD, kind) / kinds.count(kind) for kind in kinds])
+
+
 def stated(one: Mapping[str, Any]) -> float:
     """Return the probability that the answer states for itself."""
     told = one["answer"]["probabilities"]
@@ -143,6 +155,9 @@ def table(flights: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     yield share("without a name: unknown", [name == "unknown" for name in outside])
     yield share("without a name: another name", [n not in ("unknown", "none", "parameters") for n in outside])
     yield share("right where P is at least .9", [is_right(f) for f in flights if stated(f) >= SURE])
+    sure = np.array([stated(f) >= SURE for f in flights]) * in_the_field(flights)
+    held = float(sure @ np.array([is_right(f) for f in flights]) / max(np.sum(sure), 1e-12))
+    yield f"{'  the same, with the kinds as frequent as in the prior':56s} {100.0 * held:.0f} %"
     yield share("verdict follows from the probabilities", [follows(f) for f in flights])
     yield share("sizes inside 95 %", [inside for f in flights if is_right(f) for inside in sizes_inside(f)])
     told = np.array([stated(f) for f in flights])
