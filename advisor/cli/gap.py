@@ -1,39 +1,26 @@
 """``advisor gap``: why the real aircraft does not fly like the simulator."""
 
-import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 import click
 from click.core import ParameterSource
 
-from advisor.cli.gap_figure import refuse_figure, write_figure
-from advisor.cli.improvement_export import export_option, listed, orders_of, write_exports
+from advisor.cli.gap_figure import refuse_figure
+from advisor.cli.improvement_export import export_option, orders_of
 from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import UNUSABLE, USAGE, decided_on, json_option, refuse_unwritable, writing
-from advisor.cli.proving import document as proof_document
-from advisor.cli.proving import print_proof, proof_of, prove_option, refuse_proving
+from advisor.cli.options import decided_on, json_option, refuse_unwritable
+from advisor.cli.proving import prove_option, refuse_proving
 from advisor.cli.stages import Stages
-from advisor.process.parts import FailedPart, attempt
-from advisor.words.printable import printable
-from advisor.words.problems import ConfigurationError, UnusableInputError
+from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
     from advisor.aircraft.aircraft import Aircraft
     from advisor.analysis.side_gap import AxisFlown
     from advisor.campaign.hand_decisions import ByHand
-    from advisor.exports.models.flown import FlownModel, SideModel
     from advisor.exports.models.formats import AxisAsked
-    from advisor.exports.models.proof import Proof
-    from advisor.exports.models.write import ExportOutcome
-    from advisor.gap.inference.prior import FieldPrior
-    from advisor.gap.result import Diagnosis
-    from advisor.simulators.compare import Compared
-
-Found = TypeVar("Found")
 
 _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
@@ -165,7 +152,11 @@ def command(
     if out is not None:
         _refuse_out(out, asked.aircraft_file)
     refuse_figure(figure, [*asked.inputs, out])
-    orders = orders_of(exports, aircraft, [*asked.inputs, out], axis or "pitch")  # before the logs are read
+    from advisor.gap.inference.prior import FIELD, field_prior
+
+    # Options are refused before the logs are read.
+    shares = FIELD if prior is None else field_prior(prior)
+    orders = orders_of(exports, aircraft, [*asked.inputs, out], axis or "pitch")
     decided = [decided_on(log, asked.no_marks) for log in asked.logs]
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
     flown = state = None
@@ -173,69 +164,16 @@ def command(
         axis, flown, state = _axis_flown(asked, aircraft, by_hand)
     if axis == "lateral":
         orders = orders_of(exports, aircraft, [*asked.inputs, out], axis)
-        from advisor.cli.side_gap import compare_lateral
+    from advisor.cli.gap_asked import GapAsked
 
-        return compare_lateral(asked, aircraft, as_json, prior, out, orders, proving, why, figure, state)
-    from advisor.analysis.gap import compare_logs, named_simulator
-    from advisor.exports.models.flown import FlownModel
-    from advisor.gap.inference.prior import FIELD, field_prior
-    from advisor.report.gap_document import gap_document
-    from advisor.report.gap_steps import next_steps
-    from advisor.simulators.compare import Compared
-    from advisor.words.plain import plain
+    gap = GapAsked(asked, aircraft, shares, out, figure, orders, proving, why, as_json)
+    if axis == "lateral":
+        from advisor.cli.axes.lateral_gap import compare_lateral
 
-    shares = FIELD if prior is None else field_prior(prior)
+        return compare_lateral(gap, state)
+    from advisor.cli.axes.pitch_gap import compare_pitch
 
-    def compare() -> Compared:
-        simulator = named_simulator(aircraft, asked.target_system)
-        try:
-            return compare_logs(
-                asked.logs,
-                aircraft,
-                simulator,
-                holdout,
-                asked.target_system,
-                progress,
-                by_hand,
-                shares,
-                flown,
-            )
-        finally:
-            if simulator is not None:
-                simulator.close()
-
-    with Stages() as progress:
-        compared = compared_or_code("pitch, diagnosis", compare, as_json)
-    if isinstance(compared, int):
-        return compared
-    found = compared.diagnosis
-    proof = proof_of(proving, partial(_prove, asked, by_hand, aircraft, shares, compared))
-    if proof is not None:
-        from advisor.exports.models.axes.pitch import stays_of
-
-        found = stays_of(proof, found, compared.aircraft.model)
-    side = cache(partial(_side_of, asked, aircraft))
-    improved = write_improved(out, found.improves, lambda: FlownModel(compared.aircraft, None, side(), found))
-    # The simulator's own servo is no part of the improvement.
-    as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
-    outcomes = write_exports(orders, partial(_improved, found, as_given, side))
-    write_figure(figure, lambda: gap_document(found))
-    steps = next_steps(
-        found, list(map(str, asked.logs)), asked.aircraft_text, aircraft.simulator, asked.reading,
-        _flown_next(aircraft.simulator, out if improved else None, outcomes),
-    )  # fmt: skip
-    if as_json:
-        document = gap_document(found, (), str(out) if improved else None)
-        more = {"exports": listed(outcomes), "next": plain(steps), **proof_document(proof)}
-        click.echo(json.dumps(document | more, allow_nan=False, indent=1))
-    else:
-        from advisor.report.console import PlainConsole
-        from advisor.report.gap_screen import GapScreen
-
-        written = printable(str(out)) if improved else None
-        PlainConsole().print(GapScreen(found, written, why, steps, everything))
-        print_proof(proof)
-    return USAGE if any(one.problem for one in outcomes) else 0
+    return compare_pitch(gap, by_hand, holdout, everything, flown)
 
 
 def _axis_flown(asked: LogsAsked, aircraft: "Aircraft", by_hand: "Sequence[ByHand]") -> "AxisFlown":
@@ -248,85 +186,6 @@ def _axis_flown(asked: LogsAsked, aircraft: "Aircraft", by_hand: "Sequence[ByHan
     if found.axis == "lateral":
         click.echo(_LATERAL, err=True)
     return found
-
-
-def compared_or_code(part: str, compare: "Callable[[], Found]", as_json: bool) -> "Found | int":
-    """Return a comparison. Without a comparison, print the answer that remains and return its exit code."""
-    from advisor.report.gap_document import gap_document
-
-    try:
-        found = attempt(part, compare)
-    except UnusableInputError as error:
-        told, document, code = str(error), gap_document(None, error.problems), UNUSABLE
-    else:
-        if not isinstance(found, FailedPart):
-            return found
-        told, document, code = found.sentence, gap_document(None, failed=(found,)), 0
-    if as_json:
-        click.echo(json.dumps(document, indent=1))
-    click.echo(told, err=True)
-    return code
-
-
-def write_improved(out: Path | None, improves: bool, make: "Callable[[], FlownModel]") -> bool:
-    """Write the improved aircraft file that was asked for, or say why not; return whether it is there."""
-    if out is None:
-        return False
-    if not improves:
-        click.echo(f"{printable(str(out))} was not written: there is nothing to improve.", err=True)
-        return False
-    from advisor.exports.models.flown import write_file
-
-    with writing("--out", out):
-        write_file(make(), out)
-    return True
-
-
-def _prove(
-    asked: LogsAsked,
-    by_hand: "Sequence[ByHand]",
-    aircraft: "Aircraft",
-    prior: "FieldPrior",
-    whole: "Compared",
-    named: Sequence[Path],
-    tell: Callable[[str, float], None],
-) -> "Proof":
-    """Fly the improved simulator on the manoeuvres of logs; without any, on the last third."""
-    from advisor.analysis.gap import maneuvers_of
-    from advisor.exports.models.axes.pitch import prove
-
-    tell("reading for the proof", 0.0)
-    flown = maneuvers_of(asked.logs, aircraft, asked.target_system, by_hand)
-    decided = [decided_on(log, asked.no_marks) for log in named]
-    fresh = maneuvers_of(named, aircraft, asked.target_system, decided) if named else None
-    return prove(flown, fresh, aircraft, asked.target_system, tell, prior, whole)
-
-
-def _side_of(asked: LogsAsked, aircraft: "Aircraft") -> "SideModel | None":
-    """Return roll and yaw as the logs tell them; None where they tell none."""
-    from advisor.exports.models.roll_and_yaw import side_of_logs
-
-    with Stages() as tell:
-        tell("reading roll and yaw for the files", 0.0)
-        return side_of_logs(asked.logs, aircraft, asked.target_system, asked.marks, no_marks=asked.no_marks)
-
-
-def _flown_next(
-    simulator: str | None, improved: Path | None, outcomes: "Sequence[ExportOutcome]"
-) -> str | None:
-    """Return the written file of the improved simulator that the simulator of the diagnosis can fly."""
-    kind, _, _ = (simulator or "linear").partition(":")
-    files = [one.order.file for one in outcomes if one.order.format == kind and not one.problem]
-    file = next(iter(files), None) if kind != "linear" else improved
-    return None if file is None else str(file)
-
-
-def _improved(
-    found: "Diagnosis", aircraft: "Aircraft", side: "Callable[[], SideModel | None]"
-) -> "FlownModel":
-    from advisor.exports.models.flown import improved_model
-
-    return improved_model(found, aircraft, side())
 
 
 def _refuse_out(out: Path, aircraft_file: Path | None) -> None:

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import side_gap
-from advisor.cli import side_gap as side_gap_command
+from advisor.cli.axes import lateral_gap as side_gap_command
 from advisor.cli.group import advisor
 from advisor.gap.axes.lateral.comparison import SideGap
 from advisor.words.problems import ConfigurationError, UnusableInputError

@@ -1,0 +1,1 @@
+"""``advisor gap`` on each axis."""
