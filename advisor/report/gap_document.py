@@ -71,7 +71,11 @@ def gap_document(
         },
         "causes": [_cause(c) for c in d.causes],
         "shrink": d.shrink
-        and {**plain(d.shrink), "text": shrink_said(d.shrink), "in_simulator": _in_simulator(d.in_simulator)},
+        and {
+            **plain(d.shrink),
+            "text": shrink_said(d.shrink, d.gap),
+            "in_simulator": _in_simulator(d.in_simulator),
+        },
         **_of_the_simulator(d),
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
         "alpha_check": {

@@ -177,7 +177,7 @@ def _hanging(mark: str, text: str, width: int) -> Text:
 def _numbers(d: Diagnosis) -> Text:
     lines = [size_of_gap(d)]
     if d.shrink is not None:
-        lines.append(shrink_said(d.shrink))
+        lines.append(shrink_said(d.shrink, d.gap))
         if d.shrink.beyond_air_percent is not None:
             lines.append(f"without the air's own course: {d.shrink.beyond_air_percent:.0f} % less")
     if grown := grown_said(d):

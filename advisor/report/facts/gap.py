@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from advisor.gap.alternative import Weighed
-from advisor.gap.result import ComparedDerivative, Diagnosis, Shrink
+from advisor.gap.result import ComparedDerivative, Diagnosis, Gap, Shrink
 from advisor.gap.verdict.text import in_words, place
 from advisor.report.facts.sizes import before_after, has_grown, short
 from advisor.words.digits import decimals_for, signed, with_half
@@ -24,12 +24,16 @@ def size_of_gap(d: Diagnosis) -> str:
     return f"gap {before_after(d.gap.before, d.gap.after)} times the noise floor's power"
 
 
-def shrink_said(shrink: Shrink) -> str:
-    """Return the sentence about the gap's shrink, with the 95 % interval and the held-out manoeuvres."""
+def shrink_said(shrink: Shrink, gap: Gap) -> str:
+    """Return the sentence about the gap's shrink, with the 95 % interval and the held-out manoeuvres.
+
+    The gap after the corrections has the flight's nuisance parameters, and the shrink by an export has not.
+    """
     low, high = shrink.ci95_percent
+    alone = f", {before_after(shrink.before, shrink.after)} by the corrections alone"
     return (
         f"{shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out "
-        f"manoeuvres: {counted(shrink.holdout)}"
+        f"manoeuvres: {counted(shrink.holdout)}{alone if shrink.after != gap.after else ''}"
     )
 
 
