@@ -155,7 +155,7 @@ def test_the_interval_of_the_shrink_encloses_it_as_printed():
 
 def test_a_shrink_of_other_gaps_than_those_above_it_states_its_own():
     shrunk = Shrink((2, 5), 16.3, 1.98, 87.8, (87.4, 88.3))
-    assert "manoeuvres: 2, 5, 16.3 → 1.98 by the corrections alone" in " ".join(
+    assert "manoeuvres: 2, 5 (16.3 → 1.98 by the corrections alone)" in " ".join(
         printed(diagnosis(shrink=shrunk), 140)
     )
     assert "by the corrections alone" not in " ".join(printed(diagnosis(), 140))

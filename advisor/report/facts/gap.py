@@ -30,7 +30,7 @@ def shrink_said(shrink: Shrink, gap: Gap) -> str:
     The gap after the corrections has the flight's nuisance parameters, and the shrink by an export has not.
     """
     low, high = shrink.ci95_percent
-    alone = f", {before_after(shrink.before, shrink.after)} by the corrections alone"
+    alone = f" ({before_after(shrink.before, shrink.after)} by the corrections alone)"
     return (
         f"{shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out "
         f"manoeuvres: {counted(shrink.holdout)}{alone if shrink.after != gap.after else ''}"
