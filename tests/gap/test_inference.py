@@ -345,6 +345,12 @@ def test_a_visible_gap_goes_to_the_numbers_as_far_as_fitted_ones_remove_it():
     assert told.of(MOMENT) == pytest.approx(0.4, abs=0.01)
 
 
+def test_without_a_simulator_a_gap_that_fitted_numbers_leave_has_no_name():
+    sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
+    told = none_means_no_gap(sure, held(3.0), np.ones(1), held(3.0))
+    assert told.of(MOMENT) == pytest.approx(1.0, abs=0.01)
+
+
 def test_every_number_of_every_effect_has_a_width_that_follows_the_aircraft():
     flights = prepare(fly(Setup(maneuvers=3, seed=4)), Aircraft())
     derivatives = np.array([-4.0, 0.0, -0.4, -40.0, -5.0, -60.0])

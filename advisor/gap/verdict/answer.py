@@ -78,7 +78,8 @@ def answer_of(
     problem, floor = found.problem, found.floor
     plain = found.chosen[0]
     file_model = file_model_of(problem, plain.fitted)
-    posterior = none_means_no_gap(found.posteriors[0], file_model, floor, plain.held_out)
+    given = file_model or plain.held_out
+    posterior = none_means_no_gap(found.posteriors[0], given, floor, plain.held_out)
     answer = posterior.answer
     named = _named(found, answer)[:most]
     if seen is not None:

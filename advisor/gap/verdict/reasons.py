@@ -84,16 +84,22 @@ def _best_row(posterior: Posterior[Any], alternative: Alternative) -> Row[Any]:
 
 
 def none_means_no_gap(
-    posterior: Posterior[Any], file_model: HeldOut | None, floor: FloatArray, plain: HeldOut
+    posterior: Posterior[Any], simulator: HeldOut, floor: FloatArray, plain: HeldOut
 ) -> Posterior[Any]:
     """Return the posterior in which "none" means that nothing is above the floor.
 
     A visible gap moves probability from "none" to wrong derivatives, as far as fitted derivatives remove the
-    gap. The rest of that probability goes to the likeliest block of an effect without a name.
+    gap. The rest of that probability goes to the likeliest block of an effect without a name. Without a
+    simulator, all of it does.
+
+    Parameters
+    ----------
+    simulator
+        Hold-out of the aircraft file's derivatives, or of the plain model where the file states none.
+    plain
+        Hold-out of the plain model, whose derivatives are fitted.
     """
-    if file_model is None:
-        return posterior
-    gap, left = (whole_gap(held.mean_square, floor) for held in (file_model, plain))
+    gap, left = (whole_gap(held.mean_square, floor) for held in (simulator, plain))
     stays = 0.05 ** ((gap / _GAP_AT_5_PERCENT) ** 2)
     by_numbers = float(np.clip(1.0 - left / max(gap, 1e-12), 0.0, 1.0))
     blocks = [row.alternative for row in posterior.rows if row.alternative.kind == "unknown"]
