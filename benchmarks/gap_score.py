@@ -144,16 +144,18 @@ def table(flights: Sequence[Mapping[str, Any]]) -> Iterator[str]:
 
     for generator in DRAWS:
         mine = [f for f in flights if f["case"].startswith(generator)]
-        named = [f for f in mine if f["truth"]["kind"] != "outside"]
         yield share(f"first answer right, {generator}", [is_right(f) for f in mine])
-        yield share(f"  without the nameless, {generator}", [is_right(f) for f in named])
+        with_names = [is_right(f) for f in mine if f["truth"]["kind"] != "outside"]
+        yield share(f"  without the nameless, {generator}", with_names)
     kinds = {k: [f for f in flights if f["truth"]["kind"] == k] for k in ("none", "outside", "parameters")}
     alarm = [not is_right(f) and f["answer"]["first"]["name"] != "parameters" for f in kinds["none"]]
     yield share("false alarms, nothing withheld", alarm)
     yield share("wrong numbers, told", [is_right(f) for f in kinds["parameters"]])
-    outside = [f["answer"]["first"]["name"] for f in kinds["outside"]]
-    yield share("without a name: unknown", [name == "unknown" for name in outside])
-    yield share("without a name: another name", [n not in ("unknown", "none", "parameters") for n in outside])
+    outside = [(f["answer"]["first"]["name"], f["truth"]["background"]) for f in kinds["outside"]]
+    yield share("without a name: unknown", [name == "unknown" for name, _ in outside])
+    # Air that moved as well is no wrong name.
+    named = [name not in ("unknown", "none", "parameters", *air) for name, air in outside]
+    yield share("without a name: another name", named)
     yield share("right where P is at least .9", [is_right(f) for f in flights if stated(f) >= SURE])
     sure = np.array([stated(f) >= SURE for f in flights]) * in_the_field(flights)
     held = float(sure @ np.array([is_right(f) for f in flights]) / max(np.sum(sure), 1e-12))
