@@ -153,6 +153,9 @@ def table(flights: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     yield share("wrong numbers, told", [is_right(f) for f in kinds["parameters"]])
     outside = [(f["answer"]["first"]["name"], f["truth"]["background"]) for f in kinds["outside"]]
     yield share("without a name: unknown", [name == "unknown" for name, _ in outside])
+    seen = [(f["answer"]["gap"] or {}).get("before", 0.0) > 1.0 for f in kinds["outside"]]
+    told = [name == "unknown" for (name, _), is_seen in zip(outside, seen, strict=True) if is_seen]
+    yield share("  where the gap exceeds the noise: unknown", told)
     # Air that moved as well is no wrong name.
     named = [name not in ("unknown", "none", "parameters", *air) for name, air in outside]
     yield share("without a name: another name", named)
@@ -162,12 +165,13 @@ def table(flights: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     yield f"{'  the same, with the kinds as frequent as in the prior':56s} {100.0 * held:.0f} %"
     yield share("verdict follows from the probabilities", [follows(f) for f in flights])
     yield share("sizes inside 95 %", [inside for f in flights if is_right(f) for inside in sizes_inside(f)])
-    told = np.array([stated(f) for f in flights])
+    chances = np.array([stated(f) for f in flights])
     right = np.array([is_right(f) for f in flights], float)
-    yield f"{'calibration error, Brier score of the answer':56s} {calibration_error(told, right):.3f}, " + (
-        f"{np.mean((told - right) ** 2):.3f}"
+    yield (
+        f"{'calibration error, Brier score of the answer':56s} {calibration_error(chances, right):.3f}, "
+        + (f"{np.mean((chances - right) ** 2):.3f}")
     )
-    yield f"{'mean probability where right':56s} {np.mean(told[right > 0]):.2f}"
+    yield f"{'mean probability where right':56s} {np.mean(chances[right > 0]):.2f}"
     yield f"{'processor time of a diagnosis, median':56s} {np.median([f['seconds'] for f in flights]):.1f} s"
 
 
