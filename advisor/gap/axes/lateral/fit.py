@@ -95,6 +95,12 @@ class Fit:
         return np.concatenate([self.point.theta, _numbers(self.point, self.free)])
 
     @property
+    def bounds(self) -> tuple[FloatArray, FloatArray]:
+        """Lowest and highest values, (15 + k,) each."""
+        low, high = np.array([(-np.inf, np.inf)] * N + [one.bounds for one in self.free]).T
+        return low, high
+
+    @property
     def residual(self) -> FloatArray:
         """Shape (N,): measured minus fitted outputs."""
         return np.asarray(self.assembly.z - self.fitted)
@@ -123,6 +129,21 @@ def fitted(
         if gain < SETTLED:
             break
     # A step that gains so little changes no slope.
+    return _as_fit(at, slopes)
+
+
+def moved_by(flown: Flown, fit: Fit, change: FloatArray, known: Known) -> Fit | None:
+    """Return a fit after a change (15 + k,) of derivatives and effect parameters.
+
+    Trims, initial states and biases follow the change. None where the simulation diverges.
+    """
+    at = _at(flown, fit.point, fit.free, known)
+    assert at is not None
+    trial = _at(flown, _moved(at, _step(at, fit.slopes, known), change), fit.free, known)
+    return None if trial is None else _as_fit(trial, _slopes(flown, trial))
+
+
+def _as_fit(at: "_At", slopes: FloatArray) -> Fit:
     columns = np.column_stack([at.g[:, :N], slopes])
     projected, _ = _projected(at, columns, 1.0 / at.noise[at.assembly.channel])
     return Fit(at.point, at.assembly, tuple(at.free), at.y, at.noise, at.likelihood, projected, slopes, at.g)
@@ -191,15 +212,19 @@ def _trials(flown: Flown, at: _At, known: Known, step: _Step) -> Iterator[_At | 
     """Yield points along the step, each a quarter as far as the one before, that lower the cost; else
     None."""
     for share in (1.0, 0.25, 0.06):
-        moved = share * step.change
-        left = step.residual - step.columns @ moved
-        local = at.point.local.copy()
-        for m, (rows, mine) in enumerate(step.own):
-            local[m, at.assembly.own - N] += np.linalg.lstsq(mine, left[rows], rcond=None)[0]
-        numbers = (step.values + moved)[N:]
-        setting = moved_to(at.point.setting, [f.place for f in at.free], numbers)
-        trial = _at(flown, Point(at.point.theta + moved[:N], local, setting), at.free, known)
+        trial = _at(flown, _moved(at, step, share * step.change), at.free, known)
         yield trial if trial is not None and trial.cost < at.cost else None
+
+
+def _moved(at: _At, step: _Step, change: FloatArray) -> Point:
+    """Return the point after a change (15 + k,), with the local parameters that the linear model then has."""
+    left = step.residual - step.columns @ change
+    local = at.point.local.copy()
+    for m, (rows, mine) in enumerate(step.own):
+        local[m, at.assembly.own - N] += np.linalg.lstsq(mine, left[rows], rcond=None)[0]
+    numbers = (step.values + change)[N:]
+    setting = moved_to(at.point.setting, [f.place for f in at.free], numbers)
+    return Point(at.point.theta + change[:N], local, setting)
 
 
 def _projected(

@@ -7,10 +7,10 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative
-from advisor.gap.axes.lateral.disturbance import courses_of
+from advisor.gap.axes.lateral.disturbance import Course, courses_of
 from advisor.gap.axes.lateral.effects import SideEffect, block_of
 from advisor.gap.axes.lateral.evidence import Gain, information_of, posterior_of, share_of, squares_of
-from advisor.gap.axes.lateral.fit import Fit, Free, Known
+from advisor.gap.axes.lateral.fit import Fit, Free, Known, moved_by
 from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
 from advisor.gap.axes.lateral.models import Case, free_near, free_with
 from advisor.gap.axes.lateral.residual import residual_of
@@ -25,6 +25,8 @@ from advisor.gap.inference.stage import AT_THE_FILE, LAWS, Pairs, Stage, likelie
 from advisor.process.parts import Parts
 
 _TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
+_STEPS = 2
+"""Numerical: number of Gauss-Newton steps from the optimum in white noise to the one in gusts."""
 LIKELY = 0.01
 """Probability above which an effect is also fitted with side gusts, and above which its sizes are stated."""
 
@@ -47,7 +49,7 @@ class SideModel(Explanation):
 
     @property
     def solution(self) -> Fit:
-        """Fit of the explanation, equal in still and in moving air."""
+        """Fit of the explanation."""
         return self.fit
 
     @property
@@ -147,35 +149,47 @@ class SideFlight:
     def in_moving_air(self, stage: Stage[SideModel]) -> Stage[SideModel]:
         """Return the likely explanations refitted with side gusts, which disturb all outputs together.
 
-        The likelihoods of coloured instruments and of gusts distinguish the plain model in still and in
-        moving air.
+        Coloured instruments and gusts are compared by their likelihoods. The residuals are those of the
+        likeliest explanation, because an effect without its model resembles a coloured instrument.
         """
-        plain = stage.plain
         each = float(np.log(max(len(self.table), 1)))
-        told = [plain.evidence.right, *(one.evidence.either - each for one in stage.effects)]
+        told = [stage.plain.evidence.right, *(one.evidence.either - each for one in stage.effects)]
         least = np.logaddexp.reduce(told) + np.log(LIKELY)
         likely = [one for one, nats in zip(stage.effects, told[1:], strict=True) if nats > least]
-        courses = courses_of(plain.fit, self.case.flown)
-        air = side_gusts(plain.fit, courses, self._wide(plain.fit))
-        blown = [self._blown(plain, air)]
-        blown += [self._blown(one, side_gusts(one.fit, courses, self._wide(one.fit), air)) for one in likely]
-        first, *others = within_model_error(self, blown, 0.0)
-        assert first.gusts is not None
-        gain = first.gusts.likelihood - coloured_likelihood(plain.fit)
-        over = plain.evidence.right + gain - first.evidence.right
-        first, *others = (
-            replace(one.more(over), likelihood=one.likelihood + over) for one in (first, *others)
-        )
+        still = [stage.plain, *likely]
+        lead = int(np.argmax([one.evidence.either for one in still]))
+        fit = still[lead].fit
+        courses = courses_of(fit, self.case.flown)
+        air = side_gusts(fit, courses, self._wide(fit))
+        blown = within_model_error(self, [self._blown(one, courses, air) for one in still], 0.0)
+        gain = air.likelihood - coloured_likelihood(fit)
+        over = still[lead].evidence.either + gain - blown[lead].evidence.either
+        first, *others = (replace(one.more(over), likelihood=one.likelihood + over) for one in blown)
         return Stage(first, tuple(others), (), stage.heat)
 
     def _wide(self, fit: Fit) -> Known:
         return self.case.prior_of(ERROR_IF_WRONG, fit.free)
 
-    def _blown(self, one: SideModel, gusts: Gusts) -> SideModel:
-        """Return an explanation with side gusts in addition."""
-        evidence, natural = self._weighed(one.fit, one.effect, gusts.likelihood, gusts.matrix, gusts.gradient)
-        highest = gusts.highest(self._wide(one.fit))
-        blown = replace(one, gusts=gusts, evidence=evidence, natural=natural, likelihood=highest)
+    def _blown(self, one: SideModel, courses: Sequence[Course], air: Gusts) -> SideModel:
+        """Return an explanation with side gusts in addition, at its optimum in these gusts.
+
+        A fit in white noise has taken part of the gusts for derivatives, far from the optimum in gusts.
+        """
+        wide = self._wide(one.fit)
+        gusts = side_gusts(one.fit, courses, wide, air)
+        for _ in range(_STEPS):
+            change = gusts.change(wide, one.fit)
+            fits = (moved_by(self.case.flown, one.fit, share * change, wide) for share in (1.0, 0.25))
+            ahead = ((fit, side_gusts(fit, courses, wide, gusts)) for fit in fits if fit is not None)
+            height = gusts.height(wide, one.fit)
+            fit, gusts = next(((f, g) for f, g in ahead if g.height(wide, f) > height), (None, gusts))
+            if fit is None:
+                break
+            one = replace(one, fit=fit)
+        # At the optimum the gradient balances the prior's. Delays have kinks, where no step leads further.
+        gradient = wide.precision * (one.fit.values - wide.mean)
+        evidence, natural = self._weighed(one.fit, one.effect, gusts.likelihood, gusts.matrix, gradient)
+        blown = replace(one, gusts=gusts, evidence=evidence, natural=natural, likelihood=gusts.likelihood)
         return replace(blown.more(one.beyond), model_error=0.0)
 
     def _weighed(

@@ -19,6 +19,7 @@ from advisor.gap.axes.lateral.fit import Fit, Known
 from advisor.gap.inference.marginal import marginal
 from advisor.gap.noise.probes import KNOTS_S
 from advisor.model.axes.lateral import LATERAL
+from advisor.oem.arrow import solved_within
 from advisor.oem.colour import Stretch, find_colour
 from advisor.oem.whitening import schedule, whiten
 
@@ -51,10 +52,16 @@ class Gusts:
     gradient: FloatArray
     """Shape (k,): gradient of the log likelihood at the fit."""
 
-    def highest(self, known: Known) -> float:
-        """Return the log likelihood at the optimum with gusts and prior."""
+    def change(self, known: Known, fit: Fit) -> FloatArray:
+        """Return the change (k,) from the fit to the optimum with gusts and prior, within the bounds."""
+        low, high = fit.bounds
+        pull = self.gradient + known.precision * (known.mean - fit.values)
         whole = self.matrix + np.diag(known.precision)
-        return self.likelihood + 0.5 * float(self.gradient @ np.linalg.solve(whole, self.gradient))
+        return solved_within(whole, pull, low - fit.values, high - fit.values)
+
+    def height(self, known: Known, fit: Fit) -> float:
+        """Return the log posterior density of the fit with these gusts, up to a constant."""
+        return self.likelihood - 0.5 * float(known.precision @ (fit.values - known.mean) ** 2)
 
 
 def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | None = None) -> Gusts:

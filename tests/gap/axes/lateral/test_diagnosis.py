@@ -23,6 +23,7 @@ from advisor.gap.inference.explanation import Evidence, Row
 from advisor.gap.inference.posterior import NONE
 from advisor.gap.result import Cause, Value
 from advisor.report.side_gap import side_gap_document, side_gap_lines
+from benchmarks.lateral_gap import CASES, diagnosed
 from tests.gap.axes.lateral.test_comparison import maneuvers
 from tests.oem.axes.lateral.builders import JET
 
@@ -158,6 +159,24 @@ def test_a_gyro_that_clips_is_a_law_without_a_name_in_its_channel():
     assert found.verdict == "unknown"
     assert found.where.block == "roll_rate_sensor"
     assert found.answers[0][1] > 0.6
+
+
+@pytest.mark.study
+@pytest.mark.parametrize(
+    ("effect", "size", "named"),
+    [("p_scale", 0.0951, "roll_rate_scale"), ("r_skew", 0.0587, "late_yaw_rate_stamps")],
+)
+def test_an_effect_is_named_in_side_gusts_too(effect, size, named):
+    gusts = {CASES["side_turbulence"].parameter: 0.25}
+    found = diagnosed(11, {effect: {CASES[effect].parameter: size}, "side_turbulence": gusts})
+    assert found.verdict == "effect"
+    assert found.causes[0].name == named
+
+
+@pytest.mark.study
+def test_side_gusts_alone_are_no_delay_of_a_surface():
+    found = diagnosed(12, {"side_turbulence": {CASES["side_turbulence"].parameter: 0.24}})
+    assert found.answers[0][0] == "side gusts"
 
 
 def test_two_effects_at_once_are_both_said_and_stand_before_the_alternatives():

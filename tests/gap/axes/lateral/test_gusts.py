@@ -8,7 +8,7 @@ import pytest
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.gap.axes.lateral.disturbance import courses_of
 from advisor.gap.axes.lateral.effects import side_effects
-from advisor.gap.axes.lateral.fit import fitted
+from advisor.gap.axes.lateral.fit import fitted, moved_by
 from advisor.gap.axes.lateral.gusts import coloured_likelihood, side_gusts
 from advisor.gap.axes.lateral.laws import side_laws
 from advisor.gap.axes.lateral.models import case_of
@@ -115,6 +115,17 @@ def test_the_derivatives_are_estimated_anew_in_gusts(case, flight):
     assert np.linalg.norm((step / np.abs(fit.values + 1e-9))[told]) < np.linalg.norm(
         (by_white / np.abs(fit.values + 1e-9))[told]
     )
+
+
+def test_a_fit_moves_as_its_derivatives_say_and_its_trims_follow(case, flight):
+    fit, _, known = flight
+    change = 0.02 * fit.values
+    moved = moved_by(case.flown, fit, change, known)
+    np.testing.assert_allclose(moved.values, fit.values + change, rtol=1e-12)
+    told = fit.columns @ change
+    assert np.max(np.abs(told)) > 1e-3
+    weight = fit.weight
+    assert np.linalg.norm(weight * (moved.fitted - fit.fitted - told)) < 0.1 * np.linalg.norm(weight * told)
 
 
 @pytest.mark.parametrize(
