@@ -10,7 +10,7 @@ from advisor.gap.alternative import Alternative
 from advisor.gap.axes.lateral.disturbance import Course, courses_of
 from advisor.gap.axes.lateral.effects import SideEffect, block_of
 from advisor.gap.axes.lateral.evidence import Gain, information_of, posterior_of, share_of, squares_of
-from advisor.gap.axes.lateral.fit import ROUNDS, SETTLED, Fit, Free, Known, moved_by
+from advisor.gap.axes.lateral.fit import Fit, Free, Known, moved_by
 from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
 from advisor.gap.axes.lateral.models import Case, free_near, free_with
 from advisor.gap.axes.lateral.residual import residual_of
@@ -25,6 +25,8 @@ from advisor.gap.inference.stage import AT_THE_FILE, LAWS, Pairs, Stage, likelie
 from advisor.process.parts import Parts
 
 _TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
+_STEPS = 2
+"""Numerical: number of Gauss-Newton steps from the optimum in white noise to the one in gusts."""
 LIKELY = 0.01
 """Probability above which an effect is also fitted with side gusts, and above which its sizes are stated."""
 
@@ -175,11 +177,11 @@ class SideFlight:
         """
         wide = self._wide(one.fit)
         gusts = side_gusts(one.fit, courses, wide, air)
-        for _ in range(ROUNDS):
+        for _ in range(_STEPS):
             change = gusts.change(wide, one.fit)
             fits = (moved_by(self.case.flown, one.fit, share * change, wide) for share in (1.0, 0.25))
             ahead = ((fit, side_gusts(fit, courses, wide, gusts)) for fit in fits if fit is not None)
-            height = gusts.height(wide, one.fit) + 0.5 * SETTLED
+            height = gusts.height(wide, one.fit)
             fit, gusts = next(((f, g) for f, g in ahead if g.height(wide, f) > height), (None, gusts))
             if fit is None:
                 break
