@@ -44,6 +44,9 @@ async def test_a_click_goes_to_the_manoeuvre_there_of_either_axis_or_else_to_the
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     player = LogPlayer("a.tlog", lambda: [columns(range(20000), [k / 50.0 for k in range(20000)])])
+    playback = Playback(300.0, 400.0)
+    # Every later report has this playback too, so no report replaces it between two clicks.
+    monkeypatch.setattr(player, "playback", lambda: playback)
     state = flights.state(4)
     second = state.maneuvers[1].maneuver.span
     turn = side_judged(1, "aileron")
@@ -54,11 +57,9 @@ async def test_a_click_goes_to_the_manoeuvre_there_of_either_axis_or_else_to_the
         await here.press("i")
         await here.until(lambda: "2✗" in here.words("#whole-maneuvers"))
         app = here.app
-        await here.until(lambda: app.view.playback is not None and app.view.playback.duration_s > 0)
+        await here.until(lambda: app.view.playback == playback)
         asked: list[float] = []
         monkeypatch.setattr(app, "seek", asked.append)
-        playback = Playback(300.0, 400.0)
-        app.view = replace(app.view, playback=playback)
         plot = app.screen.query_one("#whole-q", Plot)
         for at_s in (second.start_s + 1.0, span.start_s + 1.0, span.end_s + 1.0):
             plot.post_message(Plot.Pointed(at_s))
