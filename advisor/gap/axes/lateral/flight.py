@@ -180,7 +180,7 @@ class SideFlight:
         for _ in range(_STEPS):
             change = gusts.change(wide, one.fit)
             fits = (moved_by(self.case.flown, one.fit, share * change, wide) for share in (1.0, 0.25))
-            ahead = ((fit, side_gusts(fit, courses, wide, gusts)) for fit in fits if fit is not None)
+            ahead = ((fit, gusts.at(fit, courses)) for fit in fits if fit is not None)
             height = gusts.height(wide, one.fit)
             fit, gusts = next(((f, g) for f, g in ahead if g.height(wide, f) > height), (None, gusts))
             if fit is None:

@@ -7,10 +7,11 @@ likelihoods of the residuals distinguish gusts from instrument noise.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg import solve_triangular
 from scipy.optimize import minimize
 
 from advisor.flight.signals.messages import FloatArray
@@ -63,6 +64,13 @@ class Gusts:
         """Return the log posterior density of the fit with these gusts, up to a constant."""
         return self.likelihood - 0.5 * float(known.precision @ (fit.values - known.mean) ** 2)
 
+    def at(self, fit: Fit, courses: Sequence[Course]) -> "Gusts":
+        """Return gusts of the same statistics, with the likelihood and its slopes at another fit."""
+        sums = [_Sums.of(fit, m, course) for m, course in enumerate(courses)]
+        volume, inner = _weighed(sums, self.noise, self.angle, self.memory_s)
+        likelihood = -0.5 * (volume + float(inner[0, 0]) - len(fit.fitted))
+        return replace(self, likelihood=likelihood, matrix=inner[1:, 1:], gradient=inner[1:, 0])
+
 
 def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | None = None) -> Gusts:
     """Return the likeliest white noise and gusts in the residuals of a fit.
@@ -93,15 +101,8 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | 
         noise[there] = np.exp(x[:-2])
         return noise, float(np.exp(x[-2])), float(np.exp(x[-1]))
 
-    def told(x: FloatArray) -> tuple[float, FloatArray]:
-        noise, angle, memory_s = model(x)
-        # Knots are equally far apart everywhere: a shorter manoeuvre has the first part of the factor.
-        root = _root(max((one.knots for one in sums), key=len), angle, memory_s)
-        parts = [one.weighed(noise, root[: len(one.knots), : len(one.knots)]) for one in sums]
-        return sum(cost for cost, _ in parts), np.sum([inner for _, inner in parts], axis=0)
-
     def cost(x: FloatArray) -> float:
-        volume, inner = told(x)
+        volume, inner = _weighed(sums, *model(x))
         likelihood = -0.5 * (volume + float(inner[0, 0]))
         return -2.0 * marginal(likelihood, inner[1:, 1:], inner[1:, 0], prior, prior).right
 
@@ -119,11 +120,9 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | 
     step = _BEND * (np.arange(len(found.x)) == len(found.x) - 2)
     bend = (cost(found.x + step) - 2.0 * float(found.fun) + cost(found.x - step)) / (2.0 * _BEND**2)
     noise, angle, memory_s = model(found.x)
-    volume, inner = told(found.x)
-    return Gusts(
-        noise, angle, memory_s, angle / np.sqrt(max(bend, _BEND)),
-        -0.5 * (volume + float(inner[0, 0]) - len(fit.fitted)), inner[1:, 1:], inner[1:, 0],
-    )  # fmt: skip
+    empty = np.empty((len(fit.values), len(fit.values)))
+    gusts = Gusts(noise, angle, memory_s, angle / np.sqrt(max(bend, _BEND)), np.nan, empty, empty[0])
+    return gusts.at(fit, courses)
 
 
 def coloured_likelihood(fit: Fit) -> float:
@@ -144,10 +143,13 @@ def coloured_likelihood(fit: Fit) -> float:
     return -0.5 * cost
 
 
-def _root(knots: FloatArray, angle: float, memory_s: float) -> FloatArray:
-    """Return the Cholesky factor (k, k) of the gust angle's covariance at its knots."""
-    apart = np.abs(knots[:, None] - knots)
-    return np.asarray(angle * np.linalg.cholesky(np.exp(-apart / memory_s) + 1e-9 * np.eye(len(knots))))
+def _weighed(
+    sums: Sequence["_Sums"], noise: FloatArray, angle: float, memory_s: float
+) -> tuple[float, FloatArray]:
+    """Return the log determinant of the residuals' covariance, and the products (k, k) weighted by its
+    inverse, of all manoeuvres together."""
+    parts = [one.weighed(noise, angle, memory_s) for one in sums]
+    return sum(volume for volume, _ in parts), np.sum([inner for _, inner in parts], axis=0)
 
 
 class _Sums(NamedTuple):
@@ -156,7 +158,6 @@ class _Sums(NamedTuple):
     The k columns are the residual and the derivatives of the outputs by the parameters.
     """
 
-    knots: FloatArray
     counts: FloatArray
     """Shape (outputs,): number of rows of each output."""
     squares: FloatArray
@@ -174,22 +175,28 @@ class _Sums(NamedTuple):
         columns = np.column_stack([fit.residual[rows], fit.columns[rows]])
         parts = [(columns[channel == c], course.columns[channel == c]) for c in range(len(fit.noise))]
         return cls(
-            course.knots,
             np.array([float(len(left)) for left, _ in parts]),
             np.array([left.T @ left for left, _ in parts]),
             np.array([gust.T @ left for left, gust in parts]),
             np.array([gust.T @ gust for _, gust in parts]),
         )
 
-    def weighed(self, noise: FloatArray, root: FloatArray) -> tuple[float, FloatArray]:
+    def weighed(self, noise: FloatArray, angle: float, memory_s: float) -> tuple[float, FloatArray]:
         """Return the log determinant of the residuals' covariance, and the products (k, k) weighted by its
         inverse.
 
-        White noise has standard deviations (outputs,); the gusts' covariance has a factor (knots, knots).
+        White noise has standard deviations (outputs,). The gust angle is a first-order Markov process, so the
+        inverse of its covariance at the knots has three diagonals.
         """
-        weight = noise**-2.0
-        inner = root.T @ np.tensordot(weight, self.grams, 1) @ root
-        lower = np.linalg.cholesky(inner + np.eye(len(root)))
-        explained = np.linalg.solve(lower, root.T @ np.tensordot(weight, self.pulls, 1))
+        weight, n = noise**-2.0, self.grams.shape[1]
+        memory = np.exp(-KNOTS_S / memory_s)
+        fresh = angle**2 * -np.expm1(-2.0 * KNOTS_S / memory_s)  # variance that a step adds
+        whole, k = np.tensordot(weight, self.grams, 1), np.arange(n)
+        whole[k, k] += (1.0 + memory**2 * ((k > 0) & (k < n - 1))) / fresh
+        whole[k[1:], k[:-1]] -= memory / fresh
+        whole[k[:-1], k[1:]] -= memory / fresh
+        lower = np.linalg.cholesky(whole)
+        explained = solve_triangular(lower, np.tensordot(weight, self.pulls, 1), lower=True)
         volume = float(self.counts @ np.log(noise**2)) + 2.0 * float(np.sum(np.log(np.diag(lower))))
+        volume += 2.0 * np.log(angle) + (n - 1) * np.log(fresh)
         return volume, np.tensordot(weight, self.squares, 1) - explained.T @ explained

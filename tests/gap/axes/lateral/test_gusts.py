@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import multivariate_normal
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.gap.axes.lateral.disturbance import courses_of
 from advisor.gap.axes.lateral.effects import side_effects
 from advisor.gap.axes.lateral.fit import fitted, moved_by
-from advisor.gap.axes.lateral.gusts import coloured_likelihood, side_gusts
+from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
 from advisor.gap.axes.lateral.laws import side_laws
 from advisor.gap.axes.lateral.models import case_of
 from advisor.gap.axes.lateral.residual import residual_of
@@ -55,6 +56,25 @@ def test_a_gust_angle_enters_all_outputs_and_its_size_is_found(flight):
     assert found.angle == pytest.approx(ANGLE, rel=0.4)
     assert abs(found.angle - ANGLE) < 4.0 * found.angle_std
     assert found.likelihood > coloured_likelihood(gusty) + 20.0
+
+
+def test_the_likelihood_is_the_normal_density_of_white_noise_and_a_markov_gust_angle(flight):
+    fit, courses, _ = flight
+    rng = np.random.default_rng(5)
+    gusty = with_residual(fit, 0.01 * rng.standard_normal(len(fit.fitted)))
+    memory_s = 0.7
+    gusts = Gusts(2.0 * NOISE, ANGLE, memory_s, np.nan, np.nan, np.empty(0), np.empty(0)).at(gusty, courses)
+    density, gradient = 0.0, 0.0
+    for m, course in enumerate(courses):
+        rows = np.flatnonzero(fit.assembly.owner == m)
+        white = np.diag((2.0 * NOISE[fit.assembly.channel[rows]]) ** 2)
+        angles = ANGLE**2 * np.exp(-np.abs(course.knots[:, None] - course.knots) / memory_s)
+        both = white + course.columns @ angles @ course.columns.T
+        density += multivariate_normal(cov=both, allow_singular=True).logpdf(gusty.residual[rows])
+        gradient = gradient + gusty.columns[rows].T @ np.linalg.solve(both, gusty.residual[rows])
+    constant = 0.5 * len(gusty.fitted) * (1.0 + np.log(2.0 * np.pi))
+    assert gusts.likelihood == pytest.approx(density + constant, abs=1e-3)
+    assert gusts.gradient == pytest.approx(gradient, rel=1e-5, abs=1e-5 * np.max(np.abs(gradient)))
 
 
 def test_a_coloured_instrument_is_no_gust(flight):
