@@ -128,7 +128,7 @@ class _Setting(NamedTuple):
         """
         system = _System.of(self.prior, fit)
         held: dict[int, float] = {}
-        for _ in range(2):
+        for _ in range(len(self.nuisances) + 1):
             found = system.solved(damping, held)
             if found is None:
                 return None
@@ -138,7 +138,7 @@ class _Setting(NamedTuple):
             ends = np.flatnonzero(~np.isclose(allowed, wanted, rtol=1e-6, atol=1e-12))
             if not len(ends):
                 break
-            held = {int(j): float(allowed[j]) for j in ends}
+            held |= {int(j): float(allowed[j]) for j in ends}
         return found
 
     def moved(self, fit: Fit, step: "_Step") -> Fit | None:
@@ -237,6 +237,7 @@ def descended(
     prior: Priors,
     begin: tuple[FloatArray, FloatArray],
     most: int = MOST_ITERATIONS,
+    settled: float = SETTLED,
 ) -> Fit | NoEstimate:
     """Return the fit with the least -2 log posterior density near a start. The status of the fit states how
     the search ended.
@@ -253,6 +254,8 @@ def descended(
         Derivatives (s,) and local parameters (m, l).
     most
         Largest number of trial steps.
+    settled
+        Promised decrease of -2 log posterior density at which the search ends.
     """
     setting = _Setting(motion, nuisances, prior)
     best = setting.at(problem, motion.laid(problem), *begin)
@@ -266,7 +269,7 @@ def descended(
         better = trial is not None and trial.cost <= best.cost
         if trial is not None and better:
             best = trial
-        if step is not None and step.promise < SETTLED and (not better or damping <= FIRST_DAMPING):
+        if step is not None and step.promise < settled and (not better or damping <= FIRST_DAMPING):
             status = CONVERGED
         elif better:
             damping = damping / DAMPING_FACTOR if damping > LEAST_DAMPING else 0.0

@@ -179,7 +179,7 @@ class SideFlight:
         gusts = side_gusts(one.fit, courses, wide, air)
         for _ in range(_STEPS):
             change = gusts.change(wide, one.fit)
-            fits = (moved_by(self.case.flown, one.fit, share * change, wide) for share in (1.0, 0.25))
+            fits = (moved_by(self.case.flown, one.fit, share * change) for share in (1.0, 0.25))
             ahead = ((fit, gusts.at(fit, courses)) for fit in fits if fit is not None)
             height = gusts.height(wide, one.fit)
             fit, gusts = next(((f, g) for f, g in ahead if g.height(wide, f) > height), (None, gusts))
