@@ -245,6 +245,15 @@ def test_an_effect_that_a_wrong_derivative_hides_is_fitted_at_the_files_derivati
     assert told["actuator_lag"] == (5.0 if fitted else -behind)
 
 
+@pytest.mark.parametrize(("right", "wrong", "fitted"), [(5.0, 0.0, False), (0.0, 5.0, True)])
+def test_a_model_is_fitted_at_the_files_derivatives_only_where_others_are_likelier(right, wrong, fitted):
+    flight, again = Flight({}), []
+    flight.explained = lambda base, most: (1.0, [replace(explanation(), evidence=Evidence(right, wrong))])
+    flight.at_the_files = lambda *asked: again.append(asked)
+    stage_of(flight, None, 6)
+    assert bool(again) is fitted
+
+
 def test_what_moving_air_explains_is_no_law_without_a_name_where_the_air_moves():
     """The residual is far beyond a simulator's own in still air, and within it beside the air."""
     flight = Flight({}, residual=12.0, moving=5.0)
@@ -322,32 +331,27 @@ def test_a_servos_time_is_known_to_a_fifth_of_an_effects_size_and_all_else_to_a_
     assert natural_share(SimpleNamespace(effect=effect)) == share
 
 
-def held(gap):
-    """Return a hold-out whose mean square is ``gap`` above that of a floor of 1."""
-    return SimpleNamespace(mean_square=np.array([1.0 + gap]))
-
-
 @pytest.mark.parametrize("gap", [2.0, 5.0, 40.0])
 def test_with_a_gap_of_two_no_gap_is_at_most_five_per_cent(gap):
     sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
-    assert none_means_no_gap(sure, held(gap), np.ones(1), held(0.0)).of(NONE) <= 0.05
+    assert none_means_no_gap(sure, gap, 0.0).of(NONE) <= 0.05
 
 
 def test_a_gap_within_the_noise_leaves_no_gap_as_it_is():
     sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
-    assert none_means_no_gap(sure, held(0.0), np.ones(1), held(0.0)).of(NONE) > 0.99
+    assert none_means_no_gap(sure, 0.0, 0.0).of(NONE) > 0.99
 
 
 def test_a_visible_gap_goes_to_the_numbers_as_far_as_fitted_ones_remove_it():
     sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
-    told = none_means_no_gap(sure, held(10.0), np.ones(1), held(4.0))
+    told = none_means_no_gap(sure, 10.0, 4.0)
     assert told.of(PARAMETERS) == pytest.approx(0.6, abs=0.01)
     assert told.of(MOMENT) == pytest.approx(0.4, abs=0.01)
 
 
 def test_without_a_simulator_a_gap_that_fitted_numbers_leave_has_no_name():
     sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
-    told = none_means_no_gap(sure, held(3.0), np.ones(1), held(3.0))
+    told = none_means_no_gap(sure, 3.0, 3.0)
     assert told.of(MOMENT) == pytest.approx(1.0, abs=0.01)
 
 

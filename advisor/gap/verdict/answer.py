@@ -79,7 +79,8 @@ def answer_of(
     plain = found.chosen[0]
     file_model = file_model_of(problem, plain.fitted)
     given = file_model or plain.held_out
-    posterior = none_means_no_gap(found.posteriors[0], given, floor, plain.held_out)
+    gaps = (whole_gap(held.mean_square, floor) for held in (given, plain.held_out))
+    posterior = none_means_no_gap(found.posteriors[0], *gaps)
     answer = posterior.answer
     named = _named(found, answer)[:most]
     if seen is not None:

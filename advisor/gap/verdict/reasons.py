@@ -6,11 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative, AlternativeEvidence, Column, Contribution, Weighed, together
 from advisor.gap.decision import Decision
-from advisor.gap.fitting.holdout import HeldOut
-from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, Posterior, posterior_of, relabelled
 from advisor.words.certainty import DECIDED
@@ -83,9 +80,7 @@ def _best_row(posterior: Posterior[Any], alternative: Alternative) -> Row[Any]:
     return max((r for r in posterior.rows if r.alternative == alternative), key=lambda row: row.weight)
 
 
-def none_means_no_gap(
-    posterior: Posterior[Any], simulator: HeldOut, floor: FloatArray, plain: HeldOut
-) -> Posterior[Any]:
+def none_means_no_gap(posterior: Posterior[Any], gap: float, left: float) -> Posterior[Any]:
     """Return the posterior in which "none" means that nothing is above the floor.
 
     A visible gap moves probability from "none" to wrong derivatives, as far as fitted derivatives remove the
@@ -94,12 +89,11 @@ def none_means_no_gap(
 
     Parameters
     ----------
-    simulator
-        Hold-out of the aircraft file's derivatives, or of the plain model where the file states none.
-    plain
-        Hold-out of the plain model, whose derivatives are fitted.
+    gap
+        Gap of the aircraft file's derivatives, or of the plain model where the file states none.
+    left
+        Gap of the plain model, whose derivatives are fitted.
     """
-    gap, left = (whole_gap(held.mean_square, floor) for held in (simulator, plain))
     stays = 0.05 ** ((gap / _GAP_AT_5_PERCENT) ** 2)
     by_numbers = float(np.clip(1.0 - left / max(gap, 1e-12), 0.0, 1.0))
     blocks = [row.alternative for row in posterior.rows if row.alternative.kind == "unknown"]

@@ -1,7 +1,7 @@
 """Explanations of a lateral flight: no gap, wrong derivatives, side gusts, one effect, or two effects."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from statistics import fmean
 from typing import Literal
 
@@ -24,7 +24,7 @@ from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Cause, Value, Where, ranked
 from advisor.gap.search.air import NATURAL_GUST_ANGLE
 from advisor.gap.verdict.causes import MOST_CAUSES
-from advisor.gap.verdict.reasons import weighed
+from advisor.gap.verdict.reasons import none_means_no_gap, weighed
 from advisor.gap.verdict.statements import what
 from advisor.gap.verdict.text import answers_of, place
 from advisor.model.axes.lateral import LATERAL
@@ -153,12 +153,11 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
     table = list(side_effects(case.flown))
     flight = SideFlight(case, plain, table, list(side_laws(case, plain)))
     found = decided(flight, first_stage(flight), prior, lambda rows: [_named_air(row) for row in rows])
-    told = weighed(found.posteriors[0])
-    model, last = found.chosen[-1], found.chosen[-1].fit
-    known = case.prior_of(model.tolerance, last.free)
-    unseen_by = squares_of(last, information_of(last, found.heat**-0.5), known)
+    found = _tied_to_the_gap(case, found, as_given)
+    told, last = weighed(found.posteriors[0]), found.chosen[-1].fit
     before, each_before = _gap(last, _sums(last, as_given.residual**2))
-    after, each_after = _gap(last, unseen_by.held_out) if len(case.flown) > 1 else ({}, [np.nan])
+    unseen_by = _held_out(case, found.chosen[-1], found.heat)
+    after, each_after = _gap(last, unseen_by) if len(case.flown) > 1 else ({}, [np.nan])
     return SideDiagnosis(
         evidence=told.evidence, failed=found.failed, why=told.why, answer=told.answer, rival=told.rival,
         decisions=told.decisions, causes=tuple(_causes(case, found, as_given))[:MOST_CAUSES],
@@ -167,6 +166,27 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
         floor={name: float(last.noise[LATERAL.outputs.index(name)]) for name in before},
         waterfall=_waterfall(found.chosen[1:]), fits=(as_given, last),
     )  # fmt: skip
+
+
+def _held_out(case: Case, model: SideModel, heat: float) -> FloatArray:
+    """Return the sums of squared errors (m, outputs) of a model on manoeuvres held out one by one."""
+    known = case.prior_of(model.tolerance, model.fit.free)
+    return squares_of(model.fit, information_of(model.fit, heat**-0.5), known).held_out
+
+
+def _tied_to_the_gap(case: Case, found: Decided[SideModel], as_given: Fit) -> Decided[SideModel]:
+    """Return the posterior in which "none" means that nothing is above the noise.
+
+    A single manoeuvre shows no gap, because none is held out.
+    """
+    if len(case.flown) == 1:
+        return found
+    plain, last = found.chosen[0], found.chosen[-1].fit
+    squares = _sums(last, as_given.residual**2), _held_out(case, plain, found.heat)
+    gap, left = (fmean(_gap(last, one)[0].values()) for one in squares)
+    first = none_means_no_gap(found.posteriors[0], gap, left if case.stated else gap)
+    named = found.chosen if any(one.alternative == first.answer for one in found.chosen) else (plain,)
+    return replace(found, posteriors=(first, *found.posteriors[1:]), chosen=named)
 
 
 def _sums(fit: Fit, values: FloatArray) -> FloatArray:

@@ -14,13 +14,22 @@ from advisor.gap.alternative import Alternative, AlternativeEvidence, together
 from advisor.gap.axes.lateral import diagnosis
 from advisor.gap.axes.lateral import flight as flight_of_side
 from advisor.gap.axes.lateral.comparison import SideGap
-from advisor.gap.axes.lateral.diagnosis import SideCause, SideDiagnosis, _gap, _sums, diagnose_side
+from advisor.gap.axes.lateral.diagnosis import (
+    SideCause,
+    SideDiagnosis,
+    _gap,
+    _sums,
+    _tied_to_the_gap,
+    diagnose_side,
+)
 from advisor.gap.axes.lateral.evidence import Gain
 from advisor.gap.axes.lateral.fit import Fit, Free
 from advisor.gap.axes.lateral.flight import SideFlight, SideModel
 from advisor.gap.axes.lateral.models import case_of
+from advisor.gap.inference.engine import Decided
 from advisor.gap.inference.explanation import Evidence, Row
-from advisor.gap.inference.posterior import NONE
+from advisor.gap.inference.posterior import NONE, PARAMETERS, posterior_of
+from advisor.gap.inference.stage import Stage
 from advisor.gap.result import Cause, Value
 from advisor.report.side_gap import side_gap_document, side_gap_lines
 from benchmarks.lateral_gap import CASES, diagnosed
@@ -214,14 +223,41 @@ def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_a
     assert [one.column for one in again] == [None]
 
 
-@pytest.mark.parametrize(("right", "wrong", "fitted"), [(5.0, 0.0, False), (0.0, 5.0, True)])
-def test_a_model_is_fitted_at_the_files_derivatives_only_where_others_are_likelier(right, wrong, fitted):
-    found = SimpleNamespace(point=None, free=())
-    one = SimpleNamespace(evidence=Evidence(right, wrong), fit=found, effect=None, starts=None)
-    again = []
-    case = SimpleNamespace(natural=(), fit=lambda *given: again.append(given))
-    assert SideFlight(case, None, []).at_the_files(one, None, 1.0) is None
-    assert bool(again) is fitted
+def side_model(fit, nats=0.0, alternative=None):
+    told = {"fit": fit, "evidence": Evidence(nats, nats), "natural": Evidence(nats, nats), "likelihood": nats}
+    return SideModel(**dict.fromkeys(SideModel.__dataclass_fields__) | told | {"alternative": alternative})
+
+
+@pytest.mark.parametrize(("nats", "likeliest"), [(30.0, "with an effect"), (0.0, "plain")])
+def test_the_air_is_weighed_in_the_residual_of_the_likeliest_explanation(monkeypatch, nats, likeliest):
+    of, still = [], SimpleNamespace(likelihood=0.0)
+    monkeypatch.setattr(flight_of_side, "side_gusts", lambda fit, *_: of.append(fit) or still)
+    monkeypatch.setattr(flight_of_side, "courses_of", lambda *_: ())
+    monkeypatch.setattr(flight_of_side, "coloured_likelihood", lambda _: 0.0)
+    monkeypatch.setattr(flight_of_side, "within_model_error", lambda _, everyone, error: everyone)
+    monkeypatch.setattr(SideFlight, "_wide", lambda *_: None)
+    monkeypatch.setattr(SideFlight, "_blown", lambda self, one, *_: one)
+    stage = Stage(side_model("plain"), (side_model("with an effect", nats),), (), 1.0)
+    SideFlight(SimpleNamespace(flown=None), "plain", []).in_moving_air(stage)
+    assert of == [likeliest]
+
+
+@pytest.mark.parametrize(
+    ("maneuvers", "gap", "answer", "chosen"),
+    [(2, 0.0, "none", 1), (2, 10.0, "parameters", 1), (1, 10.0, "none", 2)],
+)
+def test_none_means_no_gap_on_held_out_manoeuvres(monkeypatch, maneuvers, gap, answer, chosen):
+    """Fitted derivatives remove the whole gap. One manoeuvre is held out of nothing."""
+    lag = Alternative("effect", "actuator_lag", "input")
+    rows = [Row(NONE, None, {"fit": 9.0}), Row(PARAMETERS, None, {"fit": 0.0}), Row(lag, None, {"fit": 1.0})]
+    models = (side_model(SimpleNamespace(residual=1.0)), side_model(None, 0.0, lag))
+    monkeypatch.setattr(diagnosis, "_gap", lambda fit, squares: ({"p": squares}, []))
+    monkeypatch.setattr(diagnosis, "_sums", lambda *_: gap)
+    monkeypatch.setattr(diagnosis, "_held_out", lambda *_: 0.0)
+    case = SimpleNamespace(flown=range(maneuvers), stated=("L_p",))
+    found = _tied_to_the_gap(case, Decided((posterior_of(rows),), models, (), 1.0), models[0].fit)
+    assert found.posteriors[0].answer.kind == answer
+    assert len(found.chosen) == chosen
 
 
 @pytest.mark.parametrize(
