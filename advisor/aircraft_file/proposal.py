@@ -33,7 +33,7 @@ def _head(facts: LogFacts, log: str) -> list[str]:
     flown = len(facts.maneuvers_m_s)
     lines = [
         f"Aircraft file of the inflight advisor, made from {log}: {vehicle.autopilot}{firmware}, "
-        f"{facts.frame}, system {vehicle.system}, {flown or 'no'} manoeuvre{'' if flown == 1 else 's'}.",
+        f"{facts.frame}, system {vehicle.system}, {flown or 'no'} manoeuvre{'' if flown == 1 else 's'}."
     ]
     if facts.pressure_pa is not None:
         lines.append(

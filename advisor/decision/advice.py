@@ -31,9 +31,7 @@ any."""
 
 
 def next_input(
-    history: Sequence[CandidateManeuver],
-    aircraft: Aircraft,
-    course: CriterionCourse | None = None,
+    history: Sequence[CandidateManeuver], aircraft: Aircraft, course: CriterionCourse | None = None
 ) -> NextInput:
     """Return the next input after the last manoeuvre of ``history``. ``course`` is the cache of
     ``flight_test``.

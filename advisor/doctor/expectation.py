@@ -180,8 +180,7 @@ def _problem(
     half = float(np.median(_EDGES_S)) / 2.0
     corners = np.repeat(edges, 2) + np.tile([-half, half], len(edges))
     command = Signal(
-        np.concatenate([[0.0], corners, [end_s]]),
-        np.concatenate([[0.0], np.repeat(levels, 2)[1:-1], [0.0]]),
+        np.concatenate([[0.0], corners, [end_s]]), np.concatenate([[0.0], np.repeat(levels, 2)[1:-1], [0.0]])
     )
     measured = {name: unmeasured(end_s, 1.0 / rates_hz[name]) for name in outputs}
     speed = None if airspeed_m_s is None else Signal(np.array([0.0, end_s]), np.full(2, airspeed_m_s))

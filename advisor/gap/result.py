@@ -67,7 +67,7 @@ class Gap:
     before: float
     """Gap of the simulator as given, as the mean over the channels."""
     after: float
-    """Gap of the final model, as the mean over the channels."""
+    """Gap of the final model, as the mean over the channels; NaN with a single manoeuvre."""
     floor: Mapping[str, float]
     """Standard deviation of the residual where nothing was flown, by channel, in the channel's SI unit."""
     floor_note: str
@@ -76,9 +76,9 @@ class Gap:
     by_channel_after: Mapping[str, float]
     by_maneuver: tuple[tuple[int, float, float], ...]
     """Number of each manoeuvre, with its gap before and after."""
-    by_phase: Mapping[str, float]
+    by_phase: Mapping[str, float] = field(default_factory=dict)
     """Gap of the simulator as given, for ``step edge``, ``plateau`` and ``free response``."""
-    by_band_hz: tuple[tuple[float, float, float], ...]
+    by_band_hz: tuple[tuple[float, float, float], ...] = ()
     """Limits of each frequency band in Hz, with the band's share of the pitch-rate error's power."""
     by_air: float = 0.0
     """Part of the gap that the likeliest course of moving air removes from the final model."""

@@ -7,7 +7,17 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import AlternativeEvidence, Weighed
-from advisor.gap.result import Cause, ComparedDerivative, Diagnosis, InSimulator, Qualification, Trace
+from advisor.gap.result import (
+    Cause,
+    ComparedDerivative,
+    Diagnosis,
+    Gap,
+    InSimulator,
+    Qualification,
+    Shrink,
+    Trace,
+    Where,
+)
 from advisor.gap.verdict.text import answers_of, in_words, limits_of, title_of
 from advisor.process.parts import FailedPart
 from advisor.report.facts.gap import changed, grown_said, heading, shrink_said, size_of_gap, where_said
@@ -18,7 +28,7 @@ from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
 
 SCHEMA = "advisor.gap/1"
-_NOTHING: Mapping[str, Any] = {
+NOTHING: Mapping[str, Any] = {
     "verdict": None, "title": None, "sentence": None, "limits": [], "maneuvers": [], "gap": None,
     "where": None, "causes": [], "shrink": None, "waterfall": [], "cannot_see": [], "model": None,
     "reference_airspeed_m_s": None, "alpha_check": None, "yardsticks": None, "notes": [],
@@ -48,8 +58,8 @@ def gap_document(
         "next": [],
     }
     if diagnosis is None:
-        return {**document, **_NOTHING}
-    d, gap = diagnosis, diagnosis.gap
+        return {**document, **NOTHING}
+    d = diagnosis
     document["problems"] += [part.entry for part in d.failed]
     tested = d.verdict != "untested"
     document |= plain({
@@ -57,25 +67,8 @@ def gap_document(
         "title": title_of(d),
         **picked(d, "sentence maneuvers model reference_airspeed_m_s cannot_see notes share_irreducible"),
         "limits": list(limits_of(d)),
-        "gap": {
-            "text": size_of_gap(d),
-            "grown": grown_said(d),
-            **picked(gap, "before after floor floor_note by_channel by_channel_after by_phase"),
-            "by_maneuver": [{"number": n, "before": b, "after": a} for n, b, a in gap.by_maneuver],
-            "by_band_hz": [{"from_hz": a, "to_hz": b, "share": s} for a, b, s in gap.by_band_hz],
-        },
-        "where": {
-            "text": where_said(d),
-            **picked(d.where, "block share"),
-            "ranking": [{"block": b, "score": s} for b, s in d.where.ranking],
-        },
-        "causes": [_cause(c) for c in d.causes],
-        "shrink": d.shrink
-        and {
-            **plain(d.shrink),
-            "text": shrink_said(d.shrink, d.gap),
-            "in_simulator": _in_simulator(d.in_simulator),
-        },
+        **numbers_document(d.verdict, d.gap, d.where, d.shrink),
+        "causes": [cause_document(c) for c in d.causes],
         **_of_the_simulator(d),
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
         "alpha_check": {
@@ -88,7 +81,29 @@ def gap_document(
         "improved_model": improved_model,
         **weighed_document(d),
     })  # fmt: skip
+    if d.shrink is not None:
+        document["shrink"]["in_simulator"] = plain(_in_simulator(d.in_simulator))
     return document
+
+
+def numbers_document(verdict: str, gap: Gap, where: Where | None, shrink: Shrink | None) -> dict[str, Any]:
+    """Return the document part about the size of a gap, its place and its shrink, for every axis."""
+    return {
+        "gap": {
+            "text": size_of_gap(verdict, gap),
+            "grown": grown_said(verdict, gap),
+            **picked(gap, "before after floor floor_note by_channel by_channel_after by_phase"),
+            "by_maneuver": [{"number": n, "before": b, "after": a} for n, b, a in gap.by_maneuver],
+            "by_band_hz": [{"from_hz": a, "to_hz": b, "share": s} for a, b, s in gap.by_band_hz],
+        },
+        "where": where
+        and {
+            "text": where_said(where, shrink),
+            **picked(where, "block share"),
+            "ranking": [{"block": b, "score": s} for b, s in where.ranking],
+        },
+        "shrink": shrink and {**plain(shrink), "text": shrink_said(shrink, gap), "in_simulator": None},
+    }
 
 
 def weighed_document(d: Weighed) -> dict[str, Any]:
@@ -148,7 +163,8 @@ def _as_logged(samples: FloatArray) -> list[float]:
     return [float(str(value)) for value in samples.astype(np.float32)]
 
 
-def _cause(c: Cause) -> dict[str, Any]:
+def cause_document(c: Cause) -> dict[str, Any]:
+    """Return the document part about one candidate cause, for every axis."""
     said = picked(c, "effect block probability parameters cannot_be_told_from tell_apart_by gap_after")
     return {**said, "text": ", ".join(sizes_of(c.parameters)), "in_model": c.present}
 

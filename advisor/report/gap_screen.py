@@ -65,7 +65,9 @@ class GapScreen:
         yield Panel(Group(*_answer(d)), title=title_of(d), title_align="left")
         yield _numbers(d)
         if d.verdict not in ("none", "untested"):
-            where = f"where: {where_said(d)}" if d.verdict in ("effect", "unknown") else "where"
+            where = (
+                f"where: {where_said(d.where, d.shrink)}" if d.verdict in ("effect", "unknown") else "where"
+            )
             yield Panel(Group(*_picture(d)), title=where, title_align="left")
         if self.everything:
             yield from self._course()
@@ -175,12 +177,12 @@ def _hanging(mark: str, text: str, width: int) -> Text:
 
 
 def _numbers(d: Diagnosis) -> Text:
-    lines = [size_of_gap(d)]
+    lines = [size_of_gap(d.verdict, d.gap)]
     if d.shrink is not None:
         lines.append(shrink_said(d.shrink, d.gap))
         if d.shrink.beyond_air_percent is not None:
             lines.append(f"without the air's own course: {d.shrink.beyond_air_percent:.0f} % less")
-    if grown := grown_said(d):
+    if grown := grown_said(d.verdict, d.gap):
         lines.append(f"{WORSE} {grown}")
     return Text("\n".join(lines))
 

@@ -71,11 +71,7 @@ def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
         "correlation": found.correlation,
         "left_out": dict(found.left_out),
         "levels": {
-            one.category: {
-                **level_document(one),
-                "phases": CATEGORIES[one.category],
-                "text": one.sentence,
-            }
+            one.category: {**level_document(one), "phases": CATEGORIES[one.category], "text": one.sentence}
             for one in found.levels
         },
         "source": SOURCE,

@@ -4,16 +4,24 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from advisor.gap.alternative import Weighed
 from advisor.gap.axes.lateral.comparison import SideGap
 from advisor.gap.axes.lateral.diagnosis import SideDiagnosis
 from advisor.gap.axes.lateral.flight import LIKELY
 from advisor.gap.candidates.distinguish import way_to_distinguish
+from advisor.gap.result import spelled
 from advisor.gap.verdict.text import title_of_verdict
-from advisor.report.facts.gap import changes, counted
+from advisor.report.facts.gap import changes, grown_said, shrink_said, size_of_gap
 from advisor.report.facts.reasons import how_sure, in_percent
-from advisor.report.facts.sizes import named, sizes_of, with_error
-from advisor.report.gap_document import changed_document, gap_document, traces_document, weighed_document
+from advisor.report.facts.sizes import WORSE, named, sizes_of, with_error
+from advisor.report.gap_document import (
+    NOTHING,
+    cause_document,
+    changed_document,
+    gap_document,
+    numbers_document,
+    traces_document,
+    weighed_document,
+)
 from advisor.report.gap_steps import GapStep, to_decide
 from advisor.words.certainty import is_decided
 from advisor.words.plain import picked, plain
@@ -30,12 +38,20 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
     if found.instruments:
         yield "Nuisance parameters of the fit, no part of the answer:"
     yield from (f"  {named(name)} {with_error(name, one)}" for name, one in found.instruments.items())
-    gap = found.diagnosis
-    if gap is not None and gap.after and found.verdict is not None:
-        numbers = counted(found.maneuvers)
-        yield f"Gap on manoeuvres {numbers}, each held out in turn, mean square over noise, minus 1:"
-        for name, before in gap.before.items():
-            yield f"  {name:<5} {before:8.2f} before, {gap.after[name]:.2f} after"
+    if found.diagnosis is not None and found.verdict is not None:
+        gap, shrink = found.diagnosis.gap, found.diagnosis.shrink
+        yield _capital(size_of_gap(found.verdict, gap))
+        if shrink is not None:
+            yield f"  {shrink_said(shrink, gap)}"
+        if grown := grown_said(found.verdict, gap):
+            yield f"  {WORSE} {grown}"
+        for name, before in gap.by_channel.items():
+            after = gap.by_channel_after[name]
+            yield f"  {name:<5} {before:8.2f} before{'' if math.isnan(after) else f', {after:.2f} after'}"
+
+
+def _capital(text: str) -> str:
+    return text[0].upper() + text[1:]
 
 
 def _title(found: SideGap) -> str:
@@ -65,8 +81,8 @@ def _diagnosis_lines(found: SideDiagnosis) -> Iterator[str]:
                     f"    largest error of {name}: {math.degrees(before):.2f} → {after:.2f} deg/s "
                     f"({least:.2f} by fitted derivatives alone)"
                 )
-    for what, why in found.cannot_see.items():
-        yield f"  cannot be seen: {what}, for {why}"
+    for hidden in found.cannot_see:
+        yield f"  cannot be seen: {spelled(hidden.effect)}, for {hidden.because}"
     if step := _to_decide(found):
         yield step.text
 
@@ -78,61 +94,39 @@ def whole_document(found: SideGap) -> dict[str, Any]:
 
 
 def side_gap_document(found: SideGap) -> dict[str, Any]:
-    """Return the block ``lateral`` of ``advisor gap --json``, in SI units."""
-    gap = found.diagnosis
-    mean = gap and gap.mean_gap
-    size = {"before": mean and mean[0], "after": mean and mean[1]}
-    document: dict[str, Any] = plain({
+    """Return the block ``lateral`` of ``advisor gap --json``, in SI units, with the keys of pitch."""
+    document: dict[str, Any] = NOTHING | plain({
         **picked(found, "verdict sentence maneuvers not_identifiable"),
         "title": _title(found),
         "next": [] if (step := _to_decide(found.diagnosis)) is None else [step],
-        "gap": {
-            "before": size["before"],
-            "by_channel": gap.before if gap and mean else {},
-            "by_channel_after": gap.after if gap and mean else {},
-            "floor": gap.floor if gap else {},
-            "by_maneuver": [
-                {"number": number, "before": before, "after": after}
-                for number, (before, after) in zip(found.maneuvers, gap.by_maneuver, strict=True)
-            ]
-            if gap
-            else [],
-        },
         "parameters_changed": [changed_document(one) for one in found.derivatives if one.differs],
         "parameters_compared": [changed_document(one) for one in found.derivatives],
         "instruments": {n: {"value": v.value, "std": v.std} for n, v in found.instruments.items()},
-        "shrink": mean and {"holdout": list(found.maneuvers), **size, "percent": gap and gap.shrink_percent},
-        **_diagnosis_document(found.diagnosis),
+        "peaks": None,
+        **_diagnosis_document(found),
     })  # fmt: skip
     if found.verdict is None:  # nothing was weighed against a simulator
         document["how_sure"] = ""
     return document | {"traces": traces_document(found.traces)}
 
 
-def _diagnosis_document(found: SideDiagnosis | None) -> dict[str, Any]:
-    """Return probabilities, causes and largest errors, rad/s; without a diagnosis only the keys."""
-    if found is None:
-        return {
-            **weighed_document(Weighed()), "where": None, "causes": [], "waterfall": [], "peaks": None,
-            "cannot_see": {},
-        }  # fmt: skip
-    where = found.where
+def _diagnosis_document(found: SideGap) -> dict[str, Any]:
+    """Return the gap, probabilities, causes and largest errors, rad/s; nothing without a diagnosis."""
+    d = found.diagnosis
+    if d is None:
+        return {}
     return {
-        **weighed_document(found),
-        "where": where
-        and {
-            **picked(where, "block share"),
-            "ranking": [{"block": block, "score": score} for block, score in where.ranking],
-        },
+        **numbers_document(found.verdict or "untested", d.gap, d.where, d.shrink),
+        **weighed_document(d),
         "causes": [
             {
-                **picked(one.cause, "effect block probability present parameters"),
-                **picked(one, "of name sentence peaks"),
+                **cause_document(one.cause),
+                **picked(one, "of name sentence peaks"), "present": one.cause.present,
                 "held_out_nats": {"value": one.gain.total, "std": one.gain.std},
             }
-            for one in found.causes
+            for one in d.causes
         ],
-        "waterfall": [{"effect": name, "after": after} for name, after in found.waterfall],
-        "peaks": {"simulator": found.peaks, "fitted_derivatives": found.peaks_by_numbers},
-        "cannot_see": found.cannot_see,
-    }
+        "waterfall": [{"effect": name, "after": after} for name, after in d.waterfall],
+        "peaks": {"simulator": d.peaks, "fitted_derivatives": d.peaks_by_numbers},
+        "cannot_see": d.cannot_see,
+    }  # fmt: skip

@@ -87,13 +87,7 @@ def report_before_first(aircraft: Aircraft, title: str) -> SessionReport:
     limit = limit_percent(plan.rule, plan)
     verdict = FlightTestVerdict(plan.rule, "continue", "No manoeuvre has been flown yet.", None, limit, None)
     state = CampaignState(
-        vehicle=None,
-        now_s=nan,
-        mode="",
-        channels={},
-        maneuvers=(),
-        flight_test=verdict,
-        model=None,
+        vehicle=None, now_s=nan, mode="", channels={}, maneuvers=(), flight_test=verdict, model=None
     )
     return SessionReport(state, LinkHealth("waiting", f"Opening {title}."), None, ())
 

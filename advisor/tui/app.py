@@ -63,11 +63,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
     CSS_PATH: ClassVar[list[str | PurePath]] = [
         f"styles/{name}.tcss" for name in ("app", "pilot", "engineer", "explain")
     ]
-    BINDINGS: ClassVar[list[BindingType]] = [
-        *keys.EVERYWHERE,
-        *keys.REPLAY,
-        *keys.SELDOM,
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [*keys.EVERYWHERE, *keys.REPLAY, *keys.SELDOM]
     MODES: ClassVar[dict[str, str | Callable[[], Screen[Any]]]] = {
         "pilot": PilotScreen,
         "engineer": EngineerScreen,

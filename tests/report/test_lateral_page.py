@@ -12,8 +12,10 @@ from advisor.report.page.blocks import Gallery, Listing, Paragraph
 from advisor.report.page.gap import gap
 from advisor.report.page.headline import headline
 from advisor.report.page.lateral import lateral
+from advisor.report.side_gap import side_gap_document
 from advisor.report.table import Table
 from tests.campaign.side_builders import AIRCRAFT, estimate, judged, state
+from tests.gap.axes.lateral.test_diagnosis import FOUND
 from tests.oem.axes.lateral.builders import JET
 from tests.schemas import breaches
 from tests.tui import flights as flights_of_pitch
@@ -121,10 +123,9 @@ def test_the_first_page_of_a_lateral_flight_has_the_lateral_verdict_and_table_an
     assert not any("3-2-1-1" in one for one in said)
 
 
-SIDE = {
-    "title": "LIKELY", "sentence": "The aileron is weak.", "how_sure": "Weak 90 %.", "traces": [],
+SIDE = side_gap_document(FOUND) | {
+    "title": "LIKELY", "sentence": "The aileron is weak.", "how_sure": "Weak 90 %.",
     "parameters_changed": [{"text": "L_p: more"}],
-    "causes": [{"sentence": "a", "probability": 0.9}, {"sentence": "b", "probability": 0.001}],
 }  # fmt: skip
 GAP = {"usable": True, "title": None, "sentence": None, "limits": [], "lateral": SIDE}
 
@@ -147,9 +148,14 @@ def test_beside_refused_tests_of_the_elevator_the_first_page_has_roll_and_yaw_an
     assert not any("None" in one for one in said)
 
 
-def test_the_gap_of_a_lateral_flight_stands_with_its_changes_and_shown_causes():
-    changed, causes = gap(SimpleNamespace(gap=GAP)).blocks
-    assert (changed.items, causes.items) == (("L_p: more",), ("a (90 %).",))
+def test_the_gap_of_roll_and_yaw_has_the_blocks_of_the_gap_of_pitch():
+    blocks = gap(SimpleNamespace(gap=GAP)).blocks
+    tables = {block.name: block for block in blocks if isinstance(block, Table)}
+    assert [row[0] for row in tables["gap-channels"].rows] == ["p"]
+    assert tables["causes"].rows[0][:3] == ("aileron actuator backlash", "70 %", "0.57 ± 0.11 deg")
+    said = [block.text for block in blocks if isinstance(block, Paragraph)]
+    assert any("gap 3 → 0.5 times the noise floor's power. 83.3 % less" in one for one in said)
+    assert "Where: between the aileron's command and the aileron." in said
 
 
 @pytest.mark.parametrize(

@@ -67,11 +67,7 @@ def row(rule: Rule, noise_percent: float, outcomes: Sequence[RuleOutcome], truth
         tolerance = np.array([outcomes[k].tolerance for k in stopped])
         outside = 100.0 * np.mean(np.abs(errors[stopped]) > tolerance, axis=0) if stopped else None
     return Row(
-        rule,
-        noise_percent,
-        tuple(o.needed for o in outcomes),
-        100.0 * np.abs(errors / truth),
-        outside,
+        rule, noise_percent, tuple(o.needed for o in outcomes), 100.0 * np.abs(errors / truth), outside
     )
 
 

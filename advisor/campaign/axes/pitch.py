@@ -97,9 +97,7 @@ class ElevatorCampaign(AxisCampaign):
         """Estimate and examine one manoeuvre with the instruments' values from the other manoeuvres."""
         known = self.learnt if maneuver.power_on in self._told_by else of_another_power_on(self.learnt)
         return self._parts.make(
-            f"pitch, manoeuvre {maneuver.number}",
-            lambda: assess(maneuver, known),
-            partial(failed, maneuver),
+            f"pitch, manoeuvre {maneuver.number}", lambda: assess(maneuver, known), partial(failed, maneuver)
         )
 
     def _blame_instruments(self, newest: Maneuver) -> None:

@@ -223,9 +223,7 @@ def force_against_alpha(channels: Channels) -> Evidence:
     }
 
 
-def _parts(
-    channels: Channels,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray] | None:
+def _parts(channels: Channels) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray] | None:
     """Return stamps, pitch rate and turn rate of the path, then stamps and values of α; None if missing."""
     if not usable(channels, "q", "theta", "a_z", "alpha", "airspeed"):
         return None

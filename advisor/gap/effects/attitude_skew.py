@@ -54,7 +54,7 @@ EFFECT = Effect(
         "with_pitch_rate": (
             "Attitude and pitch rate are stamped {skew_s_ms:.0f} ms too late",
             "Attitude and pitch rate are stamped {skew_s_ms:.0f} ms too early",
-        ),
+        )
     },
     need=Need("skew_s", "no attitude", "ATTITUDE at 50 Hz"),
     imitated_by=UNFILTERED,

@@ -11,6 +11,7 @@ from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.refit import own_refitted
 from advisor.gap.records.flights import PreparedManeuver
+from advisor.gap.result import Gap, Shrink
 
 _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
 """Words: limits of the frequency bands in Hz. The short period lies in the middle bands, drift of the trim
@@ -28,6 +29,42 @@ def gap_of(mean_square: FloatArray, floor: FloatArray) -> FloatArray:
 def whole_gap(mean_square: FloatArray, floor: FloatArray) -> float:
     """Return the mean of the gap over the channels."""
     return float(np.mean(gap_of(mean_square, floor)))
+
+
+def gap_between(
+    channels: Sequence[str], numbers: Sequence[int], floor: FloatArray, note: str,
+    before: tuple[FloatArray, FloatArray], after: tuple[FloatArray, FloatArray],
+) -> Gap:  # fmt: skip
+    """Return the gap of the simulator as given and of the final model.
+
+    Parameters
+    ----------
+    numbers
+        Number of each manoeuvre.
+    floor, note
+        Standard deviation of the noise (channels,), and its source.
+    before, after
+        Mean squared errors over all manoeuvres, (channels,), and of each manoeuvre, (manoeuvres, channels);
+        NaN where there are none.
+    """
+    whole = [gap_of(one, floor) for one, _ in (before, after)]
+    each = [np.ma.masked_invalid(gap_of(one, floor)).mean(axis=1) for _, one in (before, after)]
+    by = [dict(zip(channels, values.tolist(), strict=True)) for values in (floor, *whole)]
+    by_maneuver = tuple(zip(numbers, *(gaps.filled(np.nan).tolist() for gaps in each), strict=True))
+    return Gap(float(np.mean(whole[0])), float(np.mean(whole[1])), by[0], note, by[1], by[2], by_maneuver)
+
+
+def shrink_between(
+    gap: Gap, numbers: Sequence[int], floor: FloatArray, before: FloatArray, after: FloatArray
+) -> Shrink:
+    """Return the shrink of a gap on manoeuvres, with its 95 % interval by resampling.
+
+    ``before`` and ``after`` are mean squares of shape (manoeuvres, channels).
+    """
+    percent = 100.0 * (1.0 - gap.after / gap.before) if gap.before > 1e-9 else 0.0
+    low, high = shrink_interval(before, after, floor)
+    # A long manoeuvre has more samples, and counts for more in the gap than in a draw of manoeuvres.
+    return Shrink(tuple(numbers), gap.before, gap.after, percent, (min(low, percent), max(high, percent)))
 
 
 def by_phase(

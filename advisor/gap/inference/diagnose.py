@@ -107,15 +107,11 @@ def _with_offset(
     natural = np.hypot(_SET_WITHIN_RAD[problem.flights.alpha_is_derived], offset.std_rad)
     faulty = np.hypot(_OFF_BY_RAD, offset.std_rad)
     gain = 0.5 * offset.rad**2 * (natural**-2 - faulty**-2) - float(np.log(faulty / natural))
+    gain += float(np.log(prior.effect / max(names, 1) / prior.none))
     told = [row for row in rows if row.alternative == NONE]
-    share = float(np.log(prior.effect / max(names, 1) / prior.none))
-    return [
-        *(
-            _gaining(row, "offset", max(0.0, gain + share)) if row.alternative != NONE else row
-            for row in rows
-        ),
-        *(relabelled(_gaining(row, "offset", gain + share), stated_as("alpha_bias")) for row in told),
-    ]
+    others = (_gaining(row, "offset", max(0.0, gain)) for row in rows if row.alternative != NONE)
+    faults = (relabelled(_gaining(row, "offset", gain), stated_as("alpha_bias")) for row in told)
+    return [*told, *others, *faults]
 
 
 def _gaining(row: Row[PitchModel], term: str, nats: float) -> Row[PitchModel]:

@@ -64,10 +64,7 @@ UNKNOWN = Alternative("unknown", "unknown")
 
 
 def rows_of(
-    flight: Flight[E],
-    stage: Stage[E],
-    prior: FieldPrior,
-    second: tuple[E, Stage[E]] | None = None,
+    flight: Flight[E], stage: Stage[E], prior: FieldPrior, second: tuple[E, Stage[E]] | None = None
 ) -> list[Row[E]]:
     """Return the rows of all alternatives after one stage.
 

@@ -76,8 +76,7 @@ def as_read(problem: EffectProblem, offset_rad: float) -> EffectProblem:
     """Return the flights with the offset of α that was subtracted before the fit."""
     flights = tuple(
         replace(
-            f,
-            outputs={**f.outputs, "alpha": Signal(f.outputs["alpha"].t, f.outputs["alpha"].y + offset_rad)},
+            f, outputs={**f.outputs, "alpha": Signal(f.outputs["alpha"].t, f.outputs["alpha"].y + offset_rad)}
         )
         for f in problem.flights.flights
     )

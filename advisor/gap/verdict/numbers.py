@@ -7,6 +7,7 @@ System Identification*, section 11.3). For the short period the tolerance is ±1
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -16,7 +17,7 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
-from advisor.gap.fitting.measure import by_band, by_phase, gap_of, shrink_interval, whole_gap
+from advisor.gap.fitting.measure import by_band, by_phase, gap_between, shrink_between, whole_gap
 from advisor.gap.fitting.prior import derivative_scale
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.findings import Findings, Model
@@ -30,22 +31,15 @@ _UNCHANGED = 0.1
 
 def gap_numbers(problem: EffectProblem, floor: FloatArray, before: HeldOut, last: HeldOut) -> Gap:
     """Return the gap of the simulator as given and of the final model, as numbers."""
-    here, there = gap_of(before.mean_square, floor), gap_of(last.mean_square, floor)
     smooth = [c for c, yes in prefiltered(problem.flights).items() if yes]
     note = "measured where nothing was flown, before the first step and late in the free response"
     if smooth:
         note = f"stated as 2 % of peak for {', '.join(smooth)} (filtered before storage); else measured"
-    return Gap(
-        before=float(np.mean(here)), after=float(np.mean(there)),
-        floor=dict(zip(problem.channels, map(float, floor), strict=True)), floor_note=note,
-        by_channel=dict(zip(problem.channels, map(float, here), strict=True)),
-        by_channel_after=dict(zip(problem.channels, map(float, there), strict=True)),
-        by_maneuver=tuple(
-            (f.number, whole_gap(b, floor), whole_gap(a, floor))
-            for f, b, a in zip(problem.flights.flights, before.by_maneuver, last.by_maneuver, strict=True)
-        ),
-        by_phase=by_phase(problem, before.residuals, floor), by_band_hz=by_band(problem, before.residuals),
-    )  # fmt: skip
+    flights = problem.flights.flights
+    errors = ((held.mean_square, held.by_maneuver) for held in (before, last))
+    gap = gap_between(problem.channels, [f.number for f in flights], floor, note, *errors)
+    phases, bands = by_phase(problem, before.residuals, floor), by_band(problem, before.residuals)
+    return replace(gap, by_phase=phases, by_band_hz=bands)
 
 
 def irreducible(mean_square: FloatArray, floor: FloatArray, gap: Gap) -> float:
@@ -70,12 +64,9 @@ def shrink_of(
     elif e.air is not None and (len(e.models) > 1 or wrong_derivatives):
         beyond_air = _by_effects(e) if len(e.models) > 1 else _by_numbers(e)
     which = list(kept)
-    percent = 100.0 * (1.0 - gap.after / gap.before) if gap.before > 1e-9 else 0.0
-    low, high = shrink_interval(before.by_maneuver[which], last.by_maneuver[which], e.floor)
-    numbers = tuple(e.problem.flights.flights[i].number for i in kept)
-    # A long manoeuvre has more samples, and counts for more in the gap than in a draw of manoeuvres.
-    interval = (min(low, percent), max(high, percent))
-    return Shrink(numbers, gap.before, gap.after, percent, interval, beyond_air, by_numbers)
+    numbers = [e.problem.flights.flights[i].number for i in kept]
+    shrink = shrink_between(gap, numbers, e.floor, before.by_maneuver[which], last.by_maneuver[which])
+    return replace(shrink, beyond_air_percent=beyond_air, by_numbers_percent=by_numbers)
 
 
 def _by_numbers(e: Findings) -> float | None:

@@ -122,11 +122,7 @@ def _ask_for_parameter(vehicle: tuple[int, int], name: str) -> Any:
 
 def _ask_for_firmware(vehicle: tuple[int, int]) -> Any:
     return dialect.MAVLink_command_long_message(
-        *vehicle,
-        dialect.MAV_CMD_REQUEST_MESSAGE,
-        0,
-        dialect.MAVLINK_MSG_ID_AUTOPILOT_VERSION,
-        *[0.0] * 6,
+        *vehicle, dialect.MAV_CMD_REQUEST_MESSAGE, 0, dialect.MAVLINK_MSG_ID_AUTOPILOT_VERSION, *[0.0] * 6
     )
 
 
@@ -139,10 +135,7 @@ PITCH_FUNCTIONS = (19, 77, 78, 79, 80, 16, 17, 86, 87)
 """Values of SERVOn_FUNCTION for elevator, elevons, V-tails and differential spoilers."""
 
 STREAM_GROUPS = ("EXTRA1", "RAW_SENS", "RC_CHAN", "EXTRA2")
-RENAMED = {
-    "SYSID_MYGCS": "MAV_GCS_SYSID",
-    **{f"SR0_{group}": f"MAV1_{group}" for group in STREAM_GROUPS},
-}
+RENAMED = {"SYSID_MYGCS": "MAV_GCS_SYSID", **{f"SR0_{group}": f"MAV1_{group}" for group in STREAM_GROUPS}}
 """New name of each parameter that ArduPilot 4.6 still had under an old name. A vehicle knows only one of both
 names, so both are requested."""
 

@@ -74,8 +74,4 @@ def refusal(name: str, beginning: bytes) -> Problem:
             "Unpack it and give the log inside it.",
         )
     holds = f"{', '.join(one.holds for one in FORMATS[:-1])} or {FORMATS[-1].holds}"
-    return Problem(
-        "not_a_tlog",
-        f"{name} holds no {holds} ({len(beginning)} bytes read).",
-        GIVE,
-    )
+    return Problem("not_a_tlog", f"{name} holds no {holds} ({len(beginning)} bytes read).", GIVE)

@@ -15,9 +15,7 @@ from advisor.words.problems import UnusableInputError
 
 
 def open_log(
-    path: Path,
-    wanted: Iterable[str] | None = None,
-    scanner: FrameScanner | None = None,
+    path: Path, wanted: Iterable[str] | None = None, scanner: FrameScanner | None = None
 ) -> Iterator[list[Columns]]:
     """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not.
 

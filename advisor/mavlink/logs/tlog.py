@@ -13,9 +13,7 @@ _HARDLY_ANY = 0.01
 
 
 def read_tlog(
-    path: Path,
-    wanted: Iterable[str] | None = None,
-    chunk_bytes: int = CHUNK_BYTES,
+    path: Path, wanted: Iterable[str] | None = None, chunk_bytes: int = CHUNK_BYTES
 ) -> Iterator[list[Columns]]:
     """Stream a log of any size: columns chunk by chunk.
 

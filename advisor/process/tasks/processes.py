@@ -26,10 +26,7 @@ def processes(workers: int) -> Executor:
 
 
 def run_in_processes(
-    work: Callable[[T], R],
-    tasks: Sequence[T],
-    workers: int,
-    executor: Callable[[int], Executor] = processes,
+    work: Callable[[T], R], tasks: Sequence[T], workers: int, executor: Callable[[int], Executor] = processes
 ) -> Iterator[tuple[T, R | Exception]]:
     """Do all tasks; yield each with its result, or with the error that ended it, in the order of completion.
 

@@ -1,9 +1,10 @@
 """Sentences about a gap: its size, its shrink, its place, and the derivatives that differ."""
 
 from collections.abc import Sequence
+from math import isnan
 
 from advisor.gap.alternative import Weighed
-from advisor.gap.result import ComparedDerivative, Diagnosis, Gap, Shrink
+from advisor.gap.result import ComparedDerivative, Gap, Shrink, Where
 from advisor.gap.verdict.text import in_words, place
 from advisor.report.facts.sizes import before_after, has_grown, short
 from advisor.words.digits import decimals_for, signed, with_half
@@ -14,14 +15,16 @@ _WORTH_SAYING = 0.005
 """Share of a gap below which the sentence omits the share, because it rounds to 0 %."""
 
 
-def size_of_gap(d: Diagnosis) -> str:
+def size_of_gap(verdict: str, gap: Gap) -> str:
     """Return the gap of the simulator as given and after the corrections: ``gap 119 → 0.116 times ...``."""
-    before, after = short(d.gap.before), short(d.gap.after)
-    if d.verdict == "untested":
+    before, after = short(gap.before), short(gap.after)
+    if verdict == "untested":
         return f"what the fitted model leaves: {after} times the noise floor's power"
-    if d.verdict == "none":
+    if isnan(gap.after):
+        return f"gap {before} times the noise floor's power; no manoeuvre can be held out"
+    if verdict == "none":
         return f"gap {before} times the noise floor's power, {after} with fitted numbers"
-    return f"gap {before_after(d.gap.before, d.gap.after)} times the noise floor's power"
+    return f"gap {before_after(gap.before, gap.after)} times the noise floor's power"
 
 
 def shrink_said(shrink: Shrink, gap: Gap) -> str:
@@ -37,21 +40,21 @@ def shrink_said(shrink: Shrink, gap: Gap) -> str:
     )
 
 
-def where_said(d: Diagnosis) -> str:
+def where_said(where: Where, shrink: Shrink | None) -> str:
     """Return the place of a gap: ``in the lift, 93 % of the gap``. With a shrink, its share is stated
     instead."""
-    says = d.shrink is None and d.where.share >= _WORTH_SAYING
-    return f"{place(d.where.block)}{f', {100 * d.where.share:.0f} % of the gap' if says else ''}"
+    says = shrink is None and where.share >= _WORTH_SAYING
+    return f"{place(where.block)}{f', {100 * where.share:.0f} % of the gap' if says else ''}"
 
 
-def grown_said(d: Diagnosis) -> str:
+def grown_said(verdict: str, gap: Gap) -> str:
     """Return the channels and manoeuvres whose gap has grown; empty if none has grown."""
-    given, left = d.gap.by_channel, d.gap.by_channel_after
+    given, left = gap.by_channel, gap.by_channel_after
     channels = [CHANNELS[name].symbol for name, after in left.items() if has_grown(after, given[name])]
-    numbers = [number for number, before, after in d.gap.by_maneuver if has_grown(after, before)]
+    numbers = [number for number, before, after in gap.by_maneuver if has_grown(after, before)]
     noun = "manoeuvre" if len(numbers) == 1 else "manoeuvres"
     grown = [*channels, *([f"{noun} {counted(numbers)}"] if numbers else [])]
-    cause = "fitted numbers make the gap larger" if d.verdict == "none" else "the gap is larger than before"
+    cause = "fitted numbers make the gap larger" if verdict == "none" else "the gap is larger than before"
     return f"{cause} in {', '.join(grown)}" if grown else ""
 
 

@@ -52,11 +52,7 @@ _NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
 
 
 def picture(
-    name: str,
-    width_in: float,
-    height_in: float,
-    paint: Callable[[Drawing, *Shown], None],
-    *shown: *Shown,
+    name: str, width_in: float, height_in: float, paint: Callable[[Drawing, *Shown], None], *shown: *Shown
 ) -> Callable[[], str]:
     """Return a function that draws a picture on demand, with the parameters of :func:`draw`."""
     return lambda: _drawn(name, lambda: draw(name, width_in, height_in, paint, *shown))
@@ -69,11 +65,7 @@ def _drawn(name: str, draw_it: Callable[[], str]) -> str:
 
 
 def save(
-    path: Path,
-    width_in: float,
-    height_in: float,
-    paint: Callable[[Drawing, *Shown], None],
-    *shown: *Shown,
+    path: Path, width_in: float, height_in: float, paint: Callable[[Drawing, *Shown], None], *shown: *Shown
 ) -> None:
     """Draw a figure into a file, in the format of the file's ending: svg or png.
 
@@ -92,11 +84,7 @@ def save(
 
 
 def draw(
-    name: str,
-    width_in: float,
-    height_in: float,
-    paint: Callable[[Drawing, *Shown], None],
-    *shown: *Shown,
+    name: str, width_in: float, height_in: float, paint: Callable[[Drawing, *Shown], None], *shown: *Shown
 ) -> str:
     """Return a figure as an SVG element.
 

@@ -31,18 +31,14 @@ def gap(content: Content) -> Section | None:
     return Section("gap", "Sim-to-real gap", tuple(_blocks(content.gap)))
 
 
-def _blocks(found: Document) -> Iterator[Block]:
-    if (side := found.get("lateral")) is not None:
-        yield from listing([one["text"] for one in side["parameters_changed"]])
-        likely = [(one["sentence"], one["probability"]) for one in side["causes"]]
-        yield from listing([f"{said} ({in_percent(p)})." for said, p in likely if is_shown(p)])
-        return
+def _blocks(document: Document) -> Iterator[Block]:
+    found = document.get("lateral") or document
     if found["gap"] is None:
         yield Paragraph("The gap could not be diagnosed.")
-        yield from listing([f"{p['text']} {p['fix']}" for p in found["problems"]])
+        yield from listing([f"{p['text']} {p['fix']}" for p in document["problems"]])
         return
-    if not found["usable"]:  # else the verdict's section has the answer and the picture
-        yield from answer(found)
+    if not document["usable"]:  # else the verdict's section has the answer and the picture
+        yield from answer(document)
     size, shrink = found["gap"], found["shrink"]
     if found["parameters_changed"]:
         yield Paragraph("Derivatives that differ from the simulator's; the others agree within 95 %:")
@@ -101,13 +97,13 @@ def glance(document: Document) -> Iterator[Block]:
         yield Gallery((Figure(wide, caption(found), narrow=narrow),))
 
 
-def answer(found: Document) -> Iterator[Block]:
+def answer(document: Document) -> Iterator[Block]:
     """Yield the sentence of the answer, its certainty, and its limits."""
-    side = found.get("lateral")
-    told, axis = (found, "") if side is None else (side, "Roll and yaw. ")
-    yield Paragraph(f"{axis}{told['title']}: {told['sentence']}", "verdict")
-    if told["how_sure"]:
-        yield Paragraph(told["how_sure"])
+    found = document.get("lateral") or document
+    axis = "" if found is document else "Roll and yaw. "
+    yield Paragraph(f"{axis}{found['title']}: {found['sentence']}", "verdict")
+    if found["how_sure"]:
+        yield Paragraph(found["how_sure"])
     yield from listing(list(found["limits"]))
 
 
@@ -126,7 +122,7 @@ def _channel(name: str, size: Mapping[str, Any]) -> tuple[str, ...]:
 def _cause(cause: Mapping[str, Any], before: float) -> tuple[str, ...]:
     after = cause["gap_after"]
     return (
-        spelled(cause["effect"]),
+        spelled(cause.get("name", cause["effect"])),
         in_percent(cause["probability"]),
         cause["text"],
         "–" if after is None else marked(after, before),

@@ -134,29 +134,25 @@ findings.
 def answer_rows(document: Document) -> Iterator[Labelled]:
     """Yield the answer, its certainty and limits, the differences, the reduction of the gap, the steps and
     the reasons."""
-    if (side := document.get("lateral")) is not None:
-        yield "", f"Roll and yaw. {side['title']}: {side['sentence']}"
-        if side["how_sure"]:
-            yield "", side["how_sure"]
-        yield from (("  ", one["text"]) for one in side["parameters_changed"])
-        yield from ((f"{number}. ", step["text"]) for number, step in enumerate(side["next"], start=1))
-        return
-    if document["gap"] is None:
+    found = document.get("lateral") or document
+    if found["sentence"] is None:
         yield from (("✗ ", f"{problem['text']} {problem['fix']}") for problem in document["problems"])
         return
-    yield "", f"{document['title']}: {document['sentence']}"
-    if document["how_sure"]:
-        yield "", document["how_sure"]
-    yield from (("! ", limit) for limit in document["limits"])
-    yield from (("  ", one["text"]) for one in document["parameters_changed"])
-    yield from (("", one["text"]) for one in (document["gap"], document["shrink"]) if one is not None)
-    if document["gap"]["grown"]:
-        yield f"{WORSE} ", document["gap"]["grown"]
-    for number, step in enumerate(document["next"], start=1):
+    axis = "" if found is document else "Roll and yaw. "
+    yield "", f"{axis}{found['title']}: {found['sentence']}"
+    if found["how_sure"]:
+        yield "", found["how_sure"]
+    yield from (("! ", limit) for limit in found["limits"])
+    yield from (("  ", one["text"]) for one in found["parameters_changed"])
+    size, shrink = found["gap"], found["shrink"]
+    yield from (("", one["text"]) for one in (size, shrink) if one is not None)
+    if size is not None and size["grown"]:
+        yield f"{WORSE} ", size["grown"]
+    for number, step in enumerate(found["next"], start=1):
         yield f"{number}. ", " ".join(filter(None, (step["text"], step["command"])))
-    if document["why"]:
-        yield "", document["why_heading"]
-        reasons = weighed((one["nats"], one["text"]) for one in document["why"])
+    if found["why"]:
+        yield "", found["why_heading"]
+        reasons = weighed((one["nats"], one["text"]) for one in found["why"])
         yield from ((f"{nats:>6}  ", said) for nats, said in reasons)
 
 

@@ -36,8 +36,7 @@ so: recover. Between manoeuvres nothing moves here; the last trace stays.
     def compose(self) -> ComposeResult:
         """Yield a line of numbers above three plots."""
         yield Lines(
-            "Nothing is being flown; the trace begins with the first step of the elevator.",
-            id="settling",
+            "Nothing is being flown; the trace begins with the first step of the elevator.", id="settling"
         )
         for name in TRACES:
             empty = Chart(channel(name).label, "t [s]", why_empty="nothing is being flown.")

@@ -19,11 +19,7 @@ Columns = tuple[tuple[str, int], ...]
 no column."""
 
 _FIRST: Columns = (("no.", 3), ("start", 7), ("input", 15))
-_MIDDLE: tuple[Columns, ...] = (
-    (("verdict", 10), ("csi", 3)),
-    (("", 2), ("csi", 3)),
-    (("", 2),),
-)
+_MIDDLE: tuple[Columns, ...] = ((("verdict", 10), ("csi", 3)), (("", 2), ("csi", 3)), (("", 2),))
 """Columns between the input and the reason, beginning with the most detailed choice. The shortest choice is
 the symbol alone."""
 _REASON = 13

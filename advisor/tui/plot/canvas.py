@@ -83,10 +83,7 @@ class Canvas:
         px = (np.asarray(x, dtype=np.float64) - self._x0) * self._x_scale
         py = (self._y1 - np.asarray(y, dtype=np.float64)) * self._y_scale
         # A value far outside would make a segment of millions of dots.
-        return (
-            np.clip(px, -self._width, 2.0 * self._width),
-            np.clip(py, -self._height, 2.0 * self._height),
-        )
+        return (np.clip(px, -self._width, 2.0 * self._width), np.clip(py, -self._height, 2.0 * self._height))
 
     def _set(self, px: NDArray[np.float64], py: NDArray[np.float64], ink: int) -> None:
         finite = np.isfinite(px) & np.isfinite(py)

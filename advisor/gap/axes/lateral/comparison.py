@@ -52,16 +52,20 @@ def compare_side(
     model = estimate_lateral(maneuvers, aircraft)
     if isinstance(model, NoEstimate):
         return model
-    seen = model if logged is None else logged
-    told = (map(Value, one.theta.tolist(), one.std.tolist()) for one in (model, seen))
-    stated = tuple(
-        ComparedDerivative(name, aircraft.model[name], own.agreeing(other))
-        for name, own, other in zip(SIDE_PARAMETERS, *told, strict=True)
-        if name in aircraft.model and name not in {*model.not_identifiable, *seen.not_identifiable}
-    )
     case = case_of(maneuvers, aircraft, model.theta)
     diagnosis = None if isinstance(case, NoEstimate) else diagnose_side(case, prior)
     answer = diagnosis.verdict if diagnosis else None
+    seen = model if logged is None else logged
+    told = (map(Value, one.theta.tolist(), one.std.tolist()) for one in (model, seen))
+    found = dict(zip(SIDE_PARAMETERS, map(Value.agreeing, *told), strict=True))
+    if diagnosis is not None and answer == "effect":
+        # Beside an effect the derivatives are those of the model that contains the effect.
+        found = dict(diagnosis.derivatives)
+    stated = tuple(
+        ComparedDerivative(name, aircraft.model[name], value)
+        for name, value in found.items()
+        if name in aircraft.model and name not in {*model.not_identifiable, *seen.not_identifiable}
+    )
     verdict = answer if stated or answer in ("effect", "unknown") else None
     acts = diagnosis if verdict in ("effect", "unknown") else None
     sentence = acts.sentence if acts else sentence_of_side(verdict, stated)

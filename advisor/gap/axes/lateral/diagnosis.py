@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from statistics import fmean
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
+from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative, Weighed
 from advisor.gap.axes.lateral.effects import block_of, side_effects, unseen
@@ -15,13 +15,14 @@ from advisor.gap.axes.lateral.fit import Fit, N
 from advisor.gap.axes.lateral.flight import SideFlight, SideModel
 from advisor.gap.axes.lateral.gusts import coloured_likelihood
 from advisor.gap.axes.lateral.laws import side_laws
+from advisor.gap.axes.lateral.measure import measured, sums
 from advisor.gap.axes.lateral.models import Case, base_of, free_near
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT
 from advisor.gap.inference.engine import Decided, decided, first_stage
 from advisor.gap.inference.explanation import Row
-from advisor.gap.inference.posterior import NONE, relabelled
+from advisor.gap.inference.posterior import NONE, PARAMETERS, relabelled
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.result import Cause, Value, Where, ranked
+from advisor.gap.result import Cause, Gap, Shrink, Unseen, Value, Where, ranked
 from advisor.gap.search.air import NATURAL_GUST_ANGLE
 from advisor.gap.verdict.causes import MOST_CAUSES
 from advisor.gap.verdict.reasons import none_means_no_gap, weighed
@@ -74,32 +75,17 @@ class SideDiagnosis(Weighed):
     """Largest errors of roll rate and yaw rate with the simulator's derivatives, rad/s."""
     peaks_by_numbers: Mapping[str, float]
     """Largest errors of roll rate and yaw rate with the flight's derivatives and no effect, rad/s."""
-    cannot_see: Mapping[str, str]
-    """Reason why these records cannot show a cause, by the cause's name."""
-    before: Mapping[str, float] = field(default_factory=dict)
-    """Gap of the simulator in each output: mean square error over mean square noise, minus 1."""
-    after: Mapping[str, float] = field(default_factory=dict)
-    """Gap of the chosen model in each output; every manoeuvre is predicted from all others."""
-    by_maneuver: tuple[tuple[float, float], ...] = ()
-    """Mean gap over the outputs of each manoeuvre, for the simulator and for the chosen model. NaN with a
-    single manoeuvre."""
-    floor: Mapping[str, float] = field(default_factory=dict)
-    """Noise of each output, SI."""
+    gap: Gap
+    """Gap of the simulator and of the chosen model; every manoeuvre is predicted from all others."""
+    derivatives: Mapping[str, Value] = field(default_factory=dict)
+    """Derivatives of the chosen model, by name."""
+    cannot_see: tuple[Unseen, ...] = ()
+    shrink: Shrink | None = None
+    """Shrink of the gap; None with a single manoeuvre, or where nothing is corrected."""
     waterfall: tuple[tuple[str, float], ...] = ()
     """Remaining gap after each effect: the mean square error over that of the whole model, minus 1."""
     fits: tuple[Fit, ...] = ()
     """Fit with the simulator's derivatives, then the fit of the chosen model."""
-
-    @property
-    def mean_gap(self) -> tuple[float, float] | None:
-        """Mean gap over the outputs, for the simulator and for the chosen model; None without both."""
-        return (fmean(self.before.values()), fmean(self.after.values())) if self.after else None
-
-    @property
-    def shrink_percent(self) -> float | None:
-        """Share of the simulator's mean gap that the chosen model removes, per cent; None without a gap."""
-        gap = self.mean_gap
-        return 100.0 * (1.0 - gap[1] / gap[0]) if gap and gap[0] > 0.0 else None
 
     @property
     def verdict(self) -> Kind:
@@ -150,63 +136,53 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
     )
     if plain is None or as_given is None:
         return None
-    table = list(side_effects(case.flown))
-    flight = SideFlight(case, plain, table, list(side_laws(case, plain)))
+    flight = SideFlight(case, plain, list(side_effects(case.flown)), list(side_laws(case, plain)))
     found = decided(flight, first_stage(flight), prior, lambda rows: [_named_air(row) for row in rows])
     found = _tied_to_the_gap(case, found, as_given)
     told, last = weighed(found.posteriors[0]), found.chosen[-1].fit
-    before, each_before = _gap(last, _sums(last, as_given.residual**2))
-    unseen_by = _held_out(case, found.chosen[-1], found.heat)
-    after, each_after = _gap(last, unseen_by) if len(case.flown) > 1 else ({}, [np.nan])
+    left = _held_out(case, found.chosen[-1], found.heat)
+    gap, shrink = measured(last, case.numbers, sums(last, as_given.residual**2), left)
+    final = _final(case, found.chosen[-1])
+    values = map(Value, final.mean[:N].tolist(), final.std[:N].tolist())
+    corrects = told.answer is not None and (told.answer == PARAMETERS or len(found.chosen) > 1)
+    causes = tuple(_causes(case, found, final, as_given))[:MOST_CAUSES]
     return SideDiagnosis(
-        evidence=told.evidence, failed=found.failed, why=told.why, answer=told.answer, rival=told.rival,
-        decisions=told.decisions, causes=tuple(_causes(case, found, as_given))[:MOST_CAUSES],
-        peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain), cannot_see=unseen(case.flown),
-        before=before, after=after, by_maneuver=tuple(zip(each_before, each_after, strict=True)),
-        floor={name: float(last.noise[LATERAL.outputs.index(name)]) for name in before},
-        waterfall=_waterfall(found.chosen[1:]), fits=(as_given, last),
+        **(vars(told) | {"failed": found.failed}), causes=causes, cannot_see=tuple(unseen(case.flown)),
+        peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain), gap=gap, fits=(as_given, last),
+        derivatives=dict(zip(SIDE_PARAMETERS, values, strict=True)), shrink=shrink if corrects else None,
+        waterfall=_waterfall(found.chosen[1:]),
     )  # fmt: skip
 
 
 def _held_out(case: Case, model: SideModel, heat: float) -> FloatArray:
-    """Return the sums of squared errors (m, outputs) of a model on manoeuvres held out one by one."""
+    """Return the sums of squared errors (m, outputs) of a model on manoeuvres held out one by one.
+
+    A manoeuvre that alone moves a control is not held out, because no other one shows the control's
+    derivatives: its sums are NaN.
+    """
     known = case.prior_of(model.tolerance, model.fit.free)
-    return squares_of(model.fit, information_of(model.fit, heat**-0.5), known).held_out
+    found = squares_of(model.fit, information_of(model.fit, heat**-0.5), known).held_out
+    problem = case.flown.problem
+    for m, record in enumerate(problem.records):
+        others = replace(problem, records=tuple(one for one in problem.records if one is not record))
+        if not all(others.flies(name) for name in filter(problem.flies, LATERAL.inputs)):
+            found[m] = np.nan
+    return found
 
 
 def _tied_to_the_gap(case: Case, found: Decided[SideModel], as_given: Fit) -> Decided[SideModel]:
     """Return the posterior in which "none" means that nothing is above the noise.
 
-    A single manoeuvre shows no gap, because none is held out.
+    Without a manoeuvre that can be held out, the posterior is unchanged.
     """
-    if len(case.flown) == 1:
-        return found
     plain, last = found.chosen[0], found.chosen[-1].fit
-    squares = _sums(last, as_given.residual**2), _held_out(case, plain, found.heat)
-    gap, left = (fmean(_gap(last, one)[0].values()) for one in squares)
-    first = none_means_no_gap(found.posteriors[0], gap, left if case.stated else gap)
+    left = _held_out(case, plain, found.heat)
+    gap, _ = measured(last, case.numbers, sums(last, as_given.residual**2), left)
+    if np.isnan(gap.after):
+        return found
+    first = none_means_no_gap(found.posteriors[0], gap.before, gap.after if case.stated else gap.before)
     named = found.chosen if any(one.alternative == first.answer for one in found.chosen) else (plain,)
     return replace(found, posteriors=(first, *found.posteriors[1:]), chosen=named)
-
-
-def _sums(fit: Fit, values: FloatArray) -> FloatArray:
-    """Return the sums (m, outputs) of values (N,) over each manoeuvre and output."""
-    sums = np.zeros((fit.assembly.maneuvers, len(fit.noise)))
-    np.add.at(sums, (fit.assembly.owner, fit.assembly.channel), values)
-    return sums
-
-
-def _gap(fit: Fit, squares: FloatArray) -> tuple[Mapping[str, float], list[float]]:
-    """Return the gap of each output, and the mean gap of each manoeuvre, from sums of squared errors.
-
-    ``squares`` has shape (m, outputs).
-    """
-    counts = _sums(fit, np.ones(len(fit.residual)))
-    with np.errstate(divide="ignore", invalid="ignore"):  # an output without a sample has no gap
-        each = np.maximum(0.0, squares / counts / fit.noise**2 - 1.0)
-        whole = np.maximum(0.0, squares.sum(axis=0) / counts.sum(axis=0) / fit.noise**2 - 1.0)
-    measured = np.flatnonzero(counts.sum(axis=0))
-    return {LATERAL.outputs[k]: float(whole[k]) for k in measured}, np.nanmean(each, axis=1).tolist()
 
 
 def _named_air(row: Row[SideModel]) -> Row[SideModel]:
@@ -216,20 +192,37 @@ def _named_air(row: Row[SideModel]) -> Row[SideModel]:
     return relabelled(row, SIDE_GUSTS) if blown else row
 
 
-def _causes(case: Case, found: Decided[SideModel], as_given: Fit) -> Iterator[SideCause]:
+class _Told(NamedTuple):
+    """Posterior of the derivatives and effect parameters of a model."""
+
+    fit: Fit
+    mean: FloatArray
+    """Shape (15 + k,)."""
+    std: FloatArray
+    """Shape (15 + k,)."""
+
+    @classmethod
+    def of(cls, case: Case, model: SideModel, share: float, fit: Fit | None = None) -> "_Told":
+        """Return the posterior of a model at its fit, or at another ``fit``."""
+        fit = fit or model.fit
+        known = case.prior_of(model.tolerance, fit.free)
+        mean, covariance = posterior_of(fit, information_of(fit, share), known)
+        return cls(fit, mean, np.sqrt(np.diag(covariance)))
+
+
+def _final(case: Case, model: SideModel) -> _Told:
+    """Return the posterior of the whole model, which leaves less colour than the model before it."""
+    share = share_of(model.fit)
+    return _Told.of(case, model, share, case.fit(model.fit.point, model.fit.free, model.tolerance, share))
+
+
+def _causes(case: Case, found: Decided[SideModel], final: _Told, as_given: Fit) -> Iterator[SideCause]:
     """Yield the effects of the model, then the alternatives to the first effect."""
-    posterior, together = found.posteriors[0], 1.0
-    added = found.chosen[1:]
-    if added:
-        last = added[-1].fit
-        # The whole model leaves less colour than the model in which its last effect was sought.
-        share = share_of(last)
-        fit = case.fit(last.point, last.free, added[-1].tolerance, share) or last
-        for stage, one in zip(found.posteriors, added, strict=False):
-            assert one.alternative is not None
-            together *= stage.of(one.alternative)
-            yield _cause(case, one, fit, added[-1].tolerance, together, share, present=True)
-    share = found.heat**-0.5
+    posterior, together, added = found.posteriors[0], 1.0, found.chosen[1:]
+    for stage, one in zip(found.posteriors, added, strict=False):
+        assert one.alternative is not None
+        together *= stage.of(one.alternative)
+        yield _cause(case, one, final, together, present=True)
     taken = {one.alternative for one in added}
     for alternative, probability in posterior.by_alternative.items():
         if not alternative.is_effect or alternative in taken:
@@ -238,32 +231,24 @@ def _causes(case: Case, found: Decided[SideModel], as_given: Fit) -> Iterator[Si
         if alternative == SIDE_GUSTS:
             yield _air(case, other, probability, posterior.answer == SIDE_GUSTS, as_given)
             continue
-        yield _cause(case, other, other.fit, other.tolerance, probability, share, present=False)
+        yield _cause(case, other, _Told.of(case, other, found.heat**-0.5), probability, present=False)
 
 
-def _cause(
-    case: Case, tried: SideModel, fit: Fit, tolerance: float, probability: float, share: float, present: bool
-) -> SideCause:
-    """Return an effect as a cause, with its sizes from a fit that includes the effect."""
+def _cause(case: Case, tried: SideModel, told: _Told, probability: float, present: bool) -> SideCause:
+    """Return an effect as a cause, with its sizes from a posterior that includes the effect."""
     effect = tried.effect
     assert effect is not None
-    mean, covariance = posterior_of(fit, information_of(fit, share), case.prior_of(tolerance, fit.free))
-    places = [one.place for one in fit.free]
+    variant, places = effect.variant, [one.place for one in told.fit.free]
     at = [N + places.index(place) for place in effect.places]
-    sizes = mean[at] - base_of(case, effect)
-    std = np.sqrt(np.diag(covariance)[at])
-    parameters = {
-        name: Value(float(size), float(error))
-        for name, size, error in zip(effect.variant.names, sizes, std, strict=True)
-    }
-    if effect.variant.inverted:
-        name = effect.variant.names[0]
-        inverse, error = max(parameters[name].value, effect.variant.smallest), parameters[name].std
+    sizes = zip(variant.names, told.mean[at] - base_of(case, effect), told.std[at], strict=True)
+    parameters = {name: Value(float(size), float(error)) for name, size, error in sizes}
+    if variant.inverted:
+        name = variant.names[0]
+        inverse, error = max(parameters[name].value, variant.smallest), parameters[name].std
         parameters[name] = Value(1.0 / inverse, error / inverse**2)
-    cause = Cause(
-        effect.variant.effect, effect.variant.block, probability, parameters, (), "", float(np.nan), present
-    )
-    return SideCause(effect.of, effect.named, cause, effect.said(what(cause)), tried.gain, peaks_of(fit))
+    cause = Cause(variant.effect, variant.block, probability, parameters, (), "", np.nan, present)
+    said = effect.said(what(cause))
+    return SideCause(effect.of, effect.named, cause, said, tried.gain, peaks_of(told.fit))
 
 
 def _air(case: Case, one: SideModel, probability: float, is_found: bool, as_given: Fit) -> SideCause:

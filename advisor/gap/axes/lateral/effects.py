@@ -24,7 +24,7 @@ from advisor.gap.kit.effect import without_sizes
 from advisor.gap.kit.least import FILTERED_S
 from advisor.gap.kit.skew import skew_beyond
 from advisor.gap.kit.variant import Variant
-from advisor.gap.result import spelled
+from advisor.gap.result import Unseen, spelled
 from advisor.model.axes.lateral import LATERAL
 
 THROTTLE_MOVES = 0.02
@@ -132,16 +132,18 @@ def side_effects(flown: Flown) -> Iterator[SideEffect]:
         yield _propeller()
 
 
-def unseen(flown: Flown) -> Mapping[str, str]:
-    """Return the reason why the records cannot show an effect, by the effect's name."""
-    problem = flown.problem
-    found = {"a constant error of p, r, φ or a_y": "each manoeuvre has its own trim and biases"}
+def unseen(flown: Flown) -> Iterator[Unseen]:
+    """Yield the effects that the records cannot show."""
+    yield Unseen(
+        "a constant error of p, r, φ or the lateral acceleration",
+        "each manoeuvre has its own trim and biases",
+        "a reading of each instrument at rest",
+    )
     for of in LATERAL.inputs:
-        if not problem.flies(of):
-            found[f"the servo of the {of}"] = f"the {of} is not flown"
+        if not flown.problem.flies(of):
+            yield Unseen(f"the servo of the {of}", f"the {of} is not flown", f"a doublet of the {of}")
     if not _throttle_moves(flown):
-        found["roll due to the propeller"] = "the throttle stands still"
-    return found
+        yield Unseen("propeller roll", "the throttle stands still", "steps of the throttle in a manoeuvre")
 
 
 def _throttle_moves(flown: Flown) -> bool:

@@ -110,13 +110,11 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | 
     first = [*sizes, _MEMORY_S] if near is None else [*near.noise[there], near.angle, near.memory_s]
     bounds = [*((np.log(_RANGE[0] * s), np.log(_RANGE[1] * s)) for s in sizes),
               (np.log(KNOTS_S), np.log(_LONGEST_MEMORY_S))]  # fmt: skip
+    begun = np.log([np.clip(x, *np.exp(ends)) for x, ends in zip(first, bounds, strict=True)])
     found = minimize(
-        cost,
-        np.log([np.clip(x, *np.exp(ends)) for x, ends in zip(first, bounds, strict=True)]),
-        method="Nelder-Mead",
-        bounds=bounds,
+        cost, begun, method="Nelder-Mead", bounds=bounds,
         options={"maxfev": _MOST_STEPS, "xatol": 0.02, "fatol": 0.1},
-    )
+    )  # fmt: skip
     step = _BEND * (np.arange(len(found.x)) == len(found.x) - 2)
     bend = (cost(found.x + step) - 2.0 * float(found.fun) + cost(found.x - step)) / (2.0 * _BEND**2)
     noise, angle, memory_s = model(found.x)

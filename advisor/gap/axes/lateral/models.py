@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import attrgetter
 
 import numpy as np
 
@@ -46,6 +47,8 @@ class Case:
     """Nuisance parameters of every model: delays of commands and outputs, and errors of stated lags."""
     begin: Point
     """Start of the fit without effects."""
+    numbers: tuple[int, ...] = ()
+    """Numbers of the manoeuvres."""
 
     def prior_of(self, tolerance: float, free: Sequence[Free], share: float = 1.0) -> Known:
         """Return the prior of the derivatives, with relative error ``tolerance`` where stated, and of the
@@ -101,7 +104,8 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
     given = np.array([aircraft.model.get(n, v) for n, v in zip(SIDE_PARAMETERS, theta, strict=True)])
     begin = Point(theta, lateral_start(problem)[1], setting)
     flown = Flown(problem, throttle, beta_arm_m(aircraft) is not None)
-    return Case(flown, given, stated, tuple(natural), begin)
+    numbers = tuple(map(attrgetter("number"), maneuvers))
+    return Case(flown, given, stated, tuple(natural), begin, numbers)
 
 
 def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:

@@ -1,6 +1,7 @@
 """The lateral derivatives of a simulator against those of a simulated flight."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.gap.axes.lateral import comparison
 from advisor.gap.axes.lateral.comparison import compare_side
+from advisor.gap.result import Value
 from advisor.report.side_gap import side_gap_document
 from tests.oem.axes.lateral.builders import JET, aileron_doublet, flown, rudder_doublet
 
@@ -59,11 +61,12 @@ def test_a_weak_aileron_in_the_simulator_is_named_and_leaves_a_gap_on_unseen_fli
     assert (
         max(found.derivatives, key=lambda d: abs(d.given - d.found.value) / d.found.std).name == "L_delta_a"
     )
-    assert document["shrink"]["holdout"] == [1, 2, 3]
+    assert document["shrink"]["holdout"] == [1, 3]  # the second one alone moves the rudder
     assert document["shrink"]["percent"] > 80.0
     each = document["gap"]["by_maneuver"]
     assert [one["number"] for one in each] == [1, 2, 3]
-    assert all(one["after"] < one["before"] for one in each)
+    assert each[1]["after"] is None
+    assert all(one["after"] < one["before"] for one in each[::2])
     low, high = changed["L_delta_a"]["ci95"]
     assert low < JET["L_delta_a"] < high
 
@@ -88,3 +91,15 @@ def test_a_derivative_that_the_log_contradicts_is_not_stated_as_changed(flight, 
     ]
     untold = replace(logged, not_identifiable={"L_delta_a": "no aileron moved"})
     assert compare_side(flight, weak, logged=untold).derivatives == ()
+
+
+@pytest.mark.parametrize(("verdict", "own"), [("effect", True), ("parameters", False)])
+def test_beside_an_effect_the_derivatives_are_those_of_the_model_with_the_effect(
+    flight, monkeypatch, verdict, own
+):
+    values = {name: Value(1.0, 0.5) for name in TRUE}
+    named = SimpleNamespace(verdict=verdict, sentence="", answers=(("lag", 1.0),), derivatives=values)
+    monkeypatch.setattr(comparison, "diagnose_side", lambda case, prior: named)
+    found = compare_side(flight, replace(AIRCRAFT, model=TRUE))
+    assert len(found.derivatives) == len(TRUE)
+    assert all((one.found == Value(1.0, 0.5)) is own for one in found.derivatives)

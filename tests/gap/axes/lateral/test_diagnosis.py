@@ -17,20 +17,22 @@ from advisor.gap.axes.lateral.comparison import SideGap
 from advisor.gap.axes.lateral.diagnosis import (
     SideCause,
     SideDiagnosis,
-    _gap,
-    _sums,
     _tied_to_the_gap,
     diagnose_side,
 )
 from advisor.gap.axes.lateral.evidence import Gain
 from advisor.gap.axes.lateral.fit import Fit, Free
 from advisor.gap.axes.lateral.flight import SideFlight, SideModel
+from advisor.gap.axes.lateral.measure import measured, sums
 from advisor.gap.axes.lateral.models import case_of
 from advisor.gap.inference.engine import Decided
 from advisor.gap.inference.explanation import Evidence, Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, posterior_of
 from advisor.gap.inference.stage import Stage
-from advisor.gap.result import Cause, Value
+from advisor.gap.result import Cause, Gap, Shrink, Value
+from advisor.oem.axes.lateral.problem import LateralProblem
+from advisor.oem.rows import Signal
+from advisor.report.gap_document import gap_document
 from advisor.report.side_gap import side_gap_document, side_gap_lines
 from benchmarks.lateral_gap import CASES, diagnosed
 from tests.gap.axes.lateral.test_comparison import maneuvers
@@ -62,8 +64,12 @@ def weighed(shares):
 
 
 DIAGNOSIS = SideDiagnosis(
-    causes=(PLAY,), peaks=PEAKS, peaks_by_numbers=PEAKS, cannot_see={},
-    by_maneuver=((3.0, 0.5), (2.0, 0.4), (4.0, 0.6)),
+    causes=(PLAY,), peaks=PEAKS, peaks_by_numbers=PEAKS,
+    gap=Gap(
+        3.0, 0.5, {"p": 0.01}, "measured", {"p": 3.0}, {"p": 0.5},
+        ((1, 3.0, 0.5), (2, 2.0, 0.4), (3, 4.0, 0.6)),
+    ),
+    shrink=Shrink((1, 2, 3), 3.0, 0.5, 83.3, (80.0, 86.0)),
     **weighed(
         {"aileron_actuator_backlash": 0.7, "none": 0.2, "parameters": 0.05, "aileron_actuator_lag": 0.05}
     ),
@@ -100,7 +106,7 @@ def test_without_a_simulator_the_text_has_neither_its_probabilities_nor_a_table_
     alone = replace(
         FOUND,
         verdict=None,
-        diagnosis=replace(DIAGNOSIS, before={"p": 0.0}, after={"p": 0.0}),
+        diagnosis=DIAGNOSIS,
         instruments={"rudder_lag_s": Value(0.06, 0.003), "airspeed_excess": Value(0.03, 0.01)},
     )
     text = "\n".join(side_gap_lines(alone))
@@ -251,10 +257,11 @@ def test_none_means_no_gap_on_held_out_manoeuvres(monkeypatch, maneuvers, gap, a
     lag = Alternative("effect", "actuator_lag", "input")
     rows = [Row(NONE, None, {"fit": 9.0}), Row(PARAMETERS, None, {"fit": 0.0}), Row(lag, None, {"fit": 1.0})]
     models = (side_model(SimpleNamespace(residual=1.0)), side_model(None, 0.0, lag))
-    monkeypatch.setattr(diagnosis, "_gap", lambda fit, squares: ({"p": squares}, []))
-    monkeypatch.setattr(diagnosis, "_sums", lambda *_: gap)
-    monkeypatch.setattr(diagnosis, "_held_out", lambda *_: 0.0)
-    case = SimpleNamespace(flown=range(maneuvers), stated=("L_p",))
+    left = 0.0 if maneuvers > 1 else np.nan
+    monkeypatch.setattr(diagnosis, "measured", lambda *_: (SimpleNamespace(before=gap, after=left), None))
+    monkeypatch.setattr(diagnosis, "sums", lambda *_: None)
+    monkeypatch.setattr(diagnosis, "_held_out", lambda *_: None)
+    case = SimpleNamespace(numbers=(), stated=("L_p",))
     found = _tied_to_the_gap(case, Decided((posterior_of(rows),), models, (), 1.0), models[0].fit)
     assert found.posteriors[0].answer.kind == answer
     assert len(found.chosen) == chosen
@@ -285,13 +292,10 @@ def test_gusts_far_above_the_natural_ones_are_the_answer_of_a_flight_with_nothin
 
 def test_a_second_cause_is_as_probable_as_both_together(monkeypatch):
     stages = [SimpleNamespace(of=lambda _, p=p: p, by_alternative={}) for p in (0.9, 0.5)]
-    fit = SimpleNamespace(point=None, free=None)
-    model = SimpleNamespace(alternative="an effect", fit=fit, tolerance=0.03)
+    model = SimpleNamespace(alternative="an effect")
     found = SimpleNamespace(posteriors=stages, chosen=(None, model, model), heat=1.0)
-    monkeypatch.setattr(diagnosis, "share_of", lambda _: 1.0)
-    monkeypatch.setattr(diagnosis, "_cause", lambda case, one, fit, tolerance, p, share, present: p)
-    case = SimpleNamespace(fit=lambda *_: None)
-    assert list(diagnosis._causes(case, found, None)) == [pytest.approx(0.9), pytest.approx(0.45)]
+    monkeypatch.setattr(diagnosis, "_cause", lambda case, one, told, p, present: p)
+    assert list(diagnosis._causes(None, found, None, None)) == [pytest.approx(0.9), pytest.approx(0.45)]
 
 
 def test_the_gap_of_an_output_and_of_a_manoeuvre_is_the_mean_square_error_over_the_noise_minus_one():
@@ -299,9 +303,32 @@ def test_the_gap_of_an_output_and_of_a_manoeuvre_is_the_mean_square_error_over_t
     laid = SimpleNamespace(maneuvers=2, owner=owner, channel=channel)
     error, noise = np.array([0.1, 0.1, 0.3, 0.3, 0.2, 0.2]), np.array([0.0, 0.05, 0.1, 0.1, 0.1])
     fit = SimpleNamespace(assembly=laid, noise=noise, residual=error)
-    outputs, maneuvers_ = _gap(fit, _sums(fit, error**2))
-    assert outputs == {"r": pytest.approx(9.0), "bank": pytest.approx(8.0)}
-    assert maneuvers_ == [pytest.approx((3.0 + 8.0) / 2.0), pytest.approx(15.0)]
+    after = sums(fit, 0.25 * error**2)
+    gap, shrink = measured(fit, (4, 7), sums(fit, error**2), after)
+    assert gap.by_channel == {"r": pytest.approx(9.0), "bank": pytest.approx(8.0)}
+    assert gap.by_channel_after == {"r": pytest.approx(1.5), "bank": pytest.approx(1.25)}
+    assert (gap.before, gap.after) == (pytest.approx(8.5), pytest.approx(1.375))
+    first, second = gap.by_maneuver
+    assert first == (4, pytest.approx((3.0 + 8.0) / 2.0), pytest.approx((0.0 + 1.25) / 2.0))
+    assert second == (7, pytest.approx(15.0), pytest.approx(3.0))
+    assert shrink.percent == pytest.approx(100.0 * (1.0 - 1.375 / 8.5))
+    after[0] = np.nan
+    gap, shrink = measured(fit, (4, 7), sums(fit, error**2), after)
+    assert (gap.by_channel["r"], shrink.holdout) == (pytest.approx(15.0), (7,))
+
+
+@pytest.mark.parametrize(("records", "kept"), [("ar", 0), ("aar", 2), ("aarr", 4), ("a", 0), ("aa", 2)])
+def test_a_manoeuvre_that_alone_moves_a_control_is_not_held_out(monkeypatch, records, kept):
+    """A letter is a manoeuvre of the aileron or the rudder."""
+    moved = Signal(np.arange(2.0), np.array([0.0, 0.1]))
+    flown = [SimpleNamespace(inputs={{"a": "aileron", "r": "rudder"}[one]: moved}) for one in records]
+    problem = LateralProblem(tuple(flown))
+    monkeypatch.setattr(diagnosis, "information_of", lambda *_: None)
+    told = SimpleNamespace(held_out=np.zeros((len(records), 1)))
+    monkeypatch.setattr(diagnosis, "squares_of", lambda *_: told)
+    case = SimpleNamespace(flown=SimpleNamespace(problem=problem), prior_of=lambda *_: None)
+    model = SimpleNamespace(fit=SimpleNamespace(free=()), tolerance=0.3)
+    assert np.count_nonzero(~np.isnan(diagnosis._held_out(case, model, 1.0))) == kept
 
 
 def test_each_manoeuvre_has_its_gap_before_and_after():
@@ -309,7 +336,19 @@ def test_each_manoeuvre_has_its_gap_before_and_after():
     assert one == {"number": 1, "before": 3.0, "after": 0.5}
 
 
-def test_a_gap_that_no_other_manoeuvre_has_seen_is_stated_by_no_channel():
-    alone = replace(FOUND, diagnosis=replace(DIAGNOSIS, before={"p": 3.0}, after={}))
-    found = side_gap_document(alone)["gap"]
-    assert (found["before"], found["by_channel"], found["by_channel_after"]) == (None, {}, {})
+def test_a_gap_of_which_nothing_is_held_out_has_no_value_after():
+    alone = replace(DIAGNOSIS.gap, after=np.nan, by_channel_after={"p": np.nan})
+    document = side_gap_document(replace(FOUND, diagnosis=replace(DIAGNOSIS, gap=alone, shrink=None)))
+    found = document["gap"]
+    assert (found["before"], found["after"], found["by_channel_after"]) == (3.0, None, {"p": None})
+    assert found["text"] == "gap 3 times the noise floor's power; no manoeuvre can be held out"
+    assert document["shrink"] is None
+
+
+def test_roll_and_yaw_have_every_key_of_pitch():
+    assert side_gap_document(FOUND).keys() >= gap_document(None).keys() - {
+        "schema",
+        "usable",
+        "problems",
+        "exports",
+    }
