@@ -122,6 +122,7 @@ def _diagnosis_document(found: SideGap) -> dict[str, Any]:
             {
                 **cause_document(one.cause),
                 **picked(one, "of name sentence peaks"), "present": one.cause.present,
+                "gap_after": dict(d.waterfall).get(one.name),
                 "held_out_nats": {"value": one.gain.total, "std": one.gain.std},
             }
             for one in d.causes

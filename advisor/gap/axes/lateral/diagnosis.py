@@ -1,6 +1,6 @@
 """Explanations of a lateral flight: no gap, wrong derivatives, side gusts, one effect, or two effects."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
@@ -83,7 +83,7 @@ class SideDiagnosis(Weighed):
     shrink: Shrink | None = None
     """Shrink of the gap; None with a single manoeuvre, or where nothing is corrected."""
     waterfall: tuple[tuple[str, float], ...] = ()
-    """Remaining gap after each effect: the mean square error over that of the whole model, minus 1."""
+    """Remaining gap after each effect."""
     fits: tuple[Fit, ...] = ()
     """Fit with the simulator's derivatives, then the fit of the chosen model."""
 
@@ -150,7 +150,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
         **(vars(told) | {"failed": found.failed}), causes=causes, cannot_see=tuple(unseen(case.flown)),
         peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain), gap=gap, fits=(as_given, last),
         derivatives=dict(zip(SIDE_PARAMETERS, values, strict=True)), shrink=shrink if corrects else None,
-        waterfall=_waterfall(found.chosen[1:]),
+        waterfall=_waterfall(case, found),
     )  # fmt: skip
 
 
@@ -224,9 +224,8 @@ def _causes(case: Case, found: Decided[SideModel], final: _Told, as_given: Fit) 
         together *= stage.of(one.alternative)
         yield _cause(case, one, final, together, present=True)
     taken = {one.alternative for one in added}
-    for alternative, probability in posterior.by_alternative.items():
-        if not alternative.is_effect or alternative in taken:
-            continue
+    others = {a: p for a, p in posterior.by_alternative.items() if a.is_effect and a not in taken}
+    for alternative, probability in others.items():
         other = posterior.explanation_of(alternative)
         if alternative == SIDE_GUSTS:
             yield _air(case, other, probability, posterior.answer == SIDE_GUSTS, as_given)
@@ -262,13 +261,11 @@ def _air(case: Case, one: SideModel, probability: float, is_found: bool, as_give
     return SideCause("air", AIR, cause, said, gain, peaks_of(as_given))
 
 
-def _waterfall(added: Sequence[SideModel]) -> tuple[tuple[str, float], ...]:
-    """Return the gap that remains after the addition of each effect to the model."""
-    if not added:
-        return ()
-    told = np.unique(added[-1].fit.assembly.channel)
-    last = added[-1].fit.noise[told]
-    return tuple((one.name, float(np.mean((one.fit.noise[told] / last) ** 2)) - 1.0) for one in added)
+def _waterfall(case: Case, found: Decided[SideModel]) -> tuple[tuple[str, float], ...]:
+    """Return the gap that remains after the addition of each effect, if a manoeuvre can be held out."""
+    each = [(one.name, _held_out(case, one, found.heat)) for one in found.chosen[1:]]
+    left = ((name, measured(found.chosen[-1].fit, case.numbers, one, one)[0].after) for name, one in each)
+    return tuple((name, gap) for name, gap in left if np.isfinite(gap))
 
 
 def peaks_of(fit: Fit) -> Mapping[str, float]:

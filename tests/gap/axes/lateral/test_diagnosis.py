@@ -206,6 +206,7 @@ def test_two_effects_at_once_are_both_said_and_stand_before_the_alternatives():
     document = side_gap_document(replace(FOUND, diagnosis=both))
     assert [one["present"] for one in document["causes"]] == [True, True, False]
     assert document["waterfall"][0] == {"effect": "aileron_actuator_backlash", "after": 0.4}
+    assert [one["gap_after"] for one in document["causes"]] == [0.4, 0.0, None]
 
 
 def test_effects_that_set_the_same_number_are_never_two_causes():
@@ -292,10 +293,11 @@ def test_gusts_far_above_the_natural_ones_are_the_answer_of_a_flight_with_nothin
 
 def test_a_second_cause_is_as_probable_as_both_together(monkeypatch):
     stages = [SimpleNamespace(of=lambda _, p=p: p, by_alternative={}) for p in (0.9, 0.5)]
-    model = SimpleNamespace(alternative="an effect")
+    model = SimpleNamespace(alternative="an effect", name="lag")
     found = SimpleNamespace(posteriors=stages, chosen=(None, model, model), heat=1.0)
     monkeypatch.setattr(diagnosis, "_cause", lambda case, one, told, p, present: p)
-    assert list(diagnosis._causes(None, found, None, None)) == [pytest.approx(0.9), pytest.approx(0.45)]
+    told = diagnosis._causes(None, found, None, None)
+    assert list(told) == [pytest.approx(0.9), pytest.approx(0.45)]
 
 
 def test_the_gap_of_an_output_and_of_a_manoeuvre_is_the_mean_square_error_over_the_noise_minus_one():
