@@ -61,10 +61,12 @@ def _within(found: Schema, whole: Schema, path: str) -> Iterator[tuple[str, str,
 
 
 def _resolved(part: Schema, whole: Schema) -> Schema:
+    """The definition that a part refers to; of another key only its type, because its own rows tell more."""
     if "$ref" not in part:
         return part
-    found: Schema = whole["$defs"][part["$ref"].rsplit("/", 1)[1]]
-    return found
+    _, home, name = part["$ref"].split("/")
+    found: Schema = whole[home][name]
+    return found if home == "$defs" else {"type": found.get("type", "any")}
 
 
 def _type(part: Schema) -> str:

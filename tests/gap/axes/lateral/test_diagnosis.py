@@ -33,10 +33,11 @@ from advisor.gap.result import Cause, Gap, Shrink, Value
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.rows import Signal
 from advisor.report.gap_document import gap_document
-from advisor.report.side_gap import side_gap_document, side_gap_lines
+from advisor.report.side_gap import side_gap_document, side_gap_lines, whole_document
 from benchmarks.lateral_gap import CASES, diagnosed
 from tests.gap.axes.lateral.test_comparison import maneuvers
 from tests.oem.axes.lateral.builders import JET
+from tests.schemas import breaches
 
 PEAKS = {"p": 0.2, "r": 0.1}
 PLAY = SideCause(
@@ -345,6 +346,10 @@ def test_a_gap_of_which_nothing_is_held_out_has_no_value_after():
     assert (found["before"], found["after"], found["by_channel_after"]) == (3.0, None, {"p": None})
     assert found["text"] == "gap 3 times the noise floor's power; no manoeuvre can be held out"
     assert document["shrink"] is None
+
+
+def test_the_schema_explains_every_key_of_roll_and_yaw():
+    assert breaches("gap", whole_document(FOUND)) == []
 
 
 def test_roll_and_yaw_have_every_key_of_pitch():
