@@ -25,7 +25,7 @@ from advisor.gap.axes.lateral.comparison import compare_side
 from advisor.gap.axes.lateral.diagnosis import SideDiagnosis, diagnose_side
 from advisor.gap.axes.lateral.models import case_of
 from advisor.oem.estimate import NoEstimate
-from advisor.simulators.side import side_without_difference
+from advisor.simulators.axes.lateral import side_without_difference
 from advisor.simulators.specification import simulator_of
 from advisor.words.quantiles import NORMAL_95
 from benchmarks.lateral_laws import LAWS, flight_with

@@ -19,7 +19,8 @@ from typing import Any, TypeVar, cast
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis import gap, side_gap, whole_flights
+from advisor.analysis import gap, whole_flights
+from advisor.analysis.axes import lateral as side_gap
 from advisor.analysis.log_series import LogSeries
 from advisor.analysis.whole_flights import WholeFlights
 from advisor.campaign import joint_estimate, single_maneuver

@@ -7,7 +7,7 @@ from operator import attrgetter
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.key import keys_of
 from advisor.aircraft_file.log_facts import LogFacts
-from advisor.flight.elevator.side_outputs import SIDES
+from advisor.flight.elevator.axes.lateral import SIDES
 from advisor.flight.vehicle.surfaces import Surface
 
 KEYS = tuple(key for key in keys_of(Aircraft) if key.example)

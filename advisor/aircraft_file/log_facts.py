@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.elevator.axes.lateral import SIDES, find_side_control
 from advisor.flight.elevator.elevator_guess import Guess
-from advisor.flight.elevator.side_outputs import SIDES, find_side_control
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import Columns, FloatArray

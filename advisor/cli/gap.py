@@ -18,7 +18,7 @@ from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
     from advisor.aircraft.aircraft import Aircraft
-    from advisor.analysis.side_gap import AxisFlown
+    from advisor.analysis.axes.lateral import AxisFlown
     from advisor.campaign.hand_decisions import ByHand
     from advisor.exports.models.formats import AxisAsked
 
@@ -178,7 +178,7 @@ def command(
 
 def _axis_flown(asked: LogsAsked, aircraft: "Aircraft", by_hand: "Sequence[ByHand]") -> "AxisFlown":
     """Return the axis to diagnose, said where it is not pitch, with what was read."""
-    from advisor.analysis.side_gap import axis_flown
+    from advisor.analysis.axes.lateral import axis_flown
 
     with Stages() as tell:
         tell("reading", 0.0)

@@ -11,18 +11,18 @@ from pathlib import Path
 
 from advisor import __version__
 from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.axes.lateral import compare_side_flown
 from advisor.analysis.log_series import SINCE_1970_S, began_s
-from advisor.analysis.side_gap import compare_side_flown
 from advisor.analysis.whole_flights import WholeFlights, holds_no_test, read_whole
 from advisor.cli.doctor import examine_log
 from advisor.cli.log_options import LogsAsked
 from advisor.doctor.document import doctor_document
 from advisor.exports.flights.reading import sha256
 from advisor.gap.inference.engine import Progress
+from advisor.report.axes.lateral_gap import whole_document
 from advisor.report.document import analysis_document
 from advisor.report.gap_document import gap_document
 from advisor.report.page.content import Content, Document, Origin
-from advisor.report.side_gap import whole_document
 from advisor.session.diagnosis import diagnosed
 from advisor.words.printable import printable
 from advisor.words.problems import UnusableInputError

@@ -10,10 +10,10 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.report.axes.lateral import side_quality_lines
 from advisor.report.facts.decision import INDENT, decisions
 from advisor.report.facts.estimates import untold
 from advisor.report.facts.gap import counted
-from advisor.report.lateral import side_quality_lines
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
 from advisor.report.result_rows import SIDE_ROOM, channel_table, joint_table, maneuver_line
 from advisor.words.vehicle_time import CLOCK, clock

@@ -85,10 +85,10 @@ def diagnosed(
 
 
 def _diagnosed_sideways(logs: Sequence[Path], aircraft: Aircraft) -> Document:
-    from advisor.analysis.side_gap import compare_side_logs
+    from advisor.analysis.axes.lateral import compare_side_logs
     from advisor.process.parts import FailedPart, attempt
+    from advisor.report.axes.lateral_gap import whole_document
     from advisor.report.gap_document import gap_document
-    from advisor.report.side_gap import whole_document
     from advisor.words.problems import UnusableInputError
 
     try:

@@ -14,10 +14,10 @@ from advisor.flight.signals.record import Channel
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import spelled
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, natural_frequency
+from advisor.simulators.axes.lateral import TURNS
 from advisor.simulators.flying import Flying
 from advisor.simulators.interface import InterfaceFault, control_fault, interface_fault, side_fault
 from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Inputs, Replay, Simulator
-from advisor.simulators.side import TURNS
 from advisor.simulators.surrogate import surrogate_of
 from advisor.words.problems import UnusableInputError
 

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.analysis.side_gap import side_traces
-from advisor.report.side_gap import side_gap_document
+from advisor.analysis.axes.lateral import side_traces
+from advisor.report.axes.lateral_gap import side_gap_document
 from tests.gap.axes.lateral.test_diagnosis import DIAGNOSIS, FOUND
 
 T = np.arange(4.0)

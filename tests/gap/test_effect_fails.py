@@ -10,8 +10,8 @@ from advisor.gap.axes.lateral.flight import SideFlight
 from advisor.gap.inference import pitch
 from advisor.gap.inference.pitch import PitchFlight
 from advisor.process.parts import FailedPart
+from advisor.report.axes.lateral_gap import side_gap_lines, whole_document
 from advisor.report.gap_document import gap_document
-from advisor.report.side_gap import side_gap_lines, whole_document
 from tests.gap.axes.lateral.test_diagnosis import FOUND
 from tests.gap.test_report_screen import diagnosis, printed
 

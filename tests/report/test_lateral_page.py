@@ -7,12 +7,12 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli import page_content
-from advisor.report.lateral import lateral_document, side_quality_lines
+from advisor.report.axes.lateral import lateral_document, side_quality_lines
+from advisor.report.axes.lateral_gap import side_gap_document
+from advisor.report.page.axes.lateral import lateral
 from advisor.report.page.blocks import Gallery, Listing, Paragraph
 from advisor.report.page.gap import gap
 from advisor.report.page.headline import headline
-from advisor.report.page.lateral import lateral
-from advisor.report.side_gap import side_gap_document
 from advisor.report.table import Table
 from tests.campaign.side_builders import AIRCRAFT, estimate, judged, state
 from tests.gap.axes.lateral.test_diagnosis import FOUND

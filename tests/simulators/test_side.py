@@ -11,9 +11,9 @@ from advisor.aircraft.sensors import Beta
 from advisor.flight.signals.record import Channel
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
+from advisor.simulators.axes.lateral import side_without_difference
 from advisor.simulators.fmu import FmuSimulator
 from advisor.simulators.protocol import Replay
-from advisor.simulators.side import side_without_difference
 from advisor.words.problems import UnusableInputError
 from tests.gap.axes.lateral import test_comparison as flights
 from tests.oem.axes.lateral import builders

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from advisor.analysis.side_gap import side_traces
+from advisor.analysis.axes.lateral import side_traces
 from advisor.gap.alternative import Contribution
 from advisor.process.parts import FailedPart
+from advisor.report.axes.lateral_gap import whole_document
 from advisor.report.gap_document import gap_document
-from advisor.report.side_gap import whole_document
 from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
 from advisor.tui.panes import gap as pane
 from advisor.tui.plot.widget import Plot

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from advisor.analysis.side_gap import SideCompared, accepted_of, compare_side_flown, compare_side_logs
+from advisor.analysis.axes.lateral import SideCompared, accepted_of, compare_side_flown, compare_side_logs
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
 from advisor.cli.gap_asked import GapAsked
@@ -19,12 +19,12 @@ from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of
 from advisor.cli.stages import Stages
 from advisor.exports.models.axes.lateral import prove_side, stays_of_side
+from advisor.exports.models.axes.lateral_model import improved_side
 from advisor.exports.models.proof import Proof
-from advisor.exports.models.roll_and_yaw import improved_side
 from advisor.gap.result import IMPROVING
+from advisor.report.axes.lateral_gap import side_gap_document, side_gap_lines, whole_document
 from advisor.report.console import PlainConsole
 from advisor.report.gap_causes import why_of
-from advisor.report.side_gap import side_gap_document, side_gap_lines, whole_document
 from advisor.words.printable import printable
 
 

@@ -17,10 +17,10 @@ from advisor.cli.options import USAGE, decided_on
 from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of
 from advisor.cli.stages import Stages
+from advisor.exports.models.axes.lateral_model import side_of_logs
 from advisor.exports.models.axes.pitch import prove, stays_of
 from advisor.exports.models.flown import FlownModel, SideModel, improved_model
 from advisor.exports.models.proof import Proof
-from advisor.exports.models.roll_and_yaw import side_of_logs
 from advisor.exports.models.write import ExportOutcome
 from advisor.report.console import PlainConsole
 from advisor.report.gap_document import gap_document

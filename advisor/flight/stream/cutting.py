@@ -9,9 +9,10 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
+from advisor.flight.instruments.axes.lateral import examine_side
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.measured import Evidence, pooled
-from advisor.flight.instruments.side_examination import examine_side
+from advisor.flight.maneuvers.axes.lateral import SideInput, SideMovement, named, part_of_input
 from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
 from advisor.flight.maneuvers.feedback import HISTORY_S
 from advisor.flight.maneuvers.ground import why_on_ground
@@ -20,7 +21,6 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.markers import marked_span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.purpose import Because, not_an_input
-from advisor.flight.maneuvers.side_input import SideInput, SideMovement, named, part_of_input
 from advisor.flight.maneuvers.steady_speed import at_steady_speed
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel

@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from advisor.flight.instruments.axes.lateral import examine_side
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.measured import Evidence, pooled
-from advisor.flight.instruments.side_examination import examine_side
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import UNITS, Channel
 

@@ -22,12 +22,12 @@ from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import Distrust, frozen
 from advisor.flight.stream.asked_sources import AskedSources
+from advisor.flight.stream.axes.lateral import LOOPS, SidePath
 from advisor.flight.stream.cutting import Cutting
 from advisor.flight.stream.elevator_path import ElevatorPath
 from advisor.flight.stream.identity import Identity
 from advisor.flight.stream.instrument_watch import InstrumentWatch
 from advisor.flight.stream.service import Service
-from advisor.flight.stream.side_path import LOOPS, SidePath
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
 from advisor.flight.vehicle.breaks import Breaks

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 
 from advisor.report.facts.estimates import untold
+from advisor.report.page.axes.lateral import decided
 from advisor.report.page.blocks import Block, Paragraph, Section, listing
 from advisor.report.page.content import Content
 from advisor.report.page.gap import glance
-from advisor.report.page.lateral import decided
 from advisor.report.result_rows import joint_table
 from advisor.report.table import Table
 

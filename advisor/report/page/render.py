@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from advisor.process.parts import FailedPart, attempt
 from advisor.report.page.appendix import assumptions, provenance, telemetry
+from advisor.report.page.axes.lateral import lateral
 from advisor.report.page.blocks import Block, Paragraph, Section
 from advisor.report.page.content import Content
 from advisor.report.page.criterion import criterion
@@ -20,7 +21,6 @@ from advisor.report.page.flight_picture import flight_picture
 from advisor.report.page.flying import flying
 from advisor.report.page.gap import gap
 from advisor.report.page.headline import headline
-from advisor.report.page.lateral import lateral
 from advisor.report.page.maneuvers import maneuvers
 from advisor.report.page.prediction import prediction
 from advisor.words.quantities import CHANNELS

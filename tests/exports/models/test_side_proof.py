@@ -8,7 +8,7 @@ import pytest
 
 from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.analysis.side_gap import SideCompared
+from advisor.analysis.axes.lateral import SideCompared
 from advisor.exports.models.axes import lateral as side_proof
 from advisor.exports.models.axes.lateral import _ahead, prove_side, stays_of_side
 from advisor.exports.models.proof import NUMBERS, Proof

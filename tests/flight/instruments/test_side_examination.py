@@ -6,8 +6,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from advisor.flight.instruments.axes.lateral import examine_side
 from advisor.flight.instruments.measured import pooled
-from advisor.flight.instruments.side_examination import examine_side
 from advisor.flight.signals.record import Channel
 from advisor.oem.rows import Signal
 from tests.oem.axes.lateral.builders import JET, flown, rudder_doublet, steps

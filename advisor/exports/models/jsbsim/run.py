@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from advisor.exports.models.jsbsim.side_slopes import SideRequest, SideSlopes
+from advisor.exports.models.jsbsim.axes.lateral_slopes import SideRequest, SideSlopes
 from advisor.exports.models.jsbsim.slopes import Request, Slopes
 from advisor.exports.models.jsbsim.source import parse
 from advisor.process.children import python_module
@@ -74,7 +74,7 @@ def measure_side(content: bytes, model: Model, asked: SideRequest) -> SideSlopes
     ConfigurationError
         Errors as for ``_answered``.
     """
-    return SideSlopes(**_answered("side_slopes", content, model, asdict(asked)))
+    return SideSlopes(**_answered("axes.lateral_slopes", content, model, asdict(asked)))
 
 
 def _answered(module: str, content: bytes, model: Model, asked: dict[str, Any]) -> dict[str, Any]:

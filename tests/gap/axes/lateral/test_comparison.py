@@ -14,7 +14,7 @@ from advisor.flight.signals.record import Channel
 from advisor.gap.axes.lateral import comparison
 from advisor.gap.axes.lateral.comparison import compare_side
 from advisor.gap.result import Value
-from advisor.report.side_gap import side_gap_document
+from advisor.report.axes.lateral_gap import side_gap_document
 from tests.oem.axes.lateral.builders import JET, aileron_doublet, flown, rudder_doublet
 
 KNOWN = SideControl(lag_s=0.0, delay_s=0.0)

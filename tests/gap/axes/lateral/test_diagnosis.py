@@ -32,8 +32,8 @@ from advisor.gap.inference.stage import Stage
 from advisor.gap.result import Cause, Gap, Shrink, Value
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.rows import Signal
+from advisor.report.axes.lateral_gap import side_gap_document, side_gap_lines, whole_document
 from advisor.report.gap_document import gap_document
-from advisor.report.side_gap import side_gap_document, side_gap_lines, whole_document
 from benchmarks.lateral_gap import CASES, diagnosed
 from tests.gap.axes.lateral.test_comparison import maneuvers
 from tests.oem.axes.lateral.builders import JET

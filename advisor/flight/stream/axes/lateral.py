@@ -8,11 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.flight.elevator.elevator_watch import SETTLE_S, ElevatorWatch
-from advisor.flight.maneuvers.events import FlightEvent
-from advisor.flight.maneuvers.loop import ROLL, YAW, Loop
-from advisor.flight.maneuvers.maneuver import Span
-from advisor.flight.maneuvers.marks import Marks
-from advisor.flight.maneuvers.side_input import (
+from advisor.flight.maneuvers.axes.lateral import (
     BESIDE,
     TAIL_S,
     TOGETHER_S,
@@ -22,6 +18,10 @@ from advisor.flight.maneuvers.side_input import (
     input_span,
     named,
 )
+from advisor.flight.maneuvers.events import FlightEvent
+from advisor.flight.maneuvers.loop import ROLL, YAW, Loop
+from advisor.flight.maneuvers.maneuver import Span
+from advisor.flight.maneuvers.marks import Marks
 from advisor.flight.signals.channels import Decoded
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.stream.cutting import Cutting

@@ -16,9 +16,9 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.exports.models.exported import Exported
 from advisor.exports.models.flown import SideModel
 from advisor.exports.models.improvement import ExportedServo, zero_said
+from advisor.exports.models.jsbsim.axes.lateral_slopes import VARIABLES, SideRequest, SideSlopes
 from advisor.exports.models.jsbsim.knobs import ROUNDS, WITHIN
 from advisor.exports.models.jsbsim.run import Model, measure_side
-from advisor.exports.models.jsbsim.side_slopes import VARIABLES, SideRequest, SideSlopes
 from advisor.exports.models.jsbsim.source import AddedFunction, corrected, parse
 from advisor.words.problems import ConfigurationError
 

@@ -21,8 +21,8 @@ from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Trace
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.simulators.axes.lateral import side_without_difference
 from advisor.simulators.flying import Progress
-from advisor.simulators.side import side_without_difference
 from advisor.simulators.specification import simulator_of
 from advisor.words.problems import ConfigurationError, UnusableInputError
 

@@ -1,6 +1,6 @@
 """Slopes of side force, roll and yaw of a JSBSim aircraft, measured in a separate process.
 
-    python -m advisor.exports.models.jsbsim.side_slopes
+    python -m advisor.exports.models.jsbsim.axes.lateral_slopes
 
 The aircraft is trimmed in lift and pitch, then perturbed in β, p, r, aileron and rudder at rest. Forces and
 accelerations are read before any motion.

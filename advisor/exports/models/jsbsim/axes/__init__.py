@@ -1,0 +1,1 @@
+"""Parts of a JSBSim aircraft that belong to one axis."""

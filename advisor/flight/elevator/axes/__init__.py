@@ -1,0 +1,1 @@
+"""The control surfaces of one axis in the outputs of an autopilot."""

@@ -1,0 +1,1 @@
+"""Examination of the instruments of one axis."""

@@ -1,0 +1,1 @@
+"""Test inputs of one axis, as recognised in flight."""

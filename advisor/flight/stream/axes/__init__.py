@@ -1,0 +1,1 @@
+"""The manoeuvres of one axis, from a stream of messages."""

@@ -1,0 +1,1 @@
+"""One axis of the user's simulator."""
