@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 from advisor.oem.batch import solve_many
 from advisor.oem.problem import OutputErrorProblem, Record
@@ -15,6 +16,12 @@ def copies(n, noise, seed=0):
     rng = np.random.default_rng(seed)
     spread = noise * CLEAN.std(axis=0)
     return tuple(CLEAN[:, c] + spread[c] * rng.standard_normal((n, len(T))) for c in (0, 1))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def compiled():
+    """The batch's function is compiled once on a machine, which is no test's time."""
+    solve_many(ELEVATOR, T, *copies(1, 0.05))
 
 
 def test_a_batch_gives_what_each_manoeuvre_gives_alone():
