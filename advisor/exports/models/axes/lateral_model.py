@@ -54,19 +54,21 @@ def _flies_roll_or_yaw(
 def improved_side(compared: SideCompared) -> FlownModel:
     """Return both axes' models after a diagnosis of roll and yaw, including the servos found.
 
-    Derivatives are estimated again with a servo that the diagnosis changed.
+    With an effect the derivatives are those of the diagnosis' own model. The diagnosis next to a user's
+    simulator lacks what that simulator adds. The derivatives are then estimated again with the servos found.
     """
-    aircraft, state = compared.aircraft, compared.state
+    aircraft, state, diagnosis = compared.aircraft, compared.state, compared.gap.diagnosis
     model = flown_model(state, aircraft)
     unchanged = compared.gap.verdict not in IMPROVING
-    found = _servos_found(compared.gap.diagnosis, aircraft)
-    if model.side is None or not found:
+    if model.side is None or diagnosis is None or diagnosis.verdict != "effect":
         return replace(model, unchanged=unchanged)
-    behind = _behind(found, aircraft)
-    again = estimate_lateral(accepted_of(state), behind)
-    side = model.side
-    if not isinstance(again, NoEstimate):
-        side = side_of(again, side.trim, side.air, behind)
+    side, found = model.side, _servos_found(diagnosis, aircraft)
+    if aircraft.simulator in (None, "linear"):
+        side = replace(side, values={name: diagnosis.derivatives[name] for name in side.values})
+    elif found:
+        behind = _behind(found, aircraft)
+        again = estimate_lateral(accepted_of(state), behind)
+        side = side if isinstance(again, NoEstimate) else side_of(again, side.trim, side.air, behind)
     return replace(model, side=replace(side, servos={**side.servos, **found}), unchanged=unchanged)
 
 
