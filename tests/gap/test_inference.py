@@ -245,15 +245,6 @@ def test_an_effect_that_a_wrong_derivative_hides_is_fitted_at_the_files_derivati
     assert told["actuator_lag"] == (5.0 if fitted else -behind)
 
 
-@pytest.mark.parametrize(("right", "wrong", "fitted"), [(5.0, 0.0, False), (0.0, 5.0, True)])
-def test_a_model_is_fitted_at_the_files_derivatives_only_where_others_are_likelier(right, wrong, fitted):
-    flight, again = Flight({}), []
-    flight.explained = lambda base, most: (1.0, [replace(explanation(), evidence=Evidence(right, wrong))])
-    flight.at_the_files = lambda *asked: again.append(asked)
-    stage_of(flight, None, 6)
-    assert bool(again) is fitted
-
-
 def test_what_moving_air_explains_is_no_law_without_a_name_where_the_air_moves():
     """The residual is far beyond a simulator's own in still air, and within it beside the air."""
     flight = Flight({}, residual=12.0, moving=5.0)

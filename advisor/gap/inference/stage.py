@@ -117,12 +117,8 @@ def stage_of(flight: Flight[E], base: E | None, most: int) -> Stage[E]:
 
 
 def _at_the_files(flight: Flight[E], one: E, plain: E, heat: float, best: float) -> E:
-    """Return an explanation refitted about the file's derivatives, if that fit is likelier.
-
-    If the file's derivatives are likelier already, the first fit suffices for the quadratic expansion.
-    """
-    near = one.evidence.right > one.evidence.wrong
-    if near or not flight.is_stated or one.evidence.wrong < best - REFINED:
+    """Return an explanation refitted about the file's derivatives, if that fit is likelier."""
+    if not flight.is_stated or max(one.evidence.wrong, one.evidence.right) < best - REFINED:
         return one
     right = flight.at_the_files(one, plain, heat)
     if right is None:

@@ -113,10 +113,13 @@ class SideFlight:
         return self.parts.kept(f"roll and yaw, effect {one.name}", work)
 
     def at_the_files(self, one: SideModel, plain: SideModel, heat: float) -> SideModel | None:
-        """Return an explanation refitted about the file's derivatives; None without such a fit."""
-        share = heat**-0.5
+        """Return an explanation refitted about the file's derivatives; None without such a fit.
+
+        If the file's derivatives are likelier already, the first fit suffices for the quadratic expansion.
+        """
+        share, near = heat**-0.5, one.evidence.right > one.evidence.wrong
         free = one.fit.free if one.effect is not None else free_near(self.case, one.fit)
-        made = self.case.fit(one.fit.point, free, ERROR_IF_RIGHT, share)
+        made = None if near else self.case.fit(one.fit.point, free, ERROR_IF_RIGHT, share)
         if made is None:
             return None
         return replace(self._model(one.effect, made, plain.fit, share), starts=one.starts)

@@ -231,6 +231,16 @@ def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_a
     assert [one.column for one in again] == [None]
 
 
+@pytest.mark.parametrize(("right", "wrong", "fitted"), [(5.0, 0.0, False), (0.0, 5.0, True)])
+def test_a_model_is_fitted_at_the_files_derivatives_only_where_others_are_likelier(right, wrong, fitted):
+    found = SimpleNamespace(point=None, free=())
+    one = SimpleNamespace(evidence=Evidence(right, wrong), fit=found, effect=None, starts=None)
+    again = []
+    case = SimpleNamespace(natural=(), fit=lambda *given: again.append(given))
+    assert SideFlight(case, None, []).at_the_files(one, None, 1.0) is None
+    assert bool(again) is fitted
+
+
 def side_model(fit, nats=0.0, alternative=None):
     told = {"fit": fit, "evidence": Evidence(nats, nats), "natural": Evidence(nats, nats), "likelihood": nats}
     return SideModel(**dict.fromkeys(SideModel.__dataclass_fields__) | told | {"alternative": alternative})
