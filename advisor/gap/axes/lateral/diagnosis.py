@@ -10,7 +10,7 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative, Weighed
 from advisor.gap.axes.lateral.effects import block_of, side_effects, unseen
-from advisor.gap.axes.lateral.evidence import Gain, information_of, posterior_of, share_of, squares_of
+from advisor.gap.axes.lateral.evidence import Gain, information_of, posterior_at, share_of, squares_of
 from advisor.gap.axes.lateral.fit import Fit, N
 from advisor.gap.axes.lateral.flight import SideFlight, SideModel
 from advisor.gap.axes.lateral.gusts import coloured_likelihood
@@ -142,15 +142,16 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
     told, last = weighed(found.posteriors[0]), found.chosen[-1].fit
     left = _held_out(case, found.chosen[-1], found.heat)
     gap, shrink = measured(last, case.numbers, sums(last, as_given.residual**2), left)
-    final = _final(case, found.chosen[-1])
+    whole, share = found.chosen[-1], share_of(last)
+    # The whole model leaves less colour than the model before it.
+    final = _Told.of(case, whole, share, case.fit(last.point, last.free, whole.tolerance, share))
     values = map(Value, final.mean[:N].tolist(), final.std[:N].tolist())
-    corrects = told.answer is not None and (told.answer == PARAMETERS or len(found.chosen) > 1)
     causes = tuple(_causes(case, found, final, as_given))[:MOST_CAUSES]
     return SideDiagnosis(
         **(vars(told) | {"failed": found.failed}), causes=causes, cannot_see=tuple(unseen(case.flown)),
         peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain), gap=gap, fits=(as_given, last),
-        derivatives=dict(zip(SIDE_PARAMETERS, values, strict=True)), shrink=shrink if corrects else None,
-        waterfall=_waterfall(case, found),
+        derivatives=dict(zip(SIDE_PARAMETERS, values, strict=True)), waterfall=_waterfall(case, found),
+        shrink=shrink if told.answer == PARAMETERS or len(found.chosen) > 1 else None,
     )  # fmt: skip
 
 
@@ -205,15 +206,7 @@ class _Told(NamedTuple):
     def of(cls, case: Case, model: SideModel, share: float, fit: Fit | None = None) -> "_Told":
         """Return the posterior of a model at its fit, or at another ``fit``."""
         fit = fit or model.fit
-        known = case.prior_of(model.tolerance, fit.free)
-        mean, covariance = posterior_of(fit, information_of(fit, share), known)
-        return cls(fit, mean, np.sqrt(np.diag(covariance)))
-
-
-def _final(case: Case, model: SideModel) -> _Told:
-    """Return the posterior of the whole model, which leaves less colour than the model before it."""
-    share = share_of(model.fit)
-    return _Told.of(case, model, share, case.fit(model.fit.point, model.fit.free, model.tolerance, share))
+        return cls(fit, *posterior_at(fit, case.prior_of(model.tolerance, fit.free), share))
 
 
 def _causes(case: Case, found: Decided[SideModel], final: _Told, as_given: Fit) -> Iterator[SideCause]:

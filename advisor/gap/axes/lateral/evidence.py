@@ -8,8 +8,9 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.axes.lateral.fit import Fit, Known
+from advisor.gap.axes.lateral.fit import Fit, Known, N
 from advisor.oem.evaluation import errors_of
+from advisor.oem.extra import Extra
 from advisor.oem.scatter_between import widened_by_scatter
 
 
@@ -45,12 +46,27 @@ def share_of(fit: Fit) -> float:
     return float(np.clip(np.median(ratio), 0.0, 1.0)) if len(ratio) else 1.0
 
 
-def posterior_of(fit: Fit, told: Information, known: Known) -> tuple[FloatArray, FloatArray]:
-    """Return the posterior mean (15 + k,) and covariance of derivatives and effect parameters."""
-    posterior = np.sum(told.matrix, axis=0) + np.diag(known.precision)
+def posterior_at(fit: Fit, known: Known, share: float) -> tuple[FloatArray, FloatArray]:
+    """Return the mean (15 + k,) and the standard errors of derivatives and effect parameters.
+
+    The errors are those of an estimate: they contain the scatter between the manoeuvres and the dynamics that
+    the model lacks.
+    """
+    mean = fit.values + step_of(fit, information_of(fit, share), known)
+    weight, off = known.precision[N:] ** 0.5, (known.mean - fit.values)[N:]
+    extra = Extra(fit.slopes, weight, weight * off, np.full(len(weight), share))
+    precision, about = known.precision[:N] / share**2, (fit.residual, fit.sensitivities, fit.noise)
+    found = errors_of(fit.assembly, *about, extra, precision, fitted=fit.fitted, prior_share=share)
+    if found is None:
+        return mean, known.precision**-0.5
+    scattered = widened_by_scatter(found["covariance"], found["contributions"])
+    return mean, np.diag(scattered + found["systematic"]) ** 0.5
+
+
+def step_of(fit: Fit, told: Information, known: Known) -> FloatArray:
+    """Return the step (15 + k,) from the fit to the posterior mean."""
     pull = np.sum(told.gradient, axis=0) - known.precision * (fit.values - known.mean)
-    covariance = np.linalg.inv(posterior)
-    return fit.values + covariance @ pull, covariance
+    return np.linalg.solve(np.sum(told.matrix, axis=0) + np.diag(known.precision), pull)
 
 
 class Squares(NamedTuple):

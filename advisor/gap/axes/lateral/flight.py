@@ -9,7 +9,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative
 from advisor.gap.axes.lateral.disturbance import Course, courses_of
 from advisor.gap.axes.lateral.effects import SideEffect, block_of
-from advisor.gap.axes.lateral.evidence import Gain, information_of, posterior_of, share_of, squares_of
+from advisor.gap.axes.lateral.evidence import Gain, information_of, share_of, squares_of, step_of
 from advisor.gap.axes.lateral.fit import Fit, Free, Known, moved_by
 from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
 from advisor.gap.axes.lateral.models import Case, free_near, free_with
@@ -207,7 +207,7 @@ class SideFlight:
         matrix, gradient = (np.sum(part, axis=0) for part in told)
         evidence, natural = self._weighed(fit, effect, likelihood, matrix, gradient)
         # A search that ends early, as at a bound, leaves a step to the optimum, which the evidence has taken.
-        step = posterior_of(fit, told, self._wide(fit))[0] - fit.values
+        step = step_of(fit, told, self._wide(fit))
         likelihood += float(gradient @ step - 0.5 * step @ matrix @ step)
         model = SideModel(
             alternative=None, effect=effect, fit=fit, evidence=evidence, natural=natural,

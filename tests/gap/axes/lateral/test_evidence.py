@@ -5,12 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from advisor.gap.axes.lateral.evidence import (
-    Gain,
-    information_of,
-    posterior_of,
-    squares_of,
-)
+from advisor.gap.axes.lateral import evidence
+from advisor.gap.axes.lateral.evidence import Gain, information_of, posterior_at, squares_of, step_of
 from advisor.gap.axes.lateral.fit import Known
 from advisor.gap.inference.marginal import marginal
 
@@ -77,11 +73,28 @@ def test_the_evidence_is_the_integral_of_likelihood_times_prior(share):
 
 def test_the_posterior_lies_between_prior_and_data_by_their_information():
     line = Line(0.0, Z)
-    told = information_of(line, 1.0)
     information = np.sum((X / NOISE) ** 2)
-    mean, covariance = posterior_of(line, told, known(0.0, information**-0.5))
-    assert mean[0] == pytest.approx(0.5 * np.sum(X * Z) / np.sum(X**2))
-    assert covariance[0, 0] == pytest.approx(0.5 / information)
+    step = step_of(line, information_of(line, 1.0), known(0.0, information**-0.5))
+    assert step[0] == pytest.approx(0.5 * np.sum(X * Z) / np.sum(X**2))
+
+
+@pytest.mark.parametrize(
+    ("scatter", "systematic", "std"), [(0.0, 0.0, 0.1), (0.0, 0.24, 0.5), (0.4, 0.0, 0.69)]
+)
+def test_an_error_contains_the_scatter_of_the_manoeuvres_and_the_dynamics_that_the_model_lacks(
+    monkeypatch, scatter, systematic, std
+):
+    """Three manoeuvres pull by ±0.4 and 0: their sum scatters by 0.4·(2·3/2)^½."""
+    told = {
+        "covariance": np.array([[0.01]]), "systematic": np.array([[systematic]]),
+        "contributions": scatter * np.array([[-1.0], [0.0], [1.0]]),
+    }  # fmt: skip
+    monkeypatch.setattr(evidence, "errors_of", lambda *_, **__: told)
+    monkeypatch.setattr(evidence, "N", 1)
+    line = Line(0.0, Z)
+    line.slopes, line.sensitivities, line.fitted = np.empty((len(Z), 0)), None, None
+    _, found = posterior_at(line, known(0.0, 1.0), 1.0)
+    assert found[0] == pytest.approx(std, abs=0.01)
 
 
 def test_a_manoeuvre_that_stands_alone_is_predicted_worse_than_it_is_fitted():
