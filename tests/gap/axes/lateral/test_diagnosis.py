@@ -261,19 +261,28 @@ def test_the_air_is_weighed_in_the_residual_of_the_likeliest_explanation(monkeyp
 
 
 @pytest.mark.parametrize(
-    ("maneuvers", "gap", "answer", "chosen"),
-    [(2, 0.0, "none", 1), (2, 10.0, "parameters", 1), (1, 10.0, "none", 2)],
+    ("maneuvers", "gap", "stated", "answer", "chosen"),
+    [
+        (2, 0.0, ["L_p"], "none", 1),
+        (2, 10.0, ["L_p"], "parameters", 1),
+        (2, 10.0, [], "unknown", 1),
+        (1, 10.0, ["L_p"], "none", 2),
+    ],
 )
-def test_none_means_no_gap_on_held_out_manoeuvres(monkeypatch, maneuvers, gap, answer, chosen):
-    """Fitted derivatives remove the whole gap. One manoeuvre is held out of nothing."""
+def test_none_means_no_gap_on_held_out_manoeuvres(monkeypatch, maneuvers, gap, stated, answer, chosen):
+    """Fitted derivatives remove the whole gap, which without stated ones they are no part of.
+
+    One manoeuvre is held out of nothing.
+    """
     lag = Alternative("effect", "actuator_lag", "input")
     rows = [Row(NONE, None, {"fit": 9.0}), Row(PARAMETERS, None, {"fit": 0.0}), Row(lag, None, {"fit": 1.0})]
+    rows.append(Row(Alternative("unknown", "unknown", "aileron"), None, {"fit": 0.0}))
     models = (side_model(SimpleNamespace(residual=1.0)), side_model(None, 0.0, lag))
     left = 0.0 if maneuvers > 1 else np.nan
     monkeypatch.setattr(diagnosis, "measured", lambda *_: (SimpleNamespace(before=gap, after=left), None))
     monkeypatch.setattr(diagnosis, "sums", lambda *_: None)
     monkeypatch.setattr(diagnosis, "_held_out", lambda *_: None)
-    case = SimpleNamespace(numbers=(), stated=("L_p",))
+    case = SimpleNamespace(numbers=(), stated=stated)
     found = _tied_to_the_gap(case, Decided((posterior_of(rows),), models, (), 1.0), models[0].fit)
     assert found.posteriors[0].answer.kind == answer
     assert len(found.chosen) == chosen

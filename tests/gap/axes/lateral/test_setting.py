@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.gap.axes.lateral.effects import side_effects, unseen
-from advisor.gap.axes.lateral.fit import Point, outputs
+from advisor.gap.axes.lateral.fit import Flying, Free, Point, outputs
 from advisor.gap.axes.lateral.setting import PROPELLER, Flown, laid_out
 from advisor.gap.effects.thrust_moment import EFFECT as THRUST
 from advisor.model.axes.lateral import LATERAL
@@ -125,3 +125,11 @@ def test_a_vane_is_an_effect_only_where_the_file_states_its_place():
     stated = replace(FLOWN, arm_is_stated=True)
     assert "alpha_vane_offset" in {effect.name for effect in side_effects(stated)}
     assert "alpha_vane_offset" not in {effect.name for effect in side_effects(FLOWN)}
+
+
+@pytest.mark.parametrize(("change", "value"), [(0.05, 0.07), (0.5, 0.1), (-0.5, 0.0)])
+def test_a_parameter_moves_within_its_bounds(change, value):
+    free = Free(("p", "scale"), 0.1, 1e-3, (0.0, 0.1))
+    moved = free.moved(Flying(None, {("p", "scale"): np.full(2, 0.02)}), change)
+    assert free.read(moved) == pytest.approx(value)
+    assert free.read(Flying(None, {})) == 0.0
