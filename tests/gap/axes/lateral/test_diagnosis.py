@@ -337,6 +337,8 @@ def test_the_gap_of_an_output_and_of_a_manoeuvre_is_the_mean_square_error_over_t
     after[0] = np.nan
     gap, shrink = measured(fit, (4, 7), sums(fit, error**2), after)
     assert (gap.by_channel["r"], shrink.holdout) == (pytest.approx(15.0), (7,))
+    gap, shrink = measured(fit, (4, 7), sums(fit, error**2), np.full_like(after, np.nan))
+    assert (gap.before, np.isnan(gap.after), shrink) == (pytest.approx(8.5), True, None)
 
 
 @pytest.mark.parametrize(("records", "kept"), [("ar", 0), ("aar", 2), ("aarr", 4), ("a", 0), ("aa", 2)])

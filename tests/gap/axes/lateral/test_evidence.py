@@ -89,12 +89,16 @@ def test_an_error_contains_the_scatter_of_the_manoeuvres_and_the_dynamics_that_t
         "covariance": np.array([[0.01]]), "systematic": np.array([[systematic]]),
         "contributions": scatter * np.array([[-1.0], [0.0], [1.0]]),
     }  # fmt: skip
-    monkeypatch.setattr(evidence, "errors_of", lambda *_, **__: told)
+    asked = []
+    monkeypatch.setattr(evidence, "errors_of", lambda *given, **named: asked.append((given, named)) or told)
     monkeypatch.setattr(evidence, "N", 1)
     line = Line(0.0, Z)
     line.slopes, line.sensitivities, line.fitted = np.empty((len(Z), 0)), None, None
-    _, found = posterior_at(line, known(0.0, 1.0), 1.0)
+    _, found = posterior_at(line, known(0.0, 1.0), 0.5)
     assert found[0] == pytest.approx(std, abs=0.01)
+    ((given, named),) = asked
+    # Coloured residuals count half, so the prior is as much narrower in the white-noise fit.
+    assert (given[-1], named["prior_share"]) == (pytest.approx([4.0]), 0.5)
 
 
 def test_a_manoeuvre_that_stands_alone_is_predicted_worse_than_it_is_fitted():
