@@ -1,8 +1,11 @@
 """A link that cannot serve, over a real socket: said in text within seconds."""
 
+import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
+
+import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
@@ -30,5 +33,8 @@ def test_a_slow_link_is_said_in_text_within_5_s_of_the_vehicles_first_message(tm
     found_s = next(at_s for at_s, text in said if text.startswith("following"))
     told_s, sentence = next((at_s, text) for at_s, text in said if text.startswith("NO DATA"))
     assert told_s - found_s < 5.0
-    assert "arrives at 4.0 Hz" in sentence
+    told = re.search(r"arrives at ([\d.]+) Hz", sentence)
+    assert told is not None, sentence
+    # The vehicle flies in real time, and a busy machine delays its messages.
+    assert float(told[1]) == pytest.approx(4.0, abs=1.0)
     assert "--request-rates" in sentence
