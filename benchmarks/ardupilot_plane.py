@@ -28,7 +28,7 @@ from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS, Reference
 from advisor.analysis.axes.lateral import accepted_of, compare_side_logs
 from advisor.analysis.gap import compare_logs, maneuvers_of
 from advisor.cli.options import read_aircraft
-from advisor.exports.models.axes.lateral_model import improved_side
+from advisor.exports.models.axes.handed_over import improved_side
 from advisor.exports.models.flown import FlownModel, SideModel, improved_model
 from advisor.exports.models.improvement import Improvement, servo_of
 from advisor.exports.models.write import carry_out, order_of

@@ -18,8 +18,8 @@ from advisor.cli.options import USAGE
 from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of
 from advisor.cli.stages import Stages
+from advisor.exports.models.axes.handed_over import improved_side
 from advisor.exports.models.axes.lateral import prove_side, stays_of_side
-from advisor.exports.models.axes.lateral_model import improved_side
 from advisor.exports.models.proof import Proof
 from advisor.gap.result import IMPROVING
 from advisor.report.axes.lateral_gap import side_gap_document, side_gap_lines, whole_document

@@ -17,7 +17,7 @@ from advisor.cli.options import USAGE, decided_on
 from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of
 from advisor.cli.stages import Stages
-from advisor.exports.models.axes.lateral_model import side_of_logs
+from advisor.exports.models.axes.handed_over import side_of_logs
 from advisor.exports.models.axes.pitch import prove, stays_of
 from advisor.exports.models.flown import FlownModel, SideModel, improved_model
 from advisor.exports.models.proof import Proof

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.exports.models.axes import lateral_model as roll_and_yaw
+from advisor.exports.models.axes import handed_over as roll_and_yaw
 
 BIN = Path(__file__).parents[2] / "cases" / "base.bin"
 

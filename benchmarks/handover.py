@@ -1,6 +1,6 @@
 """Derivatives that a diagnosis of roll and yaw hands over, against the truth of simulated flights.
 
-    python -m benchmarks.lateral_handover SEED [--each 1]     # about ten seconds a flight
+    python -m benchmarks.handover SEED [--each 1]     # about ten seconds a flight
 
 The bundled aircraft flies ``--plan lateral`` with one effect of ``lateral_gap``. Six derivatives of the
 aircraft file are wrong by up to 25 %, drawn from the seed. A row has the mean relative error of these six:

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.exports.models.axes import lateral_model
-from advisor.exports.models.axes.lateral_model import improved_side
+from advisor.exports.models.axes import handed_over
+from advisor.exports.models.axes.handed_over import improved_side
 from advisor.exports.models.flown import FlownModel, side_of
 from advisor.exports.models.improvement import STILL_AIR
 from advisor.gap.result import Value
@@ -34,9 +34,9 @@ def test_beside_an_effect_the_derivatives_of_the_diagnosis_are_handed_over(
 ):
     aircraft = Aircraft(simulator=simulator)
     side = side_of(estimate("aileron", "rudder"), Trim(130.0), STILL_AIR, aircraft)
-    monkeypatch.setattr(lateral_model, "flown_model", lambda *_: FlownModel(aircraft, None, side))
-    monkeypatch.setattr(lateral_model, "estimate_lateral", lambda *_: estimate("aileron", "rudder"))
-    monkeypatch.setattr(lateral_model, "accepted_of", lambda _: [])
+    monkeypatch.setattr(handed_over, "flown_model", lambda *_: FlownModel(aircraft, None, side))
+    monkeypatch.setattr(handed_over, "estimate_lateral", lambda *_: estimate("aileron", "rudder"))
+    monkeypatch.setattr(handed_over, "accepted_of", lambda _: [])
     gap = SimpleNamespace(verdict="effect", diagnosis=replace(FOUND, **weighed(answer)))
     made = improved_side(SimpleNamespace(aircraft=aircraft, state=None, gap=gap))
     assert made.side.values["L_p"].value == pytest.approx(l_p)
