@@ -1,14 +1,14 @@
 """The flight test as a pure state machine: columns of messages in, events and a state out."""
 
-import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.axes.lateral import LateralCampaign
 from advisor.campaign.axes.pitch import ElevatorCampaign
 from advisor.campaign.axis_campaign import AxisCampaign
-from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
+from advisor.campaign.engineer import OF, Engineer
+from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.campaign.instruments import side_signs, together, with_fit
 from advisor.campaign.journal import Journal
 from advisor.campaign.late_limits import recount
@@ -17,18 +17,16 @@ from advisor.campaign.state import OF_ELEVATOR, AxisName, CampaignState, JudgedM
 from advisor.decision.crew_plan import CrewPlan, crew_plan
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import (
-    READER_NOTICE,
     Activity,
     ElevatorRescaled,
     FlightEvent,
     ManeuverAgain,
     ManeuverFlown,
     ModeChanged,
-    Notice,
     SideManeuverFlown,
 )
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.maneuvers.marks import MARK_NOTICES, Mark
+from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.flights import Flights
@@ -39,8 +37,6 @@ from advisor.process.parts import Parts
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock
 
-_OF: Mapping[AxisName, str] = {"pitch": "", "lateral": "roll and yaw, "}
-"""Words before the number of a manoeuvre, by the name of its axis."""
 _TEST_OF: Mapping[AxisName, str] = {"pitch": "", "lateral": "roll and yaw: "}
 """Words before the decision on a test, by the name of its axis."""
 
@@ -94,11 +90,12 @@ class Campaign:
         self._aircraft = aircraft
         self._tell = tell
         self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names, lateral)
-        self.by_hand = by_hand
-        """The engineer's decisions by hand so far."""
-        self._to_remark = list(by_hand.remarks)
-        self._mark_notes: tuple[str, ...] = ()
-        self._reader_notes: tuple[str, ...] = ()
+        axes: Mapping[AxisName, AxisCampaign] = {
+            "pitch": self._elevator,
+            "lateral": self._lateral or self._elevator,
+        }
+        self.engineer = Engineer(self._flights, self._journal, axes, by_hand)
+        """The engineer, whose decisions count in all verdicts."""
         self._activity: tuple[Activity, ...] = ()
         self._whole_flights = WholeFlights()
         self._ended = False
@@ -108,13 +105,13 @@ class Campaign:
         """Process the next messages, in order of arrival. The result does not depend on how the messages are
         grouped."""
         told = self._take(self._flights.feed(columns))
-        self._repeat_remarks()
+        self.engineer.repeat_remarks()
         return told
 
     def finish(self) -> list[CampaignEvent]:
         """End the stream: a manoeuvre without only its quiet end is still used."""
         if self._stream.marks.by_hand_since_s is not None:
-            self.end_maneuver()
+            self.engineer.end_maneuver()
         told = self._take(self._flights.finish())
         self._ended = True
         self._elevator.finish()
@@ -153,7 +150,7 @@ class Campaign:
             estimate_from=tuple(judged.maneuver.number for judged in elevator.joined),
             elevator_notes=flights.elevator_notes,
             reader_notes=(
-                *self._reader_notes,
+                *self._journal.reader_notes,
                 *(f"{d.sentence}; {d.fix}." for d in stream.frozen if not d.stops),
             ),
             elevator_guess=stream.guess if isinstance(stream.elevator, Problem) else None,
@@ -162,7 +159,7 @@ class Campaign:
             no_data=stream.no_data,
             serves=stream.serves,
             instruments=instruments,
-            mark_notes=self._mark_notes,
+            mark_notes=self._journal.mark_notes,
             notices=self._journal.lines,
             flight=flights.flight,
             boot=stream.boot,
@@ -213,60 +210,9 @@ class Campaign:
             return found
         return [problem for problem in found if problem.code not in OF_ELEVATOR]
 
-    def exclude(self, number: int, because: str, axis: AxisName = "pitch") -> None:
-        """Exclude a manoeuvre of an axis from every decision, and decide again on all later manoeuvres."""
-        self._decide_by_hand(number, because, axis)
-
-    def include(self, number: int, axis: AxisName = "pitch") -> None:
-        """Include an excluded manoeuvre again."""
-        self._decide_by_hand(number, None, axis)
-
-    def mark(self, text: str) -> None:
-        """Set a mark in the event log at the newest vehicle time."""
-        if math.isfinite(self._now_s):
-            here = Remark(self._now_s, text, self._stream.boot, self._flights.flight)
-            self.by_hand = self.by_hand.remarking(here)
-        self._journal.write(f"mark: {text}", self._stream.now_s)
-
-    def begin_maneuver(self) -> None:
-        """Begin the mark of a manoeuvre at the newest vehicle time. A mark that is already open is
-        deleted."""
-        if not math.isfinite(self._now_s):
-            self._journal.write("nothing can be marked before the vehicle's clock is heard")
-            return
-        self._stream.marks.begin_by_hand(self._now_s)
-        self._journal.write("a manoeuvre is marked from here", self._stream.now_s)
-
-    def end_maneuver(self) -> None:
-        """End the open mark at the newest vehicle time. The marked manoeuvre is judged when all its data have
-        arrived."""
-        ended = self._stream.marks.end_by_hand(self._now_s)
-        if isinstance(ended, Notice):
-            self._journal.write(ended.text, self._stream.now_s)
-            return
-        self.by_hand = self.by_hand.marking(replace(ended, flight=self._flights.flight))
-        self._journal.write(f"a manoeuvre is marked from {clock(ended.start_s)} to here", self._stream.now_s)
-
     def log(self, sentence: str) -> None:
         """Write a sentence from outside the campaign, such as a link's report, into the event log."""
         self._journal.write(sentence, self._stream.now_s)
-
-    def note(self, number: int, text: str, axis: AxisName = "pitch") -> None:
-        """Write a note on a manoeuvre of an axis."""
-        half = self._half(axis)
-        self.by_hand = self.by_hand.noting(half.numbered(number).maneuver, text)
-        self._journal.write(f"note on {_OF[axis]}manoeuvre {number}: {text}", self._stream.now_s)
-        half.note(number, text)
-
-    def _decide_by_hand(self, number: int, because: str | None, axis: AxisName) -> None:
-        half = self._half(axis)
-        self.by_hand = self.by_hand.excluding(half.numbered(number).maneuver, because)
-        what = "included again" if because is None else f"excluded: {because}"
-        self._journal.write(f"{_OF[axis]}manoeuvre {number} {what}", self._stream.now_s)
-        half.exclude(number, because)
-
-    def _half(self, axis: AxisName) -> AxisCampaign:
-        return self._lateral if axis == "lateral" and self._lateral is not None else self._elevator
 
     def _take(self, events: Sequence[FlightEvent]) -> list[CampaignEvent]:
         told: list[CampaignEvent] = []
@@ -283,8 +229,6 @@ class Campaign:
                 case Activity():
                     joined = event.joined(self._activity[-1]) if self._activity else None
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
-                case Notice():
-                    self._note_down(event)
                 case ManeuverAgain():
                     told += self._heard_again(event)
                 case ElevatorRescaled():
@@ -298,10 +242,10 @@ class Campaign:
         self, half: ElevatorCampaign | LateralCampaign, maneuver: Maneuver, axis: AxisName
     ) -> ManeuverJudged:
         """Judge a manoeuvre that has just been flown, and log its verdict and the decision."""
-        half.take(maneuver, self.by_hand)
+        half.take(maneuver, self.engineer.decided)
         span, judged = maneuver.span, half.judged[-1]
         which = f", {span.kind}" if axis == "lateral" else ""
-        verdict = f"{_OF[axis]}manoeuvre {maneuver.number} ({clock(span.start_s)}{which})"
+        verdict = f"{OF[axis]}manoeuvre {maneuver.number} ({clock(span.start_s)}{which})"
         self._journal.write_of_past(f"{verdict}: {judged.verdict.sentence}", span.end_s)
         self._journal.write_of_past(f"{_TEST_OF[axis]}{half.flight_test.sentence}", span.end_s)
         return ManeuverJudged(judged, half.flight_test, self._plan, axis)
@@ -318,13 +262,6 @@ class Campaign:
         """Lateral manoeuvres, if they were requested."""
         return self._lateral.maneuvers if self._lateral is not None else ()
 
-    def _note_down(self, notice: Notice) -> None:
-        """Keep notices about marks and about the reader for the report."""
-        if notice.code in MARK_NOTICES:
-            self._mark_notes += (notice.text,)
-        if notice.code == READER_NOTICE:
-            self._reader_notes += (notice.text,)
-
     def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
         """Keep the better record of a manoeuvre that arrived twice; an exclusion of either remains."""
         maneuver = event.maneuver
@@ -336,7 +273,7 @@ class Campaign:
             maneuver.span.end_s,
         )
         known = self._elevator.numbered(maneuver.number).excluded_because
-        because = known if known is not None else self.by_hand.excluded_because(maneuver)
+        because = known if known is not None else self.engineer.decided.excluded_because(maneuver)
         if not event.takes_place:
             if because != known:
                 self._elevator.exclude(maneuver.number, because)
@@ -351,7 +288,6 @@ class Campaign:
         again = recount(self._elevator.maneuvers, event)
         if again.notice is None:
             return []
-        self._note_down(again.notice)
         self._journal.take(again.notice)
         self._elevator.count_anew(again)
         return [again.notice]
@@ -359,15 +295,3 @@ class Campaign:
     @property
     def _stream(self) -> FlightStream:
         return self._flights.stream
-
-    @property
-    def _now_s(self) -> float:
-        """Newest vehicle time, s, rounded to the millisecond as in the file of decisions."""
-        return round(self._stream.now_s, 3)
-
-    def _repeat_remarks(self) -> None:
-        """Write earlier remarks into the event log, each at its own time."""
-        now = (self._flights.flight, self._stream.boot, self._stream.now_s)
-        for remark in [r for r in self._to_remark if (r.flight, r.boot, r.at_s) <= now]:
-            self._to_remark.remove(remark)
-            self._journal.write(f"mark: {remark.text}", remark.at_s)

@@ -4,6 +4,7 @@ from collections import deque
 from math import inf, isfinite, nan
 
 from advisor.flight.maneuvers.events import (
+    READER_NOTICE,
     DataAgain,
     FlightBegan,
     FlightEvent,
@@ -14,6 +15,7 @@ from advisor.flight.maneuvers.events import (
     VehicleFound,
     VehicleSaid,
 )
+from advisor.flight.maneuvers.marks import MARK_NOTICES
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.vehicle_time import CLOCK, clock
 
@@ -37,6 +39,10 @@ class Journal:
         self._kept: deque[str] = deque(maxlen=KEPT)
         self.lines: tuple[str, ...] = ()
         """The newest sentences, oldest first; the same object until a sentence is added."""
+        self.mark_notes: tuple[str, ...] = ()
+        """Sentences about marks, for the report."""
+        self.reader_notes: tuple[str, ...] = ()
+        """Sentences of the reader about the record, for the report."""
         self._newest_s = -inf
         self._vehicle: Vehicle | None = None
         self._last_said: VehicleSaid | None = None
@@ -65,8 +71,10 @@ class Journal:
         match event:
             case ModeChanged(mode, at_s):
                 self.write(f"mode {mode}", at_s)
-            case Notice(_, text):
+            case Notice(code, text):
                 self.write(text)
+                self.mark_notes += (text,) if code in MARK_NOTICES else ()
+                self.reader_notes += (text,) if code == READER_NOTICE else ()
             case VehicleSaid():
                 self._say(event)
             case NoData(problems, at_s):

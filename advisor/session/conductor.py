@@ -149,8 +149,8 @@ class Conductor(Conducting):
 
     def _keep(self, campaign: "Campaign") -> None:
         """Store the decisions by hand for a rewind, and in the file next to the data."""
-        if campaign.by_hand != self._by_hand:
-            self._by_hand = campaign.by_hand
+        if campaign.engineer.decided != self._by_hand:
+            self._by_hand = campaign.engineer.decided
             where = self._source.keep(self._by_hand)
             if where != self._said_where:
                 self._said_where = where

@@ -34,15 +34,15 @@ class HandDecision:
     def apply(self, campaign: "Campaign") -> None:
         """Apply the decision to the campaign, which recomputes every dependent decision."""
         if self.verb == "exclude":
-            campaign.exclude(self.number, self.text, self.axis)
+            campaign.engineer.exclude(self.number, self.text, self.axis)
         elif self.verb == "include":
-            campaign.include(self.number, self.axis)
-            campaign.note(self.number, f"included again: {self.text}", self.axis)
+            campaign.engineer.include(self.number, self.axis)
+            campaign.engineer.note(self.number, f"included again: {self.text}", self.axis)
         elif self.verb == "note":
-            campaign.note(self.number, self.text, self.axis)
+            campaign.engineer.note(self.number, self.text, self.axis)
         elif self.verb == "mark":
-            campaign.mark(self.text)
+            campaign.engineer.mark(self.text)
         elif self.verb == "begin":
-            campaign.begin_maneuver()
+            campaign.engineer.begin_maneuver()
         else:
-            campaign.end_maneuver()
+            campaign.engineer.end_maneuver()

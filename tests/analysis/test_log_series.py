@@ -196,9 +196,9 @@ def test_decisions_by_hand_stay_with_their_log(first: Path, second: Path) -> Non
     campaign = followed(first, second)
     reasons = [j.excluded_because for j in campaign.state.maneuvers]
     assert reasons == [None, "stick not free"]
-    campaign.exclude(1, "gust")
-    assert [r.text for r in campaign.by_hand.on_flight(0).excluded] == ["gust"]
-    assert [r.text for r in campaign.by_hand.on_flight(1).excluded] == ["stick not free"]
+    campaign.engineer.exclude(1, "gust")
+    assert [r.text for r in campaign.engineer.decided.on_flight(0).excluded] == ["gust"]
+    assert [r.text for r in campaign.engineer.decided.on_flight(1).excluded] == ["stick not free"]
 
 
 def test_the_document_of_several_logs_says_what_is_of_which(

@@ -206,20 +206,20 @@ def test_decisions_made_in_flight_and_read_back_from_their_file_decide_the_same(
         live.feed(batch)
         now_s, marking = live.state.now_s, live.state.marking_since_s is not None
         if now_s > begin_s - 1.0 and not marked:
-            live.begin_maneuver()
+            live.engineer.begin_maneuver()
             marked = True
         if now_s > end_s - 5.0 and marking:
-            live.end_maneuver()
-            live.mark("turning back")
-    live.note(1, "rough hands")
-    live.exclude(2, "a gust")
+            live.engineer.end_maneuver()
+            live.engineer.mark("turning back")
+    live.engineer.note(1, "rough hands")
+    live.engineer.exclude(2, "a gust")
     live.finish()
-    write_by_hand(log, live.by_hand)
+    write_by_hand(log, live.engineer.decided)
     replayed = flown(log, read_by_hand(log))
     assert live.state.maneuvers[0].maneuver.span.closed_by == "marked by hand"
     assert list(map(numbers, replayed.state.maneuvers)) == list(map(numbers, live.state.maneuvers))
     assert replayed.state.flight_test == live.state.flight_test
-    assert replayed.by_hand.excluded == live.by_hand.excluded
+    assert replayed.engineer.decided.excluded == live.engineer.decided.excluded
 
 
 def test_a_switch_and_texts_of_the_simulated_vehicle_mark_its_manoeuvres(tmp_path: Path) -> None:

@@ -47,7 +47,7 @@ class CountingCampaign(StagedCampaign):
         whole = one(number)
         start_s = (number * A_MANEUVER - 100) / 50.0
         maneuver = whole.maneuver.later(start_s - whole.maneuver.span.start_s)
-        excluded, notes = self.by_hand.excluded_because(maneuver), self.by_hand.notes_on(maneuver)
+        excluded, notes = self.decided.excluded_because(maneuver), self.decided.notes_on(maneuver)
         return replace(whole, maneuver=maneuver, excluded_because=excluded, notes=notes)
 
 
@@ -156,9 +156,9 @@ def test_a_moment_and_a_manoeuvre_that_were_marked_are_known_from_the_start_afte
     flight.when(over, lambda: flight.conductor.jump(1))
     flight.run(campaigns=2)
     first, second = flight.campaigns
-    assert second.by_hand == first.by_hand
-    assert [remark.text for remark in second.by_hand.remarks] == ["flaps"]
-    assert 5.0 <= second.by_hand.marks[0].end_s <= 6.5
+    assert second.engineer.decided == first.engineer.decided
+    assert [remark.text for remark in second.engineer.decided.remarks] == ["flaps"]
+    assert 5.0 <= second.engineer.decided.marks[0].end_s <= 6.5
 
 
 def test_every_decision_by_hand_is_kept_with_its_source_and_said():

@@ -65,12 +65,12 @@ def test_a_flight_followed_live_with_a_mark_and_its_recording_with_the_file_besi
         state = campaign.state
         if state.flying is not None and not begun:
             begun = True
-            campaign.begin_maneuver()
+            campaign.engineer.begin_maneuver()
         elif state.marking_since_s is not None and state.now_s > state.marking_since_s + 4.0:
-            campaign.end_maneuver()
+            campaign.engineer.end_maneuver()
     campaign.finish()
-    campaign.exclude(3, "a gust")
-    assert "live.maneuvers.yaml" in source.keep(campaign.by_hand)
+    campaign.engineer.exclude(3, "a gust")
+    assert "live.maneuvers.yaml" in source.keep(campaign.engineer.decided)
     source.close()
     closed_by = [judged.maneuver.span.closed_by for judged in campaign.state.maneuvers]
     assert closed_by[0] == "marked by hand"
@@ -98,7 +98,7 @@ def test_taking_a_manoeuvre_out_by_hand_decides_everything_again_and_putting_it_
     campaign: Campaign,
 ) -> None:
     before = facts(campaign.state)
-    campaign.exclude(2, "a gust")
+    campaign.engineer.exclude(2, "a gust")
     state = campaign.state
     assert 2 not in state.estimate_from
     assert state.maneuvers[1].excluded_because == "a gust"
@@ -106,12 +106,12 @@ def test_taking_a_manoeuvre_out_by_hand_decides_everything_again_and_putting_it_
     assert state.flight_test.stopped_at != 2
     assert state.model is not None
     assert np.any(np.frombuffer(before[-1]) != state.model.theta)  # type: ignore[call-overload]
-    campaign.include(2)
+    campaign.engineer.include(2)
     assert facts(campaign.state) == before
 
 
 def test_notes_and_marks_are_kept(campaign: Campaign) -> None:
-    campaign.note(2, "rough hands")
-    campaign.mark("turning back")
+    campaign.engineer.note(2, "rough hands")
+    campaign.engineer.mark("turning back")
     assert campaign.state.maneuvers[1].notes == ("rough hands",)
     assert "turning back" in campaign.state.notices[-1]

@@ -38,7 +38,8 @@ class StagedCampaign:
         self.feeding = False
         self.calls: list[tuple[object, ...]] = []
         self.problems: list[Problem] = []
-        self.by_hand = by_hand
+        self.decided = by_hand
+        self.engineer = self
         self._marking_since_s: float | None = None
         self._logged: list[tuple[int, str]] = []
         self._known: dict[object, tuple[JudgedManeuver, ...]] = {}
@@ -64,10 +65,10 @@ class StagedCampaign:
         self._logged.append((len(self._states[min(self._stage, len(self._states) - 1)].notices), sentence))
 
     def _maneuvers(self, now: CampaignState) -> tuple[JudgedManeuver, ...]:
-        key = (id(now), self.by_hand)
+        key = (id(now), self.decided)
         if key not in self._known:
             self._known[key] = tuple(
-                replace(j, excluded_because=self.by_hand.excluded_because(j.maneuver)) for j in now.maneuvers
+                replace(j, excluded_because=self.decided.excluded_because(j.maneuver)) for j in now.maneuvers
             )
         return self._known[key]
 
@@ -85,27 +86,27 @@ class StagedCampaign:
 
     def exclude(self, number: int, because: str, axis: AxisName = "pitch") -> None:
         self.calls.append(("exclude", number, because))
-        self.by_hand = self.by_hand.excluding(self._flown(number), because)
+        self.decided = self.decided.excluding(self._flown(number), because)
 
     def include(self, number: int, axis: AxisName = "pitch") -> None:
         self.calls.append(("include", number))
-        self.by_hand = self.by_hand.excluding(self._flown(number), None)
+        self.decided = self.decided.excluding(self._flown(number), None)
 
     def mark(self, text: str) -> None:
         self.calls.append(("mark", text))
-        self.by_hand = self.by_hand.remarking(Remark(self.state.now_s, text))
+        self.decided = self.decided.remarking(Remark(self.state.now_s, text))
 
     def begin_maneuver(self) -> None:
         self._marking_since_s = self.state.now_s
 
     def end_maneuver(self) -> None:
         assert self._marking_since_s is not None
-        self.by_hand = self.by_hand.marking(Mark(self._marking_since_s, self.state.now_s))
+        self.decided = self.decided.marking(Mark(self._marking_since_s, self.state.now_s))
         self._marking_since_s = None
 
     def note(self, number: int, text: str, axis: AxisName = "pitch") -> None:
         self.calls.append(("note", number, text))
-        self.by_hand = self.by_hand.noting(self._flown(number), text)
+        self.decided = self.decided.noting(self._flown(number), text)
 
     def _flown(self, number: int) -> Maneuver:
         return next(j.maneuver for j in self.state.maneuvers if j.maneuver.number == number)

@@ -38,17 +38,17 @@ async def test_one_key_begins_a_mark_and_another_ends_it(screen: str):
         assert "a manoeuvre is marked from here" in last_line(here)
         await here.until(lambda: here.app.view.state.marking_since_s is not None)
         await here.press("f")
-        await here.until(lambda: len(here.campaign.by_hand.marks) == 1)
+        await here.until(lambda: len(here.campaign.engineer.decided.marks) == 1)
         assert "its verdict follows" in last_line(here)
         await here.until(lambda: source.kept != [])
-        assert source.kept[-1].marks == here.campaign.by_hand.marks
+        assert source.kept[-1].marks == here.campaign.engineer.decided.marks
 
 
 async def test_ending_what_was_not_begun_says_so_and_marks_nothing():
     async with stage(flights.state(3)) as here:
         await here.press("f")
         assert "begin one first" in last_line(here)
-        assert here.campaign.by_hand.marks == ()
+        assert here.campaign.engineer.decided.marks == ()
 
 
 async def test_the_pilots_screen_shows_for_how_long_a_mark_has_been_open():
@@ -117,10 +117,10 @@ async def test_a_mark_begun_and_ended_at_the_same_moment_is_refused_in_the_log(t
 
 def test_nothing_is_marked_before_the_vehicles_clock_is_heard():
     campaign = Campaign(Aircraft())
-    campaign.begin_maneuver()
-    campaign.mark("engine start")
-    campaign.end_maneuver()
-    assert campaign.by_hand == ByHand()
+    campaign.engineer.begin_maneuver()
+    campaign.engineer.mark("engine start")
+    campaign.engineer.end_maneuver()
+    assert campaign.engineer.decided == ByHand()
     assert campaign.state.marking_since_s is None
     assert campaign.state.notices[0].strip() == "–  nothing can be marked before the vehicle's clock is heard"
 
