@@ -1,1 +1,1 @@
-"""Our row in an open benchmark of fixed-wing identification: its data format, its metric, our simulation."""
+"""Our rows in an open benchmark of fixed-wing identification: its data format, its metric, our models."""

@@ -1,8 +1,9 @@
 """Segments of the benchmark's files (``sysid.timeseries.ragged.v1``), and as manoeuvres of the advisor.
 
-A file holds segments of states and commands at one rate: position in north, east and down, velocity in body
-axes, quaternion from body to earth, and angular rates. Commands have no unit, and a full stroke counts as
-25 deg. Specific forces are the derivative of the velocity less gravity.
+A file holds segments of states and commands at one rate: position, velocity in body axes, quaternion from
+body to earth, and angular rates. Names say north, east, down, but the motion says that z points up and y to
+the left. Commands have no unit, and a full stroke counts as 25 deg. Specific forces are the derivative of the
+velocity less gravity.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,6 +22,8 @@ FloatArray = NDArray[np.float64]
 
 STATES = ("x_n", "y_e", "z_d", "u", "v", "w", "q_w", "q_x", "q_y", "q_z", "p", "q", "r")
 CONTROLS = ("throttle", "elevator", "aileron", "rudder")
+UPRIGHT = np.array([1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, -1], dtype=float)
+"""Sign of each state when body and earth axes turn half a turn about x."""
 STROKE_RAD = np.radians(25.0)
 """Deflection that counts as a full stroke, rad. The files state none, and predictions do not depend on it."""
 
@@ -71,8 +74,16 @@ def read_segments(path: Path) -> list[Segment]:
         ]
 
 
+def upright(segment: Segment) -> Segment:
+    """Return the segment with y and z of body and earth reversed: right and down where left and up were."""
+    return replace(segment, states=segment.states * UPRIGHT)
+
+
 def rolled(segment: Segment) -> Segment:
-    """Return the segment with its roll axis reversed: roll angle, roll rate, and nothing else."""
+    """Return the segment with roll angle and roll rate reversed, as in the telemetry log of these flights.
+
+    For roll and yaw alone this is the mirror image of ``upright``.
+    """
     bank, pitch, heading = angles(segment.states[:, 6:10])
     states = segment.states.copy()
     states[:, 6:10] = quaternions(-bank, pitch, heading)
