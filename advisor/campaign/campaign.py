@@ -155,9 +155,9 @@ class Campaign:
             ),
             elevator_guess=stream.guess if isinstance(stream.elevator, Problem) else None,
             other_vehicles=tuple(sorted(stream.other_systems)),
-            whole_flight=self._whole_flights.now(self.power_on, stream.now_s, stream.courses),
-            no_data=stream.no_data,
-            serves=stream.serves,
+            whole_flight=self._whole_flights.now(self.power_on, stream.now_s, stream.tracks.courses),
+            no_data=stream.service.problems,
+            serves=stream.service.serves,
             instruments=instruments,
             mark_notes=self._journal.mark_notes,
             notices=self._journal.lines,
@@ -197,7 +197,7 @@ class Campaign:
     @property
     def serves(self) -> bool:
         """Whether the present data are known to be sufficient."""
-        return self._stream.serves
+        return self._stream.service.serves
 
     @property
     def problems(self) -> list[Problem]:

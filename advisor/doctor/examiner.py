@@ -139,7 +139,7 @@ class Examiner:
         limits += elevator_limits(elevator, self._aircraft.elevator) if elevator else []
         limits += repeat_limits(arrivals.values())
         limits += clock_limits(clocks) if clocks else []
-        limits += sender_limits(self._stream.two_senders)
+        limits += sender_limits(self._stream.senders.seen)
         limits += company_limits(self._stream.other_systems) if not self._chosen else []
         limits += loss_limits(lost_percent)
         limits += path_limits(repeated_percent, repeated_after_s)
@@ -217,14 +217,14 @@ class Examiner:
         """Return an air speed for the specific force; None if none is measured or given."""
         if self._aircraft.airspeed_m_s is not None:
             return self._aircraft.airspeed_m_s
-        recent = self._stream.recent("airspeed", 60.0)
+        recent = self._stream.tracks.recent("airspeed", 60.0)
         if recent is None or len(recent) == 0:
             return None
         return max(10.0, float(np.median(recent.y)))  # on the ground: a speed to fly at
 
     def _flown_at(self) -> tuple[float, float] | None:
         """Return the lowest and highest air speed in flight; None without an air speed."""
-        course = self._stream.courses().get("airspeed")
+        course = self._stream.tracks.courses().get("airspeed")
         if course is None or not len(course.high):
             return None
         most = float(np.percentile(course.high, 95.0))

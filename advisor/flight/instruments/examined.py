@@ -1,6 +1,6 @@
 """State of an instrument examination: corrected channels, evidence and findings."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,6 +35,38 @@ class Examined:
     """Evidence of this record alone."""
     findings: tuple[InstrumentFinding, ...]
     """Contradictions of the instruments, from this and earlier evidence."""
+
+
+class ExaminedRecords:
+    """Examinations of the instruments of one axis, record after record.
+
+    Parameters
+    ----------
+    examine
+        Function that examines one record, with the evidence of earlier records.
+    """
+
+    def __init__(self, examine: Callable[[Mapping[str, Channel], Evidence], Examined]) -> None:
+        self._examine = examine
+        self.counted = 0
+        """Number of counted records, over all power-ons."""
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin another power-on, without evidence."""
+        self._evidence: Evidence = {}
+        self.findings: tuple[InstrumentFinding, ...] = ()
+        """Contradictions of the instruments in the counted records of this power-on."""
+
+    def examined(self, channels: Mapping[str, Channel]) -> Examined:
+        """Return the examination of a record, with the evidence of the counted records."""
+        return self._examine(channels, self._evidence)
+
+    def count(self, evidence: Evidence, findings: tuple[InstrumentFinding, ...]) -> None:
+        """Add the evidence of a record, with the findings up to this record."""
+        self.counted += 1
+        self._evidence = pooled((self._evidence, evidence))
+        self.findings = findings
 
 
 class Work:

@@ -11,7 +11,8 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
 from advisor.flight.instruments.axes.lateral import examine_side
 from advisor.flight.instruments.examination import examine
-from advisor.flight.instruments.measured import Evidence, pooled
+from advisor.flight.instruments.examined import ExaminedRecords
+from advisor.flight.instruments.measured import Evidence
 from advisor.flight.maneuvers.axes.lateral import SideInput, SideMovement, named, part_of_input
 from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
 from advisor.flight.maneuvers.feedback import HISTORY_S
@@ -22,7 +23,6 @@ from advisor.flight.maneuvers.markers import marked_span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.purpose import Because, not_an_input
 from advisor.flight.maneuvers.steady_speed import at_steady_speed
-from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.renewal import counted_once
 from advisor.flight.signals.repair import repaired
@@ -44,17 +44,9 @@ class Cutting:
         self._sign = None if aircraft.elevator.is_calibrated else ElevatorSign()
         self._modes = [(-np.inf, who.mode)]
         self._released = (0, -np.inf)
-        self._evidence: Evidence = {}
-        self._side_evidence: Evidence = {}
-        self.findings: tuple[InstrumentFinding, ...] = ()
-        """Contradictions of the instruments from all manoeuvres of this power-on."""
-        self.side_findings: tuple[InstrumentFinding, ...] = ()
-        """Contradictions of the instruments from all lateral manoeuvres of this power-on."""
         self._lateral = lateral
-        self.maneuvers = 0
-        """Number of manoeuvres found."""
-        self.side_maneuvers = 0
-        """Number of lateral manoeuvres found."""
+        self.pitch, self.sideways = ExaminedRecords(examine), ExaminedRecords(examine_side)
+        """Manoeuvres of the elevator, and those of aileron and rudder."""
         self.activities: Counter[str] = Counter()
         """Number of movements that were no test inputs, by their description."""
 
@@ -66,8 +58,8 @@ class Cutting:
     def begin(self, mode: str) -> None:
         """Begin a power-on in a flight mode, without manoeuvres so far."""
         self._modes = [(-np.inf, mode)]
-        self._evidence, self._side_evidence = {}, {}
-        self.findings, self.side_findings = (), ()
+        self.pitch.begin()
+        self.sideways.begin()
 
     def change(self, mode: str, since_s: float) -> None:
         """Begin another flight mode."""
@@ -144,10 +136,7 @@ class Cutting:
         return Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, maneuver.boot)
 
     def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
-        self.maneuvers += 1
-        self._evidence = pooled((self._evidence, evidence))
-        news = _news(maneuver, self.findings)
-        self.findings = maneuver.findings
+        news = _news(maneuver, evidence, self.pitch)
         self._released = (maneuver.boot, maneuver.span.end_s)
         if self._sign is None or "elevator" not in maneuver.channels:
             return [*news, ManeuverFlown(maneuver)]
@@ -184,49 +173,42 @@ class Cutting:
             span = replace(span, record_from_s=min(earlier_s, span.start_s))
         channels, notes = self._recorded(span, up_to_order)
         distrusts = self._who.distrusts(distrusted(channels))
-        channels = _trusted(channels, distrusts)
-        examined = examine(channels, self._evidence)
-        channels = {**examined.channels, **self._air(span, up_to_order)}
-        mode = self._stay(_middle_s(span))[1]
-        maneuver = Maneuver(
-            self.maneuvers + 1,
-            boot,
-            span,
-            channels,
-            mode,
-            tuple(distrusts),
-            examined.findings,
-            data_notes=tuple(notes),
+        trusted = _trusted(channels, distrusts)
+        maneuver, evidence = self._examined(self.pitch, span, boot, up_to_order, trusted, notes)
+        maneuver = replace(
+            maneuver,
+            distrusts=tuple(distrusts),
             missed_s=self._breaks.missed_s(span.record_from_s, span.end_s),
             leapt_s=self._breaks.leapt_s(span.record_from_s, span.end_s),
-            scale=counted.scale if (counted := self._who.surfaces.get("elevator")) else None,
+            scale=counted.scale if (counted := self._who.outputs.counted.get("elevator")) else None,
         )
-        return self._who.rescaled(maneuver), examined.evidence
+        return self._who.outputs.rescaled(maneuver), evidence
 
     def side(self, span: Span, boot: int, up_to_order: int | None) -> tuple[Maneuver, Evidence]:
         """Return the record of a lateral manoeuvre, with its evidence about the instruments."""
-        channels, notes = self._recorded(span, up_to_order)
-        examined = examine_side(channels, self._side_evidence)
-        channels = {**examined.channels, **self._air(span, up_to_order)}
+        return self._examined(self.sideways, span, boot, up_to_order, *self._recorded(span, up_to_order))
+
+    def _examined(
+        self,
+        axis: ExaminedRecords,
+        span: Span,
+        boot: int,
+        up_to_order: int | None,
+        channels: Mapping[str, Channel],
+        notes: Sequence[str],
+    ) -> tuple[Maneuver, Evidence]:
+        """Return the next manoeuvre of an axis from its recorded channels, with its evidence."""
+        examined = axis.examined(channels)
+        found = {**examined.channels, **self._air(span, up_to_order)}
         mode = self._stay(_middle_s(span))[1]
         maneuver = Maneuver(
-            self.side_maneuvers + 1,
-            boot,
-            span,
-            channels,
-            mode,
-            findings=examined.findings,
-            data_notes=tuple(notes),
+            axis.counted + 1, boot, span, found, mode, findings=examined.findings, data_notes=tuple(notes)
         )
         return maneuver, examined.evidence
 
     def side_counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         """Return the event of a lateral manoeuvre, after notices about its instruments."""
-        self.side_maneuvers += 1
-        self._side_evidence = pooled((self._side_evidence, evidence))
-        news = _news(maneuver, self.side_findings)
-        self.side_findings = maneuver.findings
-        return [*news, SideManeuverFlown(maneuver)]
+        return [*_news(maneuver, evidence, self.sideways), SideManeuverFlown(maneuver)]
 
     def motion_before(self, span: Span, names: Sequence[str], up_to_order: int | None) -> dict[str, Channel]:
         """Return channels during a movement and before it."""
@@ -272,9 +254,10 @@ class Cutting:
         return []
 
 
-def _news(maneuver: Maneuver, known: Sequence[InstrumentFinding]) -> list[Notice]:
-    """Return a notice for every new contradiction of a manoeuvre's instruments."""
-    codes = {f.code for f in known}
+def _news(maneuver: Maneuver, evidence: Evidence, axis: ExaminedRecords) -> list[Notice]:
+    """Count a manoeuvre of an axis, and return a notice for every new contradiction of its instruments."""
+    codes = {f.code for f in axis.findings}
+    axis.count(evidence, maneuver.findings)
     return [Notice(f.code, str(f.problem)) for f in maneuver.findings if f.code not in codes]
 
 

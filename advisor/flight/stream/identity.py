@@ -1,12 +1,11 @@
 """Identity of the vehicle from its messages: autopilot, firmware, mode, and roles of its outputs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from math import nan
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import READER_NOTICE, FlightEvent, Notice, VehicleFound
-from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
@@ -14,10 +13,8 @@ from advisor.flight.stream.surfaces_heard import SurfacesHeard, speakers
 from advisor.flight.vehicle.following import FOLLOW, TAKE, Following, chosen
 from advisor.flight.vehicle.modes import in_hover, mode_name
 from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, LOG_PROFILE, Parameters, filter_delay_s
-from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
 from advisor.words.printable import printable
-from advisor.words.problems import Problem
 
 _BUNDLED = b"Bundled aircraft"
 """Beginning of the STATUSTEXT with which this project's simulator introduces itself."""
@@ -47,33 +44,11 @@ class Identity:
         self._parameters = Parameters()
         self._mode = ""
         self._hovers = False
-        self._outputs = SurfacesHeard(aircraft, self._parameters, self._finder)
-        self._following = Following(self._outputs.serves)
+        self.outputs = SurfacesHeard(aircraft, self._parameters, self._finder)
+        """Elevator, aileron and rudder among the servo outputs."""
+        self._following = Following(self.outputs.serves)
         self.simulated = False
         """Whether the vehicle is the bundled aircraft, whose vane is simulated."""
-
-    @property
-    def elevator(self) -> Surface | Problem:
-        """Outputs and scale of the elevator from all messages, or the reason why they are unknown."""
-        return self._outputs.elevator
-
-    @property
-    def surfaces(self) -> Mapping[str, Surface]:
-        """Elevator, aileron and rudder with their present pulse scales, if known."""
-        return self._outputs.counted
-
-    @property
-    def sides_unknown(self) -> Problem | None:
-        """Reason why aileron or rudder cannot be followed; None if their outputs are known."""
-        return self._outputs.sides_unknown
-
-    def rescaled(self, maneuver: Maneuver) -> Maneuver:
-        """Return a manoeuvre whose pulses are converted by all received limits."""
-        return self._outputs.rescaled(maneuver)
-
-    def begin(self) -> None:
-        """Begin another power-on."""
-        self._outputs.begin()
 
     @property
     def vehicle(self) -> Vehicle | None:
@@ -152,7 +127,7 @@ class Identity:
             if columns.name == "HEARTBEAT":
                 events += self._heartbeat(columns)
             elif columns.name == "PARAM_VALUE":
-                events += self._outputs.hear(columns, now_s, flown)
+                events += self.outputs.hear(columns, now_s, flown)
             elif columns.name == "EXTENDED_SYS_STATE":
                 self._flies_on(columns)
             elif columns.name == "AUTOPILOT_VERSION":
@@ -186,7 +161,7 @@ class Identity:
                 f"Vehicle {vehicle.system} is now followed in place of vehicle {before.system}; "
                 f"--target-system {before.system} keeps to that one.",
             ),
-            *self._outputs.follow(),
+            *self.outputs.follow(),
         ]
 
     def _heartbeat(self, columns: Columns) -> list[FlightEvent]:
@@ -194,7 +169,7 @@ class Identity:
         known = len(self._finder.others)
         if self._finder.hear(columns):
             assert self._finder.vehicle is not None
-            events += [VehicleFound(self._finder.vehicle), *self._outputs.follow()]
+            events += [VehicleFound(self._finder.vehicle), *self.outputs.follow()]
         if len(self._finder.others) > known:
             others = ", ".join(str(n) for n in sorted(self._finder.others))
             events.append(
@@ -233,7 +208,7 @@ class Identity:
             return [Notice(READER_NOTICE, f"{said}.")]
         taken = chosen(text, TAKE)
         if taken is not None and self._finder.vehicle is not None:
-            return self._outputs.take(taken)
+            return self.outputs.take(taken)
         other = self._finder.heard.get(chosen(text, FOLLOW) or 0)
         if other is not None and other != self._finder.vehicle:
             return self._follow(other)

@@ -6,8 +6,7 @@ import numpy as np
 
 from advisor.flight.instruments.axes.lateral import examine_side
 from advisor.flight.instruments.examination import examine
-from advisor.flight.instruments.measured import Evidence, pooled
-from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.flight.instruments.examined import ExaminedRecords
 from advisor.flight.signals.record import UNITS, Channel
 
 _EVERY_S = 10.0
@@ -36,13 +35,8 @@ class InstrumentWatch:
 
     def begin(self) -> None:
         """Begin another power-on, or follow another vehicle."""
-        self.findings: tuple[InstrumentFinding, ...] = ()
-        """Contradictions of the instruments from all stretches so far. No finding is marked as used, because
-        these records give no estimate."""
-        self.side_findings: tuple[InstrumentFinding, ...] = ()
-        """Contradictions of the roll and yaw instruments, of which none is marked as used."""
-        self._evidence: Evidence = {}
-        self._side_evidence: Evidence = {}
+        self.pitch, self.sideways = ExaminedRecords(examine), ExaminedRecords(examine_side)
+        """All stretches so far. No finding is marked as used, because these records give no estimate."""
         self._at_s = -np.inf
         self._moving = 0
 
@@ -67,12 +61,8 @@ class InstrumentWatch:
     def _examine(self, start_s: float, end_s: float) -> None:
         found = {name: self._cut(name, start_s, end_s) for name in UNITS}
         channels = {name: c for name, c in found.items() if c is not None}
-        examined = examine(channels, self._evidence)
-        self._moving += "theta_scale" in examined.evidence
-        self._evidence = pooled((self._evidence, examined.evidence))
-        if examined.evidence:
-            self.findings = examined.findings
-        sideways = examine_side(channels, self._side_evidence)
-        self._side_evidence = pooled((self._side_evidence, sideways.evidence))
-        if sideways.evidence:
-            self.side_findings = sideways.findings
+        for stretches in (self.pitch, self.sideways):
+            examined = stretches.examined(channels)
+            self._moving += "theta_scale" in examined.evidence
+            if examined.evidence:
+                stretches.count(examined.evidence, examined.findings)

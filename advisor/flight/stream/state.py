@@ -16,8 +16,7 @@ from advisor.flight.signals.attitude import Attitudes
 from advisor.flight.signals.banks import Banks
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.instrument_finding import InstrumentFinding
-from advisor.flight.signals.power_on import Course, PowerOn
-from advisor.flight.signals.record import Channel
+from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import Distrust, frozen
@@ -63,7 +62,7 @@ class StreamState:
         self._texts = VehicleTexts()
         self._attitudes = Attitudes()
         self._clock = BootClock()
-        self._tracks = Tracks(
+        self.tracks = Tracks(
             aircraft.alpha.source,
             aircraft.airspeed_m_s,
             aircraft.reference.air_temperature_c,
@@ -71,30 +70,33 @@ class StreamState:
             lambda: self._who.simulated,
             aircraft.beta.source,
         )
+        """Channels of this power-on, the newest stretch of each."""
         self._breaks = Breaks()
-        self._cutting = Cutting(self._tracks, self._who, aircraft, self._breaks, lateral)
-        self._mixing = Mixing(self._tracks)
+        self._cutting = Cutting(self.tracks, self._who, aircraft, self._breaks, lateral)
+        self._mixing = Mixing(self.tracks)
         self.marks = Marks(marks)
         """Marks by hand, by a switch and by texts."""
         self._markers = MarkerWatch(aircraft.markers)
-        self._path = ElevatorPath(self._tracks, self._mixing, self.marks, self._cutting)
-        self._side = SidePath(self._tracks, self.marks, self._cutting) if lateral else None
+        self._path = ElevatorPath(self.tracks, self._mixing, self.marks, self._cutting)
+        self._side = SidePath(self.tracks, self.marks, self._cutting) if lateral else None
         self._over = False
         self.boot = 0
         """Number of the present power-on, 0 for the first in the stream."""
         self._guesses = ElevatorGuesses()
-        self._instruments = InstrumentWatch(self._tracks.cut)
+        self._instruments = InstrumentWatch(self.tracks.cut)
         self._start_boot()
         self.seen: set[str] = set()
         """Names of the messages that the vehicle has sent."""
         self._past: dict[str, ChannelStatus] = {}
-        self._service = Service(self._wanting)
-        self._senders = SenderWatch()
+        self.service = Service(self._wanting)
+        """Usability of the present data."""
+        self.senders = SenderWatch()
+        """Watch for a second sender under the vehicle's id."""
         self._system: int | None = None
         self._earlier_s = 0.0
 
     def _start_boot(self) -> None:
-        self._tracks.clear()
+        self.tracks.clear()
         self._clock_heard.clear()
         self._path.begin(self.boot)
         if self._side is not None:
@@ -103,9 +105,9 @@ class StreamState:
         self._breaks.begin()
         self._mixing.begin()
         self._cutting.begin(self._who.mode)
-        self._who.begin()
+        self._who.outputs.begin()
         self._first_s = np.nan
-        self._flown_before = self._cutting.maneuvers
+        self._flown_before = self._cutting.pitch.counted
         self._master_s = np.nan
         self._modes: list[tuple[float, str]] = [(np.nan, self._who.mode)]
         self._heartbeat_s = -np.inf
@@ -125,7 +127,7 @@ class StreamState:
     @property
     def maneuvers(self) -> int:
         """Number of manoeuvres found."""
-        return self._cutting.maneuvers
+        return self._cutting.pitch.counted
 
     @property
     def mode(self) -> str:
@@ -135,7 +137,7 @@ class StreamState:
     @property
     def elevator(self) -> Surface | Problem:
         """Outputs and scale of the elevator, or the reason for their absence."""
-        stated = self._who.elevator
+        stated = self._who.outputs.elevator
         if isinstance(stated, Problem) or not self._path.heard:
             return stated
         return stated.without(set(stated.outputs) - self._path.heard) or stated
@@ -146,14 +148,16 @@ class StreamState:
         sentences = [SAID] if self._cutting.is_backwards else []
         if isinstance(self.elevator, Surface):
             sentences = [self.elevator.said, self._mixing.said(self.elevator), *sentences]
-        if self._cutting.side_maneuvers:
-            sentences += [surface.said for name, surface in self._who.surfaces.items() if name in LOOPS]
+        if self._cutting.sideways.counted:
+            sentences += [
+                surface.said for name, surface in self._who.outputs.counted.items() if name in LOOPS
+            ]
         return tuple(said for said in sentences if said)
 
     @property
     def sides_unknown(self) -> Problem | None:
         """Reason why aileron or rudder cannot be followed; None if their outputs are known."""
-        return self._who.sides_unknown
+        return self._who.outputs.sides_unknown
 
     @property
     def now_s(self) -> float:
@@ -168,7 +172,7 @@ class StreamState:
     @property
     def channels(self) -> Mapping[str, ChannelStatus]:
         """Arrival status of every channel; at the end of the stream, the best status."""
-        arriving = self._past if self._over else {**self._past, **self._tracks.statuses()}
+        arriving = self._past if self._over else {**self._past, **self.tracks.statuses()}
         return {
             name: replace(status, provenance=self._who.provenance(status.source, status.provenance))
             for name, status in arriving.items()
@@ -182,7 +186,7 @@ class StreamState:
             self.other_systems,
             self.elevator,
             self._at_best(),
-            flown.maneuvers,
+            flown.pitch.counted,
             flown.activities,
             self.frozen,
             self.seen,
@@ -192,8 +196,8 @@ class StreamState:
             found = [with_guess(problem, self.guess) for problem in found]
         return [
             *(self.marks.problems() if self._over else ()),
-            *([self.two_senders] if self.two_senders and not flown.maneuvers else ()),
-            *([wrong] if wrong and not flown.maneuvers else ()),
+            *([self.senders.seen] if self.senders.seen and not flown.pitch.counted else ()),
+            *([wrong] if wrong and not flown.pitch.counted else ()),
             *found,
         ]
 
@@ -202,33 +206,14 @@ class StreamState:
         """Guess of the elevator's output, while no parameter states it."""
         return None if self.vehicle is not None and self.vehicle.is_multicopter else self._guesses.newest
 
-    @property
-    def no_data(self) -> tuple[Problem, ...]:
-        """Reasons why the present data cannot be used; empty if they can."""
-        return self._service.problems
-
-    def courses(self) -> dict[str, Course]:
-        """Return the extremes of the displayed channels over this power-on."""
-        return self._tracks.courses()
-
-    @property
-    def serves(self) -> bool:
-        """Whether the present data are known to be usable."""
-        return self._service.serves
-
     def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
         """Return the problems of a stream with these channels, whatever manoeuvres were flown."""
-        wrong = self._mixing.contradiction if not self._cutting.maneuvers else None
-        two = self._senders.problem(self._system, now_s) if self._system is not None else None
+        wrong = self._mixing.contradiction if not self._cutting.pitch.counted else None
+        two = self.senders.problem(self._system, now_s) if self._system is not None else None
         # Problems of the vehicle followed come first. The screens offer the other vehicles themselves.
         others = self.other_systems if self.vehicle is None else ()
         found = problems(self.vehicle, others, self.elevator, channels, 1, {}, (), self.seen)
         return [*(problem for problem in (two, wrong) if problem), *found]
-
-    @property
-    def two_senders(self) -> Problem | None:
-        """Problem of two senders under the vehicle's id; None unless detected."""
-        return self._senders.seen
 
     @property
     def frozen(self) -> list[Distrust]:
@@ -239,18 +224,14 @@ class StreamState:
     @property
     def instruments(self) -> tuple[InstrumentFinding, ...]:
         """Contradictions of the instruments from the manoeuvres, or before the first one from any motion."""
-        pitch = self._cutting.findings or (
-            self._instruments.findings if self._cutting.maneuvers == self._flown_before else ()
+        pitch = self._cutting.pitch.findings or (
+            self._instruments.pitch.findings if self._cutting.pitch.counted == self._flown_before else ()
         )
-        sideways = self._cutting.side_findings or (
-            () if self._cutting.side_maneuvers else self._instruments.side_findings
+        sideways = self._cutting.sideways.findings or (
+            () if self._cutting.sideways.counted else self._instruments.sideways.findings
         )
         known = {f.code for f in pitch}
         return (*pitch, *(f for f in sideways if f.code not in known))
-
-    def recent(self, name: str, seconds: float) -> Channel | None:
-        """Return the newest stretch of a channel, ``seconds`` long; None without samples."""
-        return self._tracks.recent(name, seconds)
 
     def so_far(self) -> Maneuver | None:
         """Return the present manoeuvre, cut at the newest sample; None between manoeuvres."""
@@ -258,5 +239,5 @@ class StreamState:
 
     def _at_best(self) -> dict[str, ChannelStatus]:
         """Return the best arrival status of each channel over all power-ons."""
-        now = {name: status.at_best(self._past.get(name)) for name, status in self._tracks.statuses().items()}
+        now = {name: status.at_best(self._past.get(name)) for name, status in self.tracks.statuses().items()}
         return {**self._past, **now}

@@ -54,10 +54,10 @@ class FlightStream(StreamState):
 
     def finish(self) -> list[FlightEvent]:
         """Handle the end of the messages, and close every open movement."""
-        if self._cutting.maneuvers == self._flown_before:
+        if self._cutting.pitch.counted == self._flown_before:
             self._instruments.finish(self._first_s, self._master_s)
         events = [*self._finish_boot(), *self._asked.finish()]
-        self._service.end()
+        self.service.end()
         self._over = True
         return events
 
@@ -69,7 +69,7 @@ class FlightStream(StreamState):
             self.power_ons.append(
                 power_on(
                     self.boot,
-                    self._tracks,
+                    self.tracks,
                     self._who,
                     self._cutting.is_backwards,
                     self._clock_heard,
@@ -81,7 +81,7 @@ class FlightStream(StreamState):
     def _feed_piece(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Process columns within which vehicle, parameters and mode are constant."""
         mode = self._who.mode
-        flown = self._cutting.maneuvers > self._flown_before
+        flown = self._cutting.pitch.counted > self._flown_before
         events: list[FlightEvent] = []
         for columns in piece:
             if columns.name == "STATUSTEXT":
@@ -95,7 +95,7 @@ class FlightStream(StreamState):
             left = self._start_again(BootClock(self.boot + 1)) if self._system is not None else []
             events = [*left, *events]
             self._system = vehicle.system
-            self._service.begin()
+            self.service.begin()
         if self._who.mode != mode:
             events.append(ModeChanged(self._who.mode, self._master_s))
             self._modes.append((self._master_s, self._who.mode))
@@ -117,27 +117,27 @@ class FlightStream(StreamState):
             if master.boot != self.boot:
                 events += [*self._start_again(self._clock), Rebooted(self.boot)]
             events += self._feed_part(part, master, vehicle)
-        self._senders.hear(mine, vehicle.component)
+        self.senders.hear(mine, vehicle.component)
         return [*events, *self._serving(mine)]
 
     def _serving(self, piece: Sequence[Columns]) -> list[FlightEvent]:
         """Return the event of changed data usability; empty without a change."""
-        return list(self._service.advance(piece))
+        return list(self.service.advance(piece))
 
     def _take_outputs(
         self, columns: Columns, t: FloatArray, autopilot: str, elevator: list[Commanded], side: list[Decoded]
     ) -> list[Notice]:
         """Append the samples of elevator, aileron and rudder to two lists; return notices of down time."""
         missed: list[Notice] = []
-        for moved in commanded(self._who.surfaces, self._banks.together(columns), t, autopilot):
+        for moved in commanded(self._who.outputs.counted, self._banks.together(columns), t, autopilot):
             if moved.channel == "elevator":
                 elevator.append(moved)
                 arrived_s = arrivals(columns, moved.order)
-                self._service.take(moved.channel, moved.source, arrived_s)
+                self.service.take(moved.channel, moved.source, arrived_s)
                 missed += map(_missed, self._breaks.take(moved.t, arrived_s))
             else:
                 side.append(moved.combined())
-                self._tracks.append(side[-1])
+                self.tracks.append(side[-1])
         return missed
 
     def _set_clock(self, part: Sequence[Columns], orders: IntArray, clock: FloatArray) -> None:
@@ -150,7 +150,7 @@ class FlightStream(StreamState):
         for columns in part:
             if columns.name == "ATTITUDE":
                 now = np.searchsorted(orders, columns.order, side="right") - 1
-                self._service.take_clock(columns.arrival_s, clock[now])
+                self.service.take_clock(columns.arrival_s, clock[now])
 
     def _start_again(self, clock: BootClock) -> list[FlightEvent]:
         """Begin another power-on, or another vehicle, and drop the earlier state."""
@@ -161,12 +161,12 @@ class FlightStream(StreamState):
         self._start_boot()
         self.marks.start_boot(self.boot, self._earlier_s)
         self._markers.start_boot()
-        self._service.begin()
+        self.service.begin()
         return events
 
     def _feed_part(self, part: Sequence[Columns], master: Master, vehicle: Vehicle) -> list[FlightEvent]:
         """Process columns of one boot: channels first, then the elevator sample by sample."""
-        self._tracks.forget(max(self._path.newest_s, self._master_s) - self._keep_s)
+        self.tracks.forget(max(self._path.newest_s, self._master_s) - self._keep_s)
         orders = np.concatenate(([-1], master.order))
         # A late ATTITUDE states its own time, not the present time.
         clock = np.fmax.accumulate(np.concatenate(([self._master_s], master.t)))
@@ -188,13 +188,13 @@ class FlightStream(StreamState):
                 self._heartbeat_s = float(t[-1])
             self._asked.hear(columns)
             for new in decoded(columns, t, self._aircraft, companion):
-                self._tracks.append(new)
-                if self._tracks.serves(new):
+                self.tracks.append(new)
+                if self.tracks.serves(new):
                     self._asked.take(new)
-                    self._service.take(new.channel, new.source, arrivals(columns, new.order))
-            if columns.name == "VFR_HUD" and self._tracks.derives_alpha:
+                    self.service.take(new.channel, new.source, arrivals(columns, new.order))
+            if columns.name == "VFR_HUD" and self.tracks.derives_alpha:
                 bring = promised(columns, self._aircraft.airspeed_m_s)
-                self._service.take("alpha", DERIVED_ALPHA, arrivals(columns, bring))
+                self.service.take("alpha", DERIVED_ALPHA, arrivals(columns, bring))
             if columns.name in _OUTPUTS:
                 if isinstance(self.elevator, Problem):
                     self._guesses.hear(columns, t)
@@ -203,11 +203,11 @@ class FlightStream(StreamState):
         followed = [*missed, *self._path.feed(elevator, closes_pitch_loop(self._who.mode))]
         if self._side is not None:
             followed += self._side.feed(side)
-        if self._cutting.maneuvers == self._flown_before:
+        if self._cutting.pitch.counted == self._flown_before:
             self._instruments.advance(self._first_s, self._master_s)
         if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
             return followed
-        return [*followed, *self._guesses.advance(self._first_s, self._master_s, self._tracks.cut)]
+        return [*followed, *self._guesses.advance(self._first_s, self._master_s, self.tracks.cut)]
 
 
 def _missed(gap: tuple[float, float]) -> Notice:

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from advisor.flight.instruments import examined as examining
 from advisor.flight.stream import instrument_watch
 from advisor.flight.stream.instrument_watch import InstrumentWatch
 
@@ -17,7 +18,7 @@ def test_the_watch_ends_after_six_stretches_with_motion(monkeypatch, evidence, s
     monkeypatch.setattr(
         instrument_watch, "examine_side", lambda *_: SimpleNamespace(evidence={}, findings=())
     )
-    monkeypatch.setattr(instrument_watch, "pooled", lambda _: {})
+    monkeypatch.setattr(examining, "pooled", lambda _: {})
     watch = InstrumentWatch(lambda name, since_s, until_s: SimpleNamespace(t=np.array([since_s, until_s])))
     watch.advance(0.0, 300.0)
     assert len(made) == stretches

@@ -76,7 +76,7 @@ def test_a_link_that_becomes_slow_after_a_manoeuvre_is_told_within_5_s_and_told_
     assert again_s > START_S + 40.0
     stream = FlightStream(Aircraft())
     assert any(isinstance(event, ManeuverFlown) for event in stream.feed(wire.columns()))
-    assert stream.no_data == ()
+    assert stream.service.problems == ()
 
 
 def test_a_message_that_stops_is_told_though_the_vehicles_clock_stands_still():

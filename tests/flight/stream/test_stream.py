@@ -378,7 +378,7 @@ def test_the_manoeuvre_being_flown_can_be_watched():
     assert watched is not None
     assert watched.span.start_s == pytest.approx(54.0, abs=0.05)
     assert watched.channels["q"].t[-1] == pytest.approx(56.0, abs=0.05)
-    recent = stream.recent("q", 1.0)
+    recent = stream.tracks.recent("q", 1.0)
     assert recent is not None
     assert len(recent) == 51
 
@@ -399,6 +399,6 @@ def test_ten_minutes_of_stream_keep_two():
         fly(wire, 1000.0 + 60 * minute, 50.0 + 60 * minute, [], 60.0, rate_hz=10.0)
         shift = 10_000_000 * minute
         stream.feed([replace(c, order=c.order + shift) for c in wire.columns()])
-    kept = stream.recent("q", 1e9)
+    kept = stream.tracks.recent("q", 1e9)
     assert kept is not None
     assert kept.t[-1] - kept.t[0] < 300.0

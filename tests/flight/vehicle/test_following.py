@@ -119,7 +119,7 @@ def test_two_vehicles_under_one_id_are_told_within_5_s_with_their_mend():
     told = [event for event in events if isinstance(event, NoData)]
     assert told[0].problems[0].code == "two_senders"
     assert "system id 1" in told[0].problems[0].text
-    assert stream.two_senders is not None
+    assert stream.senders.seen is not None
 
 
 def test_what_is_wrong_with_the_vehicle_followed_is_told_before_that_others_are_heard():
@@ -140,7 +140,7 @@ def test_a_reboot_and_late_packets_are_no_second_vehicle():
     send(wire, START_S + 12.0, START_S + 30.0, rate_hz=20.0, boot_s=3.0)
     for t in np.arange(START_S + 40.0, START_S + 60.0, 0.05).tolist():
         attitude(wire, t + dice.uniform(0.0, 1.5) * (dice.random() < 0.1), 31.0 + t - START_S)
-    assert followed(wire)[3].two_senders is None
+    assert followed(wire)[3].senders.seen is None
 
 
 @pytest.mark.parametrize(("component", "is_second"), [(1, True), (154, False)])

@@ -20,7 +20,7 @@ def elevator(*parameters):
         parameter(wire, float(at_s), name, value, component=component)
     for row in range(len(wire)):
         identity.learn(wire.columns([row]))
-    return identity.elevator
+    return identity.outputs.elevator
 
 
 def test_parameters_stored_by_the_ground_station_for_the_vehicle_count():
@@ -50,7 +50,7 @@ def after_a_change(name, value, flown):
     for at_s, (_, key, number) in enumerate((*BEFORE, (1, name, value)), start=1):
         parameter(wire, float(at_s), key, number)
     events = [identity.learn(wire.columns([row]), 10.0, flown) for row in range(len(wire))][-1]
-    return identity.elevator, [e.text for e in events if getattr(e, "code", "") == READER_NOTICE]
+    return identity.outputs.elevator, [e.text for e in events if getattr(e, "code", "") == READER_NOTICE]
 
 
 @pytest.mark.parametrize(("name", "value"), [("SERVO2_TRIM", 1520.0), ("SERVO2_REVERSED", 1.0)])
@@ -85,11 +85,11 @@ def test_a_limit_of_a_single_output_that_is_heard_late_counts_and_leaves_the_pul
     identity, events = heard_late(("SERVO2_FUNCTION", 19.0), late=("SERVO2_MIN", 1000.0))
     (rescaled,) = (event for event in events if isinstance(event, ElevatorRescaled))
     assert rescaled.heard == "SERVO2_MIN 1000 is heard only at 0:10.0"
-    assert rescaled.after == identity.elevator
-    assert identity.elevator.scale.low_us == 1000.0
-    assert identity.surfaces["elevator"].scale.low_us == 1100.0
-    identity.begin()
-    assert identity.surfaces["elevator"] == identity.elevator
+    assert rescaled.after == identity.outputs.elevator
+    assert identity.outputs.elevator.scale.low_us == 1000.0
+    assert identity.outputs.counted["elevator"].scale.low_us == 1100.0
+    identity.outputs.begin()
+    assert identity.outputs.counted["elevator"] == identity.outputs.elevator
 
 
 @pytest.mark.parametrize("function", [77.0, 19.0])
@@ -98,14 +98,14 @@ def test_a_late_limit_of_one_of_several_outputs_waits_for_the_next_power_on_and_
     identity, events = heard_late(*pair, late=("SERVO2_MIN", 1000.0))
     (notice,) = events
     assert notice.text.startswith("SERVO2_MIN 1000 is heard only at 0:10.0: the value assumed before counts")
-    assert identity.elevator == identity.surfaces["elevator"]
-    assert identity.elevator.parts[1].scale.low_us == 1100.0
+    assert identity.outputs.elevator == identity.outputs.counted["elevator"]
+    assert identity.outputs.elevator.parts[1].scale.low_us == 1100.0
 
 
 def test_a_direction_that_is_heard_late_waits_for_the_next_power_on():
     identity, (notice,) = heard_late(("SERVO2_FUNCTION", 19.0), late=("SERVO2_REVERSED", 1.0))
     assert "SERVO2_REVERSED 1 is heard only" in notice.text
-    assert not identity.elevator.scale.reversed
+    assert not identity.outputs.elevator.scale.reversed
 
 
 @pytest.mark.parametrize("flown", [False, True])
