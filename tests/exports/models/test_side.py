@@ -9,13 +9,12 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.decision.axes.lateral_qualification import peak_roll_rate
+from advisor.decision.axes.lateral_requirements import peak_roll_rate
 from advisor.exports.models.flown import FlownModel, side_of
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
 from advisor.exports.models.formats.matlab_format import both_axes_text, matrices
 from advisor.exports.models.improvement import STILL_AIR, ExportedServo
 from advisor.exports.models.jsbsim.axes.lateral import side_text
-from advisor.exports.models.jsbsim.axes.lateral_slopes import SideRequest
 from advisor.exports.models.jsbsim.run import measure, measure_side, model_of
 from advisor.exports.models.jsbsim.slopes import Request
 from advisor.gap.result import Value
@@ -28,7 +27,7 @@ from tests.exports.models.test_matlab import OCTAVE, needs_octave
 from tests.oem.axes.lateral.builders import JET
 
 JET_SIDE = side_of(estimate("aileron", "rudder"), Trim(130.0, 0.07, 0.105), STILL_AIR, Aircraft())
-ASKED = SideRequest(53.0, 1000.0)
+ASKED = Request(53.0, 1000.0, powered=False, sideways=True)
 CESSNA = model_of("c172p")
 OWN = CESSNA.file.read_bytes()
 
@@ -141,7 +140,7 @@ def test_both_axes_are_corrected_in_one_aircraft(cessna, tmp_path):
 
 def measure_pitch(content):
     """Return the derivatives of pitch of a content, with an elevator in rad, and constants of zero."""
-    asked = Request([], "fcs/elevator-pos-rad", ASKED.airspeed_m_s, ASKED.height_m)
+    asked = Request(ASKED.airspeed_m_s, ASKED.height_m)
     return {"Z_0": 0.0, "M_0": 0.0} | dict(measure(content, CESSNA, asked).derivatives)
 
 

@@ -50,7 +50,8 @@ def aircraft_text(improvement: Improvement, model: Model) -> Exported:
     root = parse(content, name)
     terms, surface = terms_of(root), surface_of(root)
     names = [n for parameter in SLOPES for n in terms.get(parameter, ())]
-    asked = Request(names, surface, improvement.true_airspeed_m_s, improvement.air.height_m or 0.0)
+    height_m = improvement.air.height_m or 0.0
+    asked = Request(improvement.true_airspeed_m_s, height_m, names=names, surface=surface)
 
     def measured(knobs: Sequence[Knob]) -> Slopes:
         # Measured without the servo, because backlash and dead band would hide a small deflection.

@@ -10,8 +10,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from advisor.exports.models.jsbsim.axes.lateral_slopes import SideRequest, SideSlopes
-from advisor.exports.models.jsbsim.slopes import Request, Slopes
+from advisor.exports.models.jsbsim.slopes import Request, SideSlopes, Slopes
 from advisor.exports.models.jsbsim.source import parse
 from advisor.process.children import python_module
 from advisor.simulators.jsbsim_model import find_model, foreign_properties
@@ -63,10 +62,10 @@ def measure(content: bytes, model: Model, asked: Request) -> Slopes:
     ConfigurationError
         Errors as for ``_answered``.
     """
-    return Slopes(**_answered("slopes", content, model, asdict(asked)))
+    return Slopes(**_answered(content, model, asdict(asked)))
 
 
-def measure_side(content: bytes, model: Model, asked: SideRequest) -> SideSlopes:
+def measure_side(content: bytes, model: Model, asked: Request) -> SideSlopes:
     """Return the roll and yaw slopes of an aircraft text, loaded in place of the aircraft.
 
     Raises
@@ -74,10 +73,10 @@ def measure_side(content: bytes, model: Model, asked: SideRequest) -> SideSlopes
     ConfigurationError
         Errors as for ``_answered``.
     """
-    return SideSlopes(**_answered("axes.lateral_slopes", content, model, asdict(asked)))
+    return SideSlopes(**_answered(content, model, asdict(asked)))
 
 
-def _answered(module: str, content: bytes, model: Model, asked: dict[str, Any]) -> dict[str, Any]:
+def _answered(content: bytes, model: Model, asked: dict[str, Any]) -> dict[str, Any]:
     """Load an aircraft text with its included files, and return its measurement."""
     root = parse(content, model.file.name)
     for tag in ("input", "output"):
@@ -96,7 +95,7 @@ def _answered(module: str, content: bytes, model: Model, asked: dict[str, Any]) 
         request = asked | places | {"model": model.name, "foreign": foreign}
         try:
             done = subprocess.run(
-                python_module(f"advisor.exports.models.jsbsim.{module}"),
+                python_module("advisor.exports.models.jsbsim.slopes"),
                 input=json.dumps(request), capture_output=True, text=True, timeout=TIME_LIMIT_S, check=True,
                 cwd=folder, env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
             )  # fmt: skip

@@ -3,13 +3,13 @@
 The module runs in a separate process (``python -m``), because JSBSim writes on stdout and may abort. The
 states are fixed while the forces settle, so that motion does not affect a derivative. α̇ and q̇ respond to α,
 q and elevator with all dependent terms. The terms of α̇ are part of the derivatives of α and q, as in a
-flight.
+flight. For roll and yaw, the aircraft is perturbed in β, p, r, aileron and rudder at rest.
 """
 
 import json
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -22,7 +22,7 @@ GUESS = 0.6
 """Throttle at which JSBSim's trim begins."""
 FULL_TRIM = 1
 """JSBSim's number for trimming all axes in straight flight."""
-STEPS = 300
+_STEPS = 300
 """Number of calls after which forces and servos have settled."""
 SIZES = (0.004, 0.01, 0.02)
 """Perturbations of α (rad), q (rad/s) and the elevator's command (-1 to 1)."""
@@ -33,20 +33,32 @@ _FLAT = 1e-6
 
 COLUMNS = ("alpha", "q", "delta_e")
 """Variables of the short period, in the order of ``SIZES`` and of every share."""
+SIDE_VARIABLES = {
+    "beta": "aero/beta-rad",
+    "p": "velocities/p-aero-rad_sec",
+    "r": "velocities/r-aero-rad_sec",
+    "delta_a": "fcs/left-aileron-pos-rad",
+    "delta_r": "fcs/rudder-pos-rad",
+}
+"""Property that represents each variable of roll and yaw."""
+_SIDE_SIZES = (0.01, 0.05, 0.05, 0.1, 0.1)
+"""Perturbations of β, p and r in rad and rad/s, and of the commands of aileron and rudder (-1 to 1)."""
 
 
 @dataclass(frozen=True)
 class Request:
     """Flight condition, and quantities to measure on a JSBSim aircraft."""
 
-    names: list[str]
-    """Functions whose shares are requested."""
-    surface: str
-    """Property of the elevator's position."""
     airspeed_m_s: float
     height_m: float
     powered: bool = True
     """Whether JSBSim's trim finds the throttle. False for a closed throttle."""
+    names: Sequence[str] = ()
+    """Functions whose shares are requested."""
+    surface: str = "fcs/elevator-pos-rad"
+    """Property of the elevator's position."""
+    sideways: bool = False
+    """Whether the slopes of roll and yaw are requested instead of those of the short period."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +87,24 @@ class Slopes:
         return -1.0 / self.momentum if letter == "Z" else 1.0 / self.inertia
 
 
+@dataclass(frozen=True)
+class SideSlopes:
+    """Measured slopes of roll and yaw in one condition."""
+
+    derivatives: dict[str, float]
+    """Fifteen lateral derivatives, SI. Derivatives by a control are per radian of the control's property."""
+    signs: dict[str, float]
+    """Sign of each control's property, by the control's name. The sign is positive if a positive property
+    turns to the left."""
+    turning: list[list[float]]
+    """Shape (2, 2): roll and yaw acceleration per roll and yaw moment, 1/(slug·ft²)."""
+    momentum: float
+    """Mass times speed, slug·ft/s."""
+    pressure_psf: float
+    span_time_s: float
+    """Time b/(2·V) that makes rates dimensionless, s."""
+
+
 def measured(fdm: Any, asked: Request) -> Slopes:
     """Return the slopes of a loaded aircraft at its trim in lift and moment.
 
@@ -98,9 +128,7 @@ def measured(fdm: Any, asked: Request) -> Slopes:
         """Return the resulting variables, with α̇, q̇ and every term."""
         fdm["ic/alpha-rad"], fdm["ic/q-rad_sec"] = alpha, q
         fdm["fcs/elevator-cmd-norm"] = command
-        fdm.run_ic()
-        for _ in range(STEPS):
-            fdm.run()
+        _settle(fdm)
         variables = [fdm["aero/alpha-rad"], fdm["velocities/q-rad_sec"], fdm[asked.surface]]
         rates = [fdm["aero/alphadot-rad_sec"], fdm["accelerations/qdot-rad_sec2"]]
         return np.array(variables), np.array(rates + [fdm[name] for name in asked.names])
@@ -121,14 +149,7 @@ def measured(fdm: Any, asked: Request) -> Slopes:
     if abs(trim[1]) > 1.0:
         raise ArithmeticError("the elevator's travel ends before the trim")
     at_trim, _ = respond(trim[0], 0.0, trim[1])
-    moved, responses = [], []
-    for k, size in enumerate(SIZES):
-        change = [0.0, 0.0, 0.0]
-        change[k] = size
-        ends = [respond(trim[0] + s * change[0], s * change[1], trim[1] + s * change[2]) for s in (1.0, -1.0)]
-        moved.append(ends[0][0] - ends[1][0])
-        responses.append(ends[0][1] - ends[1][1])
-    slopes = np.linalg.solve(np.array(moved), np.array(responses))
+    slopes = _slopes(lambda x: respond(trim[0] + x[0], x[1], trim[1] + x[2]), SIZES)
     z, m = slopes[:, 0] - [0.0, 1.0, 0.0], slopes[:, 1]
     found = dict(zip(("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e"), [*z, *m], strict=True))
     if found["Z_alpha"] > -_FLAT:
@@ -145,6 +166,58 @@ def measured(fdm: Any, asked: Request) -> Slopes:
     )
 
 
+def side_measured(fdm: Any, asked: Request) -> SideSlopes:
+    """Return the slopes of roll and yaw of a loaded aircraft from perturbations about its trim.
+
+    Raises
+    ------
+    ArithmeticError
+        The aircraft has no trim in this condition, or a control moves nothing.
+    """
+    trim = measured(fdm, asked).trim
+    momentum = float(fdm["inertia/mass-slugs"] * fdm["velocities/vt-fps"])
+
+    def respond(change: Any) -> tuple[Any, Any]:
+        fdm["ic/alpha-rad"], fdm["ic/q-rad_sec"] = trim["alpha"], 0.0
+        fdm["ic/beta-rad"], fdm["ic/p-rad_sec"], fdm["ic/r-rad_sec"] = change[:3]
+        fdm["fcs/aileron-cmd-norm"], fdm["fcs/rudder-cmd-norm"] = change[3:]
+        _settle(fdm)
+        read = (
+            "accelerations/pdot-rad_sec2", "accelerations/rdot-rad_sec2", "moments/l-total-lbsft",
+            "moments/n-total-lbsft",
+        )  # fmt: skip
+        side = fdm["forces/fby-aero-lbs"] / momentum
+        variables = np.array([fdm[name] for name in SIDE_VARIABLES.values()])
+        return variables, np.array([side, *(fdm[n] for n in read)])
+
+    slopes = _slopes(respond, _SIDE_SIZES)
+    signs = {"delta_a": -float(np.sign(slopes[3, 1])), "delta_r": -float(np.sign(slopes[4, 2]))}
+    if not all(signs.values()):
+        raise ArithmeticError("the aileron or the rudder moves nothing")
+    turning, *_ = np.linalg.lstsq(slopes[:, 3:], slopes[:, 1:3], rcond=None)
+    return SideSlopes(
+        {f"{y}_{x}": float(slopes[i, j]) for j, y in enumerate("YLN") for i, x in enumerate(SIDE_VARIABLES)},
+        signs,
+        turning.T.tolist(),
+        momentum,
+        float(fdm["aero/qbar-psf"]),
+        float(fdm["aero/bi2vel"]),
+    )
+
+
+def _settle(fdm: Any) -> None:
+    fdm.run_ic()
+    for _ in range(_STEPS):
+        fdm.run()
+
+
+def _slopes(respond: Callable[[Any], tuple[Any, Any]], sizes: Sequence[float]) -> Any:
+    """Return central differences, shape (n, responses), of a function to variables and their responses."""
+    ends = [(respond(step), respond(-step)) for step in np.diag(sizes)]
+    moved, responses = (np.array([up[i] - down[i] for up, down in ends]) for i in (0, 1))
+    return np.linalg.solve(moved, responses)
+
+
 def _finds_its_throttle(fdm: Any) -> bool:
     """Return whether JSBSim's trim finds a throttle; a glider and a weak engine have none."""
     try:
@@ -156,7 +229,7 @@ def _finds_its_throttle(fdm: Any) -> bool:
     return True
 
 
-def answer(measure: Callable[[Any, dict[str, Any]], Any]) -> None:
+def answer() -> None:
     """Read one request as JSON from stdin, and answer with one line of JSON, the last on stdout."""
     told = json.load(sys.stdin)
     foreign = told.pop("foreign")
@@ -170,8 +243,10 @@ def answer(measure: Callable[[Any, dict[str, Any]], Any]) -> None:
         fdm[name] = 0.0
     aircraft, engine, systems = places
     fdm.load_model_with_paths(model, aircraft, engine, systems, True)
-    print("\n" + json.dumps(asdict(measure(fdm, told)), allow_nan=False))
+    asked = Request(**told)
+    found = side_measured(fdm, asked) if asked.sideways else measured(fdm, asked)
+    print("\n" + json.dumps(asdict(found), allow_nan=False))
 
 
 if __name__ == "__main__":
-    answer(lambda fdm, told: measured(fdm, Request(**told)))
+    answer()

@@ -16,9 +16,10 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.exports.models.exported import Exported
 from advisor.exports.models.flown import SideModel
 from advisor.exports.models.improvement import ExportedServo, zero_said
-from advisor.exports.models.jsbsim.axes.lateral_slopes import VARIABLES, SideRequest, SideSlopes
 from advisor.exports.models.jsbsim.knobs import ROUNDS, WITHIN
 from advisor.exports.models.jsbsim.run import Model, measure_side
+from advisor.exports.models.jsbsim.slopes import SIDE_VARIABLES as VARIABLES
+from advisor.exports.models.jsbsim.slopes import Request, SideSlopes
 from advisor.exports.models.jsbsim.source import AddedFunction, corrected, parse
 from advisor.words.problems import ConfigurationError
 
@@ -42,7 +43,7 @@ def side_text(name: str, side: SideModel, model: Model, content: bytes) -> Expor
     """
     _require_axes(parse(content, model.file.name), model.file.name)
     speed = side.true_airspeed_m_s
-    asked = SideRequest(speed, side.air.height_m or 0.0)
+    asked = Request(speed, side.air.height_m or 0.0, powered=False, sideways=True)
     first = measure_side(content, model, asked)
     wanted = _targets(side, first)
     sizes = dict.fromkeys(wanted, 0.0)
