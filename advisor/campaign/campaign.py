@@ -184,7 +184,8 @@ class Campaign:
         self, model: Estimate | None, side: LateralEstimate | None
     ) -> tuple[InstrumentFinding, ...]:
         """Return the contradictions of the instruments, from the motion and from the fits."""
-        maneuvers = (*self._elevator.maneuvers, *self._side_maneuvers)
+        sideways = self._lateral.maneuvers if self._lateral is not None else ()
+        maneuvers = (*self._elevator.maneuvers, *sideways)
         by_motion = together(maneuvers, self._stream.instruments)
         found = with_fit(by_motion, model, self._elevator.estimates, self._aircraft)
         return (*found, *side_signs(side, self._aircraft))
@@ -256,11 +257,6 @@ class Campaign:
         if self._lateral is None or not self._lateral.maneuvers or not self._elevator.judged:
             return None
         return crew_plan(self._elevator.flight_test, self._lateral.flight_test)
-
-    @property
-    def _side_maneuvers(self) -> tuple[Maneuver, ...]:
-        """Lateral manoeuvres, if they were requested."""
-        return self._lateral.maneuvers if self._lateral is not None else ()
 
     def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
         """Keep the better record of a manoeuvre that arrived twice; an exclusion of either remains."""

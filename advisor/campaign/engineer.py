@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from advisor.campaign.axis_campaign import AxisCampaign
-from advisor.campaign.hand_decisions import ByHand, Remark
+from advisor.campaign.hand_decisions import ByHand, HandDecision, Remark
 from advisor.campaign.journal import Journal
 from advisor.campaign.state import AxisName
 from advisor.flight.maneuvers.events import Notice
@@ -36,6 +36,23 @@ class Engineer:
         self.decided = decided
         """The decisions so far."""
         self._to_remark = list(decided.remarks)
+
+    def apply(self, decision: HandDecision) -> None:
+        """Apply a decision, after which the campaign recomputes every dependent decision."""
+        match decision.verb:
+            case "exclude":
+                self.exclude(decision.number, decision.text, decision.axis)
+            case "include":
+                self.include(decision.number, decision.axis)
+                self.note(decision.number, f"included again: {decision.text}", decision.axis)
+            case "note":
+                self.note(decision.number, decision.text, decision.axis)
+            case "mark":
+                self.mark(decision.text)
+            case "begin":
+                self.begin_maneuver()
+            case "end":
+                self.end_maneuver()
 
     def exclude(self, number: int, because: str | None, axis: AxisName = "pitch") -> None:
         """Exclude a manoeuvre of an axis from every decision, and decide again on all later manoeuvres.

@@ -5,8 +5,9 @@ Each decision refers to vehicle time instead of a manoeuvre's number, because a 
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
+from advisor.campaign.state import AxisName, CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
@@ -102,3 +103,26 @@ def on_all(decided: Sequence[ByHand]) -> ByHand:
 
 def _on(maneuver: Maneuver, text: str) -> Remark:
     return Remark(round(maneuver.span.start_s, 3), text, maneuver.boot, maneuver.flight)
+
+
+Verb = Literal["exclude", "include", "note", "mark", "begin", "end"]
+"""Kind of decision by hand: ``mark`` names a moment in the log; ``begin`` and ``end`` mark a manoeuvre."""
+
+
+@dataclass(frozen=True, slots=True)
+class HandDecision:
+    """One decision by hand, with the engineer's reason."""
+
+    verb: Verb
+    text: str = ""
+    """Text of the decision: a reason, a note or the name of the moment."""
+    number: int = 0
+    """Number of the manoeuvre; 0 for a decision on the present moment."""
+    axis: AxisName = "pitch"
+    """Axis of the manoeuvre."""
+
+    def due(self, state: CampaignState) -> bool:
+        """Return whether the flight has reached the manoeuvre or moment of the decision."""
+        side = state.lateral.maneuvers if state.lateral is not None else ()
+        flown = side if self.axis == "lateral" else state.maneuvers
+        return self.number == 0 or any(judged.maneuver.number == self.number for judged in flown)

@@ -90,7 +90,7 @@ def command(
         document = analysis_document(state, files, aircraft, left_out, said)
         click.echo(json.dumps(document, allow_nan=False, indent=1))
     elif state is not None and usable:
-        from advisor.report.console import PlainConsole
+        from advisor.report.table import PlainConsole
         from advisor.report.text import AnalysisText
 
         shown = AnalysisText(
@@ -144,7 +144,7 @@ def print_untested(
 ) -> None:
     """Print the next input of each axis with its drawing, then the examination of each log."""
     from advisor.doctor.text import ExaminationText
-    from advisor.report.console import PlainConsole
+    from advisor.report.table import PlainConsole
     from advisor.tui.stick_drawing import drawn
 
     tests = [state.flight_test] if axis != "lateral" else []

@@ -25,7 +25,8 @@ def ask() -> dict[str, Any]:
     click.echo("Enter takes the answer in brackets; '-' there means: not known, left out.", err=True)
     values: dict[str, Any] = {}
     for key in KEYS:
-        if key.path == "alpha.vane_arm_m" and not _has_vane(values):
+        has_vane = str(values.get("alpha.source", "")).startswith(("named_value:", "aoa_ssa"))
+        if key.path == "alpha.vane_arm_m" and not has_vane:
             continue
         if key.path == "elevator.calibration":
             _ask_calibrations(key.question, values)
@@ -44,10 +45,6 @@ def nested(values: dict[str, Any]) -> dict[str, Any]:
             section = section.setdefault(one, {})
         section[name] = value
     return content
-
-
-def _has_vane(values: dict[str, Any]) -> bool:
-    return str(values.get("alpha.source", "")).startswith(("named_value:", "aoa_ssa"))
 
 
 def _put(key: Key, values: dict[str, Any]) -> None:

@@ -69,7 +69,7 @@ def command(asked: LogsAsked, target: str, seconds: float, request_rates: bool, 
         click.echo(json.dumps(doctor_document(findings, problem, commands), allow_nan=False, indent=1))
     elif findings is not None:
         from advisor.doctor.text import ExaminationText
-        from advisor.report.console import PlainConsole
+        from advisor.report.table import PlainConsole
 
         PlainConsole(soft_wrap=True).print(ExaminationText(findings, commands))
     sentence = problem or _first_obstacle(findings)

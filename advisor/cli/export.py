@@ -71,7 +71,7 @@ def command(asked: LogsAsked, out: Path, formats: str | None, cut: int | None) -
     for note in flights.notes:
         click.echo(printable(note), err=True)
     if cut is not None:
-        from advisor.exports.flights.maneuver_log import log_of_maneuver
+        from advisor.exports.flights.cut import log_of_maneuver
 
         data = log_of_maneuver(flights, cut, aircraft, asked.target_system)
         with staged(out.parent, inputs) as stage:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
-from advisor.cli.gap_figure import refuse_figure
+from advisor.cli.gap_asked import refuse_figure
 from advisor.cli.improvement_export import export_option, orders_of
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import decided_on, json_option, refuse_unwritable

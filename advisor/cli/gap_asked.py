@@ -1,23 +1,24 @@
 """Options of ``advisor gap`` for one axis, and the parts of an answer that all axes share."""
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import click
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli.log_options import LogsAsked
-from advisor.cli.options import UNUSABLE, writing
+from advisor.cli.options import UNUSABLE, refuse_unwritable, writing
 from advisor.exports.models.flown import FlownModel, write_file
 from advisor.exports.models.write import ExportOrder
 from advisor.gap.inference.prior import FieldPrior
 from advisor.process.parts import FailedPart, attempt
 from advisor.report.gap_document import gap_document
 from advisor.words.printable import printable
-from advisor.words.problems import UnusableInputError
+from advisor.words.problems import ConfigurationError, UnusableInputError
 
 Found = TypeVar("Found")
 
@@ -63,3 +64,42 @@ class GapAsked:
         with writing("--out", self.out):
             write_file(make(), self.out)
         return self.out
+
+
+_FORMATS = (".svg", ".png")
+
+
+def refuse_figure(figure: Path | None, others: Sequence[Path | None]) -> None:
+    """Refuse, before any work, a picture that could not be drawn or written.
+
+    Raises
+    ------
+    ConfigurationError
+        The ending names no picture, matplotlib is missing, or the file is also an input or output of the
+        command.
+    """
+    if figure is None:
+        return
+    if figure.suffix.lower() not in _FORMATS:
+        raise ConfigurationError(f"--figure: {figure} ends in neither .svg nor .png; name such a file.")
+    if find_spec("matplotlib") is None:
+        raise ConfigurationError("--figure needs matplotlib: pip install 'inflight-advisor[report]'.")
+    refuse_unwritable("--figure", figure)
+    if any(other is not None and other.resolve() == figure.resolve() for other in others):
+        raise ConfigurationError(f"--figure: {figure} is another file of this command; name a new one.")
+
+
+def write_figure(figure: Path | None, document: Callable[[], Mapping[str, Any]]) -> None:
+    """Write the picture of an axis's document, if one is wanted.
+
+    Raises
+    ------
+    ConfigurationError
+        The file cannot be written.
+    """
+    if figure is None:
+        return
+    from advisor.report.page.gap_picture import write_gap_picture
+
+    with writing("--figure", figure):
+        write_gap_picture(document(), figure)

@@ -9,7 +9,6 @@ Lines that were printed before are not printed again.
 import os
 import pickle
 import sys
-import traceback
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -26,10 +25,9 @@ import click
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.health import LinkStatistics
 from advisor.mavlink.link.observer import LinkObserver
-from advisor.process import interrupt
 from advisor.process.liveness import Beat, Watch
 from advisor.session.behind import BehindTeller, backlog_s
-from advisor.session.child_process import pause_s, said_of, start_child
+from advisor.session.child_process import messages_to_parent, pause_s, said_of, send, start_child
 from advisor.session.remote import ConductorTask
 from advisor.session.source import Source
 from advisor.words.ascii_output import speak_plainly
@@ -187,11 +185,6 @@ def _batches(source: Source, beat: Callable[[Beat], object]) -> Iterator[Sequenc
         yield columns
 
 
-def _send(pipe: IO[bytes], message: object) -> None:
-    pickle.dump(message, pipe, pickle.HIGHEST_PROTOCOL)
-    pipe.flush()
-
-
 def _end_with(requests: IO[bytes]) -> None:
     """End the work when the other process is gone, for then nobody reads the estimates."""
     requests.read()
@@ -202,21 +195,15 @@ def main() -> None:
     """Conduct one campaign from its task to its end. An error that ends the campaign is the last message."""
     from advisor.campaign.campaign import Campaign
 
-    interrupt.ignore()  # a signal is for the parent, which then closes the requests
     speak_plainly()
     warnings.simplefilter("ignore")  # as in the parent: warnings are for those who develop
-    with suppress(BrokenPipeError), os.fdopen(os.dup(sys.stdout.fileno()), "wb") as messages:
-        os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-        try:
-            task: ConductorTask = pickle.load(sys.stdin.buffer)
-            Thread(target=_end_with, args=(sys.stdin.buffer,), daemon=True).start()
-            campaign = task.make_campaign(task.by_hand)
-            assert isinstance(campaign, Campaign)
-            tell = partial(_send, messages)
-            narrate_here(task.open_source(), campaign, tell, tell)
-        except Exception as failure:
-            failure.add_note(traceback.format_exc())
-            _send(messages, failure)
+    with messages_to_parent() as messages:
+        task: ConductorTask = pickle.load(sys.stdin.buffer)
+        Thread(target=_end_with, args=(sys.stdin.buffer,), daemon=True).start()
+        campaign = task.make_campaign(task.by_hand)
+        assert isinstance(campaign, Campaign)
+        tell = partial(send, messages)
+        narrate_here(task.open_source(), campaign, tell, tell)
 
 
 if __name__ == "__main__":

@@ -54,7 +54,9 @@ def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
 
 def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
     """Return defects of the elevator's calibration, resolution and servo."""
-    limits = [Limit(d.code, d.text.rstrip("."), _continued(d.fix)) for d in found.doubts]
+    limits = [
+        Limit(d.code, d.text.rstrip("."), f"{d.fix[:1].lower()}{d.fix[1:].rstrip('.')}") for d in found.doubts
+    ]
     if not found.calibrated:
         given = "whose pulses are assumed" if found.doubts else "as the parameters have it"
         listed = joined_numbers(found.outputs)
@@ -88,10 +90,6 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
             )
         )
     return limits
-
-
-def _continued(fix: str) -> str:
-    return f"{fix[:1].lower()}{fix[1:].rstrip('.')}"
 
 
 def distrust_limits(found: Iterable[Distrust]) -> list[Limit]:

@@ -16,8 +16,8 @@ from advisor.gap.foresight.foresee import CONFUSED_AT, Foreseen
 from advisor.gap.foresight.plan import TYPICAL_NOISE, foresee_plan
 from advisor.gap.result import spelled
 from advisor.gap.verdict.notes import unusual_signs
-from advisor.report.console import PlainConsole
 from advisor.report.facts.sizes import in_units
+from advisor.report.table import PlainConsole
 from advisor.words.plain import picked, plain
 from advisor.words.quantities import symbol
 

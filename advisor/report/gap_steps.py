@@ -132,13 +132,10 @@ def _against_the_rival(d: Diagnosis) -> str:
     """Return the measurement that distinguishes the answer from a similar effect, or shows a hidden one."""
     telling = next((c for c in d.causes if c.present and c.cannot_be_told_from and c.tell_apart_by), None)
     if telling is not None:
-        return f"To exclude {_rivals(telling)}: {telling.tell_apart_by}."
+        rivals = " or ".join(map(spelled, telling.cannot_be_told_from))
+        return f"To exclude {rivals}: {telling.tell_apart_by}."
     if d.verdict == "unknown":
         lists = "; advisor gap --all lists what to log" if d.cannot_see else ""
         return f"To find the cause: fly two more manoeuvres of other amplitude{lists}."
     hidden = next(iter(d.cannot_see), None)
     return f"To see {spelled(hidden.effect)} as well: {hidden.would_need}." if hidden is not None else ""
-
-
-def _rivals(cause: Cause) -> str:
-    return " or ".join(map(spelled, cause.cannot_be_told_from))

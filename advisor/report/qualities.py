@@ -9,17 +9,21 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS, Reference
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
-from advisor.decision.axes.lateral_levels import GROUPS, LateralLevels, lateral_levels
-from advisor.decision.axes.lateral_levels import SOURCE as LATERAL_SOURCE
-from advisor.decision.axes.lateral_qualification import LateralTest, lateral_qualification
+from advisor.decision.axes.lateral_requirements import (
+    GROUPS,
+    LateralLevels,
+    LateralTest,
+    lateral_levels,
+    lateral_qualification,
+)
+from advisor.decision.axes.lateral_requirements import SOURCE as LATERAL_SOURCE
 from advisor.flight.instruments.atmosphere import AirData, air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import Trim
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED, SOURCE, LevelFound
 from advisor.oem.coefficients import CONVENTION, Coefficient, coefficients
 from advisor.oem.flying_qualities import UNITS, FlyingQualities, flying_qualities
-from advisor.report.facts.estimates import joint_source
-from advisor.report.facts.fact import Fact, fact_of
+from advisor.report.facts.estimates import Fact, fact_of, joint_source
 from advisor.words.plain import picked
 
 NAMES: Mapping[str, str] = {

@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
+from advisor.campaign.hand_decisions import HandDecision
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import ManeuverVerdict
-from advisor.session.hand import HandDecision
 from advisor.session.source import LinkHealth, LinkRequest, Playback, Tempo
 from advisor.words.problems import Problem
 

@@ -11,9 +11,8 @@ from threading import Event
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
-from advisor.campaign.hand_decisions import NOTHING, ByHand
+from advisor.campaign.hand_decisions import NOTHING, ByHand, HandDecision
 from advisor.session.conducting import Conducting, SessionReport, Tell
-from advisor.session.hand import HandDecision
 from advisor.session.replay import LogPlayer
 from advisor.session.source import LinkRequest, Source
 from advisor.session.timeline import DataBegin, Goal, Position
@@ -143,7 +142,7 @@ class Conductor(Conducting):
     def _decide_what_is_due(self, campaign: "Campaign") -> None:
         state = campaign.state
         for decision in [d for d in self._pending if d.due(state)]:
-            decision.apply(campaign)
+            campaign.engineer.apply(decision)
             self._pending.remove(decision)
             self._keep(campaign)
 

@@ -42,10 +42,9 @@ from advisor.simulators.inputs import other_controls
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.mirror import mirrored
 from advisor.simulators.protocol import Condition, Inputs, Replay, Simulator
-from advisor.simulators.static_errors import with_static_errors
+from advisor.simulators.static_errors import trim_differences, with_static_errors
 from advisor.simulators.surrogate import Surrogate, surrogate_of
 from advisor.simulators.taken_back import with_unseen_shrink, without_worse
-from advisor.simulators.trims import trim_differences
 from advisor.simulators.unseen import Flown, UnseenManeuvers, changes_something, resaid, shrink_on, unseen_of
 
 _FLIES, _DIAGNOSED, _FOUND = 0.2, 0.9, 0.95

@@ -19,6 +19,7 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
+from advisor.flight.signals.motion import integrated
 from advisor.simulators.protocol import Replay
 from advisor.words.problems import UnusableInputError
 
@@ -73,7 +74,7 @@ def interface_fault(replay: Replay) -> InterfaceFault | None:
         in_degrees = any(_agrees(_in_radians(replay, names)) for names in (large, [*large, "q"]))
         mend = "Give angles in rad, and check q, which is in rad/s."
         return InterfaceFault(told, "in degrees", mend) if in_degrees else None
-    turned = _integrated(replay.q, replay.t)
+    turned = integrated(replay.t, replay.q)
     if np.ptp(turned) < _MOVES_RAD:
         return None
     fault = _of_the_angles(replay, turned)
@@ -95,7 +96,7 @@ def _mended(replay: Replay, fault: InterfaceFault) -> Replay:
 
 def _misfit(replay: Replay) -> float:
     """Return the inconsistency of θ with ∫q dt, and of α with the path, as shares of these motions."""
-    turned = _integrated(replay.q, replay.t)
+    turned = integrated(replay.t, replay.q)
     pairs = (
         (replay.theta - replay.theta[0], turned),
         (replay.alpha - replay.alpha[0], turned + _path_turning(replay)),
@@ -135,7 +136,7 @@ def _slopes(replay: Replay, turned: FloatArray) -> tuple[float, float, float]:
 
 def _agrees(replay: Replay) -> bool:
     """Return whether the outputs of a replay are consistent with each other."""
-    return all(_is(slope, 1.0) for slope in _slopes(replay, _integrated(replay.q, replay.t)))
+    return all(_is(slope, 1.0) for slope in _slopes(replay, integrated(replay.t, replay.q)))
 
 
 def _in_radians(replay: Replay, names: Sequence[str]) -> Replay:
@@ -200,10 +201,10 @@ def side_fault(replay: Replay) -> InterfaceFault | None:
         return None
     if np.max(np.abs(bank)) > np.pi:
         return InterfaceFault("the bank angle", "in degrees", "Give angles in rad and rates in rad/s.")
-    rolled = _integrated(p, replay.t)
+    rolled = integrated(replay.t, p)
     if np.ptp(rolled) > _MOVES_RAD:
         swept = np.tan(replay.theta) * (replay.q * np.sin(bank) + r * np.cos(bank))
-        by_p = _slope(rolled, bank - bank[0] - _integrated(swept, replay.t))
+        by_p = _slope(rolled, bank - bank[0] - integrated(replay.t, swept))
         if _is(by_p, -1.0):
             return _sign("p", "with the sign reversed: positive is right wing down")
         if _is(by_p, 1.0 / _PER_RAD):
@@ -211,8 +212,8 @@ def side_fault(replay: Replay) -> InterfaceFault | None:
     if a_y is None or beta is None:
         return None
     weight = GRAVITY_M_S2 * np.cos(replay.theta) * np.sin(bank)
-    pushed = _integrated((a_y + weight) / replay.airspeed_m_s + np.sin(replay.alpha) * p, replay.t)
-    turned = _integrated(-np.cos(replay.alpha) * r, replay.t)
+    pushed = integrated(replay.t, (a_y + weight) / replay.airspeed_m_s + np.sin(replay.alpha) * p)
+    turned = integrated(replay.t, -np.cos(replay.alpha) * r)
     if np.ptp(turned) < _MOVES_RAD:
         return None
     by_push, by_turn = np.linalg.lstsq(np.column_stack([pushed, turned]), beta - beta[0])[0]
@@ -231,13 +232,7 @@ def _path_turning(replay: Replay) -> FloatArray:
     along = replay.a_x if replay.a_x is not None else GRAVITY_M_S2 * np.sin(replay.theta)
     force = replay.a_z * np.cos(replay.alpha) - along * np.sin(replay.alpha)
     rate = (force + GRAVITY_M_S2 * np.cos(path)) / replay.airspeed_m_s
-    return _integrated(rate - rate[0], replay.t)
-
-
-def _integrated(rate: FloatArray, t: FloatArray) -> FloatArray:
-    """Return the integral of a rate over time, by the trapezoidal rule, shape (m,)."""
-    steps = 0.5 * (rate[1:] + rate[:-1]) * np.diff(t)
-    return np.concatenate([[0.0], np.cumsum(steps)])
+    return integrated(replay.t, rate - rate[0])
 
 
 def _slope(x: FloatArray, y: FloatArray) -> float:

@@ -43,7 +43,8 @@ def foreign_properties(roots: Iterable[ET.Element]) -> tuple[str, ...]:
             text = element.text or ""
             named = element.get("name", "")
             if named:
-                written.update((named, f"fcs/{_dashed(named)}"))
+                # JSBSim makes this property from a component's name.
+                written.update((named, f"fcs/{named.strip().lower().replace(' ', '-')}"))
             if element.tag == "output" or (element.tag == "property" and parent.tag in _SECTIONS):
                 written.add(text.strip())
                 continue
@@ -59,11 +60,6 @@ def _without_prose(parent: ET.Element, element: ET.Element) -> Iterator[tuple[ET
     yield parent, element
     for child in element:
         yield from _without_prose(element, child)
-
-
-def _dashed(name: str) -> str:
-    """Return the property name that JSBSim makes from a component's name."""
-    return name.strip().lower().replace(" ", "-")
 
 
 FORCE = "external_reactions/advisor-force"

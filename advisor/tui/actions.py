@@ -6,9 +6,9 @@ from math import inf, isfinite
 
 from textual.app import App
 
+from advisor.campaign.hand_decisions import HandDecision
 from advisor.flight.maneuvers.marks import LONGEST_S
 from advisor.session.conducting import Conducting
-from advisor.session.hand import HandDecision
 from advisor.session.source import LinkRequest, Tempo
 from advisor.session.view import View
 from advisor.tui.screens.face import Face

@@ -4,7 +4,7 @@ from math import log
 
 import pytest
 
-from advisor.decision.axes.lateral_levels import lateral_levels
+from advisor.decision.axes.lateral_requirements import lateral_levels
 from advisor.oem.axes.lateral.estimate import LateralModes
 from advisor.oem.flying_qualities import Quality
 

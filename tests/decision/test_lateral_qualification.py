@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.decision.axes.lateral_qualification import (
+from advisor.decision.axes.lateral_requirements import (
     dutch_roll_tests,
     lateral_qualification,
     peak_roll_rate,

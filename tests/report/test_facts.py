@@ -7,8 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from advisor.oem.estimate import InstrumentEstimate
-from advisor.report.facts.estimates import instrument_facts, of_all, of_one
-from advisor.report.facts.fact import Fact
+from advisor.report.facts.estimates import Fact, instrument_facts, of_all, of_one
 from tests.decision.campaigns import estimate
 from tests.tui import flights
 

@@ -8,12 +8,11 @@ from math import inf
 import numpy as np
 import pytest
 
-from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.hand_decisions import ByHand, HandDecision
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.signals.messages import Columns
 from advisor.session.conducting import SessionReport
 from advisor.session.conductor import Conductor
-from advisor.session.hand import HandDecision
 from advisor.session.replay import LogPlayer
 from advisor.words.problems import UnusableInputError
 from tests.tui import flights
@@ -143,7 +142,7 @@ def test_decisions_by_hand_survive_a_jump_back():
 
 def test_including_again_records_its_reason_as_a_note():
     campaign = staged()
-    HandDecision("include", "the gust was harmless", 2).apply(campaign)
+    campaign.engineer.apply(HandDecision("include", "the gust was harmless", 2))
     assert campaign.calls == [("include", 2), ("note", 2, "included again: the gust was harmless")]
 
 

@@ -7,10 +7,10 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+from advisor.campaign.hand_decisions import HandDecision
 from advisor.oem.estimate import Estimate
 from advisor.session.conducting import Conducting, SessionReport, changes
 from advisor.session.conductor import Conductor
-from advisor.session.hand import HandDecision
 from advisor.session.remote import ConductorTask, RemoteConductor
 from advisor.session.source import LinkHealth, Playback
 from advisor.tui.app import AdvisorApp

@@ -11,8 +11,7 @@ from advisor.flight.signals.record import Channel
 from advisor.gap.records.prepare import prepare
 from advisor.simulators.compare import compare
 from advisor.simulators.protocol import Condition, Inputs
-from advisor.simulators.static_errors import is_off
-from advisor.simulators.trims import trim_differences
+from advisor.simulators.static_errors import is_off, trim_differences
 from tests.simulators.nonlinear import TRIM_RAD, Nonlinear, flown
 
 CALIBRATED = Aircraft(elevator=Elevator(calibration=((1000.0, -25.0), (2000.0, 25.0))))

@@ -11,8 +11,8 @@ from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import FmuTrim
 from advisor.flight.signals.channels import quantities
 from advisor.flight.signals.messages import Columns
+from advisor.flight.signals.motion import along_heading
 from advisor.flight.signals.record import Channel
-from advisor.flight.signals.wind import along_heading
 from advisor.gap.records.prepare import prepare
 from advisor.mavlink.ardupilot.ardupilot_log import read_dataflash
 from advisor.simulators.air import still_air_said, winds

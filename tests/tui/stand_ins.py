@@ -6,6 +6,7 @@ from queue import Empty, SimpleQueue
 
 import numpy as np
 
+from advisor.campaign.engineer import Engineer
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.state import AxisName, CampaignState, JudgedManeuver
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -83,6 +84,8 @@ class StagedCampaign:
     def finish(self) -> list[object]:
         self.calls.append(("finish",))
         return []
+
+    apply = Engineer.apply
 
     def exclude(self, number: int, because: str, axis: AxisName = "pitch") -> None:
         self.calls.append(("exclude", number, because))

@@ -6,7 +6,7 @@ import pytest
 
 from advisor.session.source import LinkHealth
 from advisor.tui.panes.alarm import Alarm
-from advisor.tui.panes.big_word import BigWord
+from advisor.tui.panes.pilot import BigWord
 from advisor.words.problems import Problem, UnusableInputError
 from tests.tui import flights
 from tests.tui.stage import stage

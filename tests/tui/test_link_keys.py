@@ -7,7 +7,7 @@ from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.session.replay import LogPlayer
 from advisor.session.source import LinkHealth, LinkRequest
 from advisor.tui.explaining import keys_at_hand
-from advisor.tui.panes.big_word import BigWord
+from advisor.tui.panes.pilot import BigWord
 from advisor.tui.panes.status_line import KeysLine
 from advisor.tui.settings import Settings
 from advisor.words.problems import Problem

@@ -5,7 +5,7 @@ from typing import NoReturn
 import pytest
 
 from advisor.session.view import View
-from advisor.tui.panes.big_word import BigWord
+from advisor.tui.panes.pilot import BigWord
 from tests.tui import flights
 from tests.tui.stage import stage
 

@@ -9,10 +9,9 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.session.source import LinkHealth
 from advisor.session.view import View
 from advisor.tui.advice import advise
-from advisor.tui.panes.big_word import BigWord
-from advisor.tui.panes.gauge import how_far
 from advisor.tui.panes.last_verdict import for_the_pilot
 from advisor.tui.panes.limits_now import limits_now
+from advisor.tui.panes.pilot import BigWord, how_far
 from advisor.tui.stick_drawing import stick_drawing, stick_line
 from advisor.words.problems import Problem
 from tests.tui import flights

@@ -9,7 +9,7 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.session.conductor import Conductor
 from advisor.session.live import LinkSource
 from advisor.tui.app import AdvisorApp
-from advisor.tui.panes.big_word import BigWord
+from advisor.tui.panes.pilot import BigWord
 from advisor.tui.settings import Settings
 from tests.tui.stage import Stage
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from advisor.campaign.hand_decisions import HandDecision
 from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import NextInput
-from advisor.session.hand import HandDecision
 from advisor.session.view import SideView
 from advisor.tui.advice import advise
 from advisor.tui.settings import Settings

@@ -13,7 +13,7 @@ from advisor.cli import narrator
 from advisor.process import liveness
 from advisor.session.conducting import SessionReport
 from advisor.session.remote import ConductorTask, RemoteConductor
-from advisor.tui.panes.big_word import BigWord
+from advisor.tui.panes.pilot import BigWord
 from tests.tui import elsewhere, flights
 from tests.tui.stage import stage
 

@@ -8,7 +8,7 @@ import pytest
 from advisor.aircraft.reference import PARAMETERS as NAMES
 from advisor.tui.advice import Word
 from advisor.tui.block_letters import block_letters
-from advisor.tui.panes.gauge import bar
+from advisor.tui.panes.pilot import bar
 from advisor.words.digits import with_half
 from advisor.words.quantities import PARAMETERS, channel
 

@@ -10,8 +10,7 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.single_maneuver import failed, untold
 from advisor.campaign.state import JudgedManeuver, LateralState
 from advisor.decision.axes.lateral import RESPONSES, judge_lateral
-from advisor.decision.axes.lateral_input import FlownInput
-from advisor.decision.axes.lateral_stop import lateral_flight_test
+from advisor.decision.axes.lateral_stop import FlownInput, lateral_flight_test
 from advisor.decision.change import find_change
 from advisor.decision.heard import Heard
 from advisor.decision.history import CandidateManeuver

@@ -11,8 +11,7 @@ import click
 from advisor.analysis.axes.lateral import SideCompared, accepted_of, compare_side_flown, compare_side_logs
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
-from advisor.cli.gap_asked import GapAsked
-from advisor.cli.gap_figure import write_figure
+from advisor.cli.gap_asked import GapAsked, write_figure
 from advisor.cli.improvement_export import listed, write_exports
 from advisor.cli.options import USAGE
 from advisor.cli.proving import document as proof_document
@@ -23,8 +22,8 @@ from advisor.exports.models.axes.lateral import prove_side, stays_of_side
 from advisor.exports.models.proof import Proof
 from advisor.gap.result import IMPROVING
 from advisor.report.axes.lateral_gap import side_gap_document, side_gap_lines, whole_document
-from advisor.report.console import PlainConsole
 from advisor.report.gap_causes import why_of
+from advisor.report.table import PlainConsole
 from advisor.words.printable import printable
 
 

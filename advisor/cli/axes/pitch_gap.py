@@ -10,8 +10,7 @@ import click
 
 from advisor.analysis import gap as reading
 from advisor.campaign.hand_decisions import ByHand
-from advisor.cli.gap_asked import GapAsked
-from advisor.cli.gap_figure import write_figure
+from advisor.cli.gap_asked import GapAsked, write_figure
 from advisor.cli.improvement_export import listed, write_exports
 from advisor.cli.options import USAGE, decided_on
 from advisor.cli.proving import document as proof_document
@@ -22,10 +21,10 @@ from advisor.exports.models.axes.pitch import prove, stays_of
 from advisor.exports.models.flown import FlownModel, SideModel, improved_model
 from advisor.exports.models.proof import Proof
 from advisor.exports.models.write import ExportOutcome
-from advisor.report.console import PlainConsole
 from advisor.report.gap_document import gap_document
 from advisor.report.gap_screen import GapScreen
 from advisor.report.gap_steps import next_steps
+from advisor.report.table import PlainConsole
 from advisor.simulators.compare import Compared
 from advisor.words.plain import plain
 from advisor.words.printable import printable

@@ -24,7 +24,8 @@ def write_mcap(data: Dataset, folder: Path) -> None:
     record, one message for each parameter. The schemas contain units and meanings. Unknown numbers are null.
     """
     for number, recording in enumerate(data.recordings, start=1):
-        tables = [*recording.channels, *(_of_record(t, number) for t in data.tables if _is_of_record(t))]
+        results = [t for t in data.tables if t.name not in ("channels", "estimates")]
+        tables = [*recording.channels, *(_of_record(t, number) for t in results)]
         estimates = [data.table("estimates")] if number == len(data.recordings) else []
         with (folder / f"{recording.name}.mcap").open("wb") as file:
             _write(file, data, [t for t in tables if len(t)], estimates, _end_s(recording))
@@ -76,10 +77,6 @@ def _messages(
 
 def _known(value: Any) -> Any:
     return None if isinstance(value, float) and not np.isfinite(value) else value
-
-
-def _is_of_record(table: FlightTable) -> bool:
-    return table.name not in ("channels", "estimates")
 
 
 def _of_record(table: FlightTable, number: int) -> FlightTable:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from advisor.flight.instruments.measured import Measured
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 
@@ -48,6 +49,15 @@ class DelayedFit:
     """Shape (k,): factors of the summands."""
     factor_stds: FloatArray
     """Shape (k,): standard deviations of the factors, 0 for a known factor."""
+
+    def factor(self, k: int = 0) -> Measured:
+        """Return the factor of a summand."""
+        return Measured(float(self.factors[k]), float(self.factor_stds[k]))
+
+    @property
+    def lateness(self) -> Measured:
+        """Delay of the first summand relative to the sum, s."""
+        return Measured(-float(self.delays_s[0]), float(np.sqrt(self.delay_covariance[0, 0])))
 
 
 class _Point(NamedTuple):

@@ -71,12 +71,7 @@ def rate_against_attitude(channels: Channels) -> Evidence:
     if float(np.std(yawing)) > _YAW_SHARE * float(np.std(pitching)):
         return {}
     fit = fit_delays(theta.t, theta.y, [Summand(q.t, pitching - yawing)])
-    if fit is None:
-        return {}
-    return {
-        "theta_scale": Measured(float(fit.factors[0]), float(fit.factor_stds[0])),
-        "q_delay": Measured(-float(fit.delays_s[0]), float(np.sqrt(fit.delay_covariance[0, 0]))),
-    }
+    return {} if fit is None else {"theta_scale": fit.factor(), "q_delay": fit.lateness}
 
 
 def force_against_climb(channels: Channels) -> Evidence:
@@ -92,9 +87,7 @@ def force_against_climb(channels: Channels) -> Evidence:
     along = channel_at("a_x", force.t, channels)
     rising = along * np.sin(theta) - force.y * np.cos(theta) * np.cos(bank) - GRAVITY_M_S2
     fit = fit_delays(climb.t, climb.y, [Summand(force.t, rising)])
-    if fit is None:
-        return {}
-    return {"a_z_behind_climb": Measured(-float(fit.delays_s[0]), float(np.sqrt(fit.delay_covariance[0, 0])))}
+    return {} if fit is None else {"a_z_behind_climb": fit.lateness}
 
 
 def force_against_gravity(channels: Channels) -> Evidence:
@@ -136,9 +129,7 @@ def speed_against_force(channels: Channels) -> Evidence:
     theta = channel_at("theta", t, channels)
     rate = speed_rate(channel_at("a_x", t, channels), force.y, theta, alpha, channel_at("bank", t, channels))
     fit = fit_delays(speed.t, speed.y, [Summand(t, rate)], drift=1)
-    if fit is None:
-        return {}
-    return {"speed_scale": Measured(float(fit.factors[0]), float(fit.factor_stds[0]))}
+    return {} if fit is None else {"speed_scale": fit.factor()}
 
 
 def alpha_against_motion(channels: Channels) -> Evidence:
@@ -151,9 +142,7 @@ def alpha_against_motion(channels: Channels) -> Evidence:
         return {}
     t, pitching, turning, t_alpha, alpha = parts
     fit = fit_delays(t_alpha, alpha, [Summand(t, pitching + turning)])
-    if fit is None:
-        return {}
-    return {"alpha_scale": Measured(float(fit.factors[0]), float(fit.factor_stds[0]))}
+    return {} if fit is None else {"alpha_scale": fit.factor()}
 
 
 def rate_moves_alpha(channels: Channels) -> bool | None:

@@ -1,4 +1,4 @@
-"""Kinematics of any aircraft without aerodynamics: gravity, and the rate of the speed."""
+"""Kinematics of any aircraft without aerodynamics: gravity, the rate of the speed, and the wind."""
 
 from collections.abc import Mapping
 
@@ -80,3 +80,20 @@ def integrated(t: FloatArray, rate: FloatArray) -> FloatArray:
     """Return the running integral by trapezoids over stamps ``t`` in s, shape (n,), 0 at the first."""
     total: FloatArray = np.concatenate(([0.0], np.cumsum(np.diff(t) * (rate[1:] + rate[:-1]) / 2.0)))
     return total
+
+
+def along_heading(north: Channel, east: Channel, heading: Channel) -> dict[str, Channel]:
+    """Return the channels ``wind_along`` and ``wind_right`` at the stamps of the wind.
+
+    Parameters
+    ----------
+    north, east
+        Horizontal velocity of the air, m/s, from one message.
+    heading
+        Heading in rad, which may jump by 2π.
+    """
+    facing = np.interp(north.t, heading.t, np.unwrap(heading.y))
+    cos, sin = np.cos(facing), np.sin(facing)
+    to_east = np.interp(north.t, east.t, east.y)
+    of = {"wind_along": cos * north.y + sin * to_east, "wind_right": cos * to_east - sin * north.y}
+    return {name: Channel(name, north.t, y, north.source, north.provenance) for name, y in of.items()}

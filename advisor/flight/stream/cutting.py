@@ -23,12 +23,12 @@ from advisor.flight.maneuvers.markers import marked_span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.purpose import Because, not_an_input
 from advisor.flight.maneuvers.steady_speed import at_steady_speed
+from advisor.flight.signals.motion import along_heading
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
 from advisor.flight.signals.renewal import counted_once
 from advisor.flight.signals.repair import repaired
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import Distrust, distrusted
-from advisor.flight.signals.wind import along_heading
 from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.breaks import Breaks
 from advisor.flight.vehicle.modes import closes_pitch_loop

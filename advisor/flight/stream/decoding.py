@@ -1,4 +1,5 @@
-"""Quantities in the messages of one vehicle, and all data of one power-on."""
+"""Quantities in the messages of one vehicle, their sources that the aircraft file names, and all data of one
+power-on."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -6,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.events import READER_NOTICE, Notice
 from advisor.flight.signals.channels import Decoded, given_airspeed, named_value, of_companion, quantities
 from advisor.flight.signals.messages import Columns, FloatArray
 from advisor.flight.signals.power_on import PowerOn
@@ -62,3 +64,36 @@ def power_on(
     heard = [(master.order, master.t) for master in clock if len(master.t)]
     order, t = map(np.concatenate, zip(*heard, strict=True)) if heard else (np.empty(0, int), np.empty(0))
     return PowerOn(boot, channels, order, t, tuple(modes))
+
+
+_ANY = ("auto", "none", "derived")
+"""Sources that require no message."""
+
+
+class AskedSources:
+    """Reports which named sources of the aircraft file have sent no value."""
+
+    def __init__(self, aircraft: Aircraft) -> None:
+        stated = {"alpha": aircraft.alpha.source, "beta": aircraft.beta.source}
+        self._missing = {name: source for name, source in stated.items() if source not in _ANY}
+        self._names: set[str] = set()
+
+    def hear(self, columns: Columns) -> None:
+        """Keep the names of NAMED_VALUE_FLOAT messages, for the sentence on a missing one."""
+        if self._missing and columns.name == "NAMED_VALUE_FLOAT":
+            raw = set(columns.fields["name"].tolist())
+            self._names |= {name.rstrip(b"\0").decode("ascii", "replace") for name in raw}
+
+    def take(self, new: Decoded) -> None:
+        """Take samples of a channel from a possible source."""
+        if new.channel in self._missing and len(new.t):
+            del self._missing[new.channel]
+
+    def finish(self) -> Iterator[Notice]:
+        """Yield a notice on each source without a value, once."""
+        for name, source in self._missing.items():
+            others = ", ".join(sorted(self._names))
+            there = f"the named values are {others}" if others else "no named value arrived"
+            why = f"; {there}" if source.startswith(_NAMED) else ""
+            yield Notice(READER_NOTICE, f"{name}.source asks for {source}, which is not in this record{why}.")
+        self._missing = {}

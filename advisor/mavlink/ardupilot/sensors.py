@@ -44,7 +44,8 @@ def flown(table: RecordTable, health: Collection[str]) -> RecordTable:
         return table
     instance = _numbers(table)
     numbers = np.unique(instance)
-    worth = _healthy(table, instance, health).astype(np.int64) * (1 + _used(table))
+    used = np.asarray(table.fields.get(_IN_USE, np.ones(len(table))) != 0)
+    worth = _healthy(table, instance, health).astype(np.int64) * (1 + used)
     state = np.zeros((len(numbers), len(table)), dtype=np.int64)
     for row, number in enumerate(numbers):
         own = instance == number
@@ -163,10 +164,6 @@ def _numbers(table: RecordTable) -> IntArray:
     if "I" not in table.fields:
         return np.zeros(len(table), dtype=np.int64)
     return table.fields["I"].astype(np.int64)
-
-
-def _used(table: RecordTable) -> BoolArray:
-    return np.asarray(table.fields.get(_IN_USE, np.ones(len(table))) != 0)
 
 
 def _healthy(table: RecordTable, instance: IntArray, health: Collection[str]) -> BoolArray:

@@ -1,15 +1,16 @@
-"""Processing of received bytes to accepted frames, and identification of their vehicle."""
+"""Processing of received bytes to accepted frames, and identification of vehicle and ground stations."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+
+from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.flight.vehicle.vehicle import is_aircraft
-from advisor.mavlink.link.ground_stations import is_ground_station
 from advisor.mavlink.link.health import LinkCounters
 from advisor.mavlink.link.transport import Peer
 from advisor.mavlink.wire.framing import Frame, FrameCutter
 from advisor.mavlink.wire.signing import RADIO_STATUS, SignatureCheck
 
-HEARTBEAT = 0
+HEARTBEAT = dialect.MAVLINK_MSG_ID_HEARTBEAT
 MOST_PEERS = 64
 
 
@@ -106,3 +107,27 @@ class Intake:
             self.vehicle = (heartbeat.system, heartbeat.component)
         elif heartbeat.system != self.vehicle[0]:
             self.other_vehicles.add(heartbeat.system)
+
+
+CURE = (
+    "start MAVProxy with --streamrate=-1, set Mission Planner's telemetry rates to -1, or let the vehicle "
+    "control the stream rates in QGroundControl"
+)
+
+
+def is_ground_station(frame: Frame) -> bool:
+    """Return whether a frame is the heartbeat of a ground station."""
+    if frame.message_id != HEARTBEAT:
+        return False
+    payload = frame.payload.ljust(9, b"\0")
+    return (payload[4], payload[5]) == (dialect.MAV_TYPE_GCS, dialect.MAV_AUTOPILOT_INVALID)
+
+
+def who_sets_rates(stations: Collection[int]) -> str:
+    """Return a clause about the station that may have changed the rates, with the remedy."""
+    if not stations:
+        return f"another ground station may set the rates, though none is heard here; {CURE}"
+    which = ", ".join(map(str, sorted(stations)))
+    several = len(stations) > 1
+    who = f"ground stations {which} are" if several else f"ground station {which} is"
+    return f"{who} at work on this link and may set the rates; {CURE}"

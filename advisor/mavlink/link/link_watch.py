@@ -8,8 +8,7 @@ import numpy as np
 
 from advisor.flight.signals.clocks import BootClock
 from advisor.mavlink.link.delivery import Delivery
-from advisor.mavlink.link.ground_stations import who_sets_rates
-from advisor.mavlink.link.intake import Intake
+from advisor.mavlink.link.intake import Intake, who_sets_rates
 from advisor.mavlink.wire.definitions import DEFINITIONS
 from advisor.mavlink.wire.framing import Frame
 

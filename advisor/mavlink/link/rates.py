@@ -7,7 +7,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.link.delivery import Delivery
-from advisor.mavlink.link.ground_stations import is_ground_station, who_sets_rates
+from advisor.mavlink.link.intake import is_ground_station, who_sets_rates
 from advisor.mavlink.link.link_watch import RebootWatch
 from advisor.mavlink.link.message_request import LONGEST_REST_S, MOST_TRIES, MessageRequest
 from advisor.mavlink.link.outgoing import Talker

@@ -2,8 +2,7 @@
 
 from dataclasses import dataclass
 
-from advisor.mavlink.logs.formats import FORMATS, GIVE
-from advisor.mavlink.logs.log_format import LogFormat
+from advisor.mavlink.logs.formats import FORMATS, GIVE, LogFormat
 from advisor.words.problems import Problem
 
 BEGINNING_BYTES = 1 << 20

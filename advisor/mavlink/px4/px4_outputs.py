@@ -60,7 +60,9 @@ def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
                 numbered = {f"{FOLLOWS_PITCH}{16 * port + k}": sense for k, sense in senses.items()}
                 return Outputs([_of_instance(n, one) for n, one in enumerate(moving)], numbered)
     if commands and _varies(commands[0].axes["pitch"]):
-        return Outputs([_of_command(commands[0])], {f"{FOLLOWS_PITCH}1": STANDS_FOR_ELEVATOR})
+        pitch = {1: 1500.0 + 500.0 * commands[0].axes["pitch"]}
+        pulses = _pulses(0, published_us(commands[0].topic), pitch)
+        return Outputs([pulses], {f"{FOLLOWS_PITCH}1": STANDS_FOR_ELEVATOR})
     return Outputs([_of_instance(port, topic) for port, topic in enumerate(moving)], {})
 
 
@@ -143,10 +145,6 @@ def _of_servos(servos: Topic, parameters: Mapping[str, float]) -> list[TimedMess
             port, k = divmod(output.number - 1, 16)
             ports.setdefault(port, {})[k + 1] = np.where(np.isfinite(command), pulses, np.nan)
     return [_pulses(port, published_us(servos), pulses) for port, pulses in ports.items()]
-
-
-def _of_command(command: "Command") -> TimedMessages:
-    return _pulses(0, published_us(command.topic), {1: 1500.0 + 500.0 * command.axes["pitch"]})
 
 
 def _pulses(port: int, at: IntArray, pulses: Mapping[int, FloatArray]) -> TimedMessages:

@@ -6,7 +6,7 @@ from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.state import JudgedManeuver, LateralState
-from advisor.decision.axes.lateral_levels import GROUPS, SOURCE
+from advisor.decision.axes.lateral_requirements import GROUPS, SOURCE
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
 from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
 from advisor.oem.estimate import Estimate

@@ -40,7 +40,8 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
     yield from (f"  {named(name)} {with_error(name, one)}" for name, one in found.instruments.items())
     if found.diagnosis is not None and found.verdict is not None:
         gap, shrink = found.diagnosis.gap, found.diagnosis.shrink
-        yield _capital(size_of_gap(found.verdict, gap))
+        size = size_of_gap(found.verdict, gap)
+        yield f"{size[0].upper()}{size[1:]}"
         if shrink is not None:
             yield f"  {shrink_said(shrink, gap)}"
         if grown := grown_said(found.verdict, gap):
@@ -48,10 +49,6 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
         for name, before in gap.by_channel.items():
             after = gap.by_channel_after[name]
             yield f"  {name:<5} {before:8.2f} before{'' if math.isnan(after) else f', {after:.2f} after'}"
-
-
-def _capital(text: str) -> str:
-    return text[0].upper() + text[1:]
 
 
 def _title(found: SideGap) -> str:

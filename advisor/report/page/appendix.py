@@ -2,18 +2,15 @@
 
 from collections.abc import Iterator
 
-from advisor.report.page.blocks import Block, Paragraph, Section, Verbatim, listing
+from advisor.report.page.blocks import Block, Paragraph, Section, Verbatim, listing, section
 from advisor.report.page.content import Content
 from advisor.report.result_rows import channel_table, message_table
 from advisor.report.table import Table
 
 
-def telemetry(content: Content) -> Section:
-    """Return the doctor's verdict, limits with their remedies, and message rates, log by log."""
-    return Section("telemetry", "Telemetry", tuple(_by_log(content)))
-
-
-def _by_log(content: Content) -> Iterator[Block]:
+@section("telemetry", "Telemetry")
+def telemetry(content: Content) -> Iterator[Block]:
+    """Yield the doctor's verdict, limits with their remedies, and message rates, log by log."""
     for flight, (name, found) in enumerate(zip(content.names, content.doctor, strict=True)):
         yield Paragraph(f"{name}: {found['verdict']}.")
         yield from listing([f"{limit['text']}. Fix: {limit['fix']}." for limit in found["limits"]])
@@ -22,12 +19,9 @@ def _by_log(content: Content) -> Iterator[Block]:
             yield message_table(f"messages-{flight}", found["messages"])
 
 
-def assumptions(content: Content) -> Section:
-    """Return notes about reading and estimate, then the sources of the channels."""
-    return Section("assumptions", "What was assumed", tuple(_assumed(content)))
-
-
-def _assumed(content: Content) -> Iterator[Block]:
+@section("assumptions", "What was assumed")
+def assumptions(content: Content) -> Iterator[Block]:
+    """Yield notes about reading and estimate, then the sources of the channels."""
     analysis = content.analysis
     model = analysis["model"]
     said = [*analysis.get("notes", ()), *analysis["log"]["notes"], *(model["notes"] if model else ())]

@@ -1,9 +1,11 @@
 """Parts of a page in any format: sections of paragraphs, lists, tables and figures."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import wraps
 from typing import Literal
 
+from advisor.report.page.content import Content
 from advisor.report.table import Table
 
 
@@ -62,6 +64,24 @@ class Section:
     """Anchor of the section within the page."""
     title: str
     blocks: tuple[Block, ...]
+
+
+Part = Callable[[Content], Section | None]
+"""Function that makes a section of the page; None without blocks."""
+
+
+def section(name: str, title: str) -> Callable[[Callable[[Content], Iterator[Block]]], Part]:
+    """Turn a function that yields the blocks of a section into one that returns the section."""
+
+    def made(blocks: Callable[[Content], Iterator[Block]]) -> Part:
+        @wraps(blocks)
+        def part(content: Content) -> Section | None:
+            found = tuple(blocks(content))
+            return Section(name, title, found) if found else None
+
+        return part
+
+    return made
 
 
 def listing(items: Sequence[str]) -> tuple[Listing, ...]:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FixedLocator, FuncFormatter, MaxNLocator, NullLocator
 
 from advisor.decision.verdict import limit_percent
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, listing, section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, log_ticks, picture
 from advisor.report.table import Table
@@ -22,12 +22,9 @@ _EXPLAINED = (
 )
 
 
-def criterion(content: Content) -> Section:
-    """Return a figure for each rule, and its values as a table."""
-    return Section("criterion", "Stop criterion", tuple(_blocks(content)))
-
-
-def _blocks(content: Content) -> Iterator[Block]:
+@section("criterion", "Stop criterion")
+def criterion(content: Content) -> Iterator[Block]:
+    """Yield a figure for each rule, and its values as a table."""
     by_rule = content.analysis["flight_test"]["by_rule"]
     limits = {rule: limit_percent(rule, content.aircraft.campaign) for rule in by_rule}
     if all(value is None for one in by_rule.values() for value in one["history_percent"]):

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure as Drawing
 from advisor.aircraft.reference import PARAMETERS
 from advisor.oem.estimate import Estimate
 from advisor.report.facts.estimates import EstimatedParameter, instrument_facts, of_all, of_one
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, ORANGE, picture
 from advisor.report.table import Table
@@ -21,12 +21,9 @@ _TALLEST_IN = 3.2
 """Largest height of a forest plot, inches, so that thirty manoeuvres do not fill a page."""
 
 
-def estimates(content: Content) -> Section:
-    """Return the joint estimate as a table, a forest plot per parameter, then the table of manoeuvres."""
-    return Section("estimates", "Estimates", tuple(_blocks(content)))
-
-
-def _blocks(content: Content) -> Iterator[Block]:
+@section("estimates", "Estimates")
+def estimates(content: Content) -> Iterator[Block]:
+    """Yield the instruments as a table, a forest plot per parameter, then the table of manoeuvres."""
     model, prior = content.state.model, content.aircraft.model
     if model is None:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")

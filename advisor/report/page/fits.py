@@ -10,7 +10,7 @@ from matplotlib.figure import Figure as Drawing
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimate import ChannelFit, Estimate
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, GREY, ORANGE, picture
 from advisor.words.quantiles import NORMAL_95
@@ -32,12 +32,9 @@ Size = Literal["quarter", "sixth"]
 Fitted = tuple[JudgedManeuver, Estimate]
 
 
-def fits(content: Content) -> Section:
-    """Return the best and the worst fit as large pictures, then all others as small ones."""
-    return Section("fits", "Measured against fitted", tuple(_blocks(content)))
-
-
-def _blocks(content: Content) -> Iterator[Block]:
+@section("fits", "Measured against fitted")
+def fits(content: Content) -> Iterator[Block]:
+    """Yield the best and the worst fit as large pictures, then all others as small ones."""
     accepted: list[Fitted] = [
         (j, j.estimate)
         for j in content.state.maneuvers

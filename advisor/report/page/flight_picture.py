@@ -17,7 +17,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import Channel
 from advisor.flight.vehicle.modes import stays
-from advisor.report.page.blocks import Block, Figure, Gallery, Section
+from advisor.report.page.blocks import Block, Figure, Gallery, section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, LAYER, ORANGE, picture
 from advisor.report.page.maneuvers import ANCHORS
@@ -46,13 +46,9 @@ _EXPLAINED = (
 )
 
 
-def flight_picture(content: Content) -> Section | None:
-    """Return a picture of each power-on with a manoeuvre; None without one."""
-    drawn = tuple(_blocks(content))
-    return Section("flight", "The flight in one picture", drawn) if drawn else None
-
-
-def _blocks(content: Content) -> Iterator[Block]:
+@section("flight", "The flight in one picture")
+def flight_picture(content: Content) -> Iterator[Block]:
+    """Yield a picture of each power-on with a manoeuvre."""
     side = content.state.lateral
     both = (content.state.maneuvers, side.maneuvers if side is not None else ())
     for flight, power_on in content.power_ons:

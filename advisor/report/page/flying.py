@@ -12,8 +12,8 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.mil_f_8785c import CATEGORIES, LIMITS, Range, ShortPeriodLimits
-from advisor.report.facts.fact import fact_of
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
+from advisor.report.facts.estimates import fact_of
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, listing, section
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLACK, BLUE, GREY, log_ticks, picture
 from advisor.report.qualities import NAMES
@@ -21,12 +21,9 @@ from advisor.report.table import Table
 from advisor.words.quantiles import PAIR_95
 
 
-def flying(content: Content) -> Section:
-    """Return the section on flying qualities: numbers, levels, coefficients, air."""
-    return Section("flying-qualities", "Flying qualities", tuple(_blocks(content)))
-
-
-def _blocks(content: Content) -> Iterator[Block]:
+@section("flying-qualities", "Flying qualities")
+def flying(content: Content) -> Iterator[Block]:
+    """Yield the flying qualities: numbers, levels, coefficients, air."""
     found = content.analysis["flying_qualities"]
     if found is None:
         yield Paragraph("No manoeuvre is accepted, so there are no flying qualities.")

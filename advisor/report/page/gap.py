@@ -10,7 +10,7 @@ from advisor.gap.result import Unseen, spelled
 from advisor.report.facts.reasons import in_percent, is_shown, weighed
 from advisor.report.facts.sizes import WORSE, marked, short
 from advisor.report.gap_causes import by_reason
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Verbatim, listing
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Verbatim, listing, section
 from advisor.report.page.content import Content, Document
 from advisor.report.page.drawing import BLUE, picture
 from advisor.report.page.gap_picture import caption, gap_picture
@@ -24,14 +24,11 @@ _LINEAR = 10.0
 """Largest gap on a linear axis."""
 
 
-def gap(content: Content) -> Section | None:
-    """Return the section about the diagnosis; None unless requested."""
-    if content.gap is None:
-        return None
-    return Section("gap", "Sim-to-real gap", tuple(_blocks(content.gap)))
-
-
-def _blocks(document: Document) -> Iterator[Block]:
+@section("gap", "Sim-to-real gap")
+def gap(content: Content) -> Iterator[Block]:
+    """Yield the diagnosis; nothing unless requested."""
+    if (document := content.gap) is None:
+        return
     found = document.get("lateral") or document
     if found["gap"] is None:
         yield Paragraph("The gap could not be diagnosed.")

@@ -4,19 +4,16 @@ from collections.abc import Iterator
 
 from advisor.report.facts.estimates import untold
 from advisor.report.page.axes.lateral import decided
-from advisor.report.page.blocks import Block, Paragraph, Section, listing
+from advisor.report.page.blocks import Block, Paragraph, listing, section
 from advisor.report.page.content import Content
 from advisor.report.page.gap import glance
 from advisor.report.result_rows import joint_table
 from advisor.report.table import Table
 
 
-def headline(content: Content) -> Section:
-    """Return the section with flights, decision and evidence, estimates, and gap."""
-    return Section("verdict", "Verdict", tuple(_blocks(content)))
-
-
-def _blocks(content: Content) -> Iterator[Block]:
+@section("verdict", "Verdict")
+def headline(content: Content) -> Iterator[Block]:
+    """Yield flights, decision and evidence, estimates, and gap."""
     verdict, maneuvers = content.analysis["flight_test"], content.analysis["maneuvers"]
     accepted = [m["number"] for m in maneuvers if m["verdict"] == "accepted"]
     yield _flown(content)

@@ -10,7 +10,7 @@ from advisor.decision.history import CandidateManeuver
 from advisor.decision.hold_out import FEWEST, PredictedOutput, predict_last
 from advisor.oem.estimate import Estimate
 from advisor.oem.surface import Servo
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLUE, GREY, ORANGE, picture
 from advisor.words.quantities import CHANNELS, Quantity
@@ -24,12 +24,9 @@ _EXPLAINED = (
 )
 
 
-def prediction(content: Content) -> Section:
-    """Return a picture of each output of the held-out manoeuvre."""
-    return Section("prediction", "Prediction of a held-out manoeuvre", tuple(_blocks(content)))
-
-
-def _blocks(content: Content) -> Iterator[Block]:
+@section("prediction", "Prediction of a held-out manoeuvre")
+def prediction(content: Content) -> Iterator[Block]:
+    """Yield a picture of each output of the held-out manoeuvre."""
     accepted = [j for j in content.state.maneuvers if j.verdict.accepted]
     predicted = predict_last([_flown(judged, content) for judged in accepted])
     if not predicted:

@@ -1,6 +1,5 @@
 """From the data of a flight to the page, as HTML or Markdown."""
 
-from collections.abc import Callable
 from functools import partial
 from importlib.resources import files
 from typing import Literal
@@ -11,7 +10,7 @@ from markupsafe import Markup
 from advisor.process.parts import FailedPart, attempt
 from advisor.report.page.appendix import assumptions, provenance, telemetry
 from advisor.report.page.axes.lateral import lateral
-from advisor.report.page.blocks import Block, Paragraph, Section
+from advisor.report.page.blocks import Block, Paragraph, Part, Section
 from advisor.report.page.content import Content
 from advisor.report.page.criterion import criterion
 from advisor.report.page.drawing import LAYER
@@ -26,7 +25,7 @@ from advisor.report.page.prediction import prediction
 from advisor.words.quantities import CHANNELS
 
 PageFormat = Literal["html", "md"]
-_PARTS = (
+_PARTS: tuple[Part, ...] = (
     headline, flight_picture, gap, estimates, criterion, flying, maneuvers, fits, prediction, lateral,
     telemetry, assumptions, provenance,
 )  # fmt: skip
@@ -41,7 +40,7 @@ def sections(content: Content) -> list[Section]:
     return [section for section in found if section is not None]
 
 
-def _made(part: Callable[[Content], Section | None], content: Content) -> Section | None:
+def _made(part: Part, content: Content) -> Section | None:
     """Return a section, or a sentence about the error that prevented it."""
     name = part.__name__
     made = attempt(f"page, {name.replace('_', ' ')}", partial(part, content))

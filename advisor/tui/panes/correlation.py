@@ -92,7 +92,8 @@ grow at the cost of the other. An input with other frequencies tells them apart.
         if self._number is None:
             return
         below = f"manoeuvre {self._number}{'' if self._single else ', which has no estimate'}"
-        page = Text(f"above the diagonal: {_named_joint(self._joint)}; below: {below}\n")
+        above = "joint estimate" if self._joint is not None else "no joint estimate yet"
+        page = Text(f"above the diagonal: {above}; below: {below}\n")
         joint, single = (_matrix(estimate) for estimate in (self._joint, self._single))
         _append_matrix(page, np.triu(joint, 1) + np.tril(single, -1), self.size.width)
         for of, r in (("joint", joint), (f"manoeuvre {self._number}", single)):
@@ -106,10 +107,6 @@ grow at the cost of the other. An input with other frequencies tells them apart.
 def _matrix(estimate: Estimate | None) -> FloatArray:
     """Return the correlations, shape (8, 8); all NaN without an estimate."""
     return np.full((8, 8), np.nan) if estimate is None else correlation_matrix(estimate.covariance)
-
-
-def _named_joint(joint: Estimate | None) -> str:
-    return "joint estimate" if joint is not None else "no joint estimate yet"
 
 
 def _append_matrix(page: Text, r: FloatArray, width: int) -> None:

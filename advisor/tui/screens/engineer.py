@@ -7,8 +7,8 @@ from textual.containers import Container
 from textual.events import Resize
 from textual.geometry import Size
 
+from advisor.campaign.hand_decisions import HandDecision, Verb
 from advisor.campaign.state import AxisName
-from advisor.session.hand import HandDecision, Verb
 from advisor.session.view import View
 from advisor.tui import keys
 from advisor.tui.panes.alarm import Alarm

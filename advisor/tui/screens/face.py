@@ -9,8 +9,8 @@ from textual.events import Event, ScreenResume
 from textual.message import Message
 from textual.screen import Screen
 
+from advisor.campaign.hand_decisions import HandDecision
 from advisor.process.parts import Parts
-from advisor.session.hand import HandDecision
 from advisor.session.view import View
 from advisor.tui.panes.ask import Ask
 from advisor.tui.panes.lines import Part

@@ -5,12 +5,9 @@ from textual.events import Resize
 
 from advisor.tui.panes.alarm import Alarm
 from advisor.tui.panes.ask import Ask
-from advisor.tui.panes.big_word import BigWord, Why
-from advisor.tui.panes.crew_notes import CrewNotes
-from advisor.tui.panes.gauge import Gauge
 from advisor.tui.panes.last_verdict import LastVerdict
 from advisor.tui.panes.limits_now import LimitsNow
-from advisor.tui.panes.next_input import NextInput
+from advisor.tui.panes.pilot import BigWord, CrewNotes, Gauge, NextInput, Why
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.status_line import KeysLine, StatusLine
 from advisor.tui.screens.face import Face

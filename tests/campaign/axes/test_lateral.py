@@ -7,6 +7,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import SideControl
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.campaign.campaign import Campaign
+from advisor.campaign.hand_decisions import HandDecision
 from advisor.flight.maneuvers.events import SideManeuverFlown
 from advisor.flight.maneuvers.markers import SWEPT
 from advisor.flight.maneuvers.marks import Mark
@@ -15,7 +16,6 @@ from advisor.flight.vehicle.parameters import filter_delay_s
 from advisor.report.axes.lateral import lateral_document
 from advisor.report.facts.decision import lateral_decision
 from advisor.report.result_rows import joint_table, maneuver_line
-from advisor.session.hand import HandDecision
 from tests.flight.columns import Wire, heartbeat, plane_parameters
 from tests.oem.axes.lateral.builders import JET, flown, steps
 
@@ -241,8 +241,8 @@ def test_a_decision_by_hand_on_roll_and_yaw_leaves_pitch_alone(both):
     campaign.finish()
     decision = HandDecision("exclude", "gust", 2, "lateral")
     assert decision.due(campaign.state)
-    decision.apply(campaign)
-    HandDecision("note", "rough air", 1, "lateral").apply(campaign)
+    campaign.engineer.apply(decision)
+    campaign.engineer.apply(HandDecision("note", "rough air", 1, "lateral"))
     first, second = lateral_document(campaign.state.lateral, AIRCRAFT)["maneuvers"]
     assert (first["excluded_because"], first["notes"]) == (None, ["rough air"])
     assert (second["excluded_because"], second["verdict"]) == ("gust", "rejected")

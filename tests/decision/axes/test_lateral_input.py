@@ -6,7 +6,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import SideControl
-from advisor.decision.axes.lateral_input import FlownInput, next_lateral
+from advisor.decision.axes.lateral_stop import FlownInput, next_lateral
 from tests.campaign.side_builders import estimate, judged
 
 AIRCRAFT = Aircraft()

@@ -48,12 +48,7 @@ def rate_against_bank(channels: Channels) -> Evidence:
     if np.ptp(bank.y) < MOVED_RAD or np.max(np.abs(bank.y)) > _TURNED_RAD:
         return {}
     fit = fit_delays(bank.t, bank.y, [Summand(p.t, p.y + np.tan(theta) * by_turn)])
-    if fit is None:
-        return {}
-    return {
-        "bank_scale": Measured(float(fit.factors[0]), float(fit.factor_stds[0])),
-        "p_delay": Measured(-float(fit.delays_s[0]), float(np.sqrt(fit.delay_covariance[0, 0]))),
-    }
+    return {} if fit is None else {"bank_scale": fit.factor(), "p_delay": fit.lateness}
 
 
 def sideslip_against_motion(channels: Channels) -> Evidence:
@@ -76,7 +71,7 @@ def sideslip_against_motion(channels: Channels) -> Evidence:
     both = [Summand(t, weight + turn, 1.0), Summand(t, force)]
     with_force = fit_delays(stamps, beta, both) if np.ptp(force) > 0.0 else None
     if with_force is not None:
-        found["beta_by_force"] = Measured(float(with_force.factors[1]), float(with_force.factor_stds[1]))
+        found["beta_by_force"] = with_force.factor(1)
     return found
 
 
@@ -103,11 +98,8 @@ def force_against_motion(channels: Channels) -> Evidence:
 
 def _factors(name: str, apart: DelayedFit, together: DelayedFit) -> dict[str, Measured]:
     """Return the separate factors of weight and turn rate, and their common factor."""
-    values = (*apart.factors, *together.factors), (*apart.factor_stds, *together.factor_stds)
-    parts = ("weight", "turn", "motion")
-    return {
-        f"{name}_by_{part}": Measured(float(f), float(s)) for part, f, s in zip(parts, *values, strict=True)
-    }
+    parts = {"weight": apart.factor(), "turn": apart.factor(1), "motion": together.factor()}
+    return {f"{name}_by_{part}": factor for part, factor in parts.items()}
 
 
 def _parts(channels: Channels, name: str) -> tuple[FloatArray, FloatArray, FloatArray] | None:

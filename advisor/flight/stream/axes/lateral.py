@@ -12,7 +12,6 @@ from advisor.flight.maneuvers.axes.lateral import (
     BESIDE,
     TAIL_S,
     TOGETHER_S,
-    SideInput,
     SideMovement,
     first_input,
     input_span,
@@ -118,23 +117,18 @@ class SidePath:
                 if watch.onset_s is not None and up_to_order is not None
             ),
         ]
-        span = input_span(found, sorted(ahead, key=_onset), self._newest_s, yaw_rate)
-        self._pending = [one for one in self._pending if not _is_hidden(one, found, span)]
+        span = input_span(found, sorted(ahead, key=lambda one: one.span.start_s), self._newest_s, yaw_rate)
+        # A small movement within the record of another input is no input of its own.
+        least_rad = BESIDE * found.main.amplitude
+        self._pending = [
+            one for one in self._pending if one.span.start_s >= span.end_s or one.amplitude >= least_rad
+        ]
         span = self._marks.before(span)
         maneuver, evidence = self._cutting.side(span, self._boot, up_to_order)
         if self._marks.holds(span) or self._cutting.is_no_side_input(maneuver, found, up_to_order):
             return []
         named_one = replace(maneuver, span=replace(span, kind=named(found)))
         return self._cutting.side_counted(named_one, evidence)
-
-
-def _is_hidden(movement: SideMovement, found: SideInput, span: Span) -> bool:
-    """Return whether a movement is small and lies within the record of another input."""
-    return movement.span.start_s < span.end_s and movement.amplitude < BESIDE * found.main.amplitude
-
-
-def _onset(movement: SideMovement) -> float:
-    return movement.span.start_s
 
 
 def _begun(onset_s: float, amplitude: float, like: SideMovement, loop: Loop) -> SideMovement:

@@ -3,11 +3,44 @@
 A new module in this folder is added automatically.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from importlib import import_module
+from pathlib import Path
 from pkgutil import iter_modules
 
-from advisor.mavlink.logs.log_format import LogFormat
+from advisor.flight.signals.messages import Columns
+from advisor.mavlink.wire.frames import FrameScanner
+from advisor.words.problems import Problem
+
+Read = Callable[[Path, Iterable[str] | None, int, FrameScanner], Iterator[list[Columns]]]
+"""Function that streams the messages of a log. The arguments are the path, the wanted messages (None: all),
+the bytes before the first record, and a scanner."""
+
+
+def nothing_refused(name: str, beginning: bytes) -> Problem | None:
+    """Return None, because the format has no relative that a user may give instead."""
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class LogFormat:
+    """Format of a log file. Each module of ``advisor.mavlink.logs.formats`` makes one ``LogFormat``."""
+
+    holds: str
+    """Content of a log in words: ``DataFlash records``."""
+    given: str
+    """Words with which a user names such a log: ``an ArduPilot .bin``."""
+    ending: str
+    """Usual file ending. The content decides, never the name."""
+    begins_at: Callable[[bytes], int | None]
+    """Function that returns the bytes before the first record; None for another kind of file."""
+    read: Read
+    refusal: Callable[[str, bytes], Problem | None] = nothing_refused
+    """Function that returns a problem for an unreadable relative of the format, from file name and beginning.
+    An encrypted log is an example."""
+    has_magic: bool = True
+    """Whether the format has fixed first bytes. Telemetry has none, and is tried last."""
 
 
 def _found() -> Iterator[LogFormat]:

@@ -3,7 +3,7 @@
 import re
 
 from advisor.mavlink.ardupilot.ardupilot_log import read_dataflash
-from advisor.mavlink.logs.log_format import LogFormat
+from advisor.mavlink.logs.formats import LogFormat
 from advisor.mavlink.records import dataflash, record_scan
 from advisor.words.problems import Problem
 

@@ -1,6 +1,6 @@
 """Telemetry as a ground station records it (``.tlog``), with or without stamps."""
 
-from advisor.mavlink.logs.log_format import LogFormat
+from advisor.mavlink.logs.formats import LogFormat
 from advisor.mavlink.logs.tlog import scan_tlog
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.mavlink.wire.scan import STAMP_BYTES

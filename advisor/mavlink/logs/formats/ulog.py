@@ -1,6 +1,6 @@
 """PX4's log (``.ulg``)."""
 
-from advisor.mavlink.logs.log_format import LogFormat
+from advisor.mavlink.logs.formats import LogFormat
 from advisor.mavlink.px4.ulog import MAGIC, read_ulog
 from advisor.words.problems import Problem
 

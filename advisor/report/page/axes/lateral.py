@@ -3,15 +3,14 @@
 from collections.abc import Iterator
 
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
-from advisor.decision.axes.lateral_levels import GROUPS, SOURCE
-from advisor.decision.axes.lateral_qualification import LateralTest
+from advisor.decision.axes.lateral_requirements import GROUPS, SOURCE, LateralTest
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.mil_f_8785c import MANNED
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
 from advisor.report.facts.decision import INDENT, decisions
 from advisor.report.facts.estimates import untold
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, listing
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, listing, section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import picture
 from advisor.report.page.fits import by_fit, caption_of, paint_rows
@@ -22,15 +21,12 @@ from advisor.report.table import Table
 from advisor.words.vehicle_time import CLOCK
 
 
-def lateral(content: Content) -> Section | None:
-    """Return the section on roll and yaw; None where no aileron and no rudder was flown."""
+@section("roll-and-yaw", "Roll and yaw")
+def lateral(content: Content) -> Iterator[Block]:
+    """Yield roll and yaw; nothing where no aileron and no rudder was flown."""
     state = content.state.lateral
     if state is None or not state.maneuvers:
-        return None
-    return Section("roll-and-yaw", "Roll and yaw", tuple(_blocks(content, state)))
-
-
-def _blocks(content: Content, state: LateralState) -> Iterator[Block]:
+        return
     yield from decided(content.state, pitch=False)
     rows = tuple(
         maneuver_row(one, several=len(content.names) > 1) for one in content.analysis["lateral"]["maneuvers"]

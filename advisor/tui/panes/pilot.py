@@ -1,0 +1,173 @@
+"""Panes of the pilot alone: the word of advice, the next input, the progress, and notes."""
+
+from collections.abc import Iterator
+
+from textual.events import Resize
+
+from advisor.decision.verdict import FlightTestVerdict
+from advisor.decision.verdict import NextInput as Advised
+from advisor.session.view import View
+from advisor.tui.advice import advise, without_word
+from advisor.tui.block_letters import block_letters
+from advisor.tui.panes.last_verdict import symbol_and_word
+from advisor.tui.panes.lines import HangingLines, Labelled, Lines, Part
+from advisor.tui.stick_drawing import drawn
+
+TONES = ("good", "warn", "bad", "quiet")
+
+
+class BigWord(Part, Lines):
+    """The pilot's word of advice in block letters."""
+
+    EITHER_AXIS = True
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.word = ""
+
+    def show(self, view: View) -> None:
+        """Write the word of advice in the colour of its urgency."""
+        advice = advise(view)
+        if advice.word == self.word:
+            return
+        self.word = advice.word
+        for tone in TONES:
+            self.set_class(tone == advice.tone, f"-{tone}")
+        self._write()
+
+    def on_resize(self, event: Resize) -> None:
+        """Use the largest letters that fit."""
+        self._write()
+
+    def _write(self) -> None:
+        if self.word and self.size.width:
+            self.write(block_letters(self.word, self.size.width, self.size.height))
+
+
+class Why(Part, Lines):
+    """The sentence of advice under the pilot's word."""
+
+    EITHER_AXIS = True
+
+    def show(self, view: View) -> None:
+        """Write the sentence of the advice."""
+        self.write(without_word(advise(view).sentence))
+
+
+class NextInput(Part, Lines):
+    """The advised input in words above its drawing. On a low terminal the drawing is one line next to the
+    words."""
+
+    EITHER_AXIS = True
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._advised: Advised | None = None
+
+    def show(self, view: View) -> None:
+        """Draw the input that is advised now, of the axis that lacks most where both are tested."""
+        self._advised = view.plan.next if view.plan is not None else view.state.flight_test.next
+        self._write()
+
+    def on_resize(self, event: Resize) -> None:
+        """Draw as large as there is room."""
+        self._write()
+
+    def _write(self) -> None:
+        if self._advised is not None and self.size.width:
+            self.write(drawn(self._advised, self.size.width, large=self.screen.has_class("-large")))
+
+
+_LAST_SHOWN = 16
+_BAR = 20
+
+
+def bar(share: float, width: int) -> str:
+    """Return a bar that is filled to a fraction, 0 to 1."""
+    filled = min(max(round(share * width), 0), width)
+    return "█" * filled + "·" * (width - filled)
+
+
+class Gauge(Part, HangingLines):
+    """The progress bar of the flight test, and the number of manoeuvres so far."""
+
+    EITHER_AXIS = True
+
+    def show(self, view: View) -> None:
+        """Write the two lines of progress."""
+        self.write_rows((("how far     ", how_far(view)), ("manoeuvres  ", _flown(view))))
+
+
+def how_far(view: View) -> str:
+    """Return the bar with the manoeuvres flown, and how many more are expected."""
+    verdict, flown = view.state.flight_test, len(view.state.maneuvers)
+    if verdict.decision == "stop":
+        return f"{bar(1.0, _BAR)}  complete"
+    remaining = verdict.next.remaining if verdict.next is not None else None
+    accepted = sum(j.verdict.accepted and j.excluded_because is None for j in view.state.maneuvers)
+    if remaining is None and accepted:
+        return f"{bar(0.0, _BAR)}  {accepted} accepted so far"
+    if remaining is None:
+        return f"{bar(0.0, _BAR)}  known after the first good manoeuvre"
+    if remaining.median is None:
+        return f"{bar(0.0, _BAR)}  no end in sight"
+    return f"{bar(flown / (flown + remaining.median), _BAR)}  {remaining.spoken}"
+
+
+def _flown(view: View) -> str:
+    maneuvers = view.state.maneuvers
+    if not maneuvers:
+        return "none flown yet"
+    accepted = sum(j.verdict.accepted and j.excluded_because is None for j in maneuvers)
+    marks = " ".join(symbol_and_word(j)[0] for j in maneuvers[-_LAST_SHOWN:])
+    return f"{marks}   {accepted} accepted of {len(maneuvers)}"
+
+
+def flying_in_words(view: View) -> str:
+    """Return a line on the manoeuvre in flight."""
+    if view.health.behind:
+        return f"not known: {view.health.behind}"
+    if view.health.condition == "ended":
+        return "nothing: the log has ended"
+    marked_s = view.state.marking_since_s
+    if marked_s is not None:
+        return f"marked by hand for {view.state.now_s - marked_s:.0f} s"
+    return "between manoeuvres" if view.state.flying is None else view.state.progress
+
+
+class CrewNotes(Part, HangingLines):
+    """The manoeuvre in flight, a fault of the link, and the number of warnings."""
+
+    EITHER_AXIS = True
+
+    def show(self, view: View) -> None:
+        """Write one line each; warnings last, each with its sign."""
+        self.write_rows(_rows(view))
+
+
+def _other_axis(view: View) -> Iterator[Labelled]:
+    """Yield the verdict's word of the axis that is not shown, after its first manoeuvre."""
+    lateral = view.state.lateral
+    if view.elevator is not None and view.elevator.state.maneuvers:
+        yield "elevator    ", _word(view.elevator.state.flight_test)
+    elif view.elevator is None and lateral is not None and lateral.maneuvers:
+        yield "roll, yaw   ", f"{_word(lateral.flight_test)}; key r shows roll and yaw"
+
+
+def _word(verdict: FlightTestVerdict) -> str:
+    """Return a verdict's first words, which its axis shows in large letters."""
+    return verdict.sentence.partition(":")[0]
+
+
+def _rows(view: View) -> Iterator[Labelled]:
+    if view.elevator is None:
+        yield "in the air  ", flying_in_words(view)
+    else:
+        yield "axis        ", "roll and yaw; key r shows the elevator's"
+    yield from _other_axis(view)
+    if view.health.condition in ("poor", "lost"):
+        yield "link        ", view.health.sentence
+    corrected = [found for found in view.state.instruments if found.contradicts and found.used]
+    count = len(view.state.flight_test.warnings) + len(corrected)
+    if count:
+        yield "! ", f"{count} warning{'s' if count > 1 else ''} for the engineer: key e, panes 6 and 7"
