@@ -96,7 +96,7 @@ async def test_correlations_are_written_again_for_a_new_estimate_alone(monkeypat
     async with stage(flights.state(2), settings=ENGINEER, size=(80, 24)) as here:
         await here.press("0")
         pane, written = here.app.screen.query_one(Correlation), list[None]()
-        monkeypatch.setattr(pane, "_write", lambda: written.append(None))
+        monkeypatch.setattr(pane, "_redraw", lambda: written.append(None))
         now = view(here.app.view.state)
         pane.show(now)
         assert len(written) == 0

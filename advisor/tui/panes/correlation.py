@@ -5,7 +5,6 @@ from rich.style import Style
 from rich.text import Text
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
-from textual.events import Resize
 from textual.widgets import Static
 
 from advisor.aircraft.reference import PARAMETERS as NAMES
@@ -13,6 +12,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.estimate import Estimate
 from advisor.session.view import View
+from advisor.tui.panes.lines import Redrawn
 from advisor.tui.panes.pane import Pane
 from advisor.tui.table_rows import TableRows
 from advisor.words.digits import signed
@@ -24,7 +24,7 @@ _WIDE_CELL, _NARROW_CELL = 6, 5
 _STRONG = Style(reverse=True)
 
 
-class Correlation(Pane):
+class Correlation(Redrawn, Pane):
     """Correlation matrix: the joint estimate above the diagonal, the selected manoeuvre below."""
 
     OF_ELEVATOR = True
@@ -43,18 +43,14 @@ A pair above {HIGH_CORRELATION} is shown reversed and listed below: the input mo
 grow at the cost of the other. An input with other frequencies tells them apart.
 """
 
+    _joint: Estimate | None = None
+    _single: Estimate | None = None
+    _number: int | None = None
+
     def compose(self) -> ComposeResult:
         """Lay out a text that scrolls."""
         with VerticalScroll():
             yield Static("No manoeuvre has ended yet.", id="matrix")
-
-    def on_mount(self) -> None:
-        """Begin without an estimate."""
-        super().on_mount()
-        self._joint: Estimate | None = None
-        self._single: Estimate | None = None
-        self._number: int | None = None
-        self._why = ""
 
     def show(self, view: View) -> None:
         """Write the correlation matrix after an estimate has changed."""
@@ -67,11 +63,7 @@ grow at the cost of the other. An input with other frequencies tells them apart.
             return
         self._joint, self._single, self._number = view.state.model, single, number
         self.subtitle(f"manoeuvre {number}")
-        self._write()
-
-    def on_resize(self, event: Resize) -> None:
-        """Write correlations without the zero before the point if the pane is narrow."""
-        self._write()
+        self._redraw()
 
     def rows(self) -> TableRows | None:
         """Return one row for each pair of parameters and each estimate."""
@@ -88,7 +80,8 @@ grow at the cost of the other. An input with other frequencies tells them apart.
                 ]
         return TableRows(("estimate", "parameter", "with", "correlation"), tuple(rows))
 
-    def _write(self) -> None:
+    def _redraw(self) -> None:
+        """Write correlations without the zero before the point if the pane is narrow."""
         if self._number is None:
             return
         below = f"manoeuvre {self._number}{'' if self._single else ', which has no estimate'}"

@@ -4,12 +4,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from textual.app import ComposeResult
-from textual.events import Resize
 
 from advisor.aircraft.reference import PARAMETERS as NAMES
 from advisor.flight.signals.messages import FloatArray
 from advisor.report.facts.estimates import of_all, of_one
 from advisor.session.view import View
+from advisor.tui.panes.lines import Redrawn
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Level, Series
 from advisor.tui.plot.widget import Plot
@@ -20,7 +20,7 @@ _MANY = 4
 """Number of adjacent plots above which there is no room for the name of their x axis."""
 
 
-class Courses(Pane):
+class Courses(Redrawn, Pane):
     """Eight small plots: each manoeuvre's estimate with its interval against the manoeuvre's number."""
 
     OF_ELEVATOR = True
@@ -37,27 +37,21 @@ An interval that excludes the joint estimate shows a manoeuvre that disagrees; a
 drifts shows an aircraft that changes.
 """
 
+    _view: View | None = None
+
     def compose(self) -> ComposeResult:
         """Lay out one plot for each parameter."""
         for name in NAMES:
             yield Plot(history_chart(None, name), id=f"course-{name}")
 
-    def on_mount(self) -> None:
-        """Begin without an estimate."""
-        super().on_mount()
-        self._view: View | None = None
-
     def show(self, view: View) -> None:
         """Draw the history of all parameters after an estimate has changed."""
         if self.changed(view.state.maneuvers, view.state.model):
             self._view = view
-            self._draw()
+            self._redraw()
 
-    def on_resize(self, event: Resize) -> None:
+    def _redraw(self) -> None:
         """Number the manoeuvres under the lowest plots of a small terminal, where the others have no room."""
-        self._draw()
-
-    def _draw(self) -> None:
         across = self.styles.grid_size_columns
         for k, name in enumerate(NAMES):
             lowest, roomy = k >= len(NAMES) - across, across < _MANY

@@ -29,7 +29,6 @@ begin anew where a line says that another power-on, flight or vehicle begins.
 
     def on_mount(self) -> None:
         """Keep the newest sentence visible."""
-        super().on_mount()
         self.query_one(VerticalScroll).anchor()
 
     def show(self, view: View) -> None:

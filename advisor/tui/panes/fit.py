@@ -2,7 +2,6 @@
 
 import numpy as np
 from textual.app import ComposeResult
-from textual.events import Resize
 
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.signals.messages import FloatArray
@@ -21,6 +20,7 @@ from advisor.tui.panes.fit_charts import (
     residual_chart,
     rows_of_fit,
 )
+from advisor.tui.panes.lines import Redrawn
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.widget import Plot
 from advisor.tui.plot.window import Sight, Window
@@ -38,7 +38,7 @@ _INPUTS = (*ELEVATOR_AXIS.inputs, *SIDE_AXIS.inputs)
 _OUTPUTS = (*ELEVATOR_AXIS.outputs, *SIDE_AXIS.outputs)
 
 
-class Fit(Pane):
+class Fit(Redrawn, Pane):
     """The controls, then two plots for each output: measured with fitted, and the residual."""
 
     BINDINGS = keys.FIT
@@ -63,6 +63,13 @@ the residuals of both. The selected manoeuvre keeps its colours, the second is a
 with 0 takes the second away.
 """
 
+    _first = 0
+    _axis = ELEVATOR_AXIS
+    _judged: JudgedManeuver | None = None
+    _over: JudgedManeuver | None = None
+    _over_number: int | None = None
+    _sight: Sight | None = None
+
     def compose(self) -> ComposeResult:
         """Lay out all plots; those without room are hidden."""
         for name in _INPUTS:
@@ -70,16 +77,6 @@ with 0 takes the second away.
         for name in _OUTPUTS:
             yield Plot(no_fit(name, "no manoeuvre has ended yet."), id=f"fit-{name}", classes="fit")
             yield Plot(no_fit(name, ""), id=f"residual-{name}", classes="residual")
-
-    def on_mount(self) -> None:
-        """Begin with the angle of attack."""
-        super().on_mount()
-        self._first = 0
-        self._axis = ELEVATOR_AXIS
-        self._judged: JudgedManeuver | None = None
-        self._over: JudgedManeuver | None = None
-        self._over_number: int | None = None
-        self._sight: Sight | None = None
 
     def show(self, view: View) -> None:
         """Draw the selected manoeuvre, and any manoeuvre laid over it, after a change."""
@@ -94,12 +91,12 @@ with 0 takes the second away.
             first, last = extent(judged, over)
             before = self._sight or Sight(Window.whole(first, last))
             self._sight = before.over(first, last, self._stamps())
-        self._draw()
+        self._redraw()
 
     def next_output(self) -> None:
         """Bring the next output to the top."""
         self._first = (self._first + 1) % len(self._outputs())
-        self._draw()
+        self._redraw()
 
     def lay_over(self, number: int | None) -> None:
         """Choose the manoeuvre that the next ``show`` lays over the selected one. None: no manoeuvre is laid
@@ -109,10 +106,6 @@ with 0 takes the second away.
     def rows(self) -> TableRows | None:
         """Return one row for each sample of each channel, visible or not."""
         return rows_of_fit(self._judged, self._over, self._axis) if self._judged is not None else None
-
-    def on_resize(self, event: Resize) -> None:
-        """Show as many outputs as have room."""
-        self._draw()
 
     def on_plot_pointed(self, event: Plot.Pointed) -> None:
         """Show the values at the position of the mouse."""
@@ -146,7 +139,7 @@ with 0 takes the second away.
     def _look(self, sight: Sight | None) -> None:
         if sight is not None and sight != self._sight:
             self._sight = sight
-            self._draw()
+            self._redraw()
 
     def _stamps(self) -> FloatArray:
         """Return the time stamps for the cursor: of the top output, else of the control."""
@@ -157,7 +150,7 @@ with 0 takes the second away.
                 return curve[0]
         return np.zeros(0)
 
-    def _draw(self) -> None:
+    def _redraw(self) -> None:
         inputs = [name for name in self._axis.inputs if self._has(name)] or self._axis.inputs[:1]
         each = max(_ROWS_OF_INPUT, self.size.height // _SHARE_OF_INPUT)
         above = each * len(inputs)

@@ -30,6 +30,18 @@ class Part:
         """Update the part to a new moment. The update is fast if no data of the part have changed."""
 
 
+class Redrawn:
+    """Any widget that is drawn anew at another size."""
+
+    def on_resize(self, event: Resize) -> None:
+        """Draw as much as has room."""
+        self._redraw()
+
+    @abstractmethod
+    def _redraw(self) -> None:
+        """Draw the newest data at the present size."""
+
+
 class Lines(Static):
     """Lines of plain text, because texts of vehicles and people may contain brackets."""
 
@@ -62,7 +74,7 @@ _LEAST = 20
 edge."""
 
 
-class HangingLines(Lines):
+class HangingLines(Redrawn, Lines):
     """Rows of label and text, wrapped at the width of the widget."""
 
     def __init__(self, text: str = "", *, id: str | None = None) -> None:
@@ -72,13 +84,9 @@ class HangingLines(Lines):
     def write_rows(self, rows: Iterable[Labelled]) -> None:
         """Show other rows in the widget. Unchanged rows take no time."""
         self._labelled = tuple(rows)
-        self._wrap()
+        self._redraw()
 
-    def on_resize(self, event: Resize) -> None:
-        """Wrap anew at another width."""
-        self._wrap()
-
-    def _wrap(self) -> None:
+    def _redraw(self) -> None:
         width = self.size.width
         if width and self._labelled:
             self.write("\n".join(_wrapped(label, text, width) for label, text in self._labelled))

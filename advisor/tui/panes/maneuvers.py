@@ -55,16 +55,16 @@ verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each ru
             super().__init__()
             self.number = number
 
+    _shown: tuple[JudgedManeuver, ...] | None = None
+    _judged: JudgedManeuver | None = None
+    _columns: Columns = ()
+
     def compose(self) -> ComposeResult:
         """Lay out one table."""
         yield DataTable(cursor_type="row", zebra_stripes=True, cell_padding=1)
 
     def on_mount(self) -> None:
         """Show the reason for which the table is empty."""
-        super().on_mount()
-        self._shown: tuple[JudgedManeuver, ...] | None = None
-        self._judged: JudgedManeuver | None = None
-        self._columns: Columns = ()
         self.subtitle("none yet: a row appears when a manoeuvre has ended")
 
     def on_resize(self, event: Resize) -> None:

@@ -6,10 +6,12 @@ from rich.style import Style
 from rich.text import Text
 from textual.widgets import Static
 
+from advisor.tui.panes.lines import Redrawn
+
 _BRACKETS = 2
 
 
-class PaneTabs(Static):
+class PaneTabs(Redrawn, Static):
     """Numbered names of the panes on one line, with the visible pane in brackets. A click chooses a pane."""
 
     def __init__(self, titles: Sequence[str], short: Sequence[str]) -> None:
@@ -17,16 +19,12 @@ class PaneTabs(Static):
         self._titles, self._short = titles, short
         self._chosen = 0
 
-    def on_resize(self) -> None:
-        """Choose the titles that have room."""
-        self._write()
-
     def choose(self, number: int) -> None:
         """Mark one pane."""
         self._chosen = number
-        self._write()
+        self._redraw()
 
-    def _write(self) -> None:
+    def _redraw(self) -> None:
         room = self.size.width - _BRACKETS
         titles = self._titles if len(" ".join(self._titles)) <= room else self._short
         line = Text()

@@ -47,17 +47,14 @@ simulator's value as a dashed line. *not identifiable*: the input did not separa
 others; the verdict pane says why.
 """
 
+    _view: View | None = None
+    _columns = 0
+    _shown = _FIRST_SHOWN[0]
+
     def compose(self) -> ComposeResult:
         """Lay out the table over the history."""
         yield DataTable[Text](cursor_type="row", cell_padding=0)
         yield Plot(history_chart(None, _FIRST_SHOWN[0]))
-
-    def on_mount(self) -> None:
-        """Begin the table without an estimate."""
-        super().on_mount()
-        self._view: View | None = None
-        self._columns = 0
-        self._shown = _FIRST_SHOWN[0]
 
     def on_resize(self, event: Resize) -> None:
         """Show as many columns as have room."""

@@ -2,21 +2,19 @@
 
 from collections.abc import Iterator
 
-from textual.events import Resize
-
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.decision.verdict import NextInput as Advised
 from advisor.session.view import View
 from advisor.tui.advice import advise, without_word
 from advisor.tui.block_letters import block_letters
 from advisor.tui.panes.last_verdict import symbol_and_word
-from advisor.tui.panes.lines import HangingLines, Labelled, Lines, Part
+from advisor.tui.panes.lines import HangingLines, Labelled, Lines, Part, Redrawn
 from advisor.tui.stick_drawing import drawn
 
 TONES = ("good", "warn", "bad", "quiet")
 
 
-class BigWord(Part, Lines):
+class BigWord(Part, Redrawn, Lines):
     """The pilot's word of advice in block letters."""
 
     EITHER_AXIS = True
@@ -33,13 +31,9 @@ class BigWord(Part, Lines):
         self.word = advice.word
         for tone in TONES:
             self.set_class(tone == advice.tone, f"-{tone}")
-        self._write()
+        self._redraw()
 
-    def on_resize(self, event: Resize) -> None:
-        """Use the largest letters that fit."""
-        self._write()
-
-    def _write(self) -> None:
+    def _redraw(self) -> None:
         if self.word and self.size.width:
             self.write(block_letters(self.word, self.size.width, self.size.height))
 
@@ -54,7 +48,7 @@ class Why(Part, Lines):
         self.write(without_word(advise(view).sentence))
 
 
-class NextInput(Part, Lines):
+class NextInput(Part, Redrawn, Lines):
     """The advised input in words above its drawing. On a low terminal the drawing is one line next to the
     words."""
 
@@ -67,13 +61,9 @@ class NextInput(Part, Lines):
     def show(self, view: View) -> None:
         """Draw the input that is advised now, of the axis that lacks most where both are tested."""
         self._advised = view.plan.next if view.plan is not None else view.state.flight_test.next
-        self._write()
+        self._redraw()
 
-    def on_resize(self, event: Resize) -> None:
-        """Draw as large as there is room."""
-        self._write()
-
-    def _write(self) -> None:
+    def _redraw(self) -> None:
         if self._advised is not None and self.size.width:
             self.write(drawn(self._advised, self.size.width, large=self.screen.has_class("-large")))
 

@@ -9,7 +9,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import autocorrelation, white_noise_bound
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.session.view import View
-from advisor.tui.panes.fit_charts import OUTPUTS
+from advisor.tui.panes.fit_charts import OUTPUTS, fits_of
 from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Level, Series
 from advisor.tui.plot.widget import Plot
@@ -70,7 +70,6 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
 
     def on_mount(self) -> None:
         """Begin with one plot that shows a sentence."""
-        super().on_mount()
         self._fits: dict[str, ChannelFit] = {}
         self._only_with_fit()
 
@@ -79,9 +78,8 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
         judged = view.judged
         if judged is None or not self.changed(judged):
             return
-        estimate = judged.estimate
-        self._fits = dict(estimate.fits[0]) if isinstance(estimate, Estimate) else {}
-        why = "" if isinstance(estimate, Estimate) else estimate.text
+        self._fits = fits_of(judged)
+        why = "" if isinstance(judged.estimate, Estimate) else judged.estimate.text
         for name in OUTPUTS:
             fit = self._fits.get(name)
             chart = _chart(name, Whiteness.of(fit)) if fit is not None else _nothing(name, why)

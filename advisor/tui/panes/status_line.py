@@ -9,7 +9,7 @@ from textual.widgets import Static
 
 from advisor.session.behind import spoken
 from advisor.session.view import View
-from advisor.tui.panes.lines import Lines, Part
+from advisor.tui.panes.lines import Lines, Part, Redrawn
 
 CONDITIONS = {
     "good": "✓ link good",
@@ -50,7 +50,7 @@ _MARGINS = 2
 """Columns to the left and right of a message."""
 
 
-class KeysLine(Static):
+class KeysLine(Redrawn, Static):
     """Keys and their actions, in the order of importance. A click on an action presses its key.
 
     The line is one text, whereas Textual's footer mounts a widget for every key anew whenever the focus
@@ -67,10 +67,6 @@ class KeysLine(Static):
         """Follow the focus."""
         self.screen.bindings_updated_signal.subscribe(self, self._follow)
 
-    def on_resize(self) -> None:
-        """Show as many keys as have room."""
-        self._write()
-
     def has_room_for(self, text: str) -> bool:
         """Return whether a text fits on the line without being cut."""
         return len(text) + _MARGINS <= self.size.width
@@ -81,11 +77,11 @@ class KeysLine(Static):
             self._until.stop()
         self._until = self.set_timer(seconds, self._said_enough)
         self._said = text
-        self._write()
+        self._redraw()
 
     def _said_enough(self) -> None:
         self._said = ""
-        self._write()
+        self._redraw()
 
     def _follow(self, screen: Screen[object]) -> None:
         first: dict[str, Binding] = {}
@@ -95,9 +91,9 @@ class KeysLine(Static):
         keys = [(b.key, self.app.get_key_display(b), b.description) for b in first.values()]
         if keys != self._keys:
             self._keys = keys
-            self._write()
+            self._redraw()
 
-    def _write(self) -> None:
+    def _redraw(self) -> None:
         line = Text(f" {self._said} " if self._said else "", Style(reverse=True), no_wrap=True)
         for key, display, does in self._keys if not self._said else ():
             if line.cell_len + len(display) + len(does) + 2 > self.size.width:
