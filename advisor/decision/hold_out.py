@@ -8,10 +8,9 @@ import numpy as np
 from advisor.decision.consistency import consensus
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES, Shared, common_airspeed, posteriors_at_one_speed
-from advisor.decision.prediction import PREDICTED, Response, measured, response_to
+from advisor.decision.prediction import PREDICTED, Response, airspeed_in, measured, response_to
 from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.record import Channel
-from advisor.oem.estimate import Estimate
+from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.oem.prediction import half_widths
 from advisor.words.quantiles import NORMAL_95
 
@@ -65,19 +64,18 @@ def predict_last(usable: Sequence[CandidateManeuver]) -> Mapping[str, PredictedO
     if predicted is None or alone is None or not np.all(np.isfinite(known.covariance)):
         return {}
     begun_s = float(last.maneuver.channels["elevator"].t[0])
+    scales = {"a_z": airspeed_in(last.maneuver)}
     return {
-        name: _output(name, last, begun_s, known, predicted, alone)
+        name: _output(last.estimate.fits[0][name], scale, begun_s, known, predicted, alone)
         for name in measured(last)
-        if name != "a_z" or _airspeed_m_s(last) is not None
+        if (scale := scales.get(name, 1.0)) is not None
     }
 
 
 def _output(
-    name: str, last: CandidateManeuver, begun_s: float, known: Shared, predicted: Response, alone: Response
+    fit: ChannelFit, scale: float, begun_s: float, known: Shared, predicted: Response, alone: Response
 ) -> PredictedOutput:
-    assert isinstance(last.estimate, Estimate)
-    k, fit = PREDICTED.index(name), last.estimate.fits[0][name]
-    scale = (_airspeed_m_s(last) or 1.0) if name == "a_z" else 1.0
+    k = PREDICTED.index(fit.name)
     after_s = fit.t - begun_s
     seen = (after_s >= 0.0) & (after_s <= min(predicted.after_s[-1], alone.after_s[-1]))
     after_s = after_s[seen]
@@ -92,8 +90,3 @@ def _output(
         half=half,
         half_of_samples=np.hypot(half, NORMAL_95 * fit.noise),
     )
-
-
-def _airspeed_m_s(flown: CandidateManeuver) -> float | None:
-    channel: Channel | None = flown.maneuver.channels.get("airspeed") if flown.maneuver else None
-    return float(np.nanmean(channel.y)) if channel is not None and np.any(np.isfinite(channel.y)) else None

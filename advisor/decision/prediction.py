@@ -164,7 +164,7 @@ def response_to(
     heard = np.isfinite(elevator.y)
     stamps, moved = elevator.t[heard], elevator.y[heard] - trim_of(flown.maneuver)
     scale = np.ones(len(DERIVATIVES))
-    speed = _airspeed(flown.maneuver)
+    speed = airspeed_in(flown.maneuver)
     if speed is not None and airspeed_m_s is not None:
         scale = (speed / airspeed_m_s) ** _SPEED_POWER
     found = _respond(
@@ -183,7 +183,8 @@ def trim_of(maneuver: Maneuver) -> float:
     return float(np.nanmedian(lead.y if len(lead) else elevator.y[:1]))
 
 
-def _airspeed(maneuver: Maneuver) -> float | None:
+def airspeed_in(maneuver: Maneuver) -> float | None:
+    """Return the mean air speed of a manoeuvre, m/s; None without a measurement."""
     channel = maneuver.channels.get("airspeed")
     speed = float(np.nanmean(channel.y)) if channel is not None and np.any(np.isfinite(channel.y)) else 0.0
     return speed if speed > 0.0 else None

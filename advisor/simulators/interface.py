@@ -20,6 +20,7 @@ import numpy as np
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
+from advisor.flight.signals.robust import rms
 from advisor.simulators.protocol import Replay
 from advisor.words.problems import UnusableInputError
 
@@ -101,11 +102,7 @@ def _misfit(replay: Replay) -> float:
         (replay.theta - replay.theta[0], turned),
         (replay.alpha - replay.alpha[0], turned + _path_turning(replay)),
     )
-    return sum(_rms(a - b) / max(_rms(a) + _rms(b), 1e-300) for a, b in pairs)
-
-
-def _rms(x: FloatArray) -> float:
-    return float(np.sqrt(np.mean(x**2)))
+    return sum(rms(a - b) / max(rms(a) + rms(b), 1e-300) for a, b in pairs)
 
 
 def _of_the_angles(replay: Replay, turned: FloatArray) -> InterfaceFault | None:

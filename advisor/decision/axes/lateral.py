@@ -24,6 +24,7 @@ from advisor.decision.envelope import (
 from advisor.decision.quality import WIDEST_PREDICTION_PERCENT, Examined, Response, objections
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.signals.robust import rms
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import NoEstimate
 from advisor.words.digits import distinct_texts
@@ -112,7 +113,7 @@ def _pitching(maneuver: Maneuver) -> list[Reason]:
     roll, yaw, pitch = p.y, np.interp(t, r.t, r.y), np.interp(t, q.t, q.y)
     pitch = pitch - np.mean(pitch)
     shares = [
-        _rms(pitch * rate) / max(_rms(np.gradient(other, t)), 1e-12)
+        rms(pitch * rate) / max(rms(np.gradient(other, t)), 1e-12)
         for rate, other in ((roll, yaw), (yaw, roll))
     ]
     if max(shares) <= COUPLING:
@@ -120,10 +121,6 @@ def _pitching(maneuver: Maneuver) -> list[Reason]:
     shown, most = distinct_texts(100.0 * max(shares), 100.0 * COUPLING)
     text = f"pitching with rolling makes up to {shown} % of the moments (limit {most}); hold the nose still"
     return [Reason("coupling", text, max(shares), COUPLING)]
-
-
-def _rms(x: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(x**2)))
 
 
 def _modes_alone(maneuver: Maneuver, estimate: LateralEstimate) -> tuple[Reason, ...]:

@@ -1,7 +1,7 @@
 """Deflections of a surface that its servo outputs command, output by output."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -36,15 +36,7 @@ class Commanded:
 
     def rows(self, which: slice | NDArray[Any]) -> "Commanded":
         """Return the samples in the given rows."""
-        return Commanded(
-            self.channel,
-            self.message,
-            self.source,
-            self.surface,
-            self.t[which],
-            self.angles[which],
-            self.order[which],
-        )
+        return replace(self, t=self.t[which], angles=self.angles[which], order=self.order[which])
 
 
 def commanded(
@@ -88,13 +80,9 @@ def _alike(alive: NDArray[np.bool_], rows: IntArray) -> list[IntArray]:
 
 def joined(pieces: Sequence[Commanded]) -> Commanded:
     """Return pieces of one surface, joined one after the other."""
-    first = pieces[0]
-    return Commanded(
-        first.channel,
-        first.message,
-        first.source,
-        first.surface,
-        np.concatenate([piece.t for piece in pieces]),
-        np.concatenate([piece.angles for piece in pieces]),
-        np.concatenate([piece.order for piece in pieces]),
+    return replace(
+        pieces[0],
+        t=np.concatenate([piece.t for piece in pieces]),
+        angles=np.concatenate([piece.angles for piece in pieces]),
+        order=np.concatenate([piece.order for piece in pieces]),
     )

@@ -21,6 +21,7 @@ from advisor.flight.maneuvers.markers import SWEPT
 from advisor.flight.maneuvers.movement import SMALLEST_RAD
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.record import Channel
+from advisor.flight.signals.robust import rms
 from advisor.flight.vehicle.modes import closes_pitch_loop, has_an_errand, hovers, is_manual
 from advisor.words.digits import distinct_texts
 
@@ -185,7 +186,7 @@ def _stands_out(maneuver: Maneuver, control: str) -> bool:
     within = motion_of(maneuver, span.start_s, span.last_step_s + EDGE_S, control)
     if len(before) < _FEWEST_BEFORE or len(within) == 0:
         return True
-    return float(within.max()) >= _STANDS_OUT * float(np.sqrt(np.mean(before**2)))
+    return float(within.max()) >= _STANDS_OUT * rms(before)
 
 
 def _is_on_ground(maneuver: Maneuver) -> bool:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns, FloatArray, cut, joined
 
 _QUATERNION = ("q1", "q2", "q3", "q4")
 
@@ -32,7 +32,7 @@ class Attitudes:
             rows = int(np.searchsorted(c.order, sent[sender].order[0])) if sender in sent else len(c)
             if rows:
                 early = _as_attitude(c, rows)
-                stand_ins[sender] = _joined(early, sent[sender]) if sender in sent else early
+                stand_ins[sender] = joined([early, sent[sender]]) if sender in sent else early
         self._senders.update(sent)
         if not stand_ins:
             return columns
@@ -62,18 +62,8 @@ def _sender(c: Columns) -> tuple[int, int]:
 
 def _as_attitude(c: Columns, rows: int) -> Columns:
     """Return the given rows as ATTITUDE; ``q1`` to ``q4`` are w, x, y, z of the rotation into body axes."""
-    fields = {name: values[:rows] for name, values in c.fields.items()}
-    angles = euler_angles(np.array([fields[name] for name in _QUATERNION], dtype=np.float64))
-    kept = {name: values for name, values in fields.items() if name not in (*_QUATERNION, "repr_offset_q")}
-    return replace(
-        c, name="ATTITUDE", order=c.order[:rows], arrival_s=c.arrival_s[:rows], fields=kept | angles
-    )
-
-
-def _joined(first: Columns, then: Columns) -> Columns:
-    return replace(
-        then,
-        order=np.concatenate([first.order, then.order]),
-        arrival_s=np.concatenate([first.arrival_s, then.arrival_s]),
-        fields={name: np.concatenate([first.fields[name], values]) for name, values in then.fields.items()},
-    )
+    early = cut(c, slice(rows))
+    angles = euler_angles(np.array([early.fields[name] for name in _QUATERNION], dtype=np.float64))
+    others = (*_QUATERNION, "repr_offset_q")
+    kept = {name: values for name, values in early.fields.items() if name not in others}
+    return replace(early, name="ATTITUDE", fields=kept | angles)

@@ -5,11 +5,11 @@ banks needs two messages for one sample.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import Columns, FloatArray, IntArray
+from advisor.flight.signals.messages import Columns, FloatArray, IntArray, cut, joined
 
 _OUTPUTS = 16
 """Number of outputs in one SERVO_OUTPUT_RAW (MAVLink's common.xml)."""
@@ -65,19 +65,11 @@ def merged(part: Sequence[Columns]) -> list[Columns]:
         if c.name == "SERVO_OUTPUT_RAW":
             senders.setdefault(c.component, []).append(c)
     kept = [c for c in part if c.name != "SERVO_OUTPUT_RAW"]
-    return kept + [_in_order(banks) if len(banks) > 1 else banks[0] for banks in senders.values()]
+    return kept + [_in_order(joined(banks)) if len(banks) > 1 else banks[0] for banks in senders.values()]
 
 
-def _in_order(banks: Sequence[Columns]) -> Columns:
-    order = np.concatenate([c.order for c in banks])
-    rows = np.argsort(order)
-    fields = {
-        name: np.concatenate([c.fields[name] for c in banks])[rows]
-        for name in banks[0].fields
-        if all(name in c.fields for c in banks)
-    }
-    arrival_s = np.concatenate([c.arrival_s for c in banks])[rows]
-    return replace(banks[0], order=order[rows], arrival_s=arrival_s, fields=fields)
+def _in_order(banks: Columns) -> Columns:
+    return cut(banks, np.argsort(banks.order))
 
 
 class Banks:

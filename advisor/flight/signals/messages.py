@@ -1,6 +1,6 @@
 """Decoded MAVLink messages as columns, the input of all analysis."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -50,7 +50,21 @@ def arrivals(columns: Columns, order: IntArray) -> FloatArray:
     return times
 
 
-def cut(columns: Columns, rows: NDArray[np.bool_] | slice) -> Columns:
+def joined(several: Sequence[Columns]) -> Columns:
+    """Return column sets of one message and sender, one after the other, with the fields that all have."""
+    return replace(
+        several[-1],
+        order=np.concatenate([c.order for c in several]),
+        arrival_s=np.concatenate([c.arrival_s for c in several]),
+        fields={
+            name: np.concatenate([c.fields[name] for c in several])
+            for name in several[-1].fields
+            if all(name in c.fields for c in several)
+        },
+    )
+
+
+def cut(columns: Columns, rows: NDArray[Any] | slice) -> Columns:
     """Return the given rows of a column set, in their order of arrival."""
     return replace(
         columns,

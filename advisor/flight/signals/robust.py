@@ -1,4 +1,4 @@
-"""Standard deviation of noise in the presence of outliers."""
+"""Size of noise, with and without outliers."""
 
 import numpy as np
 
@@ -17,3 +17,8 @@ def robust_std(departures: FloatArray) -> float:
         Shape (n,), n > 0: samples minus their centre.
     """
     return float(np.median(np.abs(departures))) / _MEDIAN
+
+
+def rms(x: FloatArray) -> float:
+    """Return the root of the mean square of samples, shape (n,), n > 0."""
+    return float(np.sqrt(np.mean(x**2)))

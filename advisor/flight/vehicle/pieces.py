@@ -1,13 +1,13 @@
 """Messages of one vehicle, divided at changes that affect all later messages, and by boot."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from advisor.flight.signals.clocks import BootClock
-from advisor.flight.signals.messages import Columns, FloatArray, IntArray
+from advisor.flight.signals.messages import Columns, FloatArray, IntArray, cut
 from advisor.flight.vehicle.parameters import names_in, tells_of_outputs
 
 _EVERY = 100_000
@@ -55,9 +55,7 @@ def rows_between(columns: Sequence[Columns], first: int, past: int) -> list[Colu
     for c in columns:
         i, j = np.searchsorted(c.order, [first, past])
         if j > i:
-            rows = slice(int(i), int(j))
-            fields = {name: values[rows] for name, values in c.fields.items()}
-            found.append(replace(c, order=c.order[rows], arrival_s=c.arrival_s[rows], fields=fields))
+            found.append(cut(c, slice(int(i), int(j))))
     return found
 
 

@@ -22,7 +22,7 @@ from advisor.mavlink.ardupilot.former_records import Clocked
 from advisor.mavlink.ardupilot.log_health import health, lost_texts, sweeps
 from advisor.mavlink.ardupilot.sensors import Said, Silence, flown, said, silences_in, stated_health
 from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, seconds
-from advisor.mavlink.records.equivalent import air_data, message, nearest, side_by_side
+from advisor.mavlink.records.equivalent import air_data, message, milliseconds, nearest, side_by_side
 
 _SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
 """Measured quantities of each record of which a vehicle may have several, by the record's name."""
@@ -137,7 +137,7 @@ class Translation:
         if blocks:
             fields: dict[str, Any] = side_by_side(*blocks)
             order, time_us = fields.pop("order"), fields.pop("time_us")
-            yield self._made("ATTITUDE", order, time_us, fields | {"time_boot_ms": _milliseconds(time_us)})
+            yield self._made("ATTITUDE", order, time_us, fields | {"time_boot_ms": milliseconds(time_us)})
 
     def _highres_imu(self) -> Iterator[Columns]:
         if "IMU" in self._tables:
@@ -159,13 +159,13 @@ class Translation:
 
     def _named_value_float(self, named: RecordTable) -> Columns:
         """Return the values of NVAL (received from another system) or of NVF (sent by a script)."""
-        fields: dict[str, ArrayLike] = {"time_boot_ms": _milliseconds(named.time_us)}
+        fields: dict[str, ArrayLike] = {"time_boot_ms": milliseconds(named.time_us)}
         fields |= {"name": named.fields["Name"], "value": named.fields["Value"]}
         return self._message("NAMED_VALUE_FLOAT", named, fields)
 
     def _scaled_pressure(self, baro: RecordTable) -> Columns:
         hectopascal = 0.01 * baro.fields["Press"].astype(np.float64)
-        fields: dict[str, ArrayLike] = {"time_boot_ms": _milliseconds(baro.time_us), "press_abs": hectopascal}
+        fields: dict[str, ArrayLike] = {"time_boot_ms": milliseconds(baro.time_us), "press_abs": hectopascal}
         return self._message("SCALED_PRESSURE", baro, fields)
 
     def _servo_outputs(self) -> Iterator[Columns]:
@@ -200,7 +200,7 @@ class Translation:
             for field, values in rcin.fields.items()
             if field[0] == "C" and field[1:].isdigit()
         }
-        return self._message("RC_CHANNELS", rcin, {"time_boot_ms": _milliseconds(rcin.time_us), **pulses})
+        return self._message("RC_CHANNELS", rcin, {"time_boot_ms": milliseconds(rcin.time_us), **pulses})
 
     def _vfr_hud(self) -> Iterator[Columns]:
         """Yield air speed, climb rate and throttle, each at the stamps of its own record."""
@@ -223,7 +223,7 @@ class Translation:
 
     def _global_position_int(self, pos: RecordTable) -> Columns:
         fields: dict[str, ArrayLike] = {
-            "time_boot_ms": _milliseconds(pos.time_us),
+            "time_boot_ms": milliseconds(pos.time_us),
             "lat": np.round(pos.fields["Lat"] * 1e7).astype(np.int64),
             "lon": np.round(pos.fields["Lng"] * 1e7).astype(np.int64),
             "alt": np.asarray(pos.fields["Alt"] * 1e3, dtype=np.float64),
@@ -245,7 +245,3 @@ class Translation:
         )
         fields: dict[str, ArrayLike] = {"severity": _NOT_LOGGED, "text": texts["text"]}
         return self._made("STATUSTEXT", texts["order"], texts["time_us"], fields)
-
-
-def _milliseconds(time_us: NDArray[np.int64]) -> NDArray[np.int64]:
-    return (time_us + 500) // 1000

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from advisor.flight.signals.messages import IntArray
-from advisor.mavlink.records.dataflash import RecordTable
+from advisor.mavlink.records.dataflash import RecordTable, parameters_in
 from advisor.mavlink.records.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, system_id
 
 VEHICLE_RECORDS: dict[str, set[str]] = {
@@ -29,7 +29,7 @@ _MIXERS = ("ELEVON_MIXING", "ELEVON_OUTPUT", "VTAIL_OUTPUT")
 
 def system_of(tables: Mapping[str, RecordTable]) -> int:
     """Return the system id from its parameter, under the old or the new name."""
-    for name, value in _parameters(tables):
+    for name, value in parameters_in(tables):
         if name in (b"SYSID_THISMAV", b"MAV_SYSID"):
             return system_id(value)
     return system_id(None)
@@ -119,13 +119,6 @@ def version_fields(ver: RecordTable) -> dict[str, ArrayLike]:
     """Return the fields of AUTOPILOT_VERSION from the records VER."""
     major, minor, patch, kind = (ver.fields[name].astype(np.int64) for name in ("Maj", "Min", "Pat", "FWT"))
     return {"flight_sw_version": major << 24 | minor << 16 | patch << 8 | kind}
-
-
-def _parameters(tables: Mapping[str, RecordTable]) -> list[tuple[bytes, float]]:
-    if "PARM" not in tables:
-        return []
-    fields = tables["PARM"].fields
-    return list(zip(fields["Name"].tolist(), fields["Value"].tolist(), strict=True))
 
 
 def _mav_type(tables: Mapping[str, RecordTable]) -> int:

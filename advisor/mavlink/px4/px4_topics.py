@@ -114,8 +114,3 @@ def best(candidates: Iterable[Topic | None]) -> Topic | None:
     found = [topic for topic in candidates if topic is not None]
     fast = [topic for topic in found if rate_hz(topic) >= ENOUGH_HZ]
     return fast[0] if fast else max(found, key=rate_hz, default=None)
-
-
-def milliseconds(time_us: IntArray) -> IntArray:
-    """Return microseconds rounded to milliseconds."""
-    return (time_us + 500) // 1000

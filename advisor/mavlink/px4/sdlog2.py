@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from advisor.flight.signals.messages import Columns, FloatArray
-from advisor.mavlink.records.dataflash import RecordTable, seconds
+from advisor.mavlink.records.dataflash import RecordTable, parameters_in, seconds
 from advisor.mavlink.records.equivalent import (
     MAV_PARAM_TYPE_REAL32,
     MAV_TYPE_FIXED_WING,
     latest,
     message,
+    milliseconds,
     system_id,
 )
 
@@ -60,7 +61,7 @@ class Sdlog2Messages:
             at = np.maximum(np.searchsorted(rounds.order, table.order) - 1, 0)
             self._tables[name] = replace(table, fields={**table.fields, "TimeUS": time_us[at]})
         self._base_s = self._unix_time_base_s()
-        stored = self._parameters()
+        stored = dict(parameters_in(self._tables))
         self._system = system_id(stored.get(b"MAV_SYS_ID"))
         self._type = int(stored.get(b"MAV_TYPE", MAV_TYPE_FIXED_WING))
 
@@ -79,7 +80,7 @@ class Sdlog2Messages:
             names = {f"{axis}speed": f"{axis.capitalize()}Rate" for axis in ("roll", "pitch", "yaw")}
             names |= {axis: axis.capitalize() for axis in ("roll", "pitch", "yaw")}
             fields = {ours: att.fields[theirs] for ours, theirs in names.items()}
-            yield self._message("ATTITUDE", att, {**fields, "time_boot_ms": (att.time_us + 500) // 1000})
+            yield self._message("ATTITUDE", att, {**fields, "time_boot_ms": milliseconds(att.time_us)})
         if "IMU" in self._tables:
             imu = self._tables["IMU"]
             fields = {f"{axis.lower()}acc": imu.fields[f"Acc{axis}"] for axis in "XYZ"}
@@ -123,12 +124,6 @@ class Sdlog2Messages:
         if table is None:
             return np.full(len(at), np.nan)
         return latest(at.order, table.order, table.fields[field])
-
-    def _parameters(self) -> dict[bytes, float]:
-        if "PARM" not in self._tables:
-            return {}
-        fields = self._tables["PARM"].fields
-        return dict(zip(fields["Name"].tolist(), fields["Value"].tolist(), strict=True))
 
     def _unix_time_base_s(self) -> float:
         """Return the time of boot, seconds since 1970, from the first fix with a date; 0 without one."""

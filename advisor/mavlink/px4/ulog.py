@@ -22,14 +22,13 @@ from advisor.mavlink.px4.px4_topics import (
     Topics,
     best,
     first,
-    milliseconds,
     published_us,
     sampled_us,
     topics_of,
     vector,
 )
 from advisor.mavlink.px4.px4_vehicle import unix_time_base_s
-from advisor.mavlink.records.equivalent import message, side_by_side, system_id
+from advisor.mavlink.records.equivalent import message, milliseconds, side_by_side, system_id
 from advisor.words.mends import mends_of, sentence
 from advisor.words.problems import UnusableInputError
 

@@ -4,6 +4,7 @@ A record is two bytes of header, a type, and the fields that the type's FMT reco
 AP_Logger, "Log message formats").
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -117,3 +118,11 @@ def layout_of(definition: Any) -> tuple["np.dtype[np.void] | None", list[float |
 def seconds(time_us: IntArray) -> FloatArray:
     """Return microseconds as seconds."""
     return time_us.astype(np.float64) * 1e-6
+
+
+def parameters_in(tables: Mapping[str, RecordTable]) -> list[tuple[bytes, float]]:
+    """Return names and values of the records PARM, in order of time."""
+    if "PARM" not in tables:
+        return []
+    fields = tables["PARM"].fields
+    return list(zip(fields["Name"].tolist(), fields["Value"].tolist(), strict=True))

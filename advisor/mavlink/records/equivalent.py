@@ -96,6 +96,11 @@ def system_id(parameter: object) -> int:
     return int(parameter) if isinstance(parameter, int | float) and 1 <= parameter <= 255 else 1
 
 
+def milliseconds(time_us: IntArray) -> IntArray:
+    """Return microseconds rounded to milliseconds."""
+    return (time_us + 500) // 1000
+
+
 def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:
     """Return the newest of ``values`` before each index ``at``.
 
