@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from scipy.linalg import expm, expm_frechet
 
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.axis_response import AxisGrid, respond_axis
@@ -73,24 +74,50 @@ def test_the_short_period_described_as_an_axis_is_its_closed_form():
     local = np.array([[0.04, 0.47, 0.05, 0.01, 0.02, 0.0, 0.0]])
     expected = np.empty(len(closed.z))
     assert respond(closed.grid, shared, local, expected, np.empty((0, 14)))
-    n, events = 3, len(t)
-    linear = np.zeros((events, n, n))
-    linear[:, 0, 1] = linear[:, 2, 1] = 1.0
-    seen = np.tile(np.eye(n), (events, 1, 1))
-    zero, still_causes = np.zeros((events, n)), np.zeros((events, 0, 1))
+    n, events = 4, len(t)  # one state stands still
+    turning = np.array([(0, 1, 0), (2, 1, 0)])
+    seen = np.array([(k, k, 0) for k in range(3)])
+    still_causes = np.zeros((events, 0, 1))
     # α̇ by α, q, δe; q̇ by α, q, δe; then the constants of both.
-    place = np.array([(0, 0, 1), (0, 1, 0), (0, 3, 1), (1, 0, 2), (1, 1, 1), (1, 3, 2), (0, 4, 1), (1, 4, 2)])
+    place = np.array([(0, 0, 1), (0, 1, 0), (0, 4, 1), (1, 0, 2), (1, 1, 1), (1, 4, 2), (0, 5, 1), (1, 5, 2)])
     grid = AxisGrid(
         first=np.array([0, events]), step_s=closed.grid.step_s[closed.grid.kind],
         ratio=np.ones(events), inputs=elevator.y[:, None], start=elevator.y[:, None],
         slope=closed.grid.slope[:, None], changed=still_causes, changed_start=still_causes,
-        changed_slope=still_causes, linear=linear, sine=zero, turn=zero,
-        row=closed.grid.row[[0, 1, 3]], seen=seen, felt=np.zeros_like(seen), place=place,
-        bias=np.full(3, -1), bank=-1, yaw=0,
+        changed_slope=still_causes, known=np.ones((events, 1)), turning=turning, seen=seen,
+        scale=np.ones(3), row=closed.grid.row[[0, 1, 3]], place=place, bias=np.full(3, -1),
+        initial=(8, 9, 10, 11), bank=-1, yaw=0,
     )  # fmt: skip
     y = np.empty(len(closed.z))
-    assert respond_axis(grid, shared[:6], local[:, :5], y, np.empty((0, 11)), np.empty((0, 2, n)))
+    assert respond_axis(grid, shared[:6], local[:, :6], y, np.empty((0, 12)), np.empty((0, 2, n)))
     np.testing.assert_allclose(y, expected, atol=1e-7)
+
+
+@pytest.mark.parametrize("step_s", [1e-6, 0.004, 0.05, 0.4])
+def test_a_step_of_any_length_is_the_exponential_of_its_matrix(step_s):
+    rng = np.random.default_rng(3)
+    a, first = rng.uniform(-2.5, 2.5, (4, 4)), rng.uniform(-1.0, 1.0, 4)
+    none = np.zeros((2, 0, 1))
+    grid = AxisGrid(
+        first=np.array([0, 2]), step_s=np.full(2, step_s), ratio=np.ones(2), inputs=np.ones((2, 1)),
+        start=np.ones((2, 1)), slope=np.zeros((2, 1)), changed=none, changed_start=none, changed_slope=none,
+        known=np.ones((2, 1)), turning=np.zeros((0, 3), np.int64),
+        seen=np.array([(k, k, 0) for k in range(4)]), scale=np.ones(4),
+        row=np.array([(-1, k) for k in range(4)]),
+        place=np.array([(i, j, 0) for i in range(4) for j in range(4)]), bias=np.full(4, -1),
+        initial=(16, 17, 18, 19), bank=-1, yaw=0,
+    )  # fmt: skip
+    y, g = np.empty(4), np.empty((4, 20))
+    assert respond_axis(grid, a.ravel(), first[None, :], y, g, np.empty((0, 2, 4)))
+    whole = expm(step_s * a)
+    moved = step_s * np.max(np.sum(np.abs(a), axis=1))
+    np.testing.assert_allclose(y, whole @ first, atol=2e-5 * moved)
+    np.testing.assert_allclose(g[:, 16:], whole, atol=2e-5 * moved)
+    for k, (i, j, _) in enumerate(grid.place):
+        change = np.zeros((4, 4))
+        change[i, j] = step_s
+        exact = expm_frechet(step_s * a, change, compute_expm=False) @ first
+        np.testing.assert_allclose(g[:, k], exact, atol=2e-5 * moved)
 
 
 def test_a_model_that_runs_away_is_no_response(lateral):

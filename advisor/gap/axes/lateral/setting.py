@@ -70,11 +70,8 @@ def laid_out(flown: Flown, setting: Setting) -> LateralAssembly:
         accelerometer_arm_m=base.accelerometer_arm_m + whole(("a_y", "arm_m")),
     )
     assembly = assemble_lateral(problem, causes=())
-    scale = np.array([1.0 + whole((name, "scale")) for name in outputs])[None, :, None]
-    if np.all(scale == 1.0):
-        return assembly
-    grid = assembly.grid
-    return replace(assembly, grid=grid._replace(seen=grid.seen * scale, felt=grid.felt * scale))
+    scale = np.array([1.0 + whole((name, "scale")) for name in outputs])
+    return replace(assembly, grid=assembly.grid._replace(scale=scale))
 
 
 def _driven(flown: Flown, m: int, setting: Setting) -> LateralRecord:

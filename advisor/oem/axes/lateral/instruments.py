@@ -18,7 +18,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axes.lateral.problem import CAUSES, LateralAssembly, LateralProblem
+from advisor.oem.axes.lateral.problem import CAUSES, SEEN, SPEED, LateralAssembly, LateralProblem
 from advisor.oem.extra import Prior
 from advisor.oem.instruments import KNOWN_TO, PLACE_S, USUAL_LAG
 
@@ -143,7 +143,7 @@ def columns_of(
     motion
         Shape (E, 2, 4): states and their rates at the events, for the instruments of the outputs.
     """
-    columns = np.zeros((len(assembly.z), len(nuisances)))
+    columns, known = np.zeros((len(assembly.z), len(nuisances))), assembly.grid.known
     for k, x in enumerate(nuisances):
         if x.kind in ("command", "lag"):
             columns[:, k] = by_cause[:, CAUSES.index(x.of or "command")]
@@ -155,8 +155,8 @@ def columns_of(
         row = assembly.grid.row[output]
         at, row = np.flatnonzero(row >= 0), row[row >= 0]
         if x.kind == "delay":
-            columns[row, k] = -np.sum(assembly.grid.seen[at, output] * motion[at, 1], axis=1)
+            terms = [(state, factor) for of, state, factor in SEEN if of == output]
+            columns[row, k] = -sum(known[at, factor] * motion[at, 1, state] for state, factor in terms)
         else:
-            speed = assembly.grid.felt[at, LATERAL.outputs.index("a_y"), LATERAL.states.index("beta")]
-            columns[row, k] = motion[at, 0, LATERAL.states.index("r")] / speed
+            columns[row, k] = motion[at, 0, LATERAL.states.index("r")] / known[at, SPEED]
     return columns

@@ -9,7 +9,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.axis_response import respond_axis
 from advisor.oem.axes.lateral.instruments import Nuisance, columns_of
-from advisor.oem.axes.lateral.problem import LateralAssembly, LateralProblem, assemble_lateral
+from advisor.oem.axes.lateral.problem import SPEED_POWERS, LateralAssembly, LateralProblem, assemble_lateral
 from advisor.oem.descent import Response
 
 LEAST_NOISE = {"p": 5e-4, "r": 5e-4, "bank": 5e-4, "a_y": 0.01, "beta": 5e-4}
@@ -57,8 +57,9 @@ class LateralMotion:
         y, g, motion = found
 
         def by_speed() -> FloatArray:
-            faster = replace(problem, airspeed_excess=problem.airspeed_excess + _SPEED_STEP)
-            return (outputs_of(assemble_lateral(faster), shared, local) - y) / _SPEED_STEP
+            faster = 1.0 + _SPEED_STEP / (1.0 + problem.airspeed_excess)
+            grid = laid.grid._replace(known=laid.grid.known * faster**SPEED_POWERS)
+            return (outputs_of(replace(laid, grid=grid), shared, local) - y) / _SPEED_STEP
 
         def columns() -> FloatArray:
             return columns_of(laid, g[:, _ALL:], motion, nuisances, by_speed)

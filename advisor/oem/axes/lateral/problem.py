@@ -22,6 +22,35 @@ NEEDED = ("p", "r", "bank")
 """Outputs that every record has."""
 CAUSES = ("command", *LATERAL.inputs)
 """Causes of changed inputs: the delay of all commands, and the lag of each servo."""
+SPEED = 7
+"""Index of the air speed among the known factors."""
+SPEED_POWERS = np.array([0, 0, 0, -1, 0, 0, -1, 1, 0])
+"""Power of the true air speed in each known factor: 1, sin α, -cos α, (g/V)·cos θ, q·tan θ, tan θ, x_β/V, V,
+x_a."""
+_SINE = len(LATERAL.states) + len(LATERAL.inputs) + 1
+TURNING = np.array(
+    [
+        (_BETA, _P, 1),
+        (_BETA, _R, 2),
+        (_BETA, _SINE, 3),
+        (_BANK, _P, 0),
+        (_BANK, _SINE, 4),
+        (_BANK, _SINE + 1, 5),
+    ]
+)
+"""Known terms of the rates, for ``AxisGrid``."""
+_RATE = len(LATERAL.states)
+SEEN = np.array(
+    [
+        (LATERAL.outputs.index(output), state, factor)
+        for output, state, factor in (
+            ("p", _P, 0), ("r", _R, 0), ("bank", _BANK, 0), ("beta", _BETA, 0), ("beta", _R, 6),
+            ("a_y", _RATE + _BETA, SPEED), ("a_y", _RATE + _R, 8),
+        )
+    ]
+)  # fmt: skip
+"""Terms of the outputs, for ``AxisGrid``."""
+_INITIAL = tuple(range(len(LATERAL.place), len(LATERAL.place) + len(LATERAL.states)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,9 +136,13 @@ def assemble_lateral(problem: LateralProblem, causes: Sequence[str] = CAUSES) ->
     laid = lay_rows(pieces, LATERAL.outputs)
     grid = AxisGrid(
         first=laid.first,
+        turning=TURNING,
+        seen=SEEN,
+        scale=np.ones(len(LATERAL.outputs)),
         row=laid.row,
         place=LATERAL.place,
         bias=LATERAL.bias,
+        initial=_INITIAL,
         bank=_BANK,
         yaw=_R,
         **laid.columns,
@@ -151,14 +184,13 @@ def _piece(record: LateralRecord, problem: LateralProblem, causes: Sequence[str]
     t = events_of(outputs, [problem.servo(name).grid(command.t) for name, command in record.inputs.items()])
     step = np.diff(t)
     middle = t[:-1] + step / 2.0
-    read, true = padded(record.airspeed.at(middle)), 1.0 + problem.airspeed_excess
+    read = padded(record.airspeed.at(middle))
     reference = problem.reference_airspeed_m_s
     columns = {
         "step_s": padded(step),
         "ratio": np.ones(len(t)) if reference is None else read / reference,
+        "known": _known(record, problem, t, middle, read),
         **_moved(record, problem, t, causes),
-        **_known(record, middle, true * read),
-        **_outputs(true * record.airspeed.at(t), problem),
     }
     return Piece(t, outputs, columns)
 
@@ -182,27 +214,14 @@ def _moved(
     )
 
 
-def _known(record: LateralRecord, middle: FloatArray, speed: FloatArray) -> dict[str, FloatArray]:
-    """Return the known part (E, 4, 4) of the state matrix, and the factors (E, 4) of sin φ and of r·cos φ."""
+def _known(
+    record: LateralRecord, problem: LateralProblem, t: FloatArray, middle: FloatArray, read: FloatArray
+) -> FloatArray:
+    """Return the known factors (E, 9): of the rates on each step, of the outputs at each event."""
     alpha, theta, q = (padded(s.at(middle)) for s in (record.alpha, record.theta, record.q))
-    linear = np.zeros((len(speed), 4, 4))
-    linear[:, _BETA, _P], linear[:, _BETA, _R] = np.sin(alpha), -np.cos(alpha)
-    linear[:, _BANK, _P] = 1.0
-    sine, turn = np.zeros((len(speed), 4)), np.zeros((len(speed), 4))
-    sine[:, _BETA] = GRAVITY_M_S2 / speed * np.cos(theta)
-    sine[:, _BANK] = q * np.tan(theta)
-    turn[:, _BANK] = np.tan(theta)
-    return {"linear": linear, "sine": sine, "turn": turn}
-
-
-def _outputs(speed: FloatArray, problem: LateralProblem) -> dict[str, FloatArray]:
-    """Return the output factors (E, outputs, 4) of the states and of the rates' parameter-dependent part."""
-    seen = np.zeros((len(speed), len(LATERAL.outputs), 4))
-    felt = np.zeros_like(seen)
-    for name, state in (("p", _P), ("r", _R), ("bank", _BANK), ("beta", _BETA)):
-        seen[:, LATERAL.outputs.index(name), state] = 1.0
-    seen[:, LATERAL.outputs.index("beta"), _R] = problem.beta_arm_m / speed
-    force = LATERAL.outputs.index("a_y")
-    felt[:, force, _BETA] = speed
-    felt[:, force, _R] = problem.accelerometer_arm_m
-    return {"seen": seen, "felt": felt}
+    true, tangent = 1.0 + problem.airspeed_excess, np.tan(theta)
+    speed = true * record.airspeed.at(t)
+    weight = GRAVITY_M_S2 / (true * read) * np.cos(theta)
+    one = np.ones(len(t))
+    of_rates = one, np.sin(alpha), -np.cos(alpha), weight, q * tangent, tangent
+    return np.column_stack([*of_rates, problem.beta_arm_m / speed, speed, problem.accelerometer_arm_m * one])
