@@ -37,7 +37,7 @@ class WholeFlights:
     left_out: Mapping[int, tuple[Problem, ...]]
     """Reasons for which the log of a flight is not used, by the number of the flight."""
     power_ons: tuple[tuple[int, PowerOn], ...]
-    """Every power-on with the number of its flight, 0 for the first."""
+    """Every power-on with the number of its flight, 0 for the first; none for the lateral axis alone."""
 
     @property
     def said(self) -> list[str]:
@@ -68,6 +68,8 @@ def read_whole(
 
     Parameters
     ----------
+    axis
+        ``lateral`` keeps no samples, and estimates all manoeuvres jointly only at the end.
     target_system
         System id of the vehicle; None: the first one heard.
     marks
@@ -89,13 +91,16 @@ def read_whole(
 
     def begin() -> tuple[Campaign, dict[int, FlightStream]]:
         campaign = Campaign(
-            aircraft, target_system, by_hand=by_hand, marks=marks, names=series.names, lateral=axis != "pitch"
-        )
+            aircraft, target_system, by_hand=by_hand, marks=marks, names=series.names,
+            lateral=axis != "pitch", advises=axis != "lateral",
+        )  # fmt: skip
         return campaign, {}
 
     def feed(heard: tuple[Campaign, dict[int, FlightStream]], columns: list[Columns]) -> None:
         campaign, streams = heard
         campaign.feed(columns)
+        if axis == "lateral":
+            return
         flight = columns[0].flight if columns else 0
         if flight not in streams:
             marked = [mark for mark in (*marks, *by_hand.marks) if mark.flight == flight]

@@ -70,6 +70,9 @@ class Campaign:
         Further marks, which replace overlapping marks of ``by_hand`` and are not kept in a file.
     names
         Names of the campaign's logs, in their order; empty for a single log.
+    advises
+        Whether roll and yaw are estimated jointly after every manoeuvre, for the advice to stop; else only at
+        the end.
     """
 
     def __init__(
@@ -82,11 +85,12 @@ class Campaign:
         marks: Sequence[Mark] = (),
         names: Sequence[str] = (),
         lateral: bool = False,
+        advises: bool = True,
     ) -> None:
         self._journal = Journal()
         self._parts = Parts(lambda failed: self._journal.write(str(failed.problem)))
         self._elevator = ElevatorCampaign(aircraft, self._journal.write, self._parts)
-        self._lateral = LateralCampaign(aircraft, self._parts) if lateral else None
+        self._lateral = LateralCampaign(aircraft, self._parts, advises) if lateral else None
         self._aircraft = aircraft
         self._tell = tell
         self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names, lateral)

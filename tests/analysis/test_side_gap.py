@@ -27,8 +27,9 @@ def compared(monkeypatch):
         seen.specification = specification
         return SimpleNamespace(close=close)
 
-    def compare(maneuvers, aircraft, prior, logged):
+    def compare(maneuvers, aircraft, prior, logged, as_logged):
         seen.maneuvers, seen.aircraft, seen.logged = maneuvers, aircraft, logged
+        seen.as_logged = as_logged
         return SideGap(None, "", (), {}, {}, (), None)
 
     monkeypatch.setattr(
@@ -49,6 +50,7 @@ def compared(monkeypatch):
 def test_the_aircraft_files_own_numbers_are_compared_without_a_replay(compared, specification):
     side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator=specification))
     assert compared.maneuvers == ["as flown"]
+    assert compared.as_logged
     assert compared.specification is None
 
 
@@ -56,6 +58,7 @@ def test_a_simulator_flies_the_manoeuvres_and_is_closed(compared):
     side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator="jsbsim:c172p"))
     assert compared.specification == "jsbsim:c172p"
     assert (compared.maneuvers, compared.logged) == (["beside"], "as logged")
+    assert not compared.as_logged
     assert compared.aircraft.model == {"L_p": -1.0}
     assert compared.closed == 1
 

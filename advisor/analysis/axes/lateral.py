@@ -70,7 +70,8 @@ def compare_side_flown(
     compared, against = beside_simulator(accepted, aircraft, progress)
     progress("comparing", 1.0)
     assert state.lateral is not None
-    found = answered(compare_side(compared, against, prior, state.lateral.model))
+    as_logged = compared is accepted and against is aircraft
+    found = answered(compare_side(compared, against, prior, state.lateral.model, as_logged))
     found = replace(found, traces=side_traces(found, accepted, compared))
     return SideCompared(found, state, aircraft, accepted)
 

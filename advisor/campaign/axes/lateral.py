@@ -37,9 +37,12 @@ class LateralCampaign(AxisCampaign):
     aircraft
         The crew's aircraft file. The lateral stopping rule is ``information``, whatever the aircraft file
         chooses for pitch.
+    advises
+        Whether the decision to stop in flight uses the joint estimate.
     """
 
-    def __init__(self, aircraft: Aircraft, parts: Parts) -> None:
+    def __init__(self, aircraft: Aircraft, parts: Parts, advises: bool = True) -> None:
+        self._advises = advises
         self._state: LateralState | None = None
         self._unknown: Problem | None = None
         self._joint: tuple[tuple[int, ...], LateralEstimate | None] | None = None
@@ -92,7 +95,8 @@ class LateralCampaign(AxisCampaign):
     def _decided(self, history: Sequence[CandidateManeuver], heard: Sequence[Heard]) -> FlightTestVerdict:
         """Return the decision after the newest manoeuvre, as announced to the crew."""
         self._state = None
-        return self._by(self._joint_estimate if self._may_stop else None, heard)
+        joint = (self._advises or self._ended) and self._may_stop
+        return self._by(self._joint_estimate if joint else None, heard)
 
     def _by(self, joint: LateralEstimate | None, heard: Sequence[Heard]) -> FlightTestVerdict:
         return self._parts.make(

@@ -29,8 +29,8 @@ def joint(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return made
 
 
-def flown(*controls: str, by_hand: ByHand = NOTHING) -> LateralCampaign:
-    campaign = LateralCampaign(Aircraft(), Parts())
+def flown(*controls: str, by_hand: ByHand = NOTHING, advises: bool = True) -> LateralCampaign:
+    campaign = LateralCampaign(Aircraft(), Parts(), advises)
     for number, control in enumerate(controls, start=1):
         campaign.take(judged(number, control).maneuver, by_hand)
     return campaign
@@ -56,6 +56,14 @@ def test_no_joint_estimate_is_made_before_both_controls_were_flown(joint: list[i
     assert joint == []
     flown("aileron", "aileron", "rudder")
     assert joint == [3]
+
+
+def test_without_advice_in_flight_the_only_joint_estimate_is_that_of_the_end(joint: list[int]) -> None:
+    campaign = flown("rudder", "aileron", "rudder", "aileron", advises=False)
+    assert joint == []
+    campaign.finish()
+    assert campaign.state().estimate_from == (1, 2, 3, 4)
+    assert joint == [4]
 
 
 def test_a_manoeuvre_that_a_hand_excludes_is_no_part_of_the_estimate(joint: list[int]) -> None:

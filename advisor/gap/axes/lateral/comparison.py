@@ -15,8 +15,9 @@ from advisor.gap.axes.lateral.diagnosis import Kind, SideDiagnosis, diagnose_sid
 from advisor.gap.axes.lateral.models import case_of
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import ComparedDerivative, Trace, Value
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.estimator import estimate_lateral
-from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.estimate import NoEstimate
 from advisor.words.certainty import as_sure
 
 
@@ -42,14 +43,16 @@ def compare_side(
     maneuvers: Sequence[Maneuver],
     aircraft: Aircraft,
     prior: FieldPrior = FIELD,
-    logged: Estimate | None = None,
+    logged: LateralEstimate | None = None,
+    as_logged: bool = False,
 ) -> SideGap | NoEstimate:
     """Compare roll and yaw of the aircraft file with accepted manoeuvres.
 
     A derivative that the file does not state is taken from the flight. ``prior`` holds the probability of
-    each kind of answer before the flight. ``logged`` is the estimate from the manoeuvres as logged.
+    each kind of answer before the flight. ``logged`` is the estimate from the manoeuvres as logged, and
+    ``as_logged`` tells that these are the manoeuvres.
     """
-    model = estimate_lateral(maneuvers, aircraft)
+    model = logged if logged is not None and as_logged else estimate_lateral(maneuvers, aircraft)
     if isinstance(model, NoEstimate):
         return model
     case = case_of(maneuvers, aircraft, model.theta)
