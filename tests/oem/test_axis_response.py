@@ -111,13 +111,13 @@ def test_a_step_of_any_length_is_the_exponential_of_its_matrix(step_s):
     assert respond_axis(grid, a.ravel(), first[None, :], y, g, np.empty((0, 2, 4)))
     whole = expm(step_s * a)
     moved = step_s * np.max(np.sum(np.abs(a), axis=1))
-    np.testing.assert_allclose(y, whole @ first, atol=2e-5 * moved)
-    np.testing.assert_allclose(g[:, 16:], whole, atol=2e-5 * moved)
+    np.testing.assert_allclose(y, whole @ first, atol=5e-5 * moved)
+    np.testing.assert_allclose(g[:, 16:], whole, atol=5e-5 * moved)
     for k, (i, j, _) in enumerate(grid.place):
         change = np.zeros((4, 4))
         change[i, j] = step_s
         exact = expm_frechet(step_s * a, change, compute_expm=False) @ first
-        np.testing.assert_allclose(g[:, k], exact, atol=2e-5 * moved)
+        np.testing.assert_allclose(g[:, k], exact, atol=5e-5 * moved)
 
 
 def test_a_model_that_runs_away_is_no_response(lateral):
