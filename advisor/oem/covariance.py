@@ -40,8 +40,6 @@ class Influence:
     """Condition number of the eight parameters' information matrix, scaled to a unit diagonal."""
     unresolved: tuple[str, ...]
     """Parameters with a part in a direction that the data do not determine."""
-    extra_covariance: FloatArray
-    """Shape (k, k): inverse information of the extra parameters, with all others free."""
     shared_inverse: FloatArray
     """Shape (f, 8 + k): rows of the inverse information for the f free shared parameters."""
     prior_rows: FloatArray
@@ -151,7 +149,6 @@ def influence(
             for name, (is_shared, index) in zip(names.reported, names.places, strict=True)
             if open_share[index if is_shared else split + index] > OPEN_SHARE
         ),
-        extra_covariance=inverse[len(common) :, len(common) :],
         shared_inverse=columns[: len(common)],
         prior_rows=prior_rows,
     )

@@ -85,7 +85,7 @@ def with_edges(plain: Solution) -> Solution:
         return plain
     own = plain.extra or Extra.none(len(plain.fitted))
     near, problem, assembly, optimum = plain.optimum, plain.problem, plain.assembly, plain.optimum
-    weighing = Weighing.by(plain.noise, plain.assembly)
+    weighing = Weighing.by(plain.noise.colours, plain.assembly)
     before = weighing.misfit(plain.residual, plain.sensitivities)
     extra, gain, upright = own, 0.0, 0.0
     for round_ in range(ROUNDS + 1):

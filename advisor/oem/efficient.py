@@ -73,7 +73,7 @@ def efficient(solution: Solution) -> Solution:
 def efficient_step(solution: Solution) -> Step | None:
     """Return the efficient step with the probabilities of its tests; None on numerical overflow."""
     colours, assembly = solution.noise.colours, solution.assembly
-    weighing = Weighing.by(solution.noise, assembly)
+    weighing = Weighing.by(colours, assembly)
     found = weighing.influence(solution.sensitivities, solution.extra)
     if found is None:
         return None
@@ -113,7 +113,7 @@ def _unsure(solution: Solution, change: FloatArray) -> FloatArray:
             step = np.zeros(3)
             step[i] = DIFFERENCE
             other = {**solution.noise.colours, output: moved(colour, step)}
-            weighing = Weighing.by(Coloured(other, np.ones(N)), solution.assembly)
+            weighing = Weighing.by(other, solution.assembly)
             there = weighing.influence(solution.sensitivities, solution.extra)
             if there is not None:
                 other_change = there.first(N).step(solution.residual, solution.extra)

@@ -154,7 +154,7 @@ def _clearer(best: Solution | NoEstimate, other: OutputErrorProblem) -> Solution
     gain = best.optimum.log_likelihood_cost - optimum.log_likelihood_cost
     if optimum.status != CONVERGED or not gain > CLEARLY:
         return best
-    weighing = Weighing.by(best.noise, best.assembly)
+    weighing = Weighing.by(best.noise.colours, best.assembly)
     misfit = weighing.misfit(best.residual, best.sensitivities)
     if misfit - weighing.misfit(assembly.z - optimum.fitted, optimum.sensitivities) <= CLEARLY:
         return best

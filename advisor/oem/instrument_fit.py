@@ -147,7 +147,7 @@ def _with_likelier_command(linear: Solution, names: Sequence[Instrument]) -> Sol
     held = _fitted(problem, begin, names, share_of(linear)) if names else solve(problem, begin=begin)
     if not isinstance(held, Solution):
         return linear
-    weighing = Weighing.by(linear.noise, linear.assembly)
+    weighing = Weighing.by(linear.noise.colours, linear.assembly)
     misfits = [
         weighing.misfit(x.residual, x.sensitivities) + penalty(x.problem, names) for x in (linear, held)
     ]

@@ -17,7 +17,7 @@ from advisor.oem.colour import Colour
 from advisor.oem.extra import Extra
 from advisor.oem.rows import Laid
 from advisor.oem.scatter_between import CHANCE
-from advisor.oem.whitening import Whitening
+from advisor.oem.weighing import Weighing
 
 WIDTH_S, WEIGHTS = 0.2, 8
 """Numerical: distance between the filter's weights, s, and their number. The filter is linear between its
@@ -60,22 +60,19 @@ def model_error(
     if extra is not None:
         columns = np.column_stack([columns, extra.columns])
     basis = _filtered(assembly, fitted)
-    white = _whitened(assembly, colours, np.column_stack([g[:, assembly.own], columns, residual, basis]))
+    white = Weighing.by(colours, assembly).forward(
+        np.column_stack([g[:, assembly.own], columns, residual, basis])
+    )
     own, columns, left, smooth = np.split(white, np.cumsum([len(assembly.own), columns.shape[1], 1]), axis=1)
-    bases = [_directions(own[block]) for block in assembly.blocks]
+    bases = [(block, directions(own[block])) for block in assembly.blocks]
 
     def without_own(part: FloatArray) -> FloatArray:
         """Return the part of the rows that the manoeuvres' own parameters do not absorb."""
-        return np.concatenate(
-            [
-                part[block] - mine @ (mine.T @ part[block])
-                for block, mine in zip(assembly.blocks, bases, strict=True)
-            ]
-        )
+        return np.concatenate([part[block] - mine @ (mine.T @ part[block]) for block, mine in bases])
 
     channels = np.unique(assembly.channel)
     only = [(assembly.channel == c)[:, None] for c in channels]
-    common = _directions(without_own(columns))
+    common = directions(without_own(columns))
     seen = without_own(np.column_stack([left, *(np.where(mine, smooth, 0.0) for mine in only)]))
     seen -= common @ (common.T @ seen)
     for k, mine in enumerate(only):
@@ -85,7 +82,7 @@ def model_error(
     return total
 
 
-def _directions(columns: FloatArray) -> FloatArray:
+def directions(columns: FloatArray) -> FloatArray:
     """Return an orthonormal basis of the ``columns`` (n, k), shape (n, rank)."""
     left, sizes, _ = np.linalg.svd(
         columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), full_matrices=False
@@ -109,19 +106,6 @@ def _mean(t: FloatArray, y: FloatArray, k: int) -> FloatArray:
     area = np.concatenate([[0.0], np.cumsum(0.5 * (y[1:] + y[:-1]) * np.diff(t))])
     late, later = (np.interp(t - WIDTH_S * lag, t, area, left=0.0) for lag in (k, k + 1))
     return np.asarray((late - later) / WIDTH_S)
-
-
-def _whitened(assembly: Laid, colours: Mapping[str, Colour], columns: FloatArray) -> FloatArray:
-    """Return ``columns`` (N, k) where the noise of every output is white with unit variance."""
-    white = np.empty_like(columns)
-    for named in assembly.rows:
-        for name, at in named.items():
-            colour = colours[name]
-            noise = Whitening.of(
-                at.stop - at.start, colour.memory, colour.white_share, colour.variance or 1.0
-            )
-            white[at] = noise.forward(columns[at])
-    return white
 
 
 def _likeliest(columns: FloatArray, residual: FloatArray) -> float:

@@ -37,6 +37,8 @@ def cost_of(
     )
 
 
+KNOTS_S = 0.1
+"""Numerical: distance between the knots of a disturbance, s."""
 LARGEST_GUST_RAD = 0.26
 """Largest standard deviation of the gust angle, rad. Beyond 15 deg lift is not linear in α."""
 _STEPS = (0.7, 0.35, 0.15)

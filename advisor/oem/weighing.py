@@ -12,9 +12,10 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.response import N_LOCAL, N_SHARED, OUTPUTS
 from advisor.oem.arrow import arrow_step, normal_equations
-from advisor.oem.covariance import Coloured, Influence, influence
+from advisor.oem.colour import Colour
+from advisor.oem.covariance import Influence, influence
 from advisor.oem.extra import Extra
-from advisor.oem.problem import Assembly
+from advisor.oem.rows import Laid
 from advisor.oem.whitening import Whitening
 
 UNIT = np.ones(len(OUTPUTS))
@@ -24,16 +25,16 @@ UNIT = np.ones(len(OUTPUTS))
 class Weighing:
     """Factor L⁻¹ for all measurements of a problem."""
 
-    assembly: Assembly
+    assembly: Laid
     by_maneuver: tuple[Mapping[str, Whitening], ...]
     """Whitening filter of each output, by the output's name, in one mapping per manoeuvre."""
 
     @classmethod
-    def by(cls, noise: Coloured, assembly: Assembly) -> "Weighing":
+    def by(cls, colours: Mapping[str, Colour], assembly: Laid) -> "Weighing":
         """Return the weighing for a noise model, valid for any problem with these measurements."""
 
         def whitening(output: str, samples: int) -> Whitening:
-            colour = noise.colours[output]
+            colour = colours[output]
             # An output that never moves has no residual and no influence; it keeps its unit.
             return Whitening.of(samples, colour.memory, colour.white_share, colour.variance or 1.0)
 
@@ -44,6 +45,12 @@ class Weighing:
                 for named in assembly.rows
             ),
         )
+
+    @property
+    def volume(self) -> float:
+        """Logarithm of the determinant of Γ."""
+        each = (part for named in self.by_maneuver for part in named.values())
+        return -2.0 * sum(float(np.sum(np.log(part.scale))) for part in each)
 
     def forward(self, rows: FloatArray) -> FloatArray:
         """Return L⁻¹·rows, shape (N, k)."""

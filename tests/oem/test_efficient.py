@@ -6,7 +6,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.oem.colour import Colour
-from advisor.oem.covariance import Coloured, cramer_rao
+from advisor.oem.covariance import cramer_rao
 from advisor.oem.efficient import efficient, efficient_step
 from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.problem import OutputErrorProblem, Record
@@ -70,7 +70,7 @@ def test_white_noise_is_weighed_as_output_error_does():
     found = solution(clean()[2], coloured_noise(0, memory=0.0))
     sigma = found.optimum.noise
     plain = {name: Colour(sigma[i] ** 2, 0.0, 0.0, np.eye(1)) for i, name in enumerate(("alpha", "q"))}
-    weighing = Weighing.by(Coloured(plain, np.ones(8)), found.assembly)
+    weighing = Weighing.by(plain, found.assembly)
     rows = weighing.influence(found.sensitivities, None).rows
     np.testing.assert_allclose(rows, found.influence.rows, rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(cramer_rao(found.assembly, rows, sigma), found.covariance_cr, rtol=1e-6)

@@ -25,11 +25,11 @@ from advisor.gap.simulator.layout import (
     OUTPUTS,
 )
 from advisor.oem.arrow import solved
+from advisor.oem.turbulence import KNOTS_S
 
-KNOTS_S = 0.1
 MEMORY_S = 0.6
-"""Numerical: distance between the knots of a disturbance, and its correlation time, s. Sums of such
-disturbances represent faster and slower disturbances."""
+"""Numerical: correlation time of a disturbance, s. Sums of such disturbances represent faster and slower
+disturbances."""
 SENSOR_CHANNELS = {
     "alpha_sensor": "alpha",
     "pitch_rate_sensor": "q",

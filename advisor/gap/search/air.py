@@ -15,11 +15,11 @@ from advisor.gap.decision import CERTAIN
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.noise.probes import KNOTS_S, DisturbanceCourse, disturbance_courses
+from advisor.gap.noise.probes import DisturbanceCourse, disturbance_courses
 from advisor.gap.noise.quiet import air_in_quiet, instrument_noise, quiet_rows, rows_of, system_of, with_floor
 from advisor.gap.noise.shown_gust import largest_gust
 from advisor.model.response import OUTPUTS
-from advisor.oem.turbulence import Turbulence, find_turbulence
+from advisor.oem.turbulence import KNOTS_S, Turbulence, find_turbulence
 
 AIR_MANEUVERS = 5
 """Numerical: number of the noisiest manoeuvres in which moving air is sought."""

@@ -189,7 +189,7 @@ def _tied_to_the_gap(case: Case, found: Decided[SideModel], as_given: Fit) -> De
 def _named_air(row: Row[SideModel]) -> Row[SideModel]:
     """Return the row with side gusts as its answer, if the gusts alone exceed natural side gusts."""
     gusts = row.explanation.gusts
-    blown = row.alternative == NONE and gusts is not None and gusts.angle > NATURAL_GUST_ANGLE
+    blown = row.alternative == NONE and gusts is not None and gusts.air.angle > NATURAL_GUST_ANGLE
     return relabelled(row, SIDE_GUSTS) if blown else row
 
 
@@ -247,7 +247,7 @@ def _air(case: Case, one: SideModel, probability: float, is_found: bool, as_give
     """Return side gusts as a cause of the gap."""
     assert one.gusts is not None
     speed = float(np.mean([np.mean(record.airspeed.y) for record in case.flown.problem.records]))
-    size = Value(one.gusts.angle * speed, one.gusts.angle_std * speed)
+    size = Value(one.gusts.air.angle * speed, one.gusts.angle_std * speed)
     cause = Cause("turbulence", "air", probability, {"sigma_v_m_s": size}, (), "", float(np.nan), is_found)
     said = f"The air was not still: side gusts of about {size.value:.2g} m/s"
     gain = Gain(one.gusts.likelihood - coloured_likelihood(one.fit), 0.0)

@@ -16,6 +16,7 @@ from advisor.gap.axes.lateral.setting import Flown, Place, Setting, laid_out, mo
 from advisor.gap.inference.marginal import Prior
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.arrow import unabsorbed
+from advisor.oem.axes.lateral.disturbance import Linear
 from advisor.oem.axes.lateral.motion import FLOOR, LateralMotion, outputs_of, simulate
 from advisor.oem.axes.lateral.problem import LateralAssembly
 from advisor.oem.descent import Response, descended
@@ -139,6 +140,10 @@ class Fit:
     def weight(self) -> FloatArray:
         """Shape (N,): inverse standard deviation of each row's noise."""
         return np.asarray(1.0 / self.noise[self.assembly.channel])
+
+    def linear(self, flown: Flown) -> Linear:
+        """Return the fit as one whose outputs a disturbance changes."""
+        return Linear(flown.problem, self.assembly, self.point.theta, self.sensitivities, self.noise)
 
 
 def fitted(flown: Flown, begin: Point, free: Sequence[Free], known: Known, most: int = MOST) -> Fit | None:

@@ -7,7 +7,6 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative
-from advisor.gap.axes.lateral.disturbance import Course, courses_of
 from advisor.gap.axes.lateral.effects import SideEffect, block_of
 from advisor.gap.axes.lateral.evidence import Gain, information_of, share_of, squares_of, step_of
 from advisor.gap.axes.lateral.fit import Fit, Free, Known, moved_by
@@ -22,6 +21,7 @@ from advisor.gap.inference.posterior import UNKNOWN
 from advisor.gap.inference.residual import Residual
 from advisor.gap.inference.sizes import natural_share
 from advisor.gap.inference.stage import AT_THE_FILE, LAWS, Pairs, Stage, likeliest, within_model_error
+from advisor.oem.axes.lateral.disturbance import Course, courses_of
 from advisor.process.parts import Parts
 
 _TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
@@ -159,7 +159,7 @@ class SideFlight:
         still = [stage.plain, *likely]
         lead = int(np.argmax([one.evidence.either for one in still]))
         fit = still[lead].fit
-        courses = courses_of(fit, self.case.flown)
+        courses = courses_of(fit.linear(self.case.flown))
         air = side_gusts(fit, courses, self._wide(fit))
         blown = within_model_error(self, [self._blown(one, courses, air) for one in still], 0.0)
         gain = air.likelihood - coloured_likelihood(fit)

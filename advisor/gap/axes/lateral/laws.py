@@ -10,7 +10,6 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.axes.lateral.disturbance import EQUATIONS, SENSORS, STEP_S, answered
 from advisor.gap.axes.lateral.effects import SideEffect, block_of
 from advisor.gap.axes.lateral.fit import Fit
 from advisor.gap.axes.lateral.models import Case
@@ -19,6 +18,7 @@ from advisor.gap.kit.variant import Variant
 from advisor.gap.uncatalogued.candidate_laws import RINGING, STOPS, SURFACE_STOP, sticking, stops
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.axis_response import respond_axis
+from advisor.oem.axes.lateral.disturbance import EQUATIONS, SENSORS, STEP_S, answered
 
 _CURVE = Variant("curve", "", ("square", "cube"), ((0.0, 0.0),), (1.0, 1.0), ((-np.inf, np.inf),) * 2, 0.0)
 _LAG_AND_DAMPING = replace(
@@ -59,7 +59,7 @@ def _curves(
     for m, motion in enumerate(motions):
         shares = [motion[of] / most[of] for of in slopes]
         forms = np.column_stack([form for x in shares for form in (x * np.abs(x), x**3)])
-        parts.append(answered(fit, case.flown, m, block, motion["t"], forms))
+        parts.append(answered(fit.linear(case.flown), m, block, motion["t"], forms))
     columns = np.vstack(parts)
     for k, (of, slope) in enumerate(slopes.items()):
         name, std = f"{block} curve of {of}", BENT * slope * most[of]

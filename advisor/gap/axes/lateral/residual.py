@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.axes.lateral.disturbance import AIR, Course, blocks_of, courses_of
 from advisor.gap.axes.lateral.fit import Fit
 from advisor.gap.axes.lateral.setting import Flown
 from advisor.gap.inference.residual import NATURAL, Residual, shares_of
 from advisor.gap.noise.probes import Probe, at_its_size, coloured_between
+from advisor.oem.axes.lateral.disturbance import AIR, Course, blocks_of, courses_of
 from advisor.oem.axes.lateral.motion import FLOOR
 
 
@@ -22,7 +22,8 @@ def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
         Share of white noise in the residuals: one nat of white-noise likelihood counts as ``share``² nats.
     """
     noise = _white(fit)
-    probes = [_probe(fit, block, courses_of(fit, flown, block), noise) for block in blocks_of(fit, flown)]
+    linear = fit.linear(flown)
+    probes = [_probe(fit, block, courses_of(linear, block), noise) for block in blocks_of(linear)]
     probes.sort(key=lambda probe: -probe.gain)
     sizes = []
     for k in np.unique(fit.assembly.channel):

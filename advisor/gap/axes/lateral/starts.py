@@ -11,13 +11,13 @@ import numpy as np
 from scipy.optimize import nnls
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.axes.lateral.disturbance import STEP_S, answered
 from advisor.gap.axes.lateral.effects import SideEffect
 from advisor.gap.axes.lateral.fit import Fit, N, Point, outputs
 from advisor.gap.axes.lateral.models import Case, base_of
 from advisor.gap.axes.lateral.setting import COMMAND, Flown, Setting, deflection, moved_to
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
 from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axes.lateral.disturbance import STEP_S, answered
 
 
 def changes_by(fit: Fit, flown: Flown, of: str, settings: Sequence[Setting]) -> FloatArray:
@@ -38,7 +38,7 @@ def _by_surface(fit: Fit, flown: Flown, m: int, control: str, settings: Sequence
         late = t - now[COMMAND][m]
         moves += np.column_stack([deflection(flown, m, control, one).at(late) for one in settings])
         moves -= deflection(flown, m, control, now).at(late)[:, None]
-    return answered(fit, flown, m, control, t, moves)
+    return answered(fit.linear(flown), m, control, t, moves)
 
 
 def _read_later(fit: Fit, of: str, setting: Setting) -> FloatArray:

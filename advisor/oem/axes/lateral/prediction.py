@@ -12,15 +12,17 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.instruments import nuisances_of
-from advisor.oem.axes.lateral.motion import outputs_of, simulate
+from advisor.oem.axes.lateral.motion import LateralMotion
 from advisor.oem.axes.lateral.prepare import prepare_lateral
-from advisor.oem.axes.lateral.problem import LateralAssembly, LateralProblem, assemble_lateral
+from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.axes.lateral.start import lateral_start
+from advisor.oem.descent import descended
 from advisor.oem.estimate import ChannelFit, NoEstimate
+from advisor.oem.estimator import channel_fits
+from advisor.oem.prior import Priors
 
-ROUNDS = 12
-"""Number of Gauss-Newton steps of the refit. The outputs are nearly linear in trims, initial states and
-biases."""
+HELD = 1e-6
+"""Numerical: standard deviation of the given derivatives in the refit, SI."""
 
 
 def predicted_lateral(
@@ -39,14 +41,12 @@ def predicted_lateral(
     if isinstance(prepared, NoEstimate):
         return prepared
     problem = _as_in(prepared, model, aircraft)
-    assembly = assemble_lateral(problem)
-    noise = {name: fit.noise for name, fit in model.fits[0].items()}
     chosen = model.theta if theta is None else theta
-    fitted = _refitted(assembly, problem, chosen, noise)
-    return {
-        name: ChannelFit(name, assembly.t[rows], assembly.z[rows], fitted[rows], noise[name])
-        for name, rows in assembly.rows[0].items()
-    }
+    local = lateral_start(problem)[1]
+    local[0, : len(LATERAL.constants)] = 0.0
+    held = Priors(chosen, np.full(len(chosen), HELD))
+    fit = descended(LateralMotion(), problem, (), held, (chosen, local))
+    return fit if isinstance(fit, NoEstimate) else channel_fits(fit.assembly, fit.optimum)[0]
 
 
 def _as_in(problem: LateralProblem, model: LateralEstimate, aircraft: Aircraft) -> LateralProblem:
@@ -61,22 +61,3 @@ def _as_in(problem: LateralProblem, model: LateralEstimate, aircraft: Aircraft) 
         if x.name in model.nuisances:
             problem = x.write(problem, model.nuisances[x.name][0])
     return problem
-
-
-def _refitted(
-    assembly: LateralAssembly, problem: LateralProblem, theta: FloatArray, noise: Mapping[str, float]
-) -> FloatArray:
-    """Return the outputs (N,) at the best trims, initial states and biases."""
-    n = len(LATERAL.names.shared)
-    own = assembly.own
-    weight = np.array([1.0 / noise[LATERAL.outputs[c]] for c in assembly.channel])
-    local = lateral_start(problem)[1]
-    local[0, : len(LATERAL.constants)] = 0.0
-    for _ in range(ROUNDS):
-        found = simulate(assembly, theta, local)
-        if found is None:
-            break
-        y, g, _motion = found
-        step = np.linalg.lstsq(g[:, own] * weight[:, None], (assembly.z - y) * weight, rcond=None)[0]
-        local[0, own - n] += step
-    return outputs_of(assembly, theta, local)

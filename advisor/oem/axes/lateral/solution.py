@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
+from advisor.oem.axes.lateral.gusts import in_moving_air
 from advisor.oem.axes.lateral.instruments import Nuisance, begun
 from advisor.oem.axes.lateral.motion import FLOOR, LateralMotion
 from advisor.oem.axes.lateral.problem import LateralProblem
@@ -59,7 +60,7 @@ def solve_lateral(problem: LateralProblem, nuisances: Sequence[Nuisance] = ()) -
             return why
         problem, start = fit.problem, fit.place
         solution = _evaluated(fit, prior)
-    return solution
+    return solution if isinstance(solution, NoEstimate) else _above_bound(in_moving_air(solution))
 
 
 def _has_diverged(fit: Fit) -> bool:
@@ -82,10 +83,13 @@ def _share(solution: Solution) -> float:
 
 
 def _evaluated(fit: Fit, prior: Priors) -> Solution | NoEstimate:
-    """Return the solution at a fit, with no error below the bound, because instruments have a noise floor."""
+    """Return the solution at a fit, with errors for instruments of coloured noise."""
     found = evaluate(fit.problem, fit.assembly, fit.optimum, fit.extra, prior=prior, parameters=fit.nuisances)
-    if isinstance(found, NoEstimate):
-        return found
+    return found if isinstance(found, NoEstimate) else _above_bound(found)
+
+
+def _above_bound(found: Solution) -> Solution:
+    """Return the solution with no error below the bound, because instruments have a noise floor."""
     bound, stated = np.diag(found.covariance_cr), np.diag(found.covariance)
     ratio = np.divide(bound, stated, out=np.ones_like(stated), where=stated > 0.0)
     factor = np.sqrt(np.maximum(ratio, 1.0))

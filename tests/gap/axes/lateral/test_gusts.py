@@ -7,7 +7,6 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.gap.axes.lateral.disturbance import courses_of
 from advisor.gap.axes.lateral.effects import side_effects
 from advisor.gap.axes.lateral.fit import fitted, moved_by
 from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
@@ -15,6 +14,8 @@ from advisor.gap.axes.lateral.laws import side_laws
 from advisor.gap.axes.lateral.models import case_of
 from advisor.gap.axes.lateral.residual import residual_of
 from advisor.gap.axes.lateral.starts import Starts
+from advisor.oem.axes.lateral.disturbance import courses_of
+from advisor.oem.axes.lateral.gusts import MEMORY_S, Air
 from tests.gap.axes.lateral.test_comparison import AIRCRAFT, maneuvers
 from tests.oem.axes.lateral.builders import JET
 
@@ -32,7 +33,7 @@ def case():
 def flight(case):
     """Return a fit with the true derivatives, and what gusts change in its manoeuvres."""
     fit = fitted(case.flown, case.begin, case.natural, case.prior_of(1e-6, case.natural), most=1)
-    return fit, courses_of(fit, case.flown), case.prior_of(0.3, fit.free)
+    return fit, courses_of(fit.linear(case.flown)), case.prior_of(0.3, fit.free)
 
 
 def with_residual(fit, residual):
@@ -53,8 +54,8 @@ def test_a_gust_angle_enters_all_outputs_and_its_size_is_found(flight):
     blown = [ANGLE * course.columns @ wandering(len(course.knots), 0.9, rng) for course in courses]
     gusty = with_residual(fit, np.concatenate(blown))
     found = side_gusts(gusty, courses, known)
-    assert found.angle == pytest.approx(ANGLE, rel=0.4)
-    assert abs(found.angle - ANGLE) < 4.0 * found.angle_std
+    assert found.air.angle == pytest.approx(ANGLE, rel=0.4)
+    assert abs(found.air.angle - ANGLE) < 4.0 * found.angle_std
     assert found.likelihood > coloured_likelihood(gusty) + 20.0
 
 
@@ -62,13 +63,12 @@ def test_the_likelihood_is_the_normal_density_of_white_noise_and_a_markov_gust_a
     fit, courses, _ = flight
     rng = np.random.default_rng(5)
     gusty = with_residual(fit, 0.01 * rng.standard_normal(len(fit.fitted)))
-    memory_s = 0.7
-    gusts = Gusts(2.0 * NOISE, ANGLE, memory_s, np.nan, np.nan, np.empty(0), np.empty(0)).at(gusty, courses)
+    gusts = Gusts(Air(2.0 * NOISE, ANGLE), np.nan, np.nan, np.empty(0), np.empty(0)).at(gusty, courses)
     density, gradient = 0.0, 0.0
     for m, course in enumerate(courses):
         rows = np.flatnonzero(fit.assembly.owner == m)
         white = np.diag((2.0 * NOISE[fit.assembly.channel[rows]]) ** 2)
-        angles = ANGLE**2 * np.exp(-np.abs(course.knots[:, None] - course.knots) / memory_s)
+        angles = ANGLE**2 * np.exp(-np.abs(course.knots[:, None] - course.knots) / MEMORY_S)
         both = white + course.columns @ angles @ course.columns.T
         density += multivariate_normal(cov=both, allow_singular=True).logpdf(gusty.residual[rows])
         gradient = gradient + gusty.columns[rows].T @ np.linalg.solve(both, gusty.residual[rows])
@@ -92,7 +92,7 @@ def test_still_air_has_no_gusts(flight):
     fit, courses, known = flight
     still = with_residual(fit, np.zeros(len(fit.fitted)))
     found = side_gusts(still, courses, known)
-    assert found.angle < 0.1 * ANGLE
+    assert found.air.angle < 0.1 * ANGLE
     assert found.likelihood == pytest.approx(coloured_likelihood(still), abs=15.0)
 
 
@@ -102,7 +102,7 @@ def test_still_air_has_no_gusts(flight):
 )
 def test_a_disturbance_is_found_in_its_block(case, flight, block):
     fit, _, _ = flight
-    courses = courses_of(fit, case.flown, block)
+    courses = courses_of(fit.linear(case.flown), block)
     rng = np.random.default_rng(5)
     seen = np.concatenate([c.columns @ wandering(len(c.knots), 0.8, rng) for c in courses])
     largest = np.max(np.abs(seen) / NOISE[fit.assembly.channel])

@@ -12,10 +12,10 @@ import numpy as np
 from scipy.linalg import expm
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.axes.lateral.fit import Fit, N
-from advisor.gap.axes.lateral.setting import Flown
-from advisor.gap.noise.probes import KNOTS_S
 from advisor.model.axes.lateral import LATERAL, Trim, state_matrix
+from advisor.oem.arrow import unabsorbed
+from advisor.oem.axes.lateral.problem import LateralAssembly, LateralProblem
+from advisor.oem.turbulence import KNOTS_S
 
 AIR = "air"
 EQUATIONS = {"side_force": "beta", "rolling_moment": "p", "yawing_moment": "r"}
@@ -34,6 +34,29 @@ _STATES = {name: k for k, name in enumerate(LATERAL.states)}
 _BETA, _P, _R, _BANK = range(len(LATERAL.states))
 
 
+class Linear(NamedTuple):
+    """A fit of roll and yaw, whose outputs change linearly with a disturbance."""
+
+    problem: LateralProblem
+    assembly: LateralAssembly
+    theta: FloatArray
+    """(15,)"""
+    sensitivities: FloatArray
+    """Shape (N, 15 + l): derivatives of the outputs by the derivatives and the local parameters."""
+    noise: FloatArray
+    """Shape (outputs,): standard deviation of each output's noise, SI."""
+
+    @property
+    def weight(self) -> FloatArray:
+        """Shape (N,): inverse standard deviation of each row's noise."""
+        return np.asarray(1.0 / self.noise[self.assembly.channel])
+
+    def unabsorbed(self, m: int, columns: FloatArray) -> FloatArray:
+        """Return the part of ``columns`` (n, k) that no trim or initial state of manoeuvre ``m`` absorbs."""
+        rows = self.assembly.blocks[m]
+        return unabsorbed(columns, self.sensitivities[rows][:, self.assembly.own], self.weight[rows])
+
+
 class Course(NamedTuple):
     """Response of one manoeuvre to a disturbance."""
 
@@ -44,37 +67,32 @@ class Course(NamedTuple):
     states absorb."""
 
 
-def blocks_of(fit: Fit, flown: Flown) -> Iterator[str]:
+def blocks_of(fit: Linear) -> Iterator[str]:
     """Yield the blocks whose disturbance these records can show."""
-    yield from filter(flown.problem.flies, LATERAL.inputs)
+    yield from filter(fit.problem.flies, LATERAL.inputs)
     yield from EQUATIONS
     yield AIR
     there = {LATERAL.outputs[k] for k in np.unique(fit.assembly.channel)}
     yield from (block for block, output in SENSORS.items() if output in there)
 
 
-def courses_of(fit: Fit, flown: Flown, block: str = AIR) -> tuple[Course, ...]:
+def courses_of(fit: Linear, block: str = AIR) -> tuple[Course, ...]:
     """Return the response of every manoeuvre to a disturbance in a block, from the derivatives of a fit.
 
     The disturbance's unit is rad at a control and in the air, 1/s or rad/s² in an equation.
     """
-    return tuple(_course(fit, flown, m, block) for m in range(len(flown)))
+    return tuple(_course(fit, m, block) for m in range(fit.assembly.maneuvers))
 
 
-def _course(fit: Fit, flown: Flown, m: int, block: str) -> Course:
-    own = np.flatnonzero(fit.assembly.owner == m)
-    stamps = fit.assembly.t[own]
+def _course(fit: Linear, m: int, block: str) -> Course:
+    stamps = fit.assembly.t[fit.assembly.blocks[m]]
     knots = np.arange(np.min(stamps), np.max(stamps) + KNOTS_S, KNOTS_S)
     t = np.arange(knots[0], knots[-1] + STEP_S, STEP_S)
-    weight = fit.weight[own][:, None]
-    local = fit.sensitivities[own][:, fit.assembly.free[fit.assembly.free >= N]] * weight
-    basis = np.linalg.svd(local, full_matrices=False)[0]
     # Speed and trim are constant: every knot but the first changes the outputs like the second one, later.
     hats = np.maximum(0.0, 1.0 - np.abs(t[:, None] - knots[:2]) / KNOTS_S)  # weights of the linear course
-    begun = _outputs(fit.point.theta, flown, m, block, hats)
+    begun = _outputs(fit, m, block, hats)
     seen = {name: _later(two, len(knots)) for name, two in begun.items()}
-    weighed = _read(fit, m, t, seen) * weight
-    return Course(knots, (weighed - basis @ (basis.T @ weighed)) / weight)
+    return Course(knots, fit.unabsorbed(m, _read(fit, m, t, seen)))
 
 
 def _later(two: FloatArray, knots: int) -> FloatArray:
@@ -89,12 +107,12 @@ def _later(two: FloatArray, knots: int) -> FloatArray:
     return changes
 
 
-def answered(fit: Fit, flown: Flown, m: int, block: str, t: FloatArray, course: FloatArray) -> FloatArray:
+def answered(fit: Linear, m: int, block: str, t: FloatArray, course: FloatArray) -> FloatArray:
     """Return the response (n, k) of one manoeuvre's outputs to ``k`` disturbances in a block."""
-    return _read(fit, m, t, _outputs(fit.point.theta, flown, m, block, course))
+    return _read(fit, m, t, _outputs(fit, m, block, course))
 
 
-def _read(fit: Fit, m: int, t: FloatArray, seen: Mapping[str, FloatArray]) -> FloatArray:
+def _read(fit: Linear, m: int, t: FloatArray, seen: Mapping[str, FloatArray]) -> FloatArray:
     """Return the changes (n, k) of outputs, known at the times ``t``, at the stamps of a manoeuvre."""
     parts = []
     for name, rows in fit.assembly.rows[m].items():
@@ -106,13 +124,11 @@ def _read(fit: Fit, m: int, t: FloatArray, seen: Mapping[str, FloatArray]) -> Fl
     return np.concatenate(parts)
 
 
-def _outputs(
-    theta: FloatArray, flown: Flown, m: int, block: str, course: FloatArray
-) -> Mapping[str, FloatArray]:
+def _outputs(fit: Linear, m: int, block: str, course: FloatArray) -> Mapping[str, FloatArray]:
     """Return the change (n, k) of each output by disturbances (n, k), by the output's name."""
     if block in SENSORS:
         return {SENSORS[block]: course}
-    problem, record = flown.problem, flown.problem.records[m]
+    problem, record, theta = fit.problem, fit.problem.records[m], fit.theta
     speed = float(np.mean(record.airspeed.y))
     ratio = speed / (problem.reference_airspeed_m_s or speed)
     trim = Trim(speed, float(np.mean(record.alpha.y)), float(np.mean(record.theta.y)))

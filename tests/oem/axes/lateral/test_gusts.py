@@ -1,0 +1,63 @@
+"""Errors of one test of roll and yaw in side gusts and in still air."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axes.lateral import solution as lateral_solution
+from advisor.oem.axes.lateral.disturbance import Linear, courses_of
+from advisor.oem.axes.lateral.problem import LateralProblem
+from advisor.oem.axes.lateral.solution import solve_lateral
+from advisor.oem.rows import Signal
+from tests.oem.axes.lateral.builders import JET, aileron_doublet, flown, vector
+
+T = np.arange(0.0, 15.0, 0.025)
+MEASURED = ("p", "r", "bank", "a_y")
+KNOWN = [LATERAL.names.reported.index(name) for name in ("L_beta", "L_p", "L_delta_a", "N_beta", "N_r")]
+GUSTS_RAD = 0.0015
+
+
+@pytest.fixture
+def coloured(monkeypatch):
+    """Return the solutions before their errors contain gusts."""
+    seen, blown = [], lateral_solution.in_moving_air
+    monkeypatch.setattr(lateral_solution, "in_moving_air", lambda one: seen.append(one) or blown(one))
+    return seen
+
+
+def problem_of(rng):
+    return LateralProblem((flown(JET, aileron=aileron_doublet(T), measured=MEASURED, rng=rng),))
+
+
+def std_of(solution):
+    return np.sqrt(np.diag(solution.widened)[KNOWN])
+
+
+def test_still_air_leaves_the_errors_of_the_instruments(coloured):
+    ratio = std_of(solve_lateral(problem_of(np.random.default_rng(1)))) / std_of(*coloured)
+    assert np.all(np.abs(ratio - 1.0) < 0.2)
+
+
+def test_errors_of_one_test_contain_its_gusts(coloured):
+    rng = np.random.default_rng(2)
+    still = solve_lateral(problem_of(rng))
+    fit = Linear(still.problem, still.assembly, vector(JET), still.sensitivities, still.optimum.noise)
+    (course,) = courses_of(fit)
+    markov = np.exp(-np.abs(course.knots[:, None] - course.knots))
+    off, wide, narrow = [], [], []
+    for _ in range(4):
+        change = course.columns @ np.linalg.cholesky(markov) @ rng.standard_normal(len(course.knots))
+        problem = problem_of(rng)
+        (record,) = problem.records
+        outputs = {
+            name: Signal(record.outputs[name].t, record.outputs[name].y + GUSTS_RAD * change[rows])
+            for name, rows in still.assembly.rows[0].items()
+        }
+        found = solve_lateral(LateralProblem((replace(record, outputs=outputs),)))
+        off.append(np.abs(found.theta - vector(JET))[KNOWN])
+        wide.append(std_of(found))
+        narrow.append(std_of(coloured[-1]))
+    assert np.mean(np.array(off) / wide < 1.96) > 0.85
+    assert np.mean(np.array(off) / narrow < 1.96) < 0.75
