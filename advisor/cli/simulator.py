@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.cli.options import UNUSABLE, aircraft_option, json_option, read_aircraft, target_system_option
+from advisor.cli.options import aircraft_option, json_option, read_aircraft, target_system_option
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
@@ -40,7 +40,7 @@ def check(
     height: float | None,
     aircraft_file: Path | None,
     as_json: bool,
-) -> int:
+) -> None:
     """Load a simulator, trim it, step its elevator, and print what answers.
 
     The simulator flies 5 s at rest and one 3-2-1-1. A wrong sign or unit ends with exit code 3 and one
@@ -64,9 +64,6 @@ def check(
         simulator = named_simulator(aircraft)
         assert simulator is not None
         found = checked(simulator, Condition(speed, high, 0.0, aircraft.reference.mass_kg), aircraft)
-    except UnusableInputError as error:
-        click.echo(str(error), err=True)
-        return UNUSABLE
     finally:
         if simulator is not None:
             simulator.close()
@@ -75,17 +72,15 @@ def check(
     else:
         for line in lines(found):
             click.echo(printable(line))
-    if found.fault is None:
-        return 0
-    click.echo(str(found.fault.refuse(found.simulator)), err=True)
-    return UNUSABLE
+    if found.fault is not None:
+        raise found.fault.refuse(found.simulator)
 
 
 @command.command
 @click.argument("log", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @click.option("--master", required=True, metavar="CONN", help="Connection of the simulated vehicle.")
 @target_system_option
-def fly(log: Path, master: str, target_system: int | None) -> int:
+def fly(log: Path, master: str, target_system: int | None) -> None:
     """Replay the sticks of a flight into a simulation of ArduPilot or PX4, as an override of its receiver.
 
     The log's RC_CHANNELS go out in their own time. Nothing is sent to a vehicle without a parameter that only
@@ -100,11 +95,7 @@ def fly(log: Path, master: str, target_system: int | None) -> int:
     from advisor.mavlink.link.link import Link
     from advisor.mavlink.link.stick_replay import StickReplay
 
-    try:
-        recorded = sticks_of(log)
-    except UnusableInputError as error:
-        click.echo(str(error), err=True)
-        return UNUSABLE
+    recorded = sticks_of(log)
     replay = StickReplay(recorded.t, recorded.pulses)
     click.echo(f"{recorded.t[-1]:.0f} s of sticks go to {printable(master)}; Ctrl-C ends them.", err=True)
     with Link(master, target_system=target_system, talkers=[replay]) as link:
@@ -113,13 +104,11 @@ def fly(log: Path, master: str, target_system: int | None) -> int:
             for notice in link.take_notices():
                 click.echo(printable(notice), err=True)
     if replay.refused:
-        click.echo(
-            f"The vehicle on {printable(master)} has no parameter of a simulation: nothing was sent. "
+        raise UnusableInputError(
+            "no_simulation",
+            f"The vehicle on {master} has no parameter of a simulation: nothing was sent.",
             "Start ArduPilot's or PX4's simulation in the loop there.",
-            err=True,
         )
-        return UNUSABLE
-    return 0
 
 
 def _speed_of(aircraft: Aircraft) -> float:

@@ -33,6 +33,11 @@ class Decision:
     """Unit of the statistic and of the limit."""
 
     @property
+    def margin(self) -> float:
+        """Statistic minus limit, positive where the limit is exceeded."""
+        return self.statistic - self.limit
+
+    @property
     def holds(self) -> bool:
         """Whether the statistic is at least the limit."""
         return self.statistic >= self.limit

@@ -13,6 +13,7 @@ from click.testing import CliRunner, Result
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.cli.simulator import command
+from advisor.words.problems import UnusableInputError
 from tests.mavlink.link.builders import Sender, heartbeat
 
 PULSES = [1500, 1500, 1700, 1700, 1300, 1300, 1500, 1500]
@@ -76,7 +77,7 @@ def fly(log: Path, port: int) -> Result:
 def test_a_flights_sticks_arrive_at_the_simulation_and_are_released(tmp_path: Path) -> None:
     with simulation({"SIM_SPEEDUP": 1.0, "SYSID_MYGCS": 252.0}) as (port, heard):
         done = fly(recorded(tmp_path / "flight.tlog"), port)
-    assert done.return_value == 0
+    assert done.exit_code == 0
     sent = [m for m in heard if m.get_msgId() == OVERRIDE]
     pitch = [m.chan2_raw for m in sent]
     assert {0} < set(pitch) <= {0, *PULSES}
@@ -88,8 +89,7 @@ def test_a_flights_sticks_arrive_at_the_simulation_and_are_released(tmp_path: Pa
 
 @pytest.mark.study
 def test_a_vehicle_that_is_no_simulation_gets_no_stick(tmp_path: Path) -> None:
-    with simulation({"SERVO2_MIN": 1100.0}) as (port, heard):
-        done = fly(recorded(tmp_path / "flight.tlog"), port)
-    assert done.return_value == 3
-    assert "nothing was sent" in done.output
+    refused = pytest.raises(UnusableInputError, match="nothing was sent")
+    with simulation({"SERVO2_MIN": 1100.0}) as (port, heard), refused:
+        fly(recorded(tmp_path / "flight.tlog"), port)
     assert OVERRIDE not in {m.get_msgId() for m in heard}

@@ -255,9 +255,10 @@ def test_the_air_is_weighed_in_the_residual_of_the_likeliest_explanation(monkeyp
     monkeypatch.setattr(flight_of_side, "within_model_error", lambda _, everyone, error: everyone)
     monkeypatch.setattr(SideFlight, "_wide", lambda *_: None)
     monkeypatch.setattr(SideFlight, "_blown", lambda self, one, *_: one)
-    stage = Stage(side_model("plain"), (side_model("with an effect", nats),), (), 1.0)
-    SideFlight(SimpleNamespace(flown=None), "plain", []).in_moving_air(stage)
-    assert of == [likeliest]
+    plain, other = (SimpleNamespace(name=name, linear=lambda _: None) for name in ("plain", "with an effect"))
+    stage = Stage(side_model(plain), (side_model(other, nats),), (), 1.0)
+    SideFlight(SimpleNamespace(flown=None), plain, []).in_moving_air(stage)
+    assert [fit.name for fit in of] == [likeliest]
 
 
 @pytest.mark.parametrize(
@@ -307,7 +308,7 @@ def test_a_pair_counts_where_it_makes_up_for_the_second_effects_share_of_the_pri
 
 @pytest.mark.parametrize(("angle", "kind"), [(1e-4, "none"), (0.05, "air")])
 def test_gusts_far_above_the_natural_ones_are_the_answer_of_a_flight_with_nothing_else(angle, kind):
-    row = Row(NONE, SimpleNamespace(gusts=SimpleNamespace(angle=angle)), {})
+    row = Row(NONE, SimpleNamespace(gusts=SimpleNamespace(air=SimpleNamespace(angle=angle))), {})
     assert diagnosis._named_air(row).alternative.kind == kind
 
 
