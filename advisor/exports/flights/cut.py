@@ -1,5 +1,8 @@
 """The log of one manoeuvre: the packets of a tlog around the manoeuvre, byte by byte, with the necessary
-earlier ones, and a check that the cut log still contains the manoeuvre."""
+earlier ones.
+
+The cut log is read again, as a check that it still contains the manoeuvre.
+"""
 
 from collections.abc import Iterator
 from pathlib import Path
