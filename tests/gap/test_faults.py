@@ -27,7 +27,7 @@ EACH = pytest.mark.parametrize(
     [
         ("pitch", diagnose, "infer", np.linalg.LinAlgError("Eigenvalues did not converge")),
         ("pitch", diagnose, "prepare", ZeroDivisionError("float division by zero")),
-        ("lateral", comparison, "estimate_lateral", np.linalg.LinAlgError("Singular matrix")),
+        ("lateral", comparison, "case_of", np.linalg.LinAlgError("Singular matrix")),
     ],
 )
 
