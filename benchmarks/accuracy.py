@@ -28,7 +28,8 @@ from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
-from advisor.model.response import N_LOCAL, N_PARAMETERS, respond
+from advisor.model.outputs import N_LOCAL, N_PARAMETERS
+from advisor.model.response import respond
 from advisor.oem.covariance import influence
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate, estimate_jointly

@@ -26,7 +26,8 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.tlog import read_tlog
-from advisor.model.response import N_PARAMETERS, respond
+from advisor.model.outputs import N_PARAMETERS
+from advisor.model.response import respond
 from advisor.oem.batch import solve_many
 from advisor.oem.following import Follower
 from advisor.oem.problem import OutputErrorProblem, Record

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from advisor.model.response import N_LOCAL, N_PARAMETERS, respond
+from advisor.model.outputs import N_LOCAL, N_PARAMETERS
+from advisor.model.response import respond
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve

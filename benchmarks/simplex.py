@@ -8,7 +8,8 @@ import numpy as np
 from scipy.optimize import minimize
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, N_SHARED, Grid, Index, respond
+from advisor.model.outputs import N_PARAMETERS, N_SHARED
+from advisor.model.response import Grid, Index, respond
 from advisor.oem.gauss_newton import CONVERGED, EXHAUSTED, OVERFLOW, Optimum, weigh
 
 FIRST_STEP = 0.05

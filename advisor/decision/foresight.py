@@ -6,7 +6,8 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import LOCAL, N_LOCAL, N_PARAMETERS, SHARED, respond
+from advisor.model.outputs import LOCAL, N_LOCAL, N_PARAMETERS, SHARED
+from advisor.model.response import respond
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.covariance import cramer_rao, influence
 from advisor.oem.extra import Extra

@@ -17,7 +17,8 @@ from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_LOCAL, N_PARAMETERS, SHARED, respond
+from advisor.model.outputs import N_LOCAL, N_PARAMETERS, SHARED
+from advisor.model.response import respond
 from advisor.oem.estimate import Estimate
 from advisor.oem.prediction import half_widths
 from advisor.oem.problem import OutputErrorProblem, Record, assemble

@@ -15,7 +15,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.foresight import foresee, local_at_trim, response_from_trim, shared_of, unmeasured
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import OUTPUTS
+from advisor.model.outputs import OUTPUTS
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.instruments import USUAL_LAG, extra_of, unknown_instruments
 from advisor.oem.prepare import OUTPUTS as COUNTED

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.model.response import Grid, Index, advanced, fill_transitions, force_slopes, rates
+from advisor.model.response import Grid, Index, fill_transitions
+from advisor.model.short_period_step import advanced, force_slopes, rates
 from advisor.model.transition import WIDTH
 from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel

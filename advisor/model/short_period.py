@@ -16,7 +16,7 @@ import numpy as np
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis import Names
-from advisor.model.response import LOCAL, OUTPUTS, SHARED
+from advisor.model.outputs import LOCAL, OUTPUTS, SHARED
 
 NAMES = Names(OUTPUTS, SHARED, LOCAL, PARAMETERS)
 """Names of the short-period model's outputs and parameters. Z_0 and M_0 are reported as means over the

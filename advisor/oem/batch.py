@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
-from advisor.model.response import N_SHARED, Index
+from advisor.model.outputs import N_SHARED
+from advisor.model.response import Index
 from advisor.oem.covariance import REPORTED
 from advisor.oem.each import solve_each
 from advisor.oem.estimate import NoEstimate

@@ -17,7 +17,8 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import channel_at
-from advisor.model.response import LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS, Grid, respond
+from advisor.model.outputs import LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS
+from advisor.model.response import Grid, respond
 from advisor.oem.covariance import REPORTED
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.oem.prepare import Prepared

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from advisor.model.response import N_SHARED, Grid, Index
+from advisor.model.outputs import N_SHARED
+from advisor.model.response import Grid, Index
 from advisor.oem.arrow import cholesky, normal_equations, solve_lower
 from advisor.oem.gauss_newton import CONVERGED, FLAT, descend
 from advisor.process.arrays import FloatArray

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.signals.robust import robust_std
-from advisor.model.response import N_PARAMETERS, N_SHARED, OUTPUTS
+from advisor.model.outputs import N_PARAMETERS, N_SHARED, OUTPUTS
 from advisor.oem.evaluation import errors_of
 from advisor.oem.extra import moved_by
 from advisor.oem.innovations import AirModel

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import OUTPUTS
+from advisor.model.outputs import OUTPUTS
 from advisor.oem.kalman import DIFFUSE, STATES, Gains, filter_along, observed_by
 
 ALPHA, A_Z = OUTPUTS.index("alpha"), OUTPUTS.index("a_z")

@@ -22,7 +22,8 @@ from scipy.special import expit
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, respond
+from advisor.model.outputs import N_PARAMETERS
+from advisor.model.response import respond
 from advisor.model.short_period import NAMES
 from advisor.oem.descent import Response, descended
 from advisor.oem.edges import large_steps

@@ -12,7 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, Index, respond
+from advisor.model.outputs import N_PARAMETERS
+from advisor.model.response import Index, respond
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal

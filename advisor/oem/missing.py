@@ -10,7 +10,8 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, OUTPUTS, respond
+from advisor.model.outputs import N_PARAMETERS, OUTPUTS
+from advisor.model.response import respond
 from advisor.oem.covariance import cramer_rao, influence
 from advisor.oem.problem import Assembly, assemble
 from advisor.oem.rows import Signal

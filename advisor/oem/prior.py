@@ -24,7 +24,7 @@ import numpy as np
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
-from advisor.model.response import N_SHARED, SHARED
+from advisor.model.outputs import N_SHARED, SHARED
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.problem import OutputErrorProblem
 

@@ -7,7 +7,8 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import LOCAL, N_SHARED, OUTPUTS, SHARED, Grid, Index
+from advisor.model.outputs import LOCAL, N_SHARED, OUTPUTS, SHARED
+from advisor.model.response import Grid, Index
 from advisor.oem.rows import Laid, Piece, Signal, events_of, lay_rows, measured_in, padded, with_samples
 from advisor.oem.surface import Servo
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_LOCAL, N_SHARED, OUTPUTS
+from advisor.model.outputs import N_LOCAL, N_SHARED, OUTPUTS
 from advisor.oem.arrow import arrow_step, normal_equations
 from advisor.oem.colour import Colour
 from advisor.oem.covariance import Influence, influence

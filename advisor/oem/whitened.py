@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
-from advisor.model.response import N_PARAMETERS, SHARED, Index, respond
+from advisor.model.outputs import N_PARAMETERS, SHARED
+from advisor.model.response import Index, respond
 from advisor.oem.arrow import inverse_of
 from advisor.oem.extra import Extra
 from advisor.oem.innovations import AirModel, gains_of

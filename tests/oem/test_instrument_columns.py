@@ -6,7 +6,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from advisor.model.response import N_PARAMETERS, respond
+from advisor.model.outputs import N_PARAMETERS
+from advisor.model.response import respond
 from advisor.oem import surface
 from advisor.oem.edges import Edges, _by_edges, _edged, large_steps
 from advisor.oem.instrument_columns import instrument_columns

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from advisor.model.response import LOCAL, N_PARAMETERS, SHARED, respond
+from advisor.model.outputs import LOCAL, N_PARAMETERS, SHARED
+from advisor.model.response import respond
 from advisor.model.transition import WIDTH, divisions, fill
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal

@@ -8,7 +8,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import Reference
 from advisor.aircraft.sensors import Alpha
-from advisor.model.response import SHARED
+from advisor.model.outputs import SHARED
 from advisor.oem.prepare import prepare
 from advisor.oem.prior import precision
 from tests.oem.test_instruments import SPEED, equipped

@@ -7,7 +7,8 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.model.response import N_PARAMETERS, respond
+from advisor.model.outputs import N_PARAMETERS
+from advisor.model.response import respond
 from advisor.oem.instrument_fit import fit_instruments
 from advisor.oem.instruments import unknown_instruments
 from advisor.oem.problem import OutputErrorProblem, Record, assemble

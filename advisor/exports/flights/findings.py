@@ -12,7 +12,7 @@ from advisor.exports.flights.table import Column, FlightTable, counts, numbers, 
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import UNITS
 from advisor.model.axes.lateral import LATERAL
-from advisor.model.response import OUTPUTS
+from advisor.model.outputs import OUTPUTS
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.words.quantities import SIDE_PARAMETERS
 

@@ -12,7 +12,7 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES, REFERENCE
-from advisor.model.response import SHARED
+from advisor.model.outputs import SHARED
 from advisor.oem.prior import precision_without_alpha
 
 ERROR_IF_RIGHT = 0.03

@@ -18,7 +18,7 @@ from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.probes import DisturbanceCourse, disturbance_courses
 from advisor.gap.noise.quiet import air_in_quiet, instrument_noise, quiet_rows, rows_of, system_of, with_floor
 from advisor.gap.noise.shown_gust import largest_gust
-from advisor.model.response import OUTPUTS
+from advisor.model.outputs import OUTPUTS
 from advisor.oem.turbulence import KNOTS_S, Turbulence, find_turbulence
 
 AIR_MANEUVERS = 5
