@@ -15,9 +15,10 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.hand_decisions import ByHand
 from advisor.cli import narrator
-from advisor.mavlink.link.health import LinkStatistics, MotionNow
+from advisor.mavlink.link.health import LinkStatistics
 from advisor.mavlink.link.keeping import Keeping, new_door
 from advisor.mavlink.link.link_process import LinkProcess
+from advisor.mavlink.link.motion_now import MotionNow
 from advisor.mavlink.link.observer import LinkObserver
 from advisor.mavlink.wire.framing import CRC_EXTRA, FrameCutter
 from advisor.session.behind import BehindTeller

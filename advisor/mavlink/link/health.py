@@ -1,7 +1,6 @@
-"""Health of a link: counters, newest motion, a snapshot, and the report of its process through restarts."""
+"""Health of a link: counters, a snapshot, and the report of its process through restarts."""
 
 import math
-import struct
 import time
 from collections import Counter, deque
 from collections.abc import Mapping, Sized
@@ -9,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
 
-from advisor.mavlink.wire.framing import Frame
 from advisor.process.liveness import OLD_AFTER_S
 
 RATE_WINDOW_S = 2.0
@@ -137,25 +135,3 @@ class ReportedHealth:
         ends = self._unanswered_s >= OLD_AFTER_S
         self._unanswered_s = 0.0
         return ends
-
-
-_ATTITUDE, _VFR_HUD = 30, 74
-
-
-class MotionNow:
-    """Newest bank and air speed of one system. No estimate delays these values."""
-
-    def __init__(self) -> None:
-        self.bank_rad = self.airspeed_m_s = math.nan
-        """Newest bank, rad; NaN before the first message."""
-
-    def look(self, frames: list[Frame], system: int) -> None:
-        """Read the newest values from frames of this system."""
-        for frame in frames:
-            if frame.system != system:
-                continue
-            # MAVLink 2 cuts zeros from the end of a payload.
-            if frame.message_id == _ATTITUDE:
-                self.bank_rad = struct.unpack_from("<f", frame.payload.ljust(8, b"\0"), 4)[0]
-            elif frame.message_id == _VFR_HUD:
-                self.airspeed_m_s = struct.unpack_from("<f", frame.payload.ljust(4, b"\0"))[0]

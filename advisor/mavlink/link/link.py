@@ -21,11 +21,12 @@ from advisor.flight.vehicle.breaks import DOWN
 from advisor.flight.vehicle.following import FOLLOW, TAKE
 from advisor.mavlink.link.connection import parse_connection
 from advisor.mavlink.link.conversation import Conversation
-from advisor.mavlink.link.health import LinkStatistics, MotionNow
+from advisor.mavlink.link.health import LinkStatistics
 from advisor.mavlink.link.inquiry import Inquiry
 from advisor.mavlink.link.intake import Intake
 from advisor.mavlink.link.line import Line
 from advisor.mavlink.link.link_watch import LinkWatch
+from advisor.mavlink.link.motion_now import MotionNow
 from advisor.mavlink.link.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Ids, Talker
 from advisor.mavlink.link.recorder import Recorder
 from advisor.mavlink.link.transport import ConnectionCutError

@@ -15,7 +15,7 @@ from advisor.gap.axes.lateral.models import case_of
 from advisor.gap.axes.lateral.residual import residual_of
 from advisor.gap.axes.lateral.starts import Starts
 from advisor.oem.axes.lateral.disturbance import courses_of
-from advisor.oem.axes.lateral.gusts import MEMORY_S, Air
+from advisor.oem.axes.lateral.gusts import Air
 from tests.gap.axes.lateral.test_comparison import AIRCRAFT, maneuvers
 from tests.oem.axes.lateral.builders import JET
 
@@ -68,7 +68,9 @@ def test_the_likelihood_is_the_normal_density_of_white_noise_and_a_markov_gust_a
     for m, course in enumerate(courses):
         rows = np.flatnonzero(fit.assembly.owner == m)
         white = np.diag((2.0 * NOISE[fit.assembly.channel[rows]]) ** 2)
-        angles = ANGLE**2 * np.exp(-np.abs(course.knots[:, None] - course.knots) / MEMORY_S)
+        angles = ANGLE**2 * np.exp(
+            -np.abs(course.knots[:, None] - course.knots) / 1.0
+        )  # the gusts forget themselves within a second
         both = white + course.columns @ angles @ course.columns.T
         density += multivariate_normal(cov=both, allow_singular=True).logpdf(gusty.residual[rows])
         gradient = gradient + gusty.columns[rows].T @ np.linalg.solve(both, gusty.residual[rows])
