@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 ALLOWED = {
     "advisor.aircraft.standard_gravity": "a constant of nature",
     "advisor.gap.simulator.pack": "width of an array",
-    "advisor.model.response": "width of an array",
+    "advisor.model.outputs": "width of an array",
     "advisor.model.transition": "width of an array",
     "advisor.oem.gauss_newton": "names of the ends of a search",
     "advisor.tui.plot.canvas": "a character",
