@@ -14,20 +14,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solve_banded
 from scipy.optimize import minimize
 
 from advisor.oem.restricted import restricted
+from advisor.oem.running_sums import accumulated
 from advisor.process.arrays import FloatArray
-
-
-def accumulated(samples: FloatArray, memory: float) -> FloatArray:
-    """Return y_k = φ·y_(k-1) + x_k over ``samples`` (n,) or (n, k), with y = 0 before the first sample."""
-    # ``scipy.signal`` would do it too, but takes half a second to import.
-    diagonals = np.ones((2, len(samples)))
-    diagonals[1] = -memory
-    return np.asarray(solve_banded((1, 0), diagonals, samples, check_finite=False))
-
 
 MEMORIES = (-0.4, 0.3, 0.5, 0.7, 0.8, 0.87, 0.92, 0.95, 0.97, 0.985, 0.993)
 """Starting values of φ in the search."""
@@ -134,6 +125,15 @@ def product(rows: FloatArray, colour: Colour) -> FloatArray:
     forward = rows.T @ accumulated(rows, colour.memory)
     total: FloatArray = colour.variance * (forward + forward.T - square + colour.white_share * square)
     return total
+
+
+def powers(rows: FloatArray, colour: Colour) -> FloatArray:
+    """Return the diagonal of ``product``, shape (k,)."""
+    square = np.einsum("ij,ij->j", rows, rows)
+    if colour.memory == 0.0:
+        return np.asarray(colour.variance * square)
+    forward = np.einsum("ij,ij->j", rows, accumulated(rows, colour.memory))
+    return np.asarray(colour.variance * (2.0 * forward - square + colour.white_share * square))
 
 
 def moved(colour: Colour, step: FloatArray) -> Colour:

@@ -16,7 +16,7 @@ from scipy.special import stdtrit
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import NAMES
 from advisor.oem.arrow import inverse_of
-from advisor.oem.colour import Colour, Stretch, find_colour, moved, product
+from advisor.oem.colour import Colour, Stretch, find_colour, moved, powers, product
 from advisor.oem.extra import Extra
 from advisor.oem.rows import Laid
 from advisor.words.quantiles import NORMAL_95
@@ -189,7 +189,7 @@ def widening(assembly: Laid, rows: FloatArray, colours: Mapping[str, Colour]) ->
         colour = colours[output]
 
         def part(colour: Colour, stretches: list[slice] = stretches) -> FloatArray:
-            summed: FloatArray = np.sum([np.diag(product(rows[s], colour)) for s in stretches], axis=0)
+            summed: FloatArray = np.sum([powers(rows[s], colour) for s in stretches], axis=0)
             return summed
 
         own = part(colour)
