@@ -13,6 +13,20 @@ from advisor.oem.model_error import model_error
 from advisor.oem.rows import Laid
 from advisor.oem.scatter_between import widened_by_scatter
 
+LEAST_SHARE = 0.01
+"""Least factor on a prior's standard deviation in a white-noise fit; data without noise have no colour."""
+
+
+def share_of(white: FloatArray, stated: FloatArray) -> float:
+    """Return the median ratio of the parameters' errors under white noise to their stated errors.
+
+    ``white`` and ``stated`` are covariances (k, k). Parameters without error do not count.
+    """
+    variance = np.diag(stated)
+    known = variance > 0.0
+    ratio = np.sqrt(np.diag(white)[known] / variance[known])
+    return float(np.clip(np.median(ratio), LEAST_SHARE, 1.0)) if len(ratio) else 1.0
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evaluated:

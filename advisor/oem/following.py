@@ -21,7 +21,7 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import report
 from advisor.oem.extra import Prior
 from advisor.oem.identifiability import too_wide
-from advisor.oem.instrument_fit import share_of, weighed
+from advisor.oem.instrument_fit import colour_share, weighed
 from advisor.oem.instruments import OF_ALPHA, Instrument, extra_of, unknown_instruments
 from advisor.oem.prepare import prepare
 from advisor.oem.solution import Solution, evaluate, solve
@@ -47,7 +47,7 @@ class Doubt:
     @classmethod
     def about(cls, solution: Solution, aircraft: Aircraft) -> "Doubt":
         """Return the instruments' uncertainty for a solution; none if the samples do not determine a step."""
-        share = share_of(solution)
+        share = colour_share(solution)
         names = [weighed(x, share) for x in _with_priors(solution, aircraft)]
         optimum = solution.optimum
         extra = extra_of(solution.problem, solution.assembly, optimum.shared, optimum.local, names)

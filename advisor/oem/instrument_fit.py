@@ -28,12 +28,13 @@ from advisor.model.short_period import NAMES
 from advisor.oem.descent import Response, descended
 from advisor.oem.edges import large_steps
 from advisor.oem.estimate import InstrumentEstimate, NoEstimate
+from advisor.oem.evaluation import share_of
 from advisor.oem.extra import Prior, penalty
 from advisor.oem.gauss_newton import CONVERGED
 from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, Instrument, extra_of
 from advisor.oem.prior import about_zero, precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
-from advisor.oem.solution import LEAST_SHARE, Solution, evaluate, search, solve, spread_of
+from advisor.oem.solution import Solution, evaluate, search, solve, spread_of
 from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
@@ -117,10 +118,10 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
         Instruments with a prior, open instruments, and stated instruments.
     """
     names = _weighed(unknown, plain)
-    found = _fitted(*_looked_about(plain, names), names, share_of(plain)) if names else plain
+    found = _fitted(*_looked_about(plain, names), names, colour_share(plain)) if names else plain
     if names and found is not None:
         names = _weighed(unknown, found)
-        found = _fitted(found.problem, _place(found), names, share_of(found))
+        found = _fitted(found.problem, _place(found), names, colour_share(found))
     if found is None:
         return InstrumentFit(plain)
     found = _with_likelier_command(found, names)
@@ -129,7 +130,7 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
 
 def _weighed(unknown: Sequence[Instrument], solution: Solution) -> tuple[Instrument, ...]:
     """Return the instruments with priors weighted by the colour of a solution's noise."""
-    share = share_of(solution)
+    share = colour_share(solution)
     return tuple(weighed(x, share) for x in unknown)
 
 
@@ -145,7 +146,7 @@ def _with_likelier_command(linear: Solution, names: Sequence[Instrument]) -> Sol
     problem = replace(linear.problem, records=tuple(replace(record, held=True) for record in records))
     problem = COMMAND_DELAY.write(problem, COMMAND_DELAY.read(linear.problem))
     begin = _place(linear)
-    held = _fitted(problem, begin, names, share_of(linear)) if names else solve(problem, begin=begin)
+    held = _fitted(problem, begin, names, colour_share(linear)) if names else solve(problem, begin=begin)
     if not isinstance(held, Solution):
         return linear
     weighing = Weighing.by(linear.noise.colours, linear.assembly)
@@ -172,7 +173,7 @@ def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
     if lag is None or len(best.problem.records) == 1 or lag.read(best.problem) < lag.resolution:
         return best
     there = lag.write(best.problem, lag.read(best.problem) / 3.0)
-    share = share_of(best)
+    share = colour_share(best)
     rival = _fitted(there, _place(best), names, share)
     if rival is None:
         return best
@@ -202,10 +203,9 @@ def _fitted(
     return found if isinstance(found, Solution) else None
 
 
-def share_of(plain: Solution) -> float:
-    """Return the median ratio of the parameters' errors under white noise to those under coloured noise."""
-    ratio = np.sqrt(np.diag(plain.covariance_cr)[:N] / np.diag(plain.covariance)[:N])
-    return float(np.clip(np.nanmedian(ratio), LEAST_SHARE, 1.0))
+def colour_share(solution: Solution) -> float:
+    """Return the ratio of the parameters' errors under white noise to those under coloured noise."""
+    return share_of(solution.covariance_cr[:N, :N], solution.covariance[:N, :N])
 
 
 def weighed(x: Instrument, share: float) -> Instrument:
@@ -233,7 +233,7 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
             kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, width, share))))
         else:
             problem = x.write(problem, x.stated)
-    final = _fitted(problem, _place(solution), tuple(one.instrument for one in kept), share_of(solution))
+    final = _fitted(problem, _place(solution), tuple(one.instrument for one in kept), colour_share(solution))
     return InstrumentFit(plain) if final is None else InstrumentFit(final, refreshed(kept, final))
 
 

@@ -25,8 +25,6 @@ RUNS_AWAY = NoEstimate(
 NOTHING_TO_TELL = NoEstimate(
     "singular", "The input does not excite the motion enough to distinguish the parameters."
 )
-LEAST_SHARE = 0.01
-"""Least factor on a prior's standard deviation in a white-noise fit; data without noise have no colour."""
 HEALTHY_ITERATIONS = 12
 """Largest number of iterations of a normal search. A longer search may be in the valley of a second minimum,
 so another start is tried."""

@@ -52,7 +52,7 @@ def test_the_higher_peak_is_the_estimate(joint, monkeypatch):
 
 
 def test_coloured_noise_brings_a_lower_peak_nearer(joint, monkeypatch):
-    monkeypatch.setattr(instrument_fit, "share_of", lambda _: 0.1)
+    monkeypatch.setattr(instrument_fit, "colour_share", lambda _: 0.1)
     _, _, found = with_rival(joint, 200.0, monkeypatch)
     np.testing.assert_allclose(found.modes[:8, :8], np.outer(OFF, OFF) / (1.0 + np.e), rtol=1e-9)
 

@@ -10,7 +10,7 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative, Weighed
 from advisor.gap.axes.lateral.effects import block_of, side_effects, unseen
-from advisor.gap.axes.lateral.evidence import Gain, information_of, posterior_at, share_of, squares_of
+from advisor.gap.axes.lateral.evidence import Gain, colour_share, information_of, posterior_at, squares_of
 from advisor.gap.axes.lateral.fit import Fit, N
 from advisor.gap.axes.lateral.flight import SideFlight, SideModel
 from advisor.gap.axes.lateral.gusts import coloured_likelihood
@@ -130,7 +130,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
     prior : shares of the answers before the flight.
     """
     first = case.fit(case.begin, case.natural)
-    plain = first and case.fit(first.point, first.free, share=share_of(first))
+    plain = first and case.fit(first.point, first.free, share=colour_share(first))
     as_given = plain and case.fit(
         plain.point._replace(theta=case.theta), free_near(case, plain), ERROR_IF_RIGHT * 1e-3
     )
@@ -142,7 +142,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
     told, last = weighed(found.posteriors[0]), found.chosen[-1].fit
     left = _held_out(case, found.chosen[-1], found.heat)
     gap, shrink = measured(last, case.numbers, sums(last, as_given.residual**2), left)
-    whole, share = found.chosen[-1], share_of(last)
+    whole, share = found.chosen[-1], colour_share(last)
     # The whole model leaves less colour than the model before it.
     final = _Told.of(case, whole, share, case.fit(last.point, last.free, whole.tolerance, share))
     values = map(Value, final.mean[:N].tolist(), final.std[:N].tolist())

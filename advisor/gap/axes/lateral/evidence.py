@@ -9,7 +9,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.fit import Fit, Known, N
-from advisor.oem.evaluation import errors_of
+from advisor.oem.evaluation import errors_of, share_of
 from advisor.oem.extra import Extra
 from advisor.oem.scatter_between import widened_by_scatter
 
@@ -34,16 +34,14 @@ def information_of(fit: Fit, share: float) -> Information:
     )
 
 
-def share_of(fit: Fit) -> float:
+def colour_share(fit: Fit) -> float:
     """Return the ratio of the derivatives' standard error under white noise to that from the residuals."""
     no_prior = np.zeros(len(fit.point.theta))
     errors = errors_of(fit.assembly, fit.residual, fit.sensitivities, fit.noise, None, no_prior)
     if errors is None:
         return 1.0
-    bound = np.diag(errors["covariance_cr"])
-    found = np.diag(widened_by_scatter(errors["covariance"], errors["contributions"]))
-    ratio = np.sqrt(bound[found > 0.0] / found[found > 0.0])
-    return float(np.clip(np.median(ratio), 0.0, 1.0)) if len(ratio) else 1.0
+    scattered = widened_by_scatter(errors["covariance"], errors["contributions"])
+    return share_of(errors["covariance_cr"], scattered)
 
 
 def posterior_at(fit: Fit, known: Known, share: float) -> tuple[FloatArray, FloatArray]:

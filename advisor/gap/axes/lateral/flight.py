@@ -8,7 +8,7 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative
 from advisor.gap.axes.lateral.effects import SideEffect, block_of
-from advisor.gap.axes.lateral.evidence import Gain, information_of, share_of, squares_of, step_of
+from advisor.gap.axes.lateral.evidence import Gain, colour_share, information_of, squares_of, step_of
 from advisor.gap.axes.lateral.fit import Fit, Free, Known, moved_by
 from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
 from advisor.gap.axes.lateral.models import Case, free_near, free_with
@@ -85,7 +85,7 @@ class SideFlight:
         if base is not None:
             # With an effect, another lateness of commands and outputs changes the outputs by something else.
             begin = replace(base.fit, free=tuple(one._replace(column=None) for one in base.fit.free))
-        share = share_of(begin)
+        share = colour_share(begin)
         plain = begin if base is None else self.case.fit(begin.point, begin.free, share=share) or base.fit
         table = _beside(base, self.table)
         starts = Starts(self.case, plain, table)

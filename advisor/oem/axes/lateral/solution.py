@@ -18,9 +18,10 @@ from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.axes.lateral.start import lateral_start
 from advisor.oem.descent import Fit, descended
 from advisor.oem.estimate import NoEstimate
+from advisor.oem.evaluation import share_of
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
-from advisor.oem.solution import LEAST_SHARE, RUNS_AWAY, Solution, evaluate, refused
+from advisor.oem.solution import RUNS_AWAY, Solution, evaluate, refused
 from advisor.words.quantiles import NORMAL_95
 
 FIRST_LOOK = 8
@@ -29,6 +30,7 @@ fixed, a longer search may leave physical values. In a rudder doublet L_p of -10
 WITHOUT_FORCE = (
     "neither a lateral acceleration nor a sideslip was recorded, so that only the modes are told; record a_y"
 )
+N = len(LATERAL.shared)
 _MOTION = LateralMotion()
 _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
 
@@ -50,7 +52,7 @@ def solve_lateral(problem: LateralProblem, nuisances: Sequence[Nuisance] = ()) -
     for _ in range(2):
         if isinstance(solution, NoEstimate):
             return solution
-        share = _share(solution)
+        share = share_of(solution.covariance_cr[:N, :N], solution.scattered[:N, :N])
         prior = replace(prior, share=share)
         weighed = [replace(x, prior=replace(x.prior, share=share)) for x in nuisances]
         fit = descended(_MOTION, problem, weighed, prior, start)
@@ -72,14 +74,6 @@ def _has_diverged(fit: Fit) -> bool:
         still = max(float(np.std(z)), FLOOR[c])
         gain += len(z) * float(np.log(still / noise[c]))
     return not gain >= 0.0
-
-
-def _share(solution: Solution) -> float:
-    """Return the median ratio of the derivatives' errors under white noise to those under coloured noise."""
-    n = len(solution.theta)
-    stated = np.diag(solution.scattered)[:n]
-    ratio = np.diag(solution.covariance_cr)[:n] / np.where(stated > 0.0, stated, np.nan)
-    return float(np.clip(np.sqrt(np.nanmedian(ratio)), LEAST_SHARE, 1.0))
 
 
 def _evaluated(fit: Fit, prior: Priors) -> Solution | NoEstimate:

@@ -221,7 +221,7 @@ def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_a
     late = Free(("aileron", "delay_s"), 0.01, 1e-3, column=np.ones(3))
     fit = Fit(None, None, (late,), *(np.ones(3) for _ in range(2)), 0.0, *(np.ones((3, 1)) for _ in range(3)))
     again = []
-    monkeypatch.setattr(flight_of_side, "share_of", lambda _: 1.0)
+    monkeypatch.setattr(flight_of_side, "colour_share", lambda _: 1.0)
     monkeypatch.setattr(flight_of_side, "Starts", lambda *_: SimpleNamespace(of_each=[]))
     monkeypatch.setattr(
         SideFlight, "_model", lambda *_: SideModel(**dict.fromkeys(SideModel.__dataclass_fields__))
