@@ -8,14 +8,14 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.edges import with_edges
+from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
 from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
 from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.identifiability import correlated, not_identifiable
 from advisor.oem.instrument_fit import Identified, InstrumentFit, fit_instruments, refreshed
-from advisor.oem.instruments import knows_the_lag, unknown_instruments
+from advisor.oem.instruments import COMMAND_DELAY, knows_the_lag, unknown_instruments
 from advisor.oem.known_instruments import FoundInstruments, found_of
 from advisor.oem.notes import notes
 from advisor.oem.prediction import prediction_band
@@ -56,8 +56,7 @@ def fit_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> "Fit | NoE
     if isinstance(begun, NoEstimate):
         return begun
     prepared, plain = begun
-    unknown = unknown_instruments(plain.problem, aircraft)
-    return Fit(maneuvers, aircraft, prepared, plain, fit_instruments(plain, unknown))
+    return Fit(maneuvers, aircraft, prepared, plain, _with_instruments(plain, aircraft))
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +99,26 @@ def _begun(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> tuple[Prepared,
         return prepared
     plain = _solved(prepared.problem)
     return plain if isinstance(plain, NoEstimate) else (prepared, plain)
+
+
+def _with_instruments(plain: Solution, aircraft: Aircraft) -> InstrumentFit:
+    """Return the fit with the instruments, and with the likelier motion of the command.
+
+    A smooth command may be held between its stamps instead of linear, which delays it by half an interval.
+    Large steps of the command get their own times (``edges``).
+    """
+    linear = fit_instruments(plain, unknown_instruments(plain.problem, aircraft))
+    records = plain.problem.records
+    if any(large_steps(record.elevator).interval for record in records):
+        return linear
+    problem = replace(plain.problem, records=tuple(replace(record, held=True) for record in records))
+    problem = COMMAND_DELAY.write(problem, COMMAND_DELAY.read(plain.problem))
+    other = solve(problem, begin=(plain.optimum.shared, plain.optimum.local))
+    if isinstance(other, NoEstimate):
+        return linear
+    held = fit_instruments(other, unknown_instruments(problem, aircraft))
+    weighing = Weighing.by(linear.solution.noise.colours, linear.solution.assembly)
+    return held if held.misfit(weighing) < linear.misfit(weighing) else linear
 
 
 def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) -> Turbulence | None:

@@ -26,15 +26,14 @@ from advisor.model.outputs import N_PARAMETERS
 from advisor.model.response import respond
 from advisor.model.short_period import NAMES
 from advisor.oem.descent import Response, descended
-from advisor.oem.edges import large_steps
 from advisor.oem.estimate import InstrumentEstimate, NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.extra import Prior, penalty
 from advisor.oem.gauss_newton import CONVERGED
-from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, Instrument, extra_of
+from advisor.oem.instruments import SERVO_LAG, Instrument, extra_of
 from advisor.oem.prior import about_zero, precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
-from advisor.oem.solution import Solution, evaluate, search, solve, spread_of
+from advisor.oem.solution import Solution, evaluate, search, spread_of
 from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
@@ -68,6 +67,12 @@ class InstrumentFit:
     solution: Solution
     """Solution whose ``extra`` columns are the derivatives by ``identified``, in that order."""
     identified: tuple[Identified, ...] = ()
+
+    def misfit(self, weighing: Weighing) -> float:
+        """Return -2 log posterior density of the solution, up to a constant, under one noise model."""
+        found = self.solution
+        prior = penalty(found.problem, [x.instrument for x in self.identified])
+        return weighing.misfit(found.residual, found.sensitivities) + prior
 
 
 class _Pitch:
@@ -117,43 +122,18 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
     unknown
         Instruments with a prior, open instruments, and stated instruments.
     """
-    names = _weighed(unknown, plain)
-    found = _fitted(*_looked_about(plain, names), names, colour_share(plain)) if names else plain
-    if names and found is not None:
-        names = _weighed(unknown, found)
-        found = _fitted(found.problem, _place(found), names, colour_share(found))
+    if not unknown:
+        return InstrumentFit(plain)
+    share = colour_share(plain)
+    names = tuple(weighed(x, share) for x in unknown)
+    found = _fitted(*_looked_about(plain, names), names, share)
+    if found is not None:
+        share = colour_share(found)
+        names = tuple(weighed(x, share) for x in unknown)
+        found = _fitted(found.problem, _place(found), names, share)
     if found is None:
         return InstrumentFit(plain)
-    found = _with_likelier_command(found, names)
-    return _with_statements(names, _between_modes(found, names), plain) if names else InstrumentFit(found)
-
-
-def _weighed(unknown: Sequence[Instrument], solution: Solution) -> tuple[Instrument, ...]:
-    """Return the instruments with priors weighted by the colour of a solution's noise."""
-    share = colour_share(solution)
-    return tuple(weighed(x, share) for x in unknown)
-
-
-def _with_likelier_command(linear: Solution, names: Sequence[Instrument]) -> Solution:
-    """Return the solution with the likelier motion of the command between its stamps.
-
-    A smooth command may be held between its stamps instead of linear, which delays the command by half an
-    interval. Large steps of the command get their own times (``edges``).
-    """
-    records = linear.problem.records
-    if any(large_steps(record.elevator).interval for record in records):
-        return linear
-    problem = replace(linear.problem, records=tuple(replace(record, held=True) for record in records))
-    problem = COMMAND_DELAY.write(problem, COMMAND_DELAY.read(linear.problem))
-    begin = _place(linear)
-    held = _fitted(problem, begin, names, colour_share(linear)) if names else solve(problem, begin=begin)
-    if not isinstance(held, Solution):
-        return linear
-    weighing = Weighing.by(linear.noise.colours, linear.assembly)
-    misfits = [
-        weighing.misfit(x.residual, x.sensitivities) + penalty(x.problem, names) for x in (linear, held)
-    ]
-    return held if misfits[1] < misfits[0] else linear
+    return _with_statements(names, _between_modes(found, names), plain)
 
 
 def _place(solution: Solution) -> tuple[FloatArray, FloatArray]:

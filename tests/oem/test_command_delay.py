@@ -3,7 +3,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.oem.estimator import estimate
+from advisor.oem.estimator import estimate, fit_jointly
 from advisor.oem.prepare import prepare
 from advisor.oem.solution import solve
 from tests.oem.builders import UAV, maneuver, simulate, trim_alpha, trim_elevator
@@ -11,7 +11,7 @@ from tests.oem.builders import UAV, maneuver, simulate, trim_alpha, trim_elevato
 PERIOD = 0.02
 
 
-def smooth_flight(early_s, held, seed=1):
+def smooth_flight(early_s, held, seed=1, noise=0.01):
     """Return a manoeuvre of the small aircraft whose smooth command acts ``early_s`` before its stamps."""
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 8.0, PERIOD)
@@ -21,8 +21,8 @@ def smooth_flight(early_s, held, seed=1):
     command = u[np.searchsorted(t, acting + 1e-9, side="right") - 1] if held else np.interp(acting, t, u)
     stamps = t[1:-3] + 0.007
     x = simulate(UAV, [trim_alpha(UAV), 0.0], fine, command, stamps)
-    noise = 0.01 * x[:, :2].std(axis=0) * rng.standard_normal((len(x), 2))
-    channels = {"alpha": (stamps, x[:, 0] + noise[:, 0]), "q": (stamps, x[:, 1] + noise[:, 1])}
+    off = noise * x[:, :2].std(axis=0) * rng.standard_normal((len(x), 2))
+    channels = {"alpha": (stamps, x[:, 0] + off[:, 0]), "q": (stamps, x[:, 1] + off[:, 1])}
     return maneuver(1, (t, u), channels)
 
 
@@ -31,6 +31,13 @@ def test_a_smooth_command_recorded_early_or_late_does_not_pass_for_other_derivat
     found = estimate(smooth_flight(early_s, held), Aircraft(elevator=Elevator(lag_s=0.0)))
     assert np.all(np.abs(found.theta - UAV) < 3.5 * found.std)
     assert any("acts" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_a_smooth_command_is_fitted_as_it_was_flown(held):
+    flight = smooth_flight(0.0, held, noise=0.0005)
+    fit = fit_jointly([flight], Aircraft(elevator=Elevator(lag_s=0.0)))
+    assert fit.fitted.solution.problem.records[0].held == held
 
 
 def test_a_command_on_time_is_not_said_to_act_early_or_late():

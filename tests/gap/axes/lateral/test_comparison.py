@@ -14,6 +14,8 @@ from advisor.flight.signals.record import Channel
 from advisor.gap.axes.lateral import comparison
 from advisor.gap.axes.lateral.comparison import compare_side
 from advisor.gap.result import Value
+from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.oem.estimate import NoEstimate
 from advisor.report.axes.lateral_gap import side_gap_document
 from tests.oem.axes.lateral.builders import JET, aileron_doublet, flown, rudder_doublet
 
@@ -44,6 +46,14 @@ def numbered(number, record):
 @pytest.fixture(scope="module")
 def flight():
     return maneuvers()
+
+
+def test_the_estimate_of_the_reading_is_not_made_again(flight, monkeypatch):
+    logged = estimate_lateral(flight, AIRCRAFT)
+    monkeypatch.setattr(comparison, "estimate_lateral", None)
+    monkeypatch.setattr(comparison, "case_of", lambda *_: NoEstimate("none", "Nothing is diagnosed."))
+    found = compare_side(flight, replace(AIRCRAFT, model=TRUE), logged=logged, as_logged=True)
+    assert {one.name: one.found.value for one in found.derivatives} == {n: logged.value(n) for n in TRUE}
 
 
 @pytest.mark.study
