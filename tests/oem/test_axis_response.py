@@ -51,7 +51,7 @@ def test_sensitivities_are_the_derivatives_of_the_outputs(lateral):
         ]
         by_difference = (ends[0] - ends[1]) / 2e-5
         scale = np.max(np.abs(g[:, j])) + 1e-9
-        assert np.max(np.abs(by_difference - g[:, j])) < 1e-3 * scale, j
+        assert np.max(np.abs(by_difference - g[:, j])) < 1e-5 * scale, j
 
 
 def test_the_motion_has_the_states_and_their_rates(lateral):
