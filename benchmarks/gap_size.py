@@ -32,9 +32,9 @@ EFFECTS = (
 """Folders that describe effects, by their table and their equations."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
-    "lines of code": 6950,
-    "constants": 222,
-    "constants that decide": 51,
+    "lines of code": 6776,
+    "constants": 216,
+    "constants that decide": 45,
     "names compared": 11,
     "complex functions": 0,
 }
