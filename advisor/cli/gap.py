@@ -64,9 +64,8 @@ _LATERAL = (
 @export_option()
 @click.option(
     "--axis",
-    type=click.Choice(["pitch", "lateral"]),
-    help="Axis that is diagnosed: the elevator's, or that of roll and yaw. "
-    "Default: pitch, unless roll and yaw alone have accepted manoeuvres.",
+    type=click.Choice(["pitch", "lateral", "both"]),
+    help="Axis that is diagnosed. Default: what was flown, pitch or roll and yaw or both.",
 )
 @click.option(
     "--all",
@@ -128,7 +127,7 @@ def command(
       advisor gap flight.tlog --simulator jsbsim:c172p
       advisor gap flight.tlog --aircraft my-aircraft.yaml --prove
       advisor gap flight.tlog --aircraft my-aircraft.yaml --axis lateral
-      advisor gap flight.tlog --axis lateral --simulator jsbsim:c172p
+      advisor gap flight.tlog --axis both
       advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
     """
     _refuse_foreign(_OF_A_FLIGHT if foresee else _OF_A_PLAN, f"with{'out' if foresee else ''} --foresee")
@@ -159,25 +158,31 @@ def command(
     orders = orders_of(exports, aircraft, [*asked.inputs, out], axis or "pitch")
     decided = [decided_on(log, asked.no_marks) for log in asked.logs]
     by_hand = [replace(before, marks=(*asked.marks, *before.marks)) for before in decided]
-    flown = state = None
-    if axis is None and not (holdout or everything):
-        axis, flown, state = _axis_flown(asked, aircraft, by_hand)
-    if axis == "lateral":
+    flown = None
+    if axis is None:
+        flown = _axis_flown(asked, aircraft, by_hand)
+        axis = flown.axis
+        if axis == "lateral":
+            _refuse_foreign({"holdout": "--holdout"}, "with --axis pitch")
         orders = orders_of(exports, aircraft, [*asked.inputs, out], axis)
     from advisor.cli.gap_asked import GapAsked
 
     gap = GapAsked(asked, aircraft, shares, out, figure, orders, proving, why, as_json)
+    if axis == "both":
+        from advisor.cli.axes.both_gap import compare_both
+
+        return compare_both(gap, by_hand, holdout, everything, flown)
     if axis == "lateral":
         from advisor.cli.axes.lateral_gap import compare_lateral
 
-        return compare_lateral(gap, state)
+        return compare_lateral(gap, flown.state if flown is not None else None)
     from advisor.cli.axes.pitch_gap import compare_pitch
 
-    return compare_pitch(gap, by_hand, holdout, everything, flown)
+    return compare_pitch(gap, by_hand, holdout, everything, flown.elevator if flown is not None else None)
 
 
 def _axis_flown(asked: LogsAsked, aircraft: "Aircraft", by_hand: "Sequence[ByHand]") -> "AxisFlown":
-    """Return the axis to diagnose, said where it is not pitch, with what was read."""
+    """Return the axes to diagnose, said where pitch is none, with what was read."""
     from advisor.analysis.axes.lateral import axis_flown
 
     with Stages() as tell:

@@ -24,6 +24,27 @@ Found = TypeVar("Found")
 
 
 @dataclass(frozen=True)
+class Unanswered:
+    """An axis without a diagnosis."""
+
+    said: str
+    """Reason, with the next step."""
+    document: Mapping[str, Any]
+    code: int
+    """Exit code of the command if no other axis answers."""
+
+
+@dataclass(frozen=True)
+class AxisAnswer:
+    """The answer of one axis: its document, its printing, and its exit code."""
+
+    document: dict[str, Any]
+    show: Callable[[], None]
+    """Print the answer for people."""
+    code: int = 0
+
+
+@dataclass(frozen=True)
 class GapAsked:
     """The options of ``advisor gap`` that every axis has."""
 
@@ -39,20 +60,33 @@ class GapAsked:
     why: bool
     as_json: bool
 
-    def compared(self, part: str, compare: Callable[[], Found]) -> Found | int:
-        """Return a comparison. Without one, print the answer that remains and return its exit code."""
+    def attempted(self, part: str, compare: Callable[[], Found]) -> Found | Unanswered:
+        """Return a comparison, or the reason for none."""
         try:
             found = attempt(part, compare)
         except UnusableInputError as error:
-            told, document, code = str(error), gap_document(None, error.problems), UNUSABLE
-        else:
-            if not isinstance(found, FailedPart):
-                return found
-            told, document, code = found.sentence, gap_document(None, failed=(found,)), 0
+            return Unanswered(str(error), gap_document(None, error.problems), UNUSABLE)
+        if isinstance(found, FailedPart):
+            return Unanswered(found.sentence, gap_document(None, failed=(found,)), 0)
+        return found
+
+    def refused(self, *reasons: Unanswered) -> int:
+        """Print the reasons for no answer, and return the exit code of the first."""
         if self.as_json:
-            click.echo(json.dumps(document, indent=1))
-        click.echo(told, err=True)
-        return code
+            problems = [one for reason in reasons for one in reason.document["problems"]]
+            click.echo(json.dumps({**reasons[0].document, "problems": problems}, indent=1))
+        for reason in reasons:
+            click.echo(reason.said, err=True)
+        return reasons[0].code
+
+    def answered(self, *answers: AxisAnswer) -> int:
+        """Print the answers of every axis, the document as the first axis has it, and return the code."""
+        if self.as_json:
+            click.echo(json.dumps(answers[0].document, allow_nan=False, indent=1))
+        else:
+            for one in answers:
+                one.show()
+        return max(one.code for one in answers)
 
     def improved(self, improves: bool, make: Callable[[], FlownModel]) -> Path | None:
         """Write the improved aircraft file that was asked for, or say why not; return the written file."""

@@ -94,15 +94,14 @@ def test_a_log_that_is_not_there_is_one_sentence(compared):
     [
         (1, 1, True, "lateral"),
         (0, 0, True, "lateral"),
-        (2, 1, True, "pitch"),
+        (2, 1, True, "both"),
+        (2, 1, False, "pitch"),
         (1, 1, False, "pitch"),
         (None, 0, True, "lateral"),
         (None, 0, False, "pitch"),
     ],
 )
-def test_the_axis_is_pitch_unless_roll_and_yaw_alone_have_accepted_manoeuvres(
-    monkeypatch, found, refused, sideways, axis
-):
+def test_the_axis_is_what_has_accepted_manoeuvres(monkeypatch, found, refused, sideways, axis):
     def read(*_, **__):
         if found is None:
             raise UnusableInputError("no_maneuver", "none", "fly")
@@ -116,6 +115,7 @@ def test_the_axis_is_pitch_unless_roll_and_yaw_alone_have_accepted_manoeuvres(
     monkeypatch.setattr(side_gap, "maneuvers_of", read)
     monkeypatch.setattr(side_gap, "read_whole", whole)
     monkeypatch.setattr(side_gap, "accepted_of", lambda _: [0])
+    monkeypatch.setattr(side_gap, "flies_roll_or_yaw", lambda *_: sideways)
     monkeypatch.setattr(
         side_gap,
         "without_refused",

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -11,14 +11,17 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.analysis.gap import GapFlights, maneuvers_of
 from advisor.analysis.refused import without_refused
-from advisor.analysis.whole_flights import read_whole
+from advisor.analysis.whole_flights import Axis, read_whole
 from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.state import CampaignState
+from advisor.flight.maneuvers.events import SideManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
+from advisor.flight.stream.stream import FlightStream
 from advisor.gap.axes.lateral.comparison import SideGap, compare_side
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Trace
+from advisor.mavlink.logs.whole import read_whole_log
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.simulators.axes.lateral import side_without_difference
@@ -100,13 +103,13 @@ def side_traces(found: SideGap, flown: Sequence[Maneuver], compared: Sequence[Ma
 
 
 class AxisFlown(NamedTuple):
-    """The axis that the logs let a diagnosis judge, with what was read to decide it."""
+    """The axes that the logs let a diagnosis judge, with what was read to decide it."""
 
-    axis: Literal["pitch", "lateral"]
+    axis: Axis
     elevator: GapFlights | None
     """Manoeuvres of the elevator, if they can be read."""
     state: CampaignState | None = None
-    """State of the campaign with both axes, if the axis is lateral."""
+    """State of the campaign with both axes, if roll and yaw have an accepted manoeuvre."""
 
 
 def axis_flown(
@@ -117,24 +120,35 @@ def axis_flown(
     marks: Sequence[Mark] = (),
     no_marks: bool = False,
 ) -> AxisFlown:
-    """Return the axis for the diagnosis, with what was read on the way.
+    """Return the axes with an accepted manoeuvre, and what was read on the way.
 
-    The axis is pitch, unless the elevator has no accepted manoeuvre and aileron or rudder has one.
+    The axis is pitch where no axis has an accepted manoeuvre.
     """
     flown = None
+    is_pitch = False
     try:
         flown = maneuvers_of(logs, aircraft, target_system, by_hand)
         chosen = without_refused(flown.maneuvers, aircraft)
-        if len(chosen.although_refused) < len(chosen.maneuvers):
-            return AxisFlown("pitch", flown)
+        is_pitch = len(chosen.although_refused) < len(chosen.maneuvers)
     except UnusableInputError:
         pass  # The diagnosis of pitch gives the reason, where roll and yaw have no manoeuvre either.
     try:
+        if is_pitch and not any(flies_roll_or_yaw(log, aircraft, target_system, marks) for log in logs):
+            return AxisFlown("pitch", flown)
         state = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral").state
         accepted_of(state)
     except UnusableInputError:
         return AxisFlown("pitch", flown)
-    return AxisFlown("lateral", flown, state)
+    return AxisFlown("both" if is_pitch else "lateral", flown, state)
+
+
+def flies_roll_or_yaw(
+    log: Path, aircraft: Aircraft, target_system: int | None, marks: Sequence[Mark]
+) -> bool:
+    """Return whether a log holds a manoeuvre of aileron or rudder, without an analysis of the campaign."""
+    stream = FlightStream(aircraft, target_system, marks, lateral=True)
+    events = [event for columns in read_whole_log(log) for event in stream.feed(columns)]
+    return any(isinstance(event, SideManeuverFlown) for event in (*events, *stream.finish()))
 
 
 def beside_simulator(

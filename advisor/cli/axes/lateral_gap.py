@@ -1,6 +1,5 @@
 """``advisor gap`` of roll and yaw: the simulator against the manoeuvres of aileron and rudder."""
 
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -11,7 +10,7 @@ import click
 from advisor.analysis.axes.lateral import SideCompared, accepted_of, compare_side_flown, compare_side_logs
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
-from advisor.cli.gap_asked import GapAsked, write_figure
+from advisor.cli.gap_asked import AxisAnswer, GapAsked, Unanswered, write_figure
 from advisor.cli.improvement_export import listed, write_exports
 from advisor.cli.options import USAGE
 from advisor.cli.proving import document as proof_document
@@ -35,6 +34,14 @@ def compare_lateral(asked: GapAsked, state: CampaignState | None = None) -> int:
     state
         State of the campaign with both axes, if the logs are already read.
     """
+    compared = diagnosed_lateral(asked, state)
+    if isinstance(compared, Unanswered):
+        return asked.refused(compared)
+    return asked.answered(lateral_answer(asked, *proved_lateral(asked, compared)))
+
+
+def diagnosed_lateral(asked: GapAsked, state: CampaignState | None = None) -> SideCompared | Unanswered:
+    """Return the diagnosis of roll and yaw, or the reason for none."""
     with Stages() as tell:
 
         def compare() -> SideCompared:
@@ -52,30 +59,46 @@ def compare_lateral(asked: GapAsked, state: CampaignState | None = None) -> int:
                 progress=tell,
             )
 
-        compared = asked.compared("lateral, diagnosis", compare)
-    if isinstance(compared, int):
-        return compared
+        return asked.attempted("lateral, diagnosis", compare)
+
+
+def proved_lateral(asked: GapAsked, compared: SideCompared) -> tuple[SideCompared, Proof | None]:
+    """Return what stays of a diagnosis after the proof that was asked for, and the proof."""
     proof = proof_of(asked.proving, partial(_prove, asked, compared))
-    compared = stays_of_side(compared, proof)
+    return stays_of_side(compared, proof), proof
+
+
+def lateral_answer(
+    asked: GapAsked, compared: SideCompared, proof: Proof | None, writes: bool = True
+) -> AxisAnswer:
+    """Return the answer of roll and yaw.
+
+    Parameters
+    ----------
+    writes
+        Whether this axis writes the model files that were asked for.
+    """
     found = compared.gap
-    improves = found.verdict in IMPROVING
-    written = asked.improved(improves, lambda: replace(improved_side(compared), pitch=None))
-    outcomes = write_exports(asked.orders, partial(improved_side, compared))
+    written, outcomes = None, []
+    if writes:
+        improves = found.verdict in IMPROVING
+        written = asked.improved(improves, lambda: replace(improved_side(compared), pitch=None))
+        outcomes = write_exports(asked.orders, partial(improved_side, compared))
     if found.traces:
         write_figure(asked.figure, lambda: side_gap_document(found))
-    if asked.as_json:
-        document = whole_document(found) | {"exports": listed(outcomes)}
-        named = {"improved_model": None if written is None else str(written)}
-        document["lateral"] |= named | proof_document(proof)
-        click.echo(json.dumps(document, allow_nan=False, indent=1))
-    else:
+    document = whole_document(found) | {"exports": listed(outcomes)}
+    named = {"improved_model": None if written is None else str(written)}
+    document["lateral"] |= named | proof_document(proof)
+
+    def show() -> None:
         click.echo("\n".join(side_gap_lines(found)))
         if asked.why and found.diagnosis is not None:
             PlainConsole().print(*why_of(found.diagnosis))
         print_proof(proof)
         if written is not None:
             click.echo(f"The improved simulator is in {printable(str(written))}.")
-    return USAGE if any(one.problem for one in outcomes) else 0
+
+    return AxisAnswer(document, show, USAGE if any(one.problem for one in outcomes) else 0)
 
 
 def _prove(

@@ -1,16 +1,13 @@
 """``advisor gap`` of pitch: the simulator against the manoeuvres of the elevator."""
 
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 
-import click
-
 from advisor.analysis import gap as reading
 from advisor.campaign.hand_decisions import ByHand
-from advisor.cli.gap_asked import GapAsked, write_figure
+from advisor.cli.gap_asked import AxisAnswer, GapAsked, Unanswered, write_figure
 from advisor.cli.improvement_export import listed, write_exports
 from advisor.cli.options import USAGE, decided_on
 from advisor.cli.proving import document as proof_document
@@ -44,6 +41,16 @@ def compare_pitch(
     flown
         Manoeuvres of the elevator, if the logs are already read.
     """
+    compared = diagnosed_pitch(asked, by_hand, holdout, flown)
+    if isinstance(compared, Unanswered):
+        return asked.refused(compared)
+    return asked.answered(pitch_answer(asked, by_hand, everything, compared, partial(_side_of, asked)))
+
+
+def diagnosed_pitch(
+    asked: GapAsked, by_hand: Sequence[ByHand], holdout: int | None, flown: reading.GapFlights | None
+) -> Compared | Unanswered:
+    """Return the diagnosis of pitch, or the reason for none."""
     aircraft, read = asked.aircraft, asked.read
 
     def compare() -> Compared:
@@ -65,32 +72,53 @@ def compare_pitch(
                 simulator.close()
 
     with Stages() as progress:
-        compared = asked.compared("pitch, diagnosis", compare)
-    if isinstance(compared, int):
-        return compared
+        return asked.attempted("pitch, diagnosis", compare)
+
+
+def pitch_answer(
+    asked: GapAsked,
+    by_hand: Sequence[ByHand],
+    everything: bool,
+    compared: Compared,
+    make_side: Callable[[], SideModel | None],
+    side_improves: bool = False,
+) -> AxisAnswer:
+    """Write the files that were asked for, and return the answer of pitch.
+
+    Parameters
+    ----------
+    make_side
+        Returns roll and yaw for the files.
+    side_improves
+        Whether the diagnosis of roll and yaw improves the simulator.
+    """
+    aircraft, read = asked.aircraft, asked.read
     found = compared.diagnosis
     proof = proof_of(asked.proving, partial(_prove, asked, by_hand, compared))
     if proof is not None:
         found = stays_of(proof, found, compared.aircraft.model)
-    side = cache(partial(_side_of, asked))
-    written = asked.improved(found.improves, lambda: FlownModel(compared.aircraft, None, side(), found))
+    side = cache(make_side)
+    improves = found.improves or side_improves
+    written = asked.improved(improves, lambda: FlownModel(compared.aircraft, None, side(), found))
     # The simulator's own servo is no part of the improvement.
     as_given = replace(compared.aircraft, simulator=aircraft.simulator, elevator=aircraft.elevator)
-    outcomes = write_exports(asked.orders, lambda: improved_model(found, as_given, side()))
+    outcomes = write_exports(
+        asked.orders, lambda: replace(improved_model(found, as_given, side()), unchanged=not improves)
+    )
     write_figure(asked.figure, lambda: gap_document(found))
     steps = next_steps(
         found, list(map(str, read.logs)), read.aircraft_text, aircraft.simulator, read.reading,
         _flown_next(aircraft.simulator, written, outcomes),
     )  # fmt: skip
-    if asked.as_json:
-        document = gap_document(found, (), None if written is None else str(written))
-        more = {"exports": listed(outcomes), "next": plain(steps), **proof_document(proof)}
-        click.echo(json.dumps(document | more, allow_nan=False, indent=1))
-    else:
+    document = gap_document(found, (), None if written is None else str(written))
+    document |= {"exports": listed(outcomes), "next": plain(steps), **proof_document(proof)}
+
+    def show() -> None:
         name = None if written is None else printable(str(written))
         PlainConsole().print(GapScreen(found, name, asked.why, steps, everything))
         print_proof(proof)
-    return USAGE if any(one.problem for one in outcomes) else 0
+
+    return AxisAnswer(document, show, USAGE if any(one.problem for one in outcomes) else 0)
 
 
 def _prove(

@@ -31,7 +31,7 @@ def test_the_campaign_is_judged_where_a_control_of_roll_and_yaw_was_flown(monkey
     def judged(*_, **__):
         raise JudgedError
 
-    monkeypatch.setattr(roll_and_yaw, "_flies_roll_or_yaw", lambda *_: flies)
+    monkeypatch.setattr(roll_and_yaw, "flies_roll_or_yaw", lambda *_: flies)
     monkeypatch.setattr(roll_and_yaw, "read_whole", judged)
     if flies:
         with pytest.raises(JudgedError):

@@ -6,17 +6,14 @@ from pathlib import Path
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.axes.lateral import SideCompared, accepted_of
+from advisor.analysis.axes.lateral import SideCompared, accepted_of, flies_roll_or_yaw
 from advisor.analysis.whole_flights import read_whole
 from advisor.exports.models.flown import FlownModel, SideModel, flown_model, side_flown, side_of
 from advisor.exports.models.improvement import ExportedServo, servo_of
-from advisor.flight.maneuvers.events import SideManeuverFlown
 from advisor.flight.maneuvers.marks import Mark
-from advisor.flight.stream.stream import FlightStream
 from advisor.gap.axes.lateral.diagnosis import SideDiagnosis
 from advisor.gap.effects import EFFECTS
 from advisor.gap.result import IMPROVING
-from advisor.mavlink.logs.whole import read_whole_log
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import NoEstimate
@@ -35,20 +32,12 @@ def side_of_logs(
     The whole campaign is analysed only if aileron or rudder were flown.
     """
     try:
-        if not any(_flies_roll_or_yaw(log, aircraft, target_system, marks) for log in logs):
+        if not any(flies_roll_or_yaw(log, aircraft, target_system, marks) for log in logs):
             return None
         flights = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral")
     except UnusableInputError:
         return None
     return side_flown(flights.state.lateral, aircraft)
-
-
-def _flies_roll_or_yaw(
-    log: Path, aircraft: Aircraft, target_system: int | None, marks: Sequence[Mark]
-) -> bool:
-    stream = FlightStream(aircraft, target_system, marks, lateral=True)
-    events = [event for columns in read_whole_log(log) for event in stream.feed(columns)]
-    return any(isinstance(event, SideManeuverFlown) for event in (*events, *stream.finish()))
 
 
 def improved_side(compared: SideCompared) -> FlownModel:

@@ -1,0 +1,73 @@
+"""``advisor gap --axis both``: one answer of both axes."""
+
+import json
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from click.testing import CliRunner, Result
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis import gap as reading
+from advisor.analysis.axes.lateral import SideCompared
+from advisor.cli.axes import lateral_gap
+from advisor.cli.group import advisor
+from advisor.gap.axes.lateral.comparison import SideGap
+from advisor.simulators.compare import Compared
+from advisor.words.problems import UnusableInputError
+from tests.gap.test_report_screen import diagnosis
+
+
+def refuse(*_: object, **__: object) -> Any:
+    raise UnusableInputError("no_accepted", "No manoeuvre is accepted.", "Fly.")
+
+
+@pytest.fixture
+def axes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Replace the diagnoses of both axes by hand-made ones."""
+    pitch = Compared(diagnosis(verdict="effect"), Aircraft())
+    side = SideGap("parameters", "L_p is too small.", (), {}, {}, (1, 2), None)
+    compared = SideCompared(side, SimpleNamespace(), Aircraft())  # type: ignore[arg-type]
+    monkeypatch.setattr(reading, "compare_logs", lambda *_: pitch)
+    monkeypatch.setattr(lateral_gap, "compare_side_logs", lambda *_, **__: compared)
+
+
+def gap(*options: str) -> Result:
+    return CliRunner().invoke(advisor, ["gap", "flight.tlog", "--axis", "both", *options])
+
+
+@pytest.mark.usefixtures("axes")
+def test_the_document_has_the_keys_of_pitch_and_those_of_roll_and_yaw_under_lateral():
+    document = json.loads(gap("--json").stdout)
+    assert document["verdict"] == "effect"
+    assert document["lateral"]["verdict"] == "parameters"
+    assert document["usable"]
+
+
+@pytest.mark.usefixtures("axes")
+def test_the_text_of_pitch_is_first_and_that_of_roll_and_yaw_has_its_heading():
+    shown = gap().stdout
+    assert 0 < shown.index("Next:") < shown.index("\nRoll and yaw\n") < shown.index("L_p is too small.")
+
+
+@pytest.mark.usefixtures("axes")
+@pytest.mark.parametrize(
+    ("room", "name", "heading"),
+    [(lateral_gap, "compare_side_logs", "Roll and yaw"), (reading, "compare_logs", "Pitch")],
+)
+def test_an_axis_without_an_answer_gives_its_reason_next_to_the_other_axis(monkeypatch, room, name, heading):
+    monkeypatch.setattr(room, name, refuse)
+    told = gap("--json")
+    assert told.exit_code == 0
+    assert f"{heading}: No manoeuvre is accepted" in told.stderr
+    assert [one["code"] for one in json.loads(told.stdout)["problems"]] == ["no_accepted"]
+
+
+@pytest.mark.usefixtures("axes")
+def test_without_an_answer_of_any_axis_the_log_cannot_be_used(monkeypatch):
+    monkeypatch.setattr(reading, "compare_logs", refuse)
+    monkeypatch.setattr(lateral_gap, "compare_side_logs", refuse)
+    told = gap("--json")
+    assert told.exit_code == 3
+    assert not json.loads(told.stdout)["usable"]
+    assert len(json.loads(told.stdout)["problems"]) == 2
