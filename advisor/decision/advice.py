@@ -9,6 +9,7 @@ from advisor.aircraft.aircraft import Aircraft, CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.conditions import Conditions, find_conditions, travel_of
 from advisor.decision.course import CriterionCourse
+from advisor.decision.first_unit import first_unit_s
 from advisor.decision.foresight import expect
 from advisor.decision.history import CandidateManeuver, is_named, usable_ones
 from advisor.decision.information import Knowledge
@@ -43,7 +44,7 @@ def next_input(
     conditions = find_conditions(history, aircraft, course)
     mend = _mend(history[-1]) if history else ""
     if conditions is None and not mend and not (history and is_named(history[-1])):
-        return _first_input(aircraft)
+        return _first_input(aircraft, history)
     if conditions is None:
         return NextInput(f"next: {mend or _same_but_better(history[-1])}", None)
     known = course.knowledge(usable_ones(history))
@@ -90,13 +91,9 @@ def _held_by(history: Sequence[CandidateManeuver], plan: CampaignPlan, known: Kn
     return known.holding_back
 
 
-def _first_input(aircraft: Aircraft) -> NextInput:
-    """Return the first input's advice: a small 3-2-1-1 with a time unit from any prior model."""
-    unit = 0.5
-    if set(PARAMETERS) <= set(aircraft.model):
-        frequency = ShortPeriod.from_mapping(aircraft.model).natural_frequency
-        if np.isfinite(frequency) and frequency > 0.0:
-            unit = max(round(0.5 * np.pi / frequency, 1), 0.2)
+def _first_input(aircraft: Aircraft, history: Sequence[CandidateManeuver]) -> NextInput:
+    """Return the first input's advice: a small 3-2-1-1, timed by the file's model or by the log."""
+    unit = first_unit_s(aircraft.model, [flown.estimate for flown in history])
     travel = travel_of(aircraft, 0.0)
     gentle = StepInput("3-2-1-1", unit, GENTLE * travel, nose_up_first=True)
     return NextInput(f"next: {gentle.spoken(travel)}, to begin gently", None, None, gentle)

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
+from advisor.decision.first_unit import frequency
 from advisor.doctor.examination import Examination
-from advisor.doctor.expectation import RESPONSE_ALPHA_DEG, frequency
+from advisor.doctor.expectation import RESPONSE_ALPHA_DEG
 from advisor.report.document import instrument_document
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem

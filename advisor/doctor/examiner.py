@@ -8,8 +8,9 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft_file.log_facts import FLYING_SHARE, SLOWEST_M_S
 from advisor.campaign.instruments import together
+from advisor.decision.first_unit import frequency
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit, in_order
-from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, expect, frequency
+from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, expect
 from advisor.doctor.instruments import (
     alpha_limits,
     clock_limits,

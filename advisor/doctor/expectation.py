@@ -13,6 +13,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
+from advisor.decision.first_unit import matched_unit_s
 from advisor.decision.foresight import foresee, local_at_trim, response_from_trim, shared_of, unmeasured
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import OUTPUTS
@@ -70,12 +71,6 @@ class ExpectedErrors:
     """Elevator amplitude on either side of trim, deg."""
 
 
-def frequency(model: ShortPeriod) -> float:
-    """Return the natural frequency in rad/s; for a model without one, the rate of the fastest mode."""
-    natural = model.natural_frequency
-    return natural if np.isfinite(natural) and natural > 0.0 else float(np.max(np.abs(model.eigenvalues)))
-
-
 def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float | None) -> ExpectedErrors:
     """Return the expected errors of a 3-2-1-1 matched to the aircraft.
 
@@ -88,7 +83,7 @@ def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float 
         None: not measured, so that a_z cannot be used.
     """
     model = assumed.model
-    unit_s = float(np.clip(2.0 / frequency(model), 0.1, 3.0))
+    unit_s = matched_unit_s(model)
     edges = _LEAD_IN_S + unit_s * np.cumsum([0, *UNITS_OF_TIME])
     end_s = float(edges[-1]) + max(2.0, 10.0 * unit_s)
     outputs = [name for name in COUNTED if name in rates_hz and (name != "a_z" or airspeed_m_s)]

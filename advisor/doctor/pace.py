@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.decision.envelope import needed_hz
+from advisor.decision.first_unit import frequency
 from advisor.doctor.examination import Limit
-from advisor.doctor.expectation import Assumed, ExpectedErrors, expect, frequency
+from advisor.doctor.expectation import Assumed, ExpectedErrors, expect
 from advisor.doctor.survey import Arrival
 from advisor.flight.stream.suitability import SLOWEST_HZ
 from advisor.flight.vehicle.vehicle import Vehicle

@@ -7,8 +7,8 @@ from rich.console import Console, ConsoleOptions, RenderResult
 from rich.text import Text
 
 from advisor.aircraft.reference import PARAMETERS
+from advisor.decision.first_unit import frequency
 from advisor.doctor.examination import Examination, Limit
-from advisor.doctor.expectation import frequency
 from advisor.doctor.instruments import STRAYED_SHARE
 from advisor.report.result_rows import message_table
 from advisor.words.plain import plain

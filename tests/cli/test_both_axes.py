@@ -10,6 +10,7 @@ from click.testing import CliRunner, Result
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import gap as reading
 from advisor.analysis.axes.lateral import SideCompared
+from advisor.cli import group as cli
 from advisor.cli.axes import lateral_gap
 from advisor.cli.group import advisor
 from advisor.gap.axes.lateral.comparison import SideGap
@@ -64,10 +65,13 @@ def test_an_axis_without_an_answer_gives_its_reason_next_to_the_other_axis(monke
 
 
 @pytest.mark.usefixtures("axes")
-def test_without_an_answer_of_any_axis_the_log_cannot_be_used(monkeypatch):
+def test_without_an_answer_of_any_axis_the_log_cannot_be_used(monkeypatch, capsys):
     monkeypatch.setattr(reading, "compare_logs", refuse)
     monkeypatch.setattr(lateral_gap, "compare_side_logs", refuse)
-    told = gap("--json")
-    assert told.exit_code == 3
-    assert not json.loads(told.stdout)["usable"]
-    assert len(json.loads(told.stdout)["problems"]) == 2
+    monkeypatch.setattr("sys.argv", ["advisor", "gap", "flight.tlog", "--axis", "both", "--json"])
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    document = json.loads(capsys.readouterr().out)
+    assert ended.value.code == 3
+    assert not document["usable"]
+    assert len(document["problems"]) == 2

@@ -81,7 +81,7 @@ def test_a_movement_without_a_name_cannot_be_repeated_so_the_first_input_is_advi
     moved = flown()
     unnamed = replace(moved.maneuver, span=replace(moved.maneuver.span, kind="other"))
     advice = next_input([replace(moved, maneuver=unnamed, reasons=(short,))], AIRCRAFT)
-    assert advice.advice == "next: 3-2-1-1, 0.5 s steps, 10 % stick, to begin gently"
+    assert advice.advice == "next: 3-2-1-1, 0.8 s steps, 10 % stick, to begin gently"
 
 
 @pytest.mark.parametrize("code", sorted(NO_CURE_BY_INPUT))
@@ -101,7 +101,21 @@ def test_while_a_channel_stands_still_the_next_thing_is_its_mend() -> None:
 
 def test_a_prior_model_times_the_first_input() -> None:
     prior = replace(AIRCRAFT, model=dict(zip(PARAMETERS, THETA.tolist(), strict=True)))
-    assert ", 0.6 s steps, " in next_input([], prior).advice
+    assert ", 0.8 s steps, " in next_input([], prior).advice
+
+
+def test_a_prior_model_without_its_constants_times_the_first_input() -> None:
+    prior = replace(AIRCRAFT, model={"Z_alpha": -8.0, "M_alpha": -48.3, "M_q": -4.2})
+    assert ", 0.2 s steps, " in next_input([], prior).advice
+
+
+def test_a_movement_without_a_name_times_the_first_input_without_a_prior_model() -> None:
+    short = Reason("aborted", "free response too short; let the recording run on", 0.0, 0.7)
+    moved = flown()
+    unnamed = replace(moved.maneuver, span=replace(moved.maneuver.span, kind="other"))
+    quick = replace(moved.estimate, theta=4.0 * moved.estimate.theta)
+    heard = [replace(moved, maneuver=unnamed, estimate=quick, reasons=(short,))]
+    assert ", 0.3 s steps, " in next_input(heard, AIRCRAFT).advice
 
 
 def test_the_advised_input_is_better_than_the_one_flown() -> None:

@@ -8,7 +8,8 @@ from scipy.signal import cont2discrete
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
-from advisor.doctor.expectation import NOISE, TYPICAL, UNITS_OF_TIME, Assumed, edge_error_s, expect, frequency
+from advisor.decision.first_unit import frequency
+from advisor.doctor.expectation import NOISE, TYPICAL, UNITS_OF_TIME, Assumed, edge_error_s, expect
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.instrument_fit import fit_instruments
 from advisor.oem.instruments import unknown_instruments

@@ -110,7 +110,7 @@ class LateralCampaign(AxisCampaign):
     @property
     def _inputs(self) -> list[FlownInput]:
         """Inputs of all lateral manoeuvres, accepted or not."""
-        return [FlownInput.of(one.maneuver, one.verdict.reasons) for one in self.judged]
+        return [FlownInput.of(one.maneuver, one.verdict.reasons, one.estimate) for one in self.judged]
 
     @property
     def _may_stop(self) -> bool:

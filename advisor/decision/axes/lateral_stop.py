@@ -7,7 +7,7 @@ follow from the last input by linearity, with the amplitude and its square.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import degrees, inf, pi, radians
+from math import degrees, inf, radians
 
 import numpy as np
 
@@ -17,8 +17,9 @@ from advisor.decision.axes.lateral import BANK_DEG
 from advisor.decision.change import Change
 from advisor.decision.conclusion import Criterion, concluded
 from advisor.decision.conditions import ALPHA_MARGIN, BOLDER, FULL_TRAVEL_RAD
+from advisor.decision.first_unit import shown_unit_s, side_unit_s
 from advisor.decision.heard import Heard, first_stop
-from advisor.decision.inputs import SHORTEST_UNIT_S, StepInput
+from advisor.decision.inputs import StepInput
 from advisor.decision.remaining import Share, until_usable
 from advisor.decision.tolerance import SHARE
 from advisor.decision.verdict import (
@@ -31,7 +32,8 @@ from advisor.decision.verdict import (
 )
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
+from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 
@@ -52,16 +54,21 @@ class FlownInput:
     """Largest bank angle during the manoeuvre, rad."""
     remedy: str = ""
     """Remedy from the first reason against the manoeuvre; empty for an accepted one."""
+    modes: LateralModes | None = None
+    """Modes of the manoeuvre's estimate, accepted or not; None without an estimate."""
 
     @classmethod
-    def of(cls, maneuver: Maneuver, reasons: Sequence[Reason]) -> "FlownInput":
-        """Return the input of a manoeuvre with these reasons against it."""
+    def of(
+        cls, maneuver: Maneuver, reasons: Sequence[Reason], estimate: Estimate | NoEstimate | None = None
+    ) -> "FlownInput":
+        """Return the input of a manoeuvre with these reasons against it, and with its estimate."""
         moved = {name: _amplitude(maneuver, name) for name in LATERAL.inputs}
         control = max(moved, key=lambda name: moved[name])
         bank = maneuver.channels.get("bank")
         banked = float(np.max(np.abs(bank.y), initial=0.0)) if bank is not None else 0.0
         remedy = reasons[0].text.partition("; ")[2] if reasons else ""
-        return cls(control, moved[control], banked, remedy)
+        modes = estimate.modes if isinstance(estimate, LateralEstimate) else None
+        return cls(control, moved[control], banked, remedy, modes)
 
 
 def _amplitude(maneuver: Maneuver, name: str) -> float:
@@ -92,7 +99,11 @@ def next_lateral(
     before = next((one for one in reversed(flown) if one.control == control), None)
     amplitude = GENTLE * travel if before is None else _larger(before, percent, aircraft)
     wanted = StepInput(
-        "doublet", _unit_s(control, accepted), min(amplitude, ALPHA_MARGIN * travel), True, control
+        "doublet",
+        _unit_s(control, accepted, flown, aircraft),
+        min(amplitude, ALPHA_MARGIN * travel),
+        True,
+        control,
     ).rounded(travel)
     gently = ", to begin gently" if before is None else ""
     remedy = f"; {flown[-1].remedy}" if before is not None and flown[-1].remedy else ""
@@ -109,17 +120,14 @@ def _larger(before: FlownInput, percent: float, aircraft: Aircraft) -> float:
     return factor * before.amplitude_rad
 
 
-def _unit_s(control: str, accepted: Sequence[LateralEstimate]) -> float:
-    """Return the duration of a step, s: two roll time constants, or half a Dutch roll."""
-    modes = [one.modes for one in accepted]
-    if control == "aileron":
-        known = [2.0 * m.roll_time_constant.value for m in modes if m.roll_time_constant is not None]
-        # Shorter steps than half a second leave a fast roll no bank to show.
-        least = 0.5
-    else:
-        known = [pi / m.dutch_roll_omega.value for m in modes if m.dutch_roll_omega is not None]
-        least = SHORTEST_UNIT_S
-    return max(float(np.median(known)), least) if known else FIRST_UNIT_S
+def _unit_s(
+    control: str, accepted: Sequence[LateralEstimate], flown: Sequence[FlownInput], aircraft: Aircraft
+) -> float:
+    """Return the duration of a step, s: by accepted manoeuvres, the file's model, or other manoeuvres."""
+    shown = shown_unit_s(control, [one.modes for one in accepted])
+    shown = shown or side_unit_s(control, aircraft.model, aircraft.reference_airspeed_m_s)
+    shown = shown or shown_unit_s(control, [one.modes for one in flown if one.modes is not None])
+    return shown or FIRST_UNIT_S
 
 
 def _after(control: str, unit_s: float) -> str:
