@@ -12,6 +12,7 @@ from advisor.decision.course import CriterionCourse
 from advisor.decision.heard import Heard
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.judge import judge_campaign
+from advisor.decision.revised import revision
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
@@ -25,6 +26,8 @@ class Flown:
     maneuver: Maneuver
     examined: CandidateManeuver
     notes: tuple[str, ...]
+    revisions: tuple[str, ...] = ()
+    """Sentences about changes of the verdict after the crew heard it."""
 
     def exclude(self, because: str | None) -> None:
         """Exclude the manoeuvre for a reason; None includes the manoeuvre."""
@@ -33,9 +36,9 @@ class Flown:
     def judged(self, verdict: ManeuverVerdict) -> JudgedManeuver:
         """Return the manoeuvre with its verdict."""
         examined = self.examined
-        return JudgedManeuver(
-            self.maneuver, examined.estimate, verdict, examined.excluded_because, self.notes
-        )
+        cautions = dict.fromkeys((*self.revisions, *verdict.cautions))
+        said = replace(verdict, cautions=tuple(cautions)) if self.revisions else verdict
+        return JudgedManeuver(self.maneuver, examined.estimate, said, examined.excluded_because, self.notes)
 
 
 class AxisCampaign(ABC):
@@ -56,6 +59,8 @@ class AxisCampaign(ABC):
         self._course = CriterionCourse(plan)
         self._heard: list[Heard] = []
         self._ended = False
+        self._revised: list[str] = []
+        self._spoken: tuple[JudgedManeuver, ...] = ()
         self.judged: tuple[JudgedManeuver, ...] = ()
         """Manoeuvres in the order flown, each with its estimate and verdict."""
         self.flight_test = self._decided((), ())
@@ -83,6 +88,7 @@ class AxisCampaign(ABC):
         """End the flight, and estimate all accepted manoeuvres together."""
         self._ended = True
         self.decide()
+        self._note_revisions()
 
     @property
     def maneuvers(self) -> tuple[Maneuver, ...]:
@@ -105,7 +111,8 @@ class AxisCampaign(ABC):
         self._flown.append(flown)
 
     def _hear(self) -> None:
-        """Record the criteria that are announced to the crew after the newest manoeuvre."""
+        """Record the verdicts and criteria that are announced to the crew after the newest manoeuvre."""
+        self._note_revisions()
         usable = [i for i, one in enumerate(self._flown) if one.examined.usable]
         self._heard.append(Heard.of(self.flight_test, usable))
 
@@ -138,6 +145,26 @@ class AxisCampaign(ABC):
             flown.judged(verdict) for flown, verdict in zip(self._flown, verdicts, strict=True)
         )
         self.flight_test = self._decided(history, self._still_heard)
+
+    def _note_revisions(self) -> None:
+        """Note each verdict that differs from the one that the crew heard. A decision by hand is no such
+        change."""
+        newest = self._flown[-1].maneuver.number if self._flown else 0
+        for flown, before, after in zip(self._flown, self._spoken, self.judged, strict=False):
+            same = before.excluded_because == after.excluded_because
+            if same and (said := revision(before.verdict, after.verdict, newest)):
+                flown.revisions = (*flown.revisions, said)
+                self._revised.append(f"manoeuvre {flown.maneuver.number}: {said}")
+        if self._revised:
+            self.judged = tuple(
+                flown.judged(one.verdict) for flown, one in zip(self._flown, self.judged, strict=True)
+            )
+        self._spoken = self.judged
+
+    def take_revisions(self) -> tuple[str, ...]:
+        """Return the sentences about changed verdicts since the last call."""
+        said, self._revised = tuple(self._revised), []
+        return said
 
     def _unjudged(self, part: FailedPart) -> None:
         """Accept no manoeuvre after a failed part, and continue."""

@@ -23,6 +23,7 @@ from advisor.flight.maneuvers.events import (
     ManeuverAgain,
     ManeuverFlown,
     ModeChanged,
+    Notice,
     SideManeuverFlown,
 )
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -50,6 +51,8 @@ class ManeuverJudged:
     plan: CrewPlan | None = None
     """Plan of both axes; None if only one axis has been flown."""
     axis: AxisName = "pitch"
+    revised: tuple[str, ...] = ()
+    """Sentences about earlier manoeuvres whose verdict changed, each with its reason."""
 
 
 CampaignEvent = FlightEvent | ManeuverJudged
@@ -118,9 +121,12 @@ class Campaign:
             self.engineer.end_maneuver()
         told = self._take(self._flights.finish())
         self._ended = True
-        self._elevator.finish()
+        halves: list[ElevatorCampaign | LateralCampaign] = [self._elevator]
         if self._lateral is not None:
-            self._lateral.finish()
+            halves.append(self._lateral)
+        for half in halves:
+            half.finish()
+            told += self._revised_at_the_end(half)
         for problem in self._stream.marks.problems():
             self._journal.write(str(problem))
         return told
@@ -252,8 +258,18 @@ class Campaign:
         which = f", {span.kind}" if axis == "lateral" else ""
         verdict = f"{OF[axis]}manoeuvre {maneuver.number} ({clock(span.start_s)}{which})"
         self._journal.write_of_past(f"{verdict}: {judged.verdict.sentence}", span.end_s)
+        revised = half.take_revisions()
+        for said in revised:
+            self._journal.write_of_past(f"{_TEST_OF[axis]}{said}", span.end_s)
         self._journal.write_of_past(f"{_TEST_OF[axis]}{half.flight_test.sentence}", span.end_s)
-        return ManeuverJudged(judged, half.flight_test, self._plan, axis)
+        return ManeuverJudged(judged, half.flight_test, self._plan, axis, revised)
+
+    def _revised_at_the_end(self, half: AxisCampaign) -> list[CampaignEvent]:
+        """Log the verdicts that the estimate of all manoeuvres together has changed."""
+        told = [Notice("verdict_revised", said) for said in half.take_revisions()]
+        for notice in told:
+            self._journal.take(notice)
+        return [*told]
 
     @property
     def _plan(self) -> CrewPlan | None:

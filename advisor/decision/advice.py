@@ -78,14 +78,16 @@ def forecast(history: Sequence[CandidateManeuver], course: CriterionCourse) -> R
     as_flown = errors_as_flown(usable, known.widening)
     if plan.rule == "information":
         return by_information(known, as_flown, odds)
-    members = np.array([e.theta for e in accepted_estimates(history, plan.rule)]).reshape(-1, len(PARAMETERS))
+    members = np.array([e.theta for e in accepted_estimates(history, plan.rule, plan)]).reshape(
+        -1, len(PARAMETERS)
+    )
     passing = odds.usable.mean * PASSING.get(plan.rule, 1.0)
     return by_scatter(members, known.posterior, np.sqrt(np.diag(as_flown)), plan, passing)
 
 
 def _held_by(history: Sequence[CandidateManeuver], plan: CampaignPlan, known: Knowledge) -> str:
     if plan.rule != "information":
-        members = window(accepted_estimates(history, plan.rule), plan)
+        members = window(accepted_estimates(history, plan.rule, plan), plan)
         if members is not None:
             return scattered_most(members, plan.criterion)
     return known.holding_back

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri
 
+from advisor.aircraft.aircraft import CampaignPlan
 from advisor.aircraft.reference import SIDE_PARAMETERS, SPEED_EXPONENTS
-from advisor.decision.consistency import outliers
+from advisor.decision.consistency import USUAL, outliers
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.inverses import information_of
 from advisor.decision.pooling import (
@@ -68,7 +69,7 @@ class Change:
     sentence: str
 
 
-def find_change(history: Sequence[CandidateManeuver]) -> Change | None:
+def find_change(history: Sequence[CandidateManeuver], plan: CampaignPlan = USUAL) -> Change | None:
     """Return the most significant change between a campaign's manoeuvres; None if noise explains all
     differences.
 
@@ -77,7 +78,7 @@ def find_change(history: Sequence[CandidateManeuver]) -> Change | None:
     """
     flown = [(i, e) for i, m in enumerate(history, start=1) if (e := m.usable)]
     posteriors = posteriors_at_one_speed([e for _, e in flown])
-    excluded = [k for k in outliers(posteriors) if k < len(posteriors) - 1]
+    excluded = [k for k in outliers(posteriors, plan) if k < len(posteriors) - 1]
     numbers = [i for k, (i, _) in enumerate(flown) if k not in excluded]
     posteriors = [posterior for k, posterior in enumerate(posteriors) if k not in excluded]
     if len(posteriors) < 3:

@@ -1,12 +1,28 @@
-"""Consistency of manoeuvres: outliers, and the factor by which scatter widens the intervals."""
+"""Consistency of manoeuvres: outliers, and the factor by which scatter widens the intervals.
+
+A manoeuvre's interval alone contains no error of the model, which only several manoeuvres show. The scatter
+of the other manoeuvres is therefore the scale of every distance. The ratio of a distance to an estimated
+scale follows Fisher's F distribution.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import chdtri
+from scipy.special import chdtri, fdtri
 
-from advisor.decision.pooling import Posterior, Shared, disagreement, pool, pooled, pooled_without_each
+from advisor.aircraft.aircraft import CampaignPlan
+from advisor.decision.pooling import (
+    Pooled,
+    Posterior,
+    derivatives_of,
+    disagreement,
+    pool,
+    pooled,
+    pooled_without_each,
+)
+from advisor.decision.tolerance import SHARE
+from advisor.words.quantiles import NORMAL_95
 
 WIDEN_BELOW = 0.05
 """Probability of the scatter between manoeuvres below which the intervals are widened."""
@@ -16,6 +32,8 @@ OUTLIER_IMPROVEMENT = 3.0
 """Least factor by which leaving out an outlier must lower χ² per degree of freedom."""
 FEWEST = 4
 """Least number of manoeuvres among which an outlier can be identified."""
+USUAL = CampaignPlan()
+"""Plan of a crew that states no tolerance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +51,8 @@ class Outlier:
     """Distance of an outlying manoeuvre from all others."""
 
     sigma: float
-    """Mahalanobis distance of the manoeuvre's derivatives from those of the other manoeuvres."""
+    """Mahalanobis distance of the manoeuvre's derivatives from those of the other manoeuvres, in units of
+    their scatter."""
     limit: float
     """Distance that chance exceeds once in a thousand cases."""
     alpha: AlphaApart | None = None
@@ -41,21 +60,27 @@ class Outlier:
     distinguish it."""
 
 
-def outliers(posteriors: Sequence[Posterior]) -> Mapping[int, Outlier]:
+def outliers(posteriors: Sequence[Posterior], plan: CampaignPlan = USUAL) -> Mapping[int, Outlier]:
     """Return the manoeuvres that contradict all others, while the others agree, by index.
 
     The aircraft may differ at the manoeuvre's angle of attack (`beyond_in_alpha`). The search may also have
     ended in a wrong minimum, or a gust may look like a response. Such an estimate has a small stated error
     and would distort every mean. At most a third of the remaining manoeuvres are such outliers. More
     contradictions mean a change of the aircraft, or stated errors that are too small.
+
+    Parameters
+    ----------
+    plan
+        Derivatives that the crew judges, with the differences that the crew tolerates. A manoeuvre whose
+        judged derivatives differ less is no outlier, however small the stated errors are.
     """
-    beyond = beyond_in_alpha(posteriors)
+    beyond = beyond_in_alpha(posteriors, plan)
     within = [i for i in range(len(posteriors)) if i not in beyond]
-    odd = _odd([posteriors[i] for i in within])
+    odd = _odd([posteriors[i] for i in within], plan)
     return dict(sorted({**beyond, **{within[k]: outlier for k, outlier in odd.items()}}.items()))
 
 
-def beyond_in_alpha(posteriors: Sequence[Posterior]) -> dict[int, Outlier]:
+def beyond_in_alpha(posteriors: Sequence[Posterior], plan: CampaignPlan = USUAL) -> dict[int, Outlier]:
     """Return manoeuvres with an angle of attack outside the others' range and contradicting derivatives.
 
     In buffet and in a stall the aircraft has different derivatives. Neither a large angle of attack alone nor
@@ -74,13 +99,11 @@ def beyond_in_alpha(posteriors: Sequence[Posterior]) -> dict[int, Outlier]:
             nearest = _middle(posteriors[order[-k]])
             if lowest <= nearest <= highest:
                 continue
-            factor = excess(rest)
-            others = widened(pool(rest), factor).shared
+            others = pooled(rest)
             for i in order[-k:]:
                 apart = AlphaApart(_middle(posteriors[i]), (lowest, highest))
-                outlier = replace(_distance(widened(posteriors[i], factor), others), alpha=apart)
-                if outlier.sigma > outlier.limit:
-                    found[i] = outlier
+                if (outlier := _apart(posteriors[i], others, plan)) is not None:
+                    found[i] = replace(outlier, alpha=apart)
     return found
 
 
@@ -88,7 +111,7 @@ def _middle(posterior: Posterior) -> float:
     return 0.5 * sum(posterior.alpha_rad)
 
 
-def _odd(posteriors: Sequence[Posterior]) -> dict[int, Outlier]:
+def _odd(posteriors: Sequence[Posterior], plan: CampaignPlan) -> dict[int, Outlier]:
     """Return the manoeuvres without which the others agree, by index."""
     inside = list(range(len(posteriors)))
     found: list[int] = []
@@ -106,13 +129,36 @@ def _odd(posteriors: Sequence[Posterior]) -> dict[int, Outlier]:
         found.append(candidate)
     if not found:
         return {}
-    others = pooled([posteriors[i] for i in inside]).shared
-    return {i: _distance(posteriors[i], others) for i in sorted(found)}
+    others = pooled([posteriors[i] for i in inside])
+    apart = {i: _apart(posteriors[i], others, plan) for i in sorted(found)}
+    return {i: outlier for i, outlier in apart.items() if outlier is not None}
 
 
-def _distance(outlier: Posterior, others: Shared) -> Outlier:
-    distance, dof = disagreement(others, outlier.shared)
-    return Outlier(float(np.sqrt(distance)), float(np.sqrt(chdtri(max(dof, 1), OUTLIER_BELOW))))
+def _apart(candidate: Posterior, others: Pooled, plan: CampaignPlan) -> Outlier | None:
+    """Return the distance of a manoeuvre that differs significantly and in size; None for any other one."""
+    shared, scatter, freedom = others
+    distance, dof = disagreement(shared, candidate.shared)
+    if dof < 1 or freedom < 1:
+        return None
+    scale = max(1.0, scatter / freedom)
+    outlier = Outlier(
+        float(np.sqrt(distance / scale)), float(np.sqrt(dof * fdtri(dof, freedom, 1.0 - OUTLIER_BELOW)))
+    )
+    large = _differs_in_size(candidate, others, scale, plan)
+    return outlier if large and outlier.sigma > outlier.limit else None
+
+
+def _differs_in_size(candidate: Posterior, others: Pooled, scale: float, plan: CampaignPlan) -> bool:
+    """Return whether a judged derivative differs by more than its tolerance and by more than its error."""
+    shared, own, names = others.shared, candidate.shared, derivatives_of(candidate.names)
+    for name in set(plan.parameters) & set(names):
+        k = names.index(name)
+        difference = abs(float(own.theta[k] - shared.theta[k]))
+        error = NORMAL_95 * np.sqrt(scale * (own.covariance[k, k] + shared.covariance[k, k]))
+        usual = 0.01 * plan.tolerance_percent * SHARE * abs(float(shared.theta[k]))
+        if difference > max(error, plan.tolerance.get(name, usual)):
+            return True
+    return False
 
 
 def excess(posteriors: Sequence[Posterior]) -> float:
@@ -133,9 +179,11 @@ def widened(posterior: Posterior, factor: float) -> Posterior:
     return replace(posterior, covariance=factor * posterior.covariance)
 
 
-def consensus(posteriors: Sequence[Posterior]) -> tuple[Posterior, float, tuple[int, ...]]:
+def consensus(
+    posteriors: Sequence[Posterior], plan: CampaignPlan = USUAL
+) -> tuple[Posterior, float, tuple[int, ...]]:
     """Return the pooled estimate without outliers, its variance factor, and the indices of the outliers."""
-    left_out = tuple(outliers(posteriors))
+    left_out = tuple(outliers(posteriors, plan))
     agreeing = [posterior for i, posterior in enumerate(posteriors) if i not in left_out]
     factor = excess(agreeing)
     return widened(pool(agreeing), factor), factor, left_out

@@ -123,9 +123,9 @@ def knowledge(usable: Sequence[CandidateManeuver], plan: CampaignPlan) -> Knowle
     """Return the knowledge after at least one usable manoeuvre, in the order flown."""
     estimates = estimates_of(usable)
     posteriors, airspeed = posteriors_at_one_speed(estimates), common_airspeed(estimates)
-    posterior, widening, left_out = consensus(posteriors)
+    posterior, widening, left_out = consensus(posteriors, plan)
     agreeing = [flown for i, flown in enumerate(usable) if i not in left_out]
-    surprise, missed, foretold = _compared(usable[-1], posteriors, airspeed)
+    surprise, missed, foretold = _compared(usable[-1], posteriors, airspeed, plan)
     used = estimates_of(agreeing)
     prediction = predict(agreeing, posterior.shared.theta, airspeed)
     return Knowledge(
@@ -148,12 +148,15 @@ def knowledge(usable: Sequence[CandidateManeuver], plan: CampaignPlan) -> Knowle
 
 
 def _compared(
-    newest: CandidateManeuver, posteriors: Sequence[Posterior], airspeed_m_s: float | None
+    newest: CandidateManeuver,
+    posteriors: Sequence[Posterior],
+    airspeed_m_s: float | None,
+    plan: CampaignPlan,
 ) -> tuple[float, float, float]:
     """Return ``surprise``, ``missed_percent`` and ``foretold_percent`` of the newest manoeuvre."""
     if len(posteriors) < 2:
         return float("nan"), float("nan"), float("nan")
-    before, excess, _ = consensus(posteriors[:-1])
+    before, excess, _ = consensus(posteriors[:-1], plan)
     own: Shared = widened(posteriors[-1], excess).shared
     distance, dof = disagreement(before.shared, own)
     surprise = distance / float(chdtri(dof, SURPRISING)) if dof else float("nan")
@@ -173,11 +176,11 @@ def sentence(known: Knowledge, stop: bool) -> str:
     if known.percent >= 100.0:
         return f"CONTINUE: {_held_back(known)}."
     if np.isnan(known.surprise):
-        return "CONTINUE: sure enough; one more manoeuvre to check the prediction."
+        return "CONTINUE: one manoeuvre cannot show its own error; one more will, by its prediction."
     off = "" if np.isnan(known.missed_percent) else f" (off by {known.missed_percent:.0f} % of its peak)"
     return (
-        f"CONTINUE: sure enough, but the newest manoeuvre was not predicted{off}; one more shows which is "
-        "right."
+        f"CONTINUE: the newest manoeuvre was not predicted{off}, so one of them has a larger error than "
+        "stated; one more shows which."
     )
 
 

@@ -4,7 +4,7 @@ from collections.abc import Container, Mapping, Sequence
 from math import degrees, floor
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
-from advisor.decision.consistency import Outlier, outliers
+from advisor.decision.consistency import USUAL, Outlier, outliers
 from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.larger import Larger, larger_and_agreeing
@@ -28,7 +28,7 @@ def judge_campaign(
     all others. ``course`` caches results of earlier decisions, and changes no verdict.
     """
     course = course or CriterionCourse(plan)
-    contradicted = contradicting(history)
+    contradicted = contradicting(history, plan)
     by_rule = {rule: _results(history, rule, contradicted) for rule in MANEUVER_RULES}
     accepted = [result.accepted for result in by_rule[plan.rule]]
     verdicts = []
@@ -40,9 +40,11 @@ def judge_campaign(
     return tuple(verdicts)
 
 
-def results_of(history: Sequence[CandidateManeuver], rule: Rule) -> tuple[RuleResult, ...]:
+def results_of(
+    history: Sequence[CandidateManeuver], rule: Rule, plan: CampaignPlan = USUAL
+) -> tuple[RuleResult, ...]:
     """Return the result of one rule for every manoeuvre."""
-    return _results(history, rule, contradicting(history) if rule == "information" else ())
+    return _results(history, rule, contradicting(history, plan) if rule == "information" else ())
 
 
 def _results(
@@ -55,19 +57,21 @@ def _results(
     return tuple(RuleResult(r.accepted and i not in outliers, r.limit) for i, r in enumerate(results))
 
 
-def contradicting(history: Sequence[CandidateManeuver]) -> Mapping[int, Outlier]:
+def contradicting(history: Sequence[CandidateManeuver], plan: CampaignPlan) -> Mapping[int, Outlier]:
     """Return the usable manoeuvres that contradict all others, by index. The rule ``information`` excludes
     these manoeuvres."""
     usable = [(i, estimate) for i, flown in enumerate(history) if (estimate := flown.usable)]
-    found = outliers(posteriors_at_one_speed([estimate for _, estimate in usable]))
+    found = outliers(posteriors_at_one_speed([estimate for _, estimate in usable]), plan)
     return {usable[k][0]: outlier for k, outlier in found.items()}
 
 
-def accepted_estimates(history: Sequence[CandidateManeuver], rule: Rule) -> list[Estimate]:
+def accepted_estimates(
+    history: Sequence[CandidateManeuver], rule: Rule, plan: CampaignPlan = USUAL
+) -> list[Estimate]:
     """Return the estimates of the manoeuvres that a rule accepts, in the order flown."""
     return [
         estimate
-        for flown, result in zip(history, results_of(history, rule), strict=True)
+        for flown, result in zip(history, results_of(history, rule, plan), strict=True)
         if result.accepted and (estimate := flown.usable)
     ]
 

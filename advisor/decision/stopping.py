@@ -45,7 +45,7 @@ def warnings(
     if plan.rule == "information":
         found += _left_out(history, course)
     elif not chosen.holds:
-        found += _cannot_fall(accepted_estimates(history, plan.rule), plan)
+        found += _cannot_fall(accepted_estimates(history, plan.rule, plan), plan)
         found += _locked_out(history, course)
     return tuple(found)
 
@@ -81,7 +81,7 @@ def _cannot_fall(accepted: Sequence[Estimate], plan: CampaignPlan) -> list[str]:
 def _locked_out(history: Sequence[CandidateManeuver], course: CriterionCourse) -> list[str]:
     """Return a warning if several usable manoeuvres in a row are refused for their cost alone."""
     plan = course.plan
-    accepted = [result.accepted for result in results_of(history, plan.rule)]
+    accepted = [result.accepted for result in results_of(history, plan.rule, plan)]
     refused = 0
     for flown, good in zip(history, accepted, strict=True):
         if flown.usable is not None:
@@ -141,7 +141,7 @@ def flight_test(
         plan.rule, by_rule, said, lambda: next_input(history, crews, course), len(history),
         {i for i, flown in enumerate(history) if flown.usable},
     )  # fmt: skip
-    change = find_change(history)
+    change = find_change(history, plan)
     told = evidence(known) if known else ()
     return concluded(criterion, heard, change, warnings(history, chosen, change, course), told)
 
@@ -159,7 +159,7 @@ def progress(
     stopped_at = None
     taken: list[CandidateManeuver] = []
     value, sufficient = None, False
-    for number, (flown, ok) in enumerate(zip(history, _weighed(history, rule), strict=True), start=1):
+    for number, (flown, ok) in enumerate(zip(history, _weighed(history, rule, plan), strict=True), start=1):
         if ok:
             taken.append(flown)
             if rule == "information":
@@ -186,11 +186,11 @@ def progress(
     )
 
 
-def _weighed(history: Sequence[CandidateManeuver], rule: Rule) -> list[bool]:
+def _weighed(history: Sequence[CandidateManeuver], rule: Rule, plan: CampaignPlan) -> list[bool]:
     """Return whether each manoeuvre counts in a criterion; ``information`` uses all usable ones."""
     if rule == "information":
         return [flown.usable is not None for flown in history]
-    return [result.accepted for result in results_of(history, rule)]
+    return [result.accepted for result in results_of(history, rule, plan)]
 
 
 def _scatter(accepted: Sequence[Estimate], plan: CampaignPlan) -> float | None:
@@ -205,7 +205,7 @@ def _finite(value: float) -> float | None:
 def _scatter_sentence(
     history: Sequence[CandidateManeuver], plan: CampaignPlan, criterion: float | None, stop: bool
 ) -> str:
-    accepted = accepted_estimates(history, plan.rule)
+    accepted = accepted_estimates(history, plan.rule, plan)
     if criterion is None:
         return f"CONTINUE: {len(accepted)} of {plan.window} accepted manoeuvres."
     verb = "TEST COMPLETE" if stop else "CONTINUE"

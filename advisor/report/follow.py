@@ -72,11 +72,11 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
                 say(f"NO DATA: {problem}")
         case DataAgain():
             say("DATA AGAIN: what arrives can serve.")
-        case ManeuverJudged(judged, verdict, plan, "pitch"):
-            say(maneuver_line(judged))
-            _say_decision(verdict, plan, say)
-        case ManeuverJudged(judged, verdict, plan):
-            say(f"{maneuver_line(judged, SIDE_ROOM)}  (roll and yaw)")
+        case ManeuverJudged(judged, verdict, plan, axis, revised):
+            side = axis == "lateral"
+            say(f"{maneuver_line(judged, SIDE_ROOM)}  (roll and yaw)" if side else maneuver_line(judged))
+            for said in revised:
+                say(f"    CHANGED: {said}")
             _say_decision(verdict, plan, say)
 
 

@@ -45,7 +45,7 @@ def test_one_manoeuvre_is_never_enough_because_nothing_was_predicted() -> None:
     assert verdict.decision == "continue"
     assert verdict.criterion_percent is not None
     assert verdict.criterion_percent < 100.0
-    assert "one more manoeuvre to check the prediction" in verdict.sentence
+    assert "one manoeuvre cannot show its own error" in verdict.sentence
 
 
 def test_two_manoeuvres_that_agree_and_are_narrow_stop_the_test() -> None:

@@ -10,7 +10,7 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.single_maneuver import failed, untold
 from advisor.campaign.state import JudgedManeuver, LateralState
 from advisor.decision.axes.lateral import RESPONSES, judge_lateral
-from advisor.decision.axes.lateral_stop import FlownInput, lateral_flight_test
+from advisor.decision.axes.lateral_stop import JUDGED, FlownInput, lateral_flight_test
 from advisor.decision.change import find_change
 from advisor.decision.heard import Heard
 from advisor.decision.history import CandidateManeuver
@@ -46,7 +46,8 @@ class LateralCampaign(AxisCampaign):
         self._state: LateralState | None = None
         self._unknown: Problem | None = None
         self._joint: tuple[tuple[int, ...], LateralEstimate | None] | None = None
-        super().__init__("lateral", aircraft, replace(aircraft.campaign, rule="information"), parts)
+        plan = replace(aircraft.campaign, rule="information", parameters=tuple(JUDGED))
+        super().__init__("lateral", aircraft, plan, parts)
 
     def take(self, maneuver: Maneuver, by_hand: ByHand) -> JudgedManeuver:
         """Estimate and judge a manoeuvre that has just been flown, and decide again whether to stop."""
@@ -102,7 +103,12 @@ class LateralCampaign(AxisCampaign):
         return self._parts.make(
             "lateral, stop or continue",
             lambda: lateral_flight_test(
-                self._told, joint, self._aircraft, self._inputs, heard, find_change(self._examinations)
+                self._told,
+                joint,
+                self._aircraft,
+                self._inputs,
+                heard,
+                find_change(self._examinations, self._plan),
             ),
             lambda _: lateral_flight_test([], None, self._aircraft),
         )

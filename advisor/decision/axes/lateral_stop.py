@@ -106,7 +106,8 @@ def next_lateral(
         control,
     ).rounded(travel)
     gently = ", to begin gently" if before is None else ""
-    remedy = f"; {flown[-1].remedy}" if before is not None and flown[-1].remedy else ""
+    # A remedy belongs to the refused input, never to another control.
+    remedy = f"; {before.remedy}" if before is not None and before is flown[-1] and before.remedy else ""
     said = f"{wanted.spoken(travel)}{gently}, {_after(control, wanted.unit_s)}{remedy}"
     return NextInput(f"next: {said}", None, holding_back, wanted)
 
@@ -237,7 +238,8 @@ def _sentence(shares: Mapping[str, float], accepted: Sequence[LateralEstimate], 
     worst = max(shares, key=lambda name: shares[name])
     if shares[worst] < INFORMATION_LIMIT_PERCENT:
         once = _flown_fewer_than(CHECKED, accepted)
-        return f"CONTINUE: sure enough; one more input of the {' and the '.join(once)} to check the estimate."
+        which = " and of the ".join(once)
+        return f"CONTINUE: one input of the {which} cannot show its own error; one more will."
     said = f"{shares[worst]:.0f} % of its tolerance" if math.isfinite(shares[worst]) else "unknown"
     return f"CONTINUE: the error of {symbol(worst)} is {said}."
 
@@ -251,5 +253,17 @@ def _next(
     missing = _flown_fewer_than(1, accepted) or _flown_fewer_than(CHECKED, accepted)
     worst = max(shares, key=lambda name: shares[name])
     control = missing[0] if missing else JUDGED[worst]
-    percent = max(share for name, share in shares.items() if JUDGED[name] == control)
+    if flown and flown[-1].remedy and _is_open(flown[-1].control, shares, missing):
+        control = flown[-1].control
+    percent = _percent_of(control, shares)
     return next_lateral(control, percent, accepted, flown, aircraft, worst)
+
+
+def _percent_of(control: str, shares: Mapping[str, float]) -> float:
+    """Return the error of the worst derivative of a control, % of its tolerance."""
+    return max(share for name, share in shares.items() if JUDGED[name] == control)
+
+
+def _is_open(control: str, shares: Mapping[str, float], missing: Sequence[str]) -> bool:
+    """Return whether a further input of a control is needed."""
+    return control in missing or _percent_of(control, shares) >= INFORMATION_LIMIT_PERCENT

@@ -1,7 +1,7 @@
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.lateral_stop import lateral_flight_test
+from advisor.decision.axes.lateral_stop import FlownInput, lateral_flight_test
 from advisor.decision.heard import Heard
 from advisor.model.axes.lateral import LATERAL, Trim
 from advisor.oem.axes.lateral.estimate import LateralEstimate
@@ -37,7 +37,7 @@ def test_a_control_that_one_manoeuvre_moved_is_flown_once_more_to_check_the_esti
     both = told("aileron", "rudder")
     verdict = lateral_flight_test([told("aileron"), told("rudder"), told("aileron")], both, AIRCRAFT)
     assert verdict.decision == "continue"
-    assert verdict.sentence == "CONTINUE: sure enough; one more input of the rudder to check the estimate."
+    assert verdict.sentence == "CONTINUE: one input of the rudder cannot show its own error; one more will."
     assert verdict.next.advice.startswith("next: rudder doublet")
 
 
@@ -116,3 +116,28 @@ def test_refused_manoeuvres_lengthen_the_forecast():
 
 def test_nothing_is_foretold_before_both_controls_have_moved():
     assert lateral_flight_test([told("aileron")], told("aileron"), AIRCRAFT).next.remaining is None
+
+
+def test_after_a_refusal_the_advice_names_the_input_that_was_refused():
+    history = [told("aileron"), told("aileron"), told("rudder"), None]
+    flown = [
+        FlownInput("aileron", 0.1, 0.2),
+        FlownInput("aileron", 0.1, 0.2),
+        FlownInput("rudder", 0.1, 0.2),
+        FlownInput("aileron", 0.1, 0.2, "fly it again"),
+    ]
+    open_aileron = told("aileron", "rudder", percent=9.0)
+    advice = lateral_flight_test(history, open_aileron, AIRCRAFT, flown).next.advice
+    assert advice.startswith("next: aileron doublet")
+    assert advice.endswith("; fly it again")
+
+
+def test_a_remedy_for_a_complete_control_does_not_stand_beside_the_advice_on_the_other():
+    history = [told("aileron"), told("aileron"), told("rudder"), None]
+    flown = [
+        FlownInput("rudder", 0.1, 0.2),
+        FlownInput("aileron", 0.1, 0.2, "fly it again"),
+    ]
+    advice = lateral_flight_test(history, told("aileron", "rudder"), AIRCRAFT, flown).next.advice
+    assert advice.startswith("next: rudder doublet")
+    assert "again" not in advice
