@@ -1,6 +1,6 @@
 """Keys that are missing in an aircraft file, and the cost of each missing key."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from operator import attrgetter
 
@@ -8,6 +8,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.key import keys_of
 from advisor.aircraft_file.log_facts import LogFacts
 from advisor.flight.elevator.axes.lateral import SIDES
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.vehicle.surfaces import Surface
 
 KEYS = tuple(key for key in keys_of(Aircraft) if key.example)
@@ -127,6 +128,24 @@ def _beyond_calibration(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
                 "measure the deflection at the pulses that were flown",
                 wrong=True,
             )
+
+
+_OF_QUANTITY: Mapping[str, str] = {"sign": "calibration", "scale": "calibration", "unit": "source"}
+"""Key of the aircraft file that states a property of an instrument, by the property's name."""
+
+
+def contradicted(findings: Iterable[InstrumentFinding]) -> list[Lack]:
+    """Return the keys that the motion of a log contradicts, with the sentences of the analysis."""
+    return [
+        Lack(
+            f"{one.channel}.{_OF_QUANTITY.get(one.quantity, one.quantity)}",
+            f"{one.sentence}.",
+            one.fix or "see the sentence above",
+            wrong=True,
+        )
+        for one in findings
+        if one.contradicts
+    ]
 
 
 def known_keys(aircraft: Aircraft) -> list[str]:

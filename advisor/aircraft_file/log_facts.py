@@ -1,6 +1,6 @@
 """Facts of a log about its aircraft: outputs and their limits, air speed, pressure, angle of attack."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -68,6 +68,8 @@ class LogFacts:
     """Reason for which the outputs of aileron or rudder are unknown; None if they are known."""
     sides: Mapping[str, Surface] = field(default_factory=dict)
     """Outputs of aileron and rudder, by the control's name, if parameters or the aircraft file state them."""
+    side_guesses: Mapping[str, Guess] = field(default_factory=dict)
+    """Servo output that roll rate or yaw rate follows, by the control's name, if nothing states it."""
 
     @property
     def frame(self) -> str:
@@ -101,7 +103,7 @@ def facts_of(
     UnusableInputError
         The log holds no vehicle, or one that has no elevator by its kind.
     """
-    stream, parameters = FlightStream(aircraft, target_system), Parameters()
+    stream, parameters = FlightStream(aircraft, target_system, lateral=True, guesses_sides=True), Parameters()
     events: list[object] = []
     speeds: dict[int, list[FloatArray]] = {}
     pressures: dict[int, list[FloatArray]] = {}
@@ -142,7 +144,21 @@ def facts_of(
         maneuvers_m_s=tuple(_mean_speed(e.maneuver) for e in events if isinstance(e, ManeuverFlown)),
         sides_unknown=stream.sides_unknown,
         sides={name: surface for name, surface in sides.items() if surface is not None},
+        side_guesses=_free_guesses(stream, {name for name, one in sides.items() if one is not None}),
     )
+
+
+def _free_guesses(stream: FlightStream, stated: Collection[str]) -> dict[str, Guess]:
+    """Return the guesses of the controls that nothing states, without outputs of other controls."""
+    surface = stream.elevator
+    taken = set(surface.outputs) if isinstance(surface, Surface) else set()
+    taken |= {stream.guess.output} if stream.guess is not None else set()
+    guesses = {}
+    for name, guess in stream.side_guesses.items():
+        if name not in stated and guess.output not in taken:
+            guesses[name] = guess
+            taken.add(guess.output)
+    return guesses
 
 
 def _widen(ranges: dict[int, tuple[float, float]], part: Columns) -> None:

@@ -5,6 +5,8 @@ from statistics import median
 
 from advisor.aircraft_file.log_facts import LogFacts
 from advisor.aircraft_file.text import Draft
+from advisor.flight.elevator.axes.lateral import SIDES
+from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
 from advisor.flight.signals.true_airspeed import standard_density
 from advisor.flight.vehicle.surfaces import Scale, Surface, joined_numbers
@@ -18,8 +20,10 @@ def proposed(facts: LogFacts, log: str) -> Draft:
     """Return a draft of an aircraft file with the facts of a log."""
     draft = Draft(head=_head(facts, log))
     _elevator(facts, draft)
-    if facts.sides_unknown is not None:
+    if facts.sides_unknown is not None and len(facts.side_guesses) < len(SIDES) - len(facts.sides):
         draft.unsure.append(str(facts.sides_unknown))
+    for name, guess in facts.side_guesses.items():
+        _guessed(name, guess, facts, draft)
     for name, surface in facts.sides.items():
         _control(name, surface, facts, draft)
     _alpha(facts, draft)
@@ -86,11 +90,14 @@ def _unknown_elevator(facts: LogFacts, problem: Problem, draft: Draft) -> None:
         draft.comments["elevator.output"] = f"{problem.text} Usual: {facts.wiring.words.usual}."
         draft.unsure.append(f"The elevator is unknown: {problem.text} Write elevator.output by hand.")
         return
-    output = facts.guess.output
-    draft.values["elevator.output"] = output
-    draft.comments["elevator.output"] = f"GUESS, check: {facts.guess}"
-    _calibration(facts, output, draft)
-    draft.unsure.append(f"Check elevator.output: {facts.guess}.")
+    _guessed("elevator", facts.guess, facts, draft)
+
+
+def _guessed(name: str, guess: Guess, facts: LogFacts, draft: Draft) -> None:
+    draft.values[f"{name}.output"] = guess.output
+    draft.comments[f"{name}.output"] = f"GUESS, check: {guess}"
+    _calibration(facts, guess.output, draft, name)
+    draft.unsure.append(f"Check {name}.output: {guess}.")
 
 
 def _calibration(facts: LogFacts, output: int, draft: Draft, name: str = "elevator") -> None:

@@ -114,6 +114,8 @@ def check(file: Path, log: Path | None, target_system: int | None, as_json: bool
     aircraft = read_aircraft(file)
     facts = _facts(log, aircraft, target_system) if log else None
     lacks = lacks_of(aircraft, facts)
+    if log is not None:
+        lacks = (*_contradicted(log, aircraft, target_system), *lacks)
     if as_json:
         document = {"schema": SCHEMA, "usable": True, "problems": [], "name": aircraft.name}
         document |= {"given": known_keys(aircraft), "lacks": [asdict(lack) for lack in lacks]}
@@ -148,6 +150,19 @@ def _list(title: str, lacks: "list[Lack]") -> None:
         click.echo(f"  {lack.key}")
         click.echo(fill(lack.cost, 96, initial_indent="    ", subsequent_indent="    "))
         click.echo(f"    -> {lack.mend}.")
+
+
+def _contradicted(log: Path, aircraft: Aircraft, target_system: int | None) -> "list[Lack]":
+    """Return what the log's manoeuvres contradict, as ``advisor analyze`` says it."""
+    from advisor.aircraft_file.lacks import contradicted
+    from advisor.analysis.whole_flights import read_whole
+    from advisor.words.problems import UnusableInputError
+
+    try:
+        state = read_whole([log], aircraft, target_system, axis="both", untested=True).state
+    except UnusableInputError:
+        return []
+    return contradicted(state.instruments)
 
 
 def _facts(log: Path, aircraft: Aircraft, target_system: int | None) -> "LogFacts":

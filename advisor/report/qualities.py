@@ -48,18 +48,18 @@ def coefficients_of(state: CampaignState, reference: Reference) -> Mapping[str, 
     return {} if state.model is None else coefficients(state.model, reference, _air(state, reference))
 
 
-def _air(state: CampaignState, reference: Reference) -> AirData:
+def _air(state: CampaignState | LateralState, reference: Reference) -> AirData:
     joined = set(state.estimate_from)
     flown = [j.maneuver for j in state.maneuvers if j.maneuver.number in joined]
     return air_flown(flown, reference.air_temperature_c)
 
 
-def reference_speed(state: CampaignState) -> str:
-    """Return the speed of the derivatives for a heading, with its kind; empty without a speed."""
+def reference_speed(state: CampaignState | LateralState) -> str:
+    """Return the speed of an axis's derivatives for a heading, with its kind; empty without a speed."""
     if state.model is None or state.model.airspeed_m_s is None:
         return ""
-    kind = " true" if _air(state, Reference()).speed_kind == "true" else ""
-    return f" at {state.model.airspeed_m_s:.1f} m/s{kind}"
+    kind = "true" if _air(state, Reference()).speed_kind == "true" else "as logged"
+    return f" at {state.model.airspeed_m_s:.1f} m/s {kind}"
 
 
 def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:

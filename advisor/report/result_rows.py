@@ -34,8 +34,7 @@ def joint_table(
     if isinstance(state, CampaignState):
         return joint_of(name, reference_speed(state), [of_all(one, state, prior) for one in PARAMETERS])
     rows = [of_all(one, state, prior) for one in SIDE_PARAMETERS]
-    at = f" at {state.model.airspeed_m_s:.1f} m/s"
-    return joint_of(name, at, rows, " L and N hold the products of inertia.")
+    return joint_of(name, reference_speed(state), rows, " L and N hold the products of inertia.")
 
 
 def joint_of(name: str, at: str, rows: Sequence[EstimatedParameter], more: str = "") -> Table:

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft_file.lacks import KEYS
+from advisor.aircraft_file.lacks import KEYS, contradicted
 from advisor.aircraft_file.read import parse_aircraft
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from tests.conftest import Advisor
 from tests.schemas import breaches
 
@@ -93,3 +94,21 @@ def test_the_servos_of_aileron_and_rudder_are_missing_where_the_log_has_these_su
     assert {"aileron.lag_s", "rudder.calibration"} <= lacking.keys()
     given = "aileron: {output: 1, calibration: [[1000, 25], [2000, -25]], lag_s: 0.1}"
     assert "aileron.lag_s" not in _lacking(advisor, tmp_path, given)
+
+
+def test_what_the_motion_of_a_log_contradicts_is_said_as_the_analysis_says_it() -> None:
+    reversed_one = InstrumentFinding(
+        "aileron", "sign", None, "right", contradicts=True,
+        text="no aileron.calibration states the sign of the aileron: a positive one rolls to the right",
+        fix="give aileron.calibration with positive to the left",
+    )  # fmt: skip
+    agreeing = InstrumentFinding("rudder", "sign", "left", "left", text="a positive one yaws to the left")
+    (lack,) = contradicted([reversed_one, agreeing])
+    assert (lack.key, lack.mend, lack.wrong) == ("aileron.calibration", reversed_one.fix, True)
+    assert lack.cost == f"{reversed_one.sentence}."
+
+
+def test_a_reversed_elevator_is_found_in_its_log(advisor: Advisor, tmp_path: Path) -> None:
+    text = "elevator: {output: 2, calibration: [[1100, -25], [1500, 0], [1900, 25]]}\n"
+    lacking = _lacking(advisor, tmp_path, text, "--log", LOG)
+    assert lacking["elevator.calibration"]

@@ -1,6 +1,6 @@
-"""Guess of the elevator's servo output without a parameter: the output that the pitch rate responds to."""
+"""Guess of a control's servo output without a parameter: the output that the control's rate responds to."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,20 +32,26 @@ _MEMORY = 2
 order."""
 
 
+_SIDE_RATES: Mapping[str, tuple[str, str]] = {"aileron": ("p", "roll rate"), "rudder": ("r", "yaw rate")}
+"""Channel and name of the rate that responds to a control of roll and yaw."""
+
+
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """Servo output that may be the elevator, with its shares of the pitch rate's error."""
+    """Servo output that may be a control's, with its shares of the error of the control's rate."""
 
     output: int
     share: float
-    """Share of the pitch rate's one-step prediction error that the output explains."""
+    """Share of the rate's one-step prediction error that the output explains."""
     next_share: float
     """Largest share of that error that any other output explains."""
+    rate: str = "pitch rate"
+    """Name of the rate that responds to the control."""
 
     def __str__(self) -> str:
         return (
             f"output {self.output} is a guess: it explains {100.0 * self.share:.0f} % of what moves the "
-            f"pitch rate, the next output {100.0 * self.next_share:.0f} %"
+            f"{self.rate}, the next output {100.0 * self.next_share:.0f} %"
         )
 
 
@@ -69,8 +75,8 @@ class ElevatorGuess:
             kept = self._t > self._t[-1] - 2.0 * KEEP_S
             self._t, self._pulses = self._t[kept], self._pulses[kept]
 
-    def made(self, q: Channel | None) -> Guess | None:
-        """Return the guessed output from one stretch of pitch rate and outputs; None if no guess is good
+    def made(self, q: Channel | None, named: str = "pitch rate") -> Guess | None:
+        """Return the guessed output from one stretch of a rate and the outputs; None if no guess is good
         enough."""
         if q is None or len(q) < 2:
             return None
@@ -88,13 +94,22 @@ class ElevatorGuess:
         best, following = (int(i) for i in np.argsort(shares)[::-1][:2])
         if shares[best] < LEAST_SHARE or shares[best] < LEAST_LEAD * shares[following]:
             return None
-        return Guess(best + 1, float(shares[best]), float(shares[following]))
+        return Guess(best + 1, float(shares[best]), float(shares[following]), named)
 
 
 class ElevatorGuesses:
-    """Series of guesses at fixed vehicle times, independent of the batches of messages."""
+    """Series of guesses at fixed vehicle times, independent of the batches of messages.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    sides
+        Whether aileron and rudder are guessed as well.
+    """
+
+    def __init__(self, sides: bool = False) -> None:
+        self.guesses_sides = sides
+        self.sides: dict[str, Guess] = {}
+        """Surest guess of the aileron's and of the rudder's output."""
         self.newest: Guess | None = None
         """Newest guess of the elevator's output. The guess is kept over a power-on, because the wiring does
         not change."""
@@ -129,7 +144,16 @@ class ElevatorGuesses:
             if guess is not None and (self.newest is None or guess.output != self.newest.output):
                 events.append(Notice("elevator_guess", f"Nothing says which is the elevator; {guess}."))
             self.newest = guess or self.newest
+            if self.guesses_sides:
+                self._guess_sides(cut, at_s)
         return events
+
+    def _guess_sides(self, cut: Callable[[str, float, float], Channel | None], at_s: float) -> None:
+        for name, (channel, rate) in _SIDE_RATES.items():
+            guess = self._outputs.made(cut(channel, at_s - KEEP_S, at_s - LATE_S), rate)
+            known = self.sides.get(name)
+            if guess is not None and (known is None or guess.share > known.share):
+                self.sides[name] = guess
 
 
 def _share(rate: FloatArray, moved: FloatArray) -> float:

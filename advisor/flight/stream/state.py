@@ -51,6 +51,7 @@ class StreamState:
         *,
         keep_all: bool = False,
         lateral: bool = False,
+        guesses_sides: bool = False,
     ) -> None:
         self._aircraft = aircraft
         self._asked = AskedSources(aircraft)
@@ -82,7 +83,7 @@ class StreamState:
         self._over = False
         self.boot = 0
         """Number of the present power-on, 0 for the first in the stream."""
-        self._guesses = ElevatorGuesses()
+        self._guesses = ElevatorGuesses(guesses_sides)
         self._instruments = InstrumentWatch(self.tracks.cut)
         self._start_boot()
         self.seen: set[str] = set()
@@ -205,6 +206,11 @@ class StreamState:
     def guess(self) -> Guess | None:
         """Guess of the elevator's output, while no parameter states it."""
         return None if self.vehicle is not None and self.vehicle.is_multicopter else self._guesses.newest
+
+    @property
+    def side_guesses(self) -> Mapping[str, Guess]:
+        """Guesses of the aileron's and the rudder's output; empty unless they were asked for."""
+        return self._guesses.sides
 
     def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
         """Return the problems of a stream with these channels, whatever manoeuvres were flown."""

@@ -42,6 +42,8 @@ class FlightStream(StreamState):
     keep_all
         Whether every sample is kept, for ``power_ons``. With all samples, the memory grows with the length of
         the flight.
+    guesses_sides
+        Whether the outputs of aileron and rudder are guessed, for a new aircraft file.
     """
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
@@ -196,7 +198,7 @@ class FlightStream(StreamState):
                 bring = promised(columns, self._aircraft.airspeed_m_s)
                 self.service.take("alpha", DERIVED_ALPHA, arrivals(columns, bring))
             if columns.name in _OUTPUTS:
-                if isinstance(self.elevator, Problem):
+                if self._guesses.guesses_sides or isinstance(self.elevator, Problem):
                     self._guesses.hear(columns, t)
                 missed += self._take_outputs(columns, t, vehicle.autopilot, elevator, side)
         self._set_clock(part, orders, clock)
@@ -205,9 +207,11 @@ class FlightStream(StreamState):
             followed += self._side.feed(side)
         if self._cutting.pitch.counted == self._flown_before:
             self._instruments.advance(self._first_s, self._master_s)
-        if not isinstance(self.elevator, Problem) or not np.isfinite(self._master_s):
+        guesses = self._guesses.guesses_sides or isinstance(self.elevator, Problem)
+        if not guesses or not np.isfinite(self._master_s):
             return followed
-        return [*followed, *self._guesses.advance(self._first_s, self._master_s, self.tracks.cut)]
+        guessed = self._guesses.advance(self._first_s, self._master_s, self.tracks.cut)
+        return [*followed, *(guessed if isinstance(self.elevator, Problem) else ())]
 
 
 def _missed(gap: tuple[float, float]) -> Notice:

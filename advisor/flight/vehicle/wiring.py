@@ -12,7 +12,8 @@ Names = tuple[str, str, str]
 """Names of the parameters of the pulses at one full deflection, at zero, and at the other full deflection."""
 
 
-_RECORD = "Record the vehicle's parameters, or give elevator.calibration."
+_GIVE = "give the output a calibration in the aircraft file"
+_RECORD = f"Record the vehicle's parameters, or {_GIVE}."
 
 
 def limits(names: Names, stated: Mapping[str, float], usual: Scale) -> tuple[Scale, Problem | None]:
@@ -24,7 +25,7 @@ def limits(names: Names, stated: Mapping[str, float], usual: Scale) -> tuple[Sca
         return usual, Problem(
             "servo_limits",
             f"{wrong}; {assumed} are assumed.",
-            f"Set {names[0]}, {names[1]} and {names[2]} to rising pulses, or give elevator.calibration.",
+            f"Set {names[0]}, {names[1]} and {names[2]} to rising pulses, or {_GIVE}.",
         )
     scale = _completed(known, usual)
     absent = [

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft_file.log_facts import facts_of
+from advisor.aircraft_file.proposal import proposed
 from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.following import TAKE
@@ -88,3 +90,31 @@ def test_an_output_that_a_hand_took_before_any_vehicle_was_heard_is_not_taken():
     assert stream.feed(early.columns(range(len(early)))) == []
     events = [*stream.feed(flight.columns(range(len(flight)))), *stream.finish()]
     assert not any(isinstance(e, ManeuverFlown) for e in events)
+
+
+def side_flight():
+    """Doublets of outputs 1 and 4 in turn, which roll and yaw the aircraft; no parameter."""
+    wire, dice, p, r = Wire(), np.random.default_rng(5), 0.0, 0.0
+    heartbeat(wire, START_S)
+    for k in range(60 * 50):
+        t = k / 50
+        pulses = {n: 1500 + round(20 * dice.standard_normal()) for n in (2, 3)}
+        rolls, yaws = pull(t % 20.0 - 4.0), pull(t % 20.0 - 14.0)
+        p, r = p + 0.02 * (3.0 * rolls - 4.0 * p), r + 0.02 * (1.0 * yaws - 1.0 * r)
+        wire.send(
+            "ATTITUDE", START_S + t, time_boot_ms=round((50.0 + t) * 1000), roll=0.0, pitch=0.05, yaw=0.0,
+            rollspeed=p + 0.001 * dice.standard_normal(), pitchspeed=0.001 * dice.standard_normal(),
+            yawspeed=r + 0.001 * dice.standard_normal(),
+        )  # fmt: skip
+        servo(wire, START_S + t + 2e-4, 50.0 + t, {**pulses, 1: 1500 + 40 * rolls, 4: 1500 + 40 * yaws})
+        hud(wire, START_S + t + 3e-4)
+    return wire
+
+
+def test_aileron_and_rudder_are_guessed_from_roll_rate_and_yaw_rate_for_a_new_file():
+    facts = facts_of([side_flight().columns()], Aircraft())
+    assert {name: guess.output for name, guess in facts.side_guesses.items()} == {"aileron": 1, "rudder": 4}
+    assert "of what moves the roll rate" in str(facts.side_guesses["aileron"])
+    draft = proposed(facts, "a.tlog")
+    assert (draft.values["aileron.output"], draft.values["rudder.output"]) == (1, 4)
+    assert any(said.startswith("Check rudder.output: output 4 is a guess") for said in draft.unsure)
