@@ -32,6 +32,7 @@ COMMANDS = {
     "simulator": "Check your own simulator: signs, units, trim, and what it answers.",
     "export": "Write channels, manoeuvres, estimates and residuals for other tools.",
     "batch": "Analyze many logs: one table of flights, one of manoeuvres, changes over time.",
+    "expect": "Test a flight: compare a log with a file of expectations, for continuous integration.",
     "report": "Write one self-contained page about a flight, for people who were not there.",
     "doctor": "Check before a flight whether the telemetry is good enough; say what to change.",
     "study": "Repeat the paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",

@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from advisor.campaign.hand_decisions import ByHand
     from advisor.flight.maneuvers.marks import Mark
 
-USAGE, UNUSABLE, INTERNAL = 2, 3, 70
-"""Exit codes: wrong usage or configuration; unusable input; a fault of the advisor itself."""
+UNMET, USAGE, UNUSABLE, INTERNAL = 1, 2, 3, 70
+"""Exit codes: an expectation that does not hold; wrong usage or configuration; unusable input; a fault of the
+advisor itself."""
 NEWEST = "the newest"
 """Value of ``--resume`` without a recording."""
 RULES = ("continuous", "separate", "information")

@@ -1,0 +1,143 @@
+"""Expectations against a flight: for each one what is asked, what the flight shows, and whether it holds."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import isfinite
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.expectations.expected import MODES, Expectations, Near
+from advisor.expectations.flown import Flown, Measured
+from advisor.expectations.modes import mode_of
+from advisor.words.digits import decimals_for, signed, with_half
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import PARAMETERS, SIDE_PARAMETERS
+
+UNITS = {**{name: one.unit for name, one in {**PARAMETERS, **SIDE_PARAMETERS}.items()}, **MODES}
+UNITS |= {"Z_0": "rad/s", "M_0": "rad/s²"}
+"""SI unit of each derivative and mode, by its key in the file."""
+_ORIGINS = {"number": "", "model": " (model)", "log": " (log)"}
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """One expectation, and what a flight shows of it."""
+
+    name: str
+    """Path of the expectation in its file: ``derivatives.M_alpha``."""
+    asked: str
+    """Expectation in words, with its limit."""
+    found: str
+    """Result of the flight in words; without a result, the reason."""
+    holds: bool
+
+
+def check(
+    expected: Expectations, flown: Flown, aircraft: Aircraft, other: Flown | None = None
+) -> list[Outcome]:
+    """Return the outcome of every expectation, in the order of the file's sections.
+
+    Parameters
+    ----------
+    aircraft
+        Aircraft whose model states the values of ``of: model``.
+    other
+        What the log shows that states the values of ``of: log``; None without such a log.
+    """
+    return [
+        *_counts(expected, flown),
+        *_numbers("derivatives", expected, flown, aircraft, other),
+        *_numbers("modes", expected, flown, aircraft, other),
+        *_levels(expected, flown),
+        *_gaps(expected, flown),
+        *_pauses(expected, flown),
+        *_alarms(expected, flown),
+    ]
+
+
+def _counts(expected: Expectations, flown: Flown) -> Iterator[Outcome]:
+    for axis, least in expected.accepted.items():
+        count = flown.accepted.get(axis, 0)
+        yield Outcome(f"accepted.{axis}", f"at least {least}", str(count), count >= least)
+    for axis, latest in expected.complete.items():
+        test = flown.tests.get(axis)
+        at = test.stopped_at if test is not None and test.decision == "stop" else None
+        found = "not complete" if at is None else f"manoeuvre {at}"
+        yield Outcome(f"complete.{axis}", f"by manoeuvre {latest}", found, at is not None and at <= latest)
+
+
+def _numbers(
+    section: str, expected: Expectations, flown: Flown, aircraft: Aircraft, other: Flown | None
+) -> Iterator[Outcome]:
+    nears, shown = getattr(expected, section), getattr(flown, section)
+    for name, near in nears.items():
+        measured = shown.get(name, Measured(reason="roll and yaw were not flown"))
+        against = _expected_value(section, name, near, flown, aircraft, other)
+        yield _near(f"{section}.{name}", near, against, measured, UNITS[name].removesuffix("1"))
+
+
+def _expected_value(
+    section: str, name: str, near: Near, flown: Flown, aircraft: Aircraft, other: Flown | None
+) -> Measured:
+    if near.origin == "log":
+        shown: Mapping[str, Measured] = getattr(other, section)
+        return shown.get(name, Measured(reason="roll and yaw were not flown"))
+    value = near.value
+    if near.origin == "model":
+        of_mode = section == "modes"
+        value = mode_of(aircraft.model, name, flown.trim) if of_mode else aircraft.model[name]
+        if value is None:
+            return Measured(reason="the file's model does not have this mode")
+    return Measured() if value is None else Measured(value)
+
+
+def _near(path: str, near: Near, against: Measured, measured: Measured, unit: str) -> Outcome:
+    """Return whether a measured number lies within its tolerance, and is known well enough."""
+    asked, holds = [], not measured.reason and not against.reason
+    half = NORMAL_95 * measured.std
+    allowed = near.tolerance(against.value)
+    if against.reason:
+        asked.append(f"that of the {near.origin}: {against.reason}")
+    elif allowed is not None:
+        decimals = decimals_for(allowed)
+        limit, value = signed(allowed, decimals), signed(against.value, decimals)
+        asked.append(f"within {limit} of {value}{_ORIGINS[near.origin]}")
+        holds = holds and abs(measured.value - against.value) <= allowed
+    if near.known_to is not None:
+        asked.append(f"known to ± {near.known_to:g}")
+        holds = holds and half <= near.known_to
+    found = with_half(measured.value, half) if isfinite(half) else signed(measured.value, 3)
+    return Outcome(path, ", ".join(asked), measured.reason or f"{found} {unit}".rstrip(), holds)
+
+
+def _levels(expected: Expectations, flown: Flown) -> Iterator[Outcome]:
+    for axis, worst in expected.levels.items():
+        levels = {one.category: one for one in flown.levels.get(axis, ())}
+        for category, allowed in worst.items():
+            level = levels.get(category)
+            asked = "Level 1" if allowed == 1 else f"Level {allowed} or better"
+            found = "none: the flight does not show the modes" if level is None else level.sentence
+            found = found.removeprefix(f"Category {category}: ")
+            holds = level is not None and level.level <= allowed
+            yield Outcome(f"levels.{axis}.{category}", asked, found, holds)
+
+
+def _gaps(expected: Expectations, flown: Flown) -> Iterator[Outcome]:
+    for axis, largest in expected.gap.items():
+        gap = flown.gap.get(axis, Measured(reason="not diagnosed"))
+        found = gap.reason or f"{gap.value:.3g}"
+        yield Outcome(f"gap.{axis}", f"at most {largest:g}", found, gap.value <= largest)
+
+
+def _pauses(expected: Expectations, flown: Flown) -> Iterator[Outcome]:
+    for channel, longest in expected.longest_pause_s.items():
+        pause = flown.pauses_s.get(channel)
+        found = "not in this log" if pause is None else f"{pause:.3g} s"
+        holds = pause is not None and pause <= longest
+        yield Outcome(f"longest_pause_s.{channel}", f"at most {longest:g} s", found, holds)
+
+
+def _alarms(expected: Expectations, flown: Flown) -> Iterator[Outcome]:
+    if expected.alarms is not None:
+        count, most = len(flown.alarms), expected.alarms
+        found = "none" if not count else f"{count}: {'; '.join(flown.alarms)}"
+        yield Outcome("alarms", f"at most {most}" if most else "none", found, count <= most)

@@ -1,0 +1,78 @@
+"""First expectations file from a flight. Its tolerances are those within which a second flight lies."""
+
+from collections.abc import Iterator, Mapping
+from math import isfinite, sqrt
+from typing import Any
+
+from scipy.special import ndtri
+
+from advisor.expectations.check import UNITS
+from advisor.expectations.flown import Flown, Measured
+from advisor.words.digits import decimals_for
+from advisor.words.printable import printable
+
+_ALL_HOLD = 0.95
+"""Probability with which every number of a second flight of the same aircraft lies within its tolerance."""
+_OF_TRIM = ("Z_0", "M_0")
+"""Parameters of the trim, which another flight at another speed or weight does not repeat."""
+_WORST_ASKED = 3
+"""Worst level that a file can ask for."""
+
+
+def draft(flown: Flown, log: str) -> str:
+    """Return the text of an expectations file that the flight fulfils.
+
+    A tolerance is z·√2·σ: the difference of two flights has √2 times the standard deviation σ of one. With n
+    numbers, z is the normal quantile at which all n differences lie within their tolerances in 95 % of the
+    second flights.
+    """
+    known = {
+        section: {
+            name: one
+            for name, one in getattr(flown, section).items()
+            if isfinite(one.std) and name not in _OF_TRIM
+        }
+        for section in ("derivatives", "modes")
+    }
+    count = sum(map(len, known.values()))
+    z = sqrt(2.0) * float(ndtri(0.5 + 0.5 * _ALL_HOLD ** (1.0 / max(count, 1))))
+    return "\n".join([*_counts(flown, log), *_numbers(known, z), *_rest(flown), ""])
+
+
+def _counts(flown: Flown, log: str) -> Iterator[str]:
+    yield f"# Expectations from {printable(log)}. To check another flight, type: advisor expect LOG THIS-FILE"
+    yield "# Units are SI, angles rad. `of` takes a number, model (aircraft file) or log (of the key log)."
+    accepted = {axis: count for axis, count in flown.accepted.items() if count}
+    if accepted:
+        yield f"accepted: {_inline(accepted)}  # manoeuvres, at least"
+    complete = {a: t.stopped_at for a, t in flown.tests.items() if t.decision == "stop" and t.stopped_at}
+    if complete:
+        yield f"complete: {_inline(complete)}  # by this manoeuvre"
+
+
+def _numbers(known: Mapping[str, Mapping[str, Measured]], z: float) -> Iterator[str]:
+    for section, numbers in known.items():
+        if numbers:
+            share = f"{100.0 * _ALL_HOLD:.0f} %"
+            yield f"{section}:  # within: in {share} of second flights every number holds"
+        for name, one in numbers.items():
+            within = z * one.std
+            decimals = decimals_for(within)
+            # Rounded up, so that the flight itself never fails by the rounding.
+            text = f"{{of: {one.value:.{decimals}f}, within: {within + 10.0**-decimals:.{decimals}f}}}"
+            yield f"  {name}: {text}" + (f"  # {UNITS[name]}" if UNITS[name] else "")
+
+
+def _rest(flown: Flown) -> Iterator[str]:
+    levels = {
+        axis: {one.category: one.level for one in found if one.level <= _WORST_ASKED}
+        for axis, found in flown.levels.items()
+    }
+    if any(levels.values()):
+        yield "levels:  # of MIL-F-8785C, by category of flight phases: this one or better"
+        yield from (f"  {axis}: {_inline(one)}" for axis, one in levels.items() if one)
+    yield f"alarms: {len(flown.alarms)}  # at most"
+
+
+def _inline(values: Mapping[Any, object]) -> str:
+    return "{" + ", ".join(f"{key}: {value}" for key, value in values.items()) + "}"

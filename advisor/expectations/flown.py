@@ -1,0 +1,171 @@
+"""Results of a flight, as far as an expectations file can ask for them, from the analysis of its log."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from math import nan
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
+from advisor.analysis.axes.lateral import compare_side_flown
+from advisor.analysis.gap import compare_logs, named_simulator
+from advisor.analysis.whole_flights import WholeFlights
+from advisor.campaign.state import AxisName, CampaignState, LateralState
+from advisor.decision.axes.lateral_requirements import GROUPS
+from advisor.decision.verdict import FlightTestVerdict
+from advisor.expectations.expected import MODES
+from advisor.gap.result import Gap
+from advisor.model.axes.lateral import Trim
+from advisor.model.mil_f_8785c import LevelFound
+from advisor.oem.estimate import Estimate
+from advisor.oem.flying_qualities import Quality
+from advisor.report.qualities import levels_of, qualities_of, trim_of
+from advisor.simulators.flying import Progress
+from advisor.words.problems import UnusableInputError
+
+_SHORT_PERIOD = {"short_period_omega": "natural_frequency", "short_period_zeta": "damping"}
+"""Name of a flying quality of pitch, by the key of the mode in the file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """One number of a flight, SI, or the reason why the flight does not show the number."""
+
+    value: float = nan
+    std: float = nan
+    """Standard deviation, SI; NaN for a number without an error."""
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Flown:
+    """Results of one flight, by the keys of an expectations file."""
+
+    accepted: Mapping[AxisName, int]
+    """Number of accepted manoeuvres."""
+    tests: Mapping[AxisName, FlightTestVerdict]
+    """Verdict on the flight test."""
+    derivatives: Mapping[str, Measured]
+    modes: Mapping[str, Measured]
+    levels: Mapping[AxisName, tuple[LevelFound, ...]]
+    """Levels of flying qualities; those of roll and yaw are of light aircraft."""
+    pauses_s: Mapping[str, float]
+    """Longest pause between two samples, s, by channel."""
+    alarms: tuple[str, ...]
+    """Warnings of the flight test, contradicted instruments, and parts of the analysis that failed."""
+    gap: Mapping[AxisName, Measured] = field(default_factory=dict)
+    """Gap of the simulator as given. Empty unless the gap was diagnosed."""
+    trim: Trim | None = None
+    """Steady flight of the lateral manoeuvres; None without an estimate."""
+
+
+def flown_of(flights: WholeFlights, aircraft: Aircraft, gap: Mapping[AxisName, Measured]) -> Flown:
+    """Return the results of the flight of one log."""
+    state, side = flights.state, flights.state.lateral
+    tests: dict[AxisName, FlightTestVerdict] = {"pitch": state.flight_test}
+    accepted: dict[AxisName, int] = {"pitch": _accepted(state)}
+    qualities = qualities_of(state, aircraft.reference)
+    levels: dict[AxisName, tuple[LevelFound, ...]] = {"pitch": qualities.levels if qualities else ()}
+    derivatives = _derivatives(state.model, PARAMETERS, "no manoeuvre of the elevator is accepted")
+    modes = dict(_modes(state, aircraft))
+    trim = None
+    if side is not None:
+        tests["lateral"], accepted["lateral"] = side.flight_test, _accepted(side)
+        light = next(iter(GROUPS))
+        levels["lateral"] = tuple(one.governing for one in levels_of(side) if one.group == light)
+        none = "no manoeuvre of the aileron or the rudder is accepted"
+        derivatives |= _derivatives(side.model, SIDE_PARAMETERS, none)
+        if side.model is not None:
+            joined = [one.maneuver for one in side.maneuvers if one.maneuver.number in side.estimate_from]
+            trim = trim_of(joined, side.model.airspeed_m_s or nan)
+    heard = {name: one for flight in state.flights for name, one in flight.channels.items()}
+    return Flown(
+        accepted=accepted,
+        tests=tests,
+        derivatives=derivatives,
+        modes=modes,
+        levels=levels,
+        pauses_s={name: one.largest_gap_s for name, one in heard.items()},
+        alarms=tuple(_alarms(state)),
+        gap=gap,
+        trim=trim,
+    )
+
+
+def _accepted(state: CampaignState | LateralState) -> int:
+    return sum(one.verdict.accepted for one in state.maneuvers)
+
+
+def _derivatives(model: Estimate | None, names: tuple[str, ...], none: str) -> dict[str, Measured]:
+    if model is None:
+        return {name: Measured(reason=none) for name in names}
+    numbers = zip(model.names, model.theta.tolist(), model.std.tolist(), strict=True)
+    return {
+        name: Measured(reason=model.not_identifiable[name])
+        if name in model.not_identifiable
+        else Measured(value, std)
+        for name, value, std in numbers
+    }
+
+
+def _modes(state: CampaignState, aircraft: Aircraft) -> Iterator[tuple[str, Measured]]:
+    pitch = qualities_of(state, aircraft.reference)
+    side = (
+        state.lateral.model.modes if state.lateral is not None and state.lateral.model is not None else None
+    )
+    for key in MODES:
+        if key in _SHORT_PERIOD:
+            name = _SHORT_PERIOD[key]
+            quality = pitch.qualities.get(name) if pitch else None
+            reason = pitch.left_out.get(name, "") if pitch else "no manoeuvre of the elevator is accepted"
+        else:
+            quality = getattr(side, key, None)
+            mode = next((mode for mode in side.left_out if key.startswith(mode)), "") if side else ""
+            reason = "no manoeuvre of the aileron or the rudder is accepted"
+            reason = side.left_out.get(mode, "the flight does not show this mode") if side else reason
+        yield key, _measured(quality, reason)
+
+
+def _measured(quality: Quality | None, reason: str) -> Measured:
+    return Measured(reason=reason) if quality is None else Measured(quality.value, quality.std)
+
+
+def _alarms(state: CampaignState) -> Iterator[str]:
+    tests = [state.flight_test, *([state.lateral.flight_test] if state.lateral else [])]
+    yield from (warning for test in tests for warning in test.warnings)
+    yield from (one.text for one in state.instruments if one.contradicts)
+    yield from (one.sentence for one in state.failed)
+
+
+def gap_of(
+    axis: AxisName, flights: WholeFlights, aircraft: Aircraft, target_system: int | None, progress: Progress
+) -> Measured:
+    """Return the gap of the aircraft file's simulator on one axis, or the reason why there is none.
+
+    Raises
+    ------
+    ConfigurationError
+        The file's simulator cannot be built.
+    """
+    try:
+        if axis == "lateral":
+            side = compare_side_flown(flights.state, aircraft, progress=progress).gap.diagnosis
+            gap = None if side is None else side.gap
+        else:
+            gap = _pitch_gap(flights, aircraft, target_system, progress)
+    except UnusableInputError as error:
+        return Measured(reason=str(error))
+    return Measured(reason="the manoeuvres show no gap") if gap is None else Measured(gap.before)
+
+
+def _pitch_gap(
+    flights: WholeFlights, aircraft: Aircraft, target_system: int | None, progress: Progress
+) -> Gap:
+    simulator = named_simulator(aircraft, target_system)
+    try:
+        decided = [flights.by_hand.on_flight(flight) for flight in range(len(flights.logs))]
+        return compare_logs(
+            flights.logs, aircraft, simulator, None, target_system, progress, decided
+        ).diagnosis.gap
+    finally:
+        if simulator is not None:
+            simulator.close()

@@ -1,0 +1,69 @@
+"""Fly the inputs of inflight.lua in ArduPlane: python fly_script.py INPUTS FLIGHT.tlog.
+
+ArduPlane runs in software in the loop on tcp port 5760 and has the script in its folder `scripts`.
+"""
+
+import struct
+import sys
+import time
+
+from pymavlink import mavutil
+
+RATES = {"ATTITUDE": 50, "AOA_SSA": 50, "RAW_IMU": 50, "SERVO_OUTPUT_RAW": 50, "VFR_HUD": 50}
+UP_M, SWITCH = 100.0, 7
+link = mavutil.mavlink_connection("tcp:127.0.0.1:5760", source_system=255, dialect="ardupilotmega")
+heard = {"text": "", "height_m": 0.0, "boot_s": 0.0}
+
+
+def listen(log, until, limit_s, pulses=None):
+    """Write all messages to the log until a condition holds; hold RC pulses, and fail after limit_s."""
+    ends = heard["boot_s"] + limit_s
+    sent_s = 0.0
+    while not until():
+        message = link.recv_match(blocking=True, timeout=10)
+        if message is None or heard["boot_s"] > ends:
+            sys.exit(f"waited for more than {limit_s} s; the last text was: {heard['text']}")
+        log.write(struct.pack(">Q", int(time.time() * 1e6)) + message.get_msgbuf())
+        kind = message.get_type()
+        if kind == "STATUSTEXT":
+            heard["text"] = message.text
+        elif kind == "GLOBAL_POSITION_INT":
+            heard["height_m"] = message.relative_alt / 1000.0
+        elif kind == "ATTITUDE":
+            heard["boot_s"] = message.time_boot_ms / 1000.0
+            if pulses and abs(heard["boot_s"] - sent_s) > 0.1:
+                sent_s = heard["boot_s"]
+                link.mav.rc_channels_override_send(1, 1, *pulses)
+
+
+def after(seconds):
+    """Return a condition that holds after a time."""
+    ends = heard["boot_s"] + seconds
+    return lambda: heard["boot_s"] >= ends
+
+
+def sticks(switch_us):
+    """Return neutral sticks, cruise throttle, and the switch of the script."""
+    pulses = [1500, 1500, 1500, 1500, 0, 0, 0, 1800]
+    pulses[SWITCH - 1] = switch_us
+    return pulses
+
+
+with open(sys.argv[2], "wb") as log:
+    link.wait_heartbeat(timeout=60)
+    for name, rate_hz in RATES.items():
+        number = getattr(mavutil.mavlink, f"MAVLINK_MSG_ID_{name}")
+        link.mav.command_long_send(1, 1, 511, 0, number, 1e6 / rate_hz, 0, 0, 0, 0, 0)
+    link.mav.request_data_stream_send(1, 1, mavutil.mavlink.MAV_DATA_STREAM_POSITION, 5, 1)
+    link.mav.param_request_list_send(1, 1)
+    listen(log, after(45.0), 60.0, sticks(1000))
+    link.set_mode("TAKEOFF")
+    link.mav.command_long_send(1, 1, 400, 0, 1, 21196, 0, 0, 0, 0, 0)
+    listen(log, lambda: heard["height_m"] > UP_M, 120.0, sticks(1000))
+    link.set_mode("CRUISE")
+    for number in range(int(sys.argv[1])):
+        listen(log, after(15.0), 20.0, sticks(1000))
+        heard["text"] = ""
+        listen(log, lambda: heard["text"].startswith("ADVISOR END"), 90.0, sticks(1900))
+        print(number + 1, heard["text"], flush=True)
+    listen(log, after(5.0), 10.0, sticks(1000))
