@@ -10,23 +10,23 @@ numbers: the file has the effect already.
 
 import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.gap import maneuvers_of, with_true_reference
+from advisor.analysis.gap import GapFlights, compare_flown, maneuvers_of
 from advisor.analysis.refused import without_refused
 from advisor.cli.options import read_aircraft
-from advisor.flight.instruments.atmosphere import air_flown
+from advisor.exports.models.flown import FlownModel, write_file
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
-from advisor.report.improved import improved_file, text_of
+from advisor.simulators.compare import Compared
 from advisor.words.problems import UnusableInputError
-from benchmarks.gap_score import DRAWS
+from benchmarks.gap_draws import DRAWS
 from benchmarks.halves import halves_of
+from sim.blind.natural import SHARE
 from sim.sealed.cases import AIRCRAFT, LOG, SealedCase, write_case
 
 CLOSED = ("none", "parameters")
@@ -46,20 +46,22 @@ class FedBack:
 
 
 def fed_back(flown: Sequence[Maneuver], fresh: Sequence[Maneuver], aircraft: Aircraft) -> FedBack:
-    """Return the diagnosis of some manoeuvres, and that of fresh ones with the file that it improved."""
-    first = _diagnosed(flown, aircraft)
-    if first.verdict not in ("effect", "parameters"):
-        return FedBack(first, None)
+    """Return the diagnosis of some manoeuvres, and that of fresh ones with the file that it improved.
+
+    Both diagnoses are those of ``advisor gap``, and the file is that of its option ``--out``.
+    """
+    first = _compared(flown, aircraft)
+    if not first.diagnosis.improves:
+        return FedBack(first.diagnosis, None)
     with tempfile.TemporaryDirectory() as folder:
         improved = Path(folder) / "improved.yaml"
-        improved.write_text(text_of(improved_file(first, aircraft)), encoding="utf-8")
+        write_file(FlownModel(first.aircraft, None, None, first.diagnosis), improved)
         better = read_aircraft(improved)
-    return FedBack(first, _diagnosed(fresh, better))
+    return FedBack(first.diagnosis, _compared(fresh, better).diagnosis)
 
 
-def _diagnosed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Diagnosis:
-    air = air_flown(maneuvers, aircraft.reference.air_temperature_c)
-    return replace(diagnose(maneuvers, with_true_reference(aircraft, air.true_over_read)), air=air)
+def _compared(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Compared:
+    return compare_flown(GapFlights(list(maneuvers), 0, ()), aircraft, None)
 
 
 def _said(d: Diagnosis) -> str:
@@ -73,7 +75,7 @@ def _said(d: Diagnosis) -> str:
 
 def flights(generator: str, each: int, seed: int) -> Iterator[tuple[SealedCase, list[Maneuver], Aircraft]]:
     """Yield flights with one effect, their usable manoeuvres, and their aircraft."""
-    ones = (case for case in DRAWS[generator](3 * each, seed, None) if case.truth["kind"] == "one")
+    ones = (case for case in DRAWS[generator](3 * each, seed, None, SHARE) if case.truth["kind"] == "one")
     for case, _ in zip(ones, range(each), strict=False):
         with tempfile.TemporaryDirectory() as folder:
             write_case(case, Path(folder))

@@ -2,62 +2,45 @@
 
     python -m benchmarks.gap_score --each 20 --seed 5150     # about ten seconds a flight and core
     python -m benchmarks.gap_score --seed 5150 --table       # the table of the answers kept so far
+    python -m benchmarks.gap_score --each 10 --seed 5150 --only-world    # the telemetry of the world alone
 
 The flights are drawn from the seed in each generator's own mixture, with natural nuisances, and with more
-flights that have no name for their cause. A process is given the log and the aircraft file of a case and
-nothing else. Answers are kept in ``build/gap-score``, a line a flight: a run goes on where it stopped.
+flights that have no name for their cause. In the strata of the world all natural numbers act together
+(``benchmarks.sealed.world``); the table counts these flights apart. ArduPlane flies where its simulator lies
+next to the checkout. A process is given the log and the aircraft file of a case and nothing else. Answers are
+kept in ``build/gap-score``, a line a flight: a run goes on where it stopped.
 """
 
 import json
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import click
 import numpy as np
 
 from advisor.cli.running import runner_of
 from advisor.gap.inference.prior import FIELD
+from benchmarks.gap_draws import DRAWS, drawn
 from benchmarks.sealed.answer import answer
 from benchmarks.sealed.generator import COMPARED
-from benchmarks.second_generator.cases import cases as second
-from benchmarks.third_generator.files import cases as third
-from sim.blind.draw import GROUPS, Group
-from sim.blind.generate import draw
 from sim.sealed.cases import SealedCase, write_case
 from sim.sealed.score import wilson
 
-DRAWS: Mapping[str, Callable[[int, int, str | None], Iterator[SealedCase]]] = {
-    "own": lambda count, seed, only: draw(count, seed, GROUPS if only is None else (cast(Group, only),)),
-    "second": second,
-    "third": third,
-}
-"""Flights of each generator by number, seed, and kind."""
-STRATA = ((None, 1.0), ("outside", 0.4), ("none", 0.2))
-"""Kinds that are drawn, None for all in the generator's mixture, with their numbers relative to the first."""
 SURE = 0.9
 """Probability from which a reader takes an answer for sure."""
+LEAST_SHARE = 1e-3
+"""Probability below which the log score of an answer falls no further."""
 FOLDER = Path("build") / "gap-score"
-
-
-def drawn(each: int, seed: int) -> Iterator[tuple[str, SealedCase]]:
-    """Yield the flights of every generator and stratum with their names, in turns over the generators."""
-    for stratum, (only, share) in enumerate(STRATA):
-        count = max(round(share * each), 1)
-        streams = [(name, draw_of(count, seed + stratum, only)) for name, draw_of in DRAWS.items()]
-        for _ in range(count):
-            for name, stream in streams:
-                if (case := next(stream, None)) is not None:
-                    yield f"{name}/{seed + stratum}/{case.name}", case
 
 
 def answered(name: str, case: SealedCase) -> dict[str, Any]:
     """Return the answer to a case with its key."""
     with tempfile.TemporaryDirectory() as folder:
         write_case(case, Path(folder) / "case")
-        document, seconds = answer(Path(folder) / "case")
+        document, seconds = answer(Path(folder) / "case", case.truth.get("axis", "pitch"))
     kept = ("verdict", "probabilities", "gap", "shrink")
     return {
         "case": name,
@@ -72,7 +55,7 @@ def _first(document: Mapping[str, Any]) -> dict[str, Any]:
     verdict = document.get("verdict") or "none"
     if verdict == "effect":
         cause = document["causes"][0]
-        return {"name": cause["effect"], "sizes": cause["parameters"]}
+        return {"name": cause.get("name", cause["effect"]), "sizes": cause["parameters"]}
     return {"name": verdict, "block": (document.get("where") or {}).get("block"), "sizes": {}}
 
 
@@ -89,6 +72,27 @@ def is_right(one: Mapping[str, Any]) -> bool:
     if kind in ("one", "two"):
         return name in truth["effects"]
     return name == kind or (kind == "none" and name in truth["background"])
+
+
+def is_alarm(one: Mapping[str, Any]) -> bool:
+    """Return whether the answer to a flight with nothing withheld is an effect, or an effect without a
+    name."""
+    return not is_right(one) and one["answer"]["first"]["name"] != "parameters"
+
+
+def log_score(one: Mapping[str, Any]) -> float:
+    """Return the log of the probability that the answer gives to the truth, nats, at least that of .001."""
+    told = one["answer"]["probabilities"]
+    if told is None:
+        return float(np.log(LEAST_SHARE))
+    kind, effects = one["truth"]["kind"], told["effects"]
+    if kind in ("one", "two"):
+        p = sum(effects.get(name, 0.0) for name in one["truth"]["effects"])
+    elif kind == "outside":
+        p = sum(told["unknown"].values())
+    else:
+        p = told[kind] + sum(effects.get(name, 0.0) for name in one["truth"]["background"] if kind == "none")
+    return float(np.log(max(p, LEAST_SHARE)))
 
 
 def in_the_field(flights: Sequence[Mapping[str, Any]]) -> np.ndarray:
@@ -142,14 +146,32 @@ def table(flights: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         low, high = wilson(sum(hits), len(hits))
         return f"{name:56s} {sum(hits):4d} of {len(hits):<4d} [{100 * low:3.0f}, {100 * high:3.0f}] %"
 
+    worldly = [f for f in flights if "world" in f["truth"]]
+    flights = [f for f in flights if "world" not in f["truth"]]
+    for generator in DRAWS:
+        mine = [f for f in worldly if f["case"].startswith(generator)]
+        if not mine:
+            continue
+        yield share(f"in the world: first answer right, {generator}", [is_right(f) for f in mine])
+        alarms = [is_alarm(f) for f in mine if f["truth"]["kind"] == "none"]
+        yield share(f"  false alarms, nothing withheld, {generator}", alarms)
+    if not flights:
+        return
     for generator in DRAWS:
         mine = [f for f in flights if f["case"].startswith(generator)]
+        if not mine:
+            continue
         yield share(f"first answer right, {generator}", [is_right(f) for f in mine])
         with_names = [is_right(f) for f in mine if f["truth"]["kind"] != "outside"]
         yield share(f"  without the nameless, {generator}", with_names)
+        alarms = [is_alarm(f) for f in mine if f["truth"]["kind"] == "none"]
+        yield share(f"  false alarms, nothing withheld, {generator}", alarms)
+        sure = [is_right(f) for f in mine if stated(f) >= SURE]
+        yield share(f"  right where P is at least .9, {generator}", sure)
+        score = float(np.mean([log_score(f) for f in mine]))
+        yield f"{f'  log score of the truth, {generator}':56s} {score:.2f} nats a flight"
     kinds = {k: [f for f in flights if f["truth"]["kind"] == k] for k in ("none", "outside", "parameters")}
-    alarm = [not is_right(f) and f["answer"]["first"]["name"] != "parameters" for f in kinds["none"]]
-    yield share("false alarms, nothing withheld", alarm)
+    yield share("false alarms, nothing withheld", [is_alarm(f) for f in kinds["none"]])
     yield share("wrong numbers, told", [is_right(f) for f in kinds["parameters"]])
     outside = [(f["answer"]["first"]["name"], f["truth"]["background"]) for f in kinds["outside"]]
     yield share("without a name: unknown", [name == "unknown" for name, _ in outside])
@@ -186,8 +208,20 @@ def calibration_error(told: np.ndarray, right: np.ndarray) -> float:
 @click.option("--seed", type=click.IntRange(0), required=True, help="Equal seeds give equal flights.")
 @click.option("--label", default="", help="Name of the answers' file, to compare two states of the code.")
 @click.option("--table", "only_table", is_flag=True, help="Print the table and fly nothing.")
+@click.option(
+    "--generator", "generators", multiple=True, type=click.Choice(list(DRAWS)), help="Default: all."
+)
+@click.option("--only-world", is_flag=True, help="Fly only the strata with the telemetry of the world.")
 @click.option("--workers", type=click.IntRange(1), help="Processes; by default one a core.")
-def main(each: int, seed: int, label: str, only_table: bool, workers: int | None) -> None:
+def main(
+    each: int,
+    seed: int,
+    label: str,
+    only_table: bool,
+    generators: Sequence[str],
+    only_world: bool,
+    workers: int | None,
+) -> None:
     """Fly, answer and score."""
     kept = FOLDER / f"{seed}{label}.jsonl"
     kept.parent.mkdir(parents=True, exist_ok=True)
@@ -195,7 +229,8 @@ def main(each: int, seed: int, label: str, only_table: bool, workers: int | None
     flights = [json.loads(line) for line in lines]
     done = {flight["case"] for flight in flights}
     if not only_table:
-        cases = [pair for pair in drawn(each, seed) if pair[0] not in done]
+        every = drawn(each, seed, generators or tuple(DRAWS), only_world)
+        cases = [pair for pair in every if pair[0] not in done]
         with kept.open("a", encoding="utf-8") as out:
             for _, result in runner_of(workers, None)(_answered, cases):
                 if isinstance(result, Exception):

@@ -21,19 +21,24 @@ import click
 from advisor.cli.running import Progress, runner_of, running_options
 
 
-def answer(case: Path) -> tuple[dict[str, Any], float]:
+def answer(case: Path, axis: str = "pitch") -> tuple[dict[str, Any], float]:
     """Return the document of ``advisor gap --json`` (empty without one), and the CPU time in s."""
+    from advisor.analysis.axes.lateral import compare_side_logs
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.cli.options import read_aircraft
+    from advisor.report.axes.lateral_gap import side_gap_document
     from advisor.report.gap_document import gap_document
     from advisor.words.problems import UnusableInputError
     from sim.sealed.cases import AIRCRAFT, LOG
 
     began = time.process_time()
     aircraft = read_aircraft(case / AIRCRAFT)
-    simulator = named_simulator(aircraft)
+    simulator = named_simulator(aircraft) if axis == "pitch" else None
     try:
-        document = gap_document(compare_logs([case / LOG], aircraft, simulator).diagnosis)
+        if axis == "pitch":
+            document = gap_document(compare_logs([case / LOG], aircraft, simulator).diagnosis)
+        else:
+            document = side_gap_document(compare_side_logs([case / LOG], aircraft).gap)
     except UnusableInputError as error:
         print(f"{case.name}: {error.problem}", file=sys.stderr)
         document = {}
