@@ -29,7 +29,7 @@ MAIN = {
 }
 """Derivatives that a file may state wrongly."""
 CONTROLS = {"pitch": ("elevator",), "lateral": ("aileron", "rudder")}
-TRUE_OVER_READ = 1.0345
+TRUE_OVER_READ = 1.05
 """True air speed over VFR_HUD's, at the height of the flights, by the ground speed in still air."""
 HEIGHT_M = 90.0
 """Height of the flights above home, m."""
