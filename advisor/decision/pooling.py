@@ -86,18 +86,29 @@ def posteriors_at_one_speed(estimates: Sequence[Estimate]) -> list[Posterior]:
     Each parameter scales with its power of V (``SPEED_EXPONENTS``); gravity's part g/V of Z_0 is treated
     separately. Estimates at one speed, or without a speed, are unchanged. All manoeuvres share the residuals'
     colour, which comes from instruments and air. The factor on the Cramér-Rao bounds is therefore the median
-    over the manoeuvres. Tests of aileron and rudder share no colour.
+    over the manoeuvres. Tests of aileron and rudder share no colour. A derivative by a control that a
+    manoeuvre does not move comes from a prior, which is no evidence of the manoeuvre.
     """
     if not estimates:
         return []
     scale, values = _at_one_speed(estimates)
     powers = scale[:, :, None] * scale[:, None, :]
     return [
-        Posterior(value, covariance * power, e.common * power, _alpha_of(e), e.names)
+        Posterior(value, _of_data(e, covariance * power), e.common * power, _alpha_of(e), e.names)
         for e, value, covariance, power in zip(
             estimates, values, _covariances(estimates), powers, strict=True
         )
     ]
+
+
+def _of_data(estimate: Estimate, covariance: FloatArray) -> FloatArray:
+    """Return a covariance (p, p) in which parameters that only a prior tells are unknown."""
+    unknown = [estimate.names.index(name) for name in estimate.of_prior]
+    if unknown:
+        covariance = covariance.copy()
+        covariance[unknown, :] = covariance[:, unknown] = 0.0
+        covariance[unknown, unknown] = np.inf
+    return covariance
 
 
 def _alpha_of(estimate: Estimate) -> tuple[float, float]:

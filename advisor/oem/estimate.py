@@ -83,6 +83,12 @@ class Estimate:
     COLOUR_IS_SHARED: ClassVar[bool] = True
     """Whether the residuals of all manoeuvres of one flight have one colour."""
 
+    @property
+    def of_prior(self) -> tuple[str, ...]:
+        """Names of the parameters whose values come from priors, because the test does not move their
+        control."""
+        return ()
+
     theta: FloatArray
     """Shape (8,): parameter values in the order of ``names``. In a joint estimate Z_0 and M_0 are means over
     the manoeuvres."""

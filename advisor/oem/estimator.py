@@ -86,6 +86,8 @@ class Fit:
             # Gusts can draw output error's instruments so far that the search from there diverges.
             filtered = filter_error(solution, air.air, names) or filter_error(self.plain, air.air, names)
         if filtered is not None:
+            # The lag's ridge is a property of the input, which moving air does not change.
+            filtered = replace(filtered, modes=solution.modes, profile=solution.profile)
             identified = refreshed(identified, filtered)
         return report(
             solution, self.prepared, self.aircraft, identified=identified, air=air, filtered=filtered

@@ -33,6 +33,7 @@ from advisor.oem.gauss_newton import CONVERGED
 from advisor.oem.instruments import SERVO_LAG, Instrument, extra_of
 from advisor.oem.prior import about_zero, precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
+from advisor.oem.profile import needs_profile, profiled
 from advisor.oem.solution import Solution, evaluate, search, spread_of
 from advisor.oem.weighing import Weighing
 
@@ -133,12 +134,29 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
         found = _fitted(found.problem, _place(found), names, share)
     if found is None:
         return InstrumentFit(plain)
-    return _with_statements(names, _between_modes(found, names), plain)
+    return _with_statements(names, _whole_posterior(found, names), plain)
 
 
 def _place(solution: Solution) -> tuple[FloatArray, FloatArray]:
     """Return the derivatives and local parameters of a solution, as the start of another search."""
     return solution.optimum.shared, solution.optimum.local
+
+
+def _whole_posterior(best: Solution, names: Sequence[Instrument]) -> Solution:
+    """Return the solution with the posterior beyond its own hill, along a servo's lag that nobody states."""
+    lag = next((x for x in names if x.name == SERVO_LAG.name and x.stated is None), None)
+    if lag is None:
+        return best
+    share = colour_share(best)
+    place = N + list(names).index(lag)
+    if not needs_profile(lag.read(best.problem), float(np.sqrt(best.widened[place, place]))):
+        return _between_modes(best, names)
+    others = [x for x in names if x is not lag]
+
+    def refit(problem: OutputErrorProblem, near: Solution) -> Solution | None:
+        return _fitted(problem, _place(near), others, share)
+
+    return profiled(best, lag, names, share, refit)
 
 
 def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
@@ -213,8 +231,12 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
             kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, width, share))))
         else:
             problem = x.write(problem, x.stated)
-    final = _fitted(problem, _place(solution), tuple(one.instrument for one in kept), colour_share(solution))
-    return InstrumentFit(plain) if final is None else InstrumentFit(final, refreshed(kept, final))
+    left = tuple(one.instrument for one in kept)
+    final = _fitted(problem, _place(solution), left, colour_share(solution))
+    if final is None:
+        return InstrumentFit(plain)
+    final = final if solution.profile is None else _whole_posterior(final, left)
+    return InstrumentFit(final, refreshed(kept, final))
 
 
 def refreshed(identified: Sequence[Identified], solution: Solution) -> tuple[Identified, ...]:

@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.oem.correlation import HIGH_CORRELATION
@@ -13,6 +15,7 @@ from advisor.oem.known_instruments import found_of
 from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
 from advisor.oem.solution import Solution
+from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 
 N = len(PARAMETERS)
@@ -40,6 +43,7 @@ def notes(
     sentences = [
         _outputs(solution, prepared),
         *(_instrument(x) for x in identified if _is_worth_saying(x)),
+        _ridge(solution),
         _found_lag(aircraft),
         _airspeed(prepared),
         _scale(solution),
@@ -59,6 +63,31 @@ def _outputs(solution: Solution, prepared: Prepared) -> str:
     why = prepared.alpha_left_out[0].upper() + prepared.alpha_left_out[1:]
     return (
         f"{why}. Estimated from {' and '.join(solution.assembly.rows[0])}, with alpha as an unmeasured state."
+    )
+
+
+def _ridge(solution: Solution) -> str:
+    """Return a sentence about two lags that explain the record alike; empty for one hill of the posterior.
+
+    The sentence names the derivative that differs most. No sentence is needed where the linear interval of
+    every derivative holds both lags.
+    """
+    profile = solution.profile
+    if profile is None:
+        return ""
+    derivatives = [PARAMETERS.index(name) for name in ("M_alpha", "M_q", "M_delta_e")]
+    std = np.sqrt(np.diag(solution.scattered))[derivatives]
+    alike = profile.alike
+    apart = np.abs(alike[:, 1:][:, derivatives] - profile.best[derivatives]) / std
+    far, which = np.unravel_index(int(np.argmax(apart)), apart.shape)
+    if apart[far, which] <= NORMAL_95:
+        return ""
+    k = derivatives[which]
+    lag_s = profile.best[len(PARAMETERS) + profile.place]
+    return (
+        f"Servo lags of {lag_s:.2f} s and {alike[far, 0]:.2f} s explain the record alike, with "
+        f"{symbol(PARAMETERS[k])} of {profile.best[k]:.3g} and {alike[far, 1 + k]:.3g}. "
+        "Set elevator.lag_s, or fly steps of another duration."
     )
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from advisor.oem.prior import Priors, precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 from advisor.oem.rows import Laid
 from advisor.oem.start import start
+
+if TYPE_CHECKING:
+    from advisor.oem.profile import Profile
 
 RUNS_AWAY = NoEstimate(
     "diverged", "The model runs away from its first guess: the record is too long or too noisy."
@@ -39,6 +42,8 @@ class Solution(Evaluated):
     parameters: Sequence[Any] = ()
     """Nuisance parameters of the search, each with a name. Their derivatives are the first columns of
     ``extra``."""
+    profile: "Profile | None" = None
+    """Posterior along the parameter whose linear interval reaches zero; None for a linear posterior."""
 
     @property
     def residual(self) -> FloatArray:

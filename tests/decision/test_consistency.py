@@ -9,6 +9,7 @@ import pytest
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.decision.consistency import outliers
 from advisor.decision.pooling import posteriors_at_one_speed
+from tests.campaign.side_builders import estimate as side_estimate
 from tests.decision.campaigns import THETA, drawn, estimate, with_change
 
 PLAN = CampaignPlan()
@@ -50,3 +51,14 @@ def test_chance_makes_an_outlier_of_one_manoeuvre_in_a_thousand_at_most_one_camp
     rng = np.random.default_rng(11)
     campaigns = [posteriors_at_one_speed([drawn(rng, std_percent=6.0) for _ in range(5)]) for _ in range(200)]
     assert sum(bool(outliers(one, PLAN)) for one in campaigns) <= 2
+
+
+def test_an_aileron_test_does_not_contradict_a_rudder_test_about_the_rudder():
+    aileron, rudder = side_estimate("aileron", percent=1.0), side_estimate("rudder", percent=1.0)
+    # A control at rest leaves its derivatives at the prior's mean, with hardly an error.
+    still = [aileron.names.index(name) for name in ("Y_delta_r", "L_delta_r", "N_delta_r")]
+    theta, covariance = aileron.theta.copy(), aileron.covariance.copy()
+    theta[still], covariance[still, still] = 0.0, 1e-10
+    aileron = replace(aileron, theta=theta, covariance=covariance, covariance_cr=covariance)
+    plan = replace(PLAN, parameters=("L_p", "N_delta_r"))
+    assert outliers(posteriors_at_one_speed([aileron, aileron, rudder, aileron]), plan) == {}

@@ -184,4 +184,14 @@ def test_a_rudder_test_in_gusts_keeps_its_own_colour_among_calm_tests_of_the_ail
     calm, gusty = side_estimate("aileron"), side_estimate("rudder")
     gusty = replace(gusty, covariance=36.0 * gusty.covariance_cr)
     *_, last = posteriors_at_one_speed([calm, calm, gusty])
-    assert last.std == pytest.approx(6.0 * gusty.std_cr)
+    known = np.isfinite(last.std)
+    assert last.std[known] == pytest.approx(6.0 * gusty.std_cr[known])
+
+
+def test_a_derivative_by_a_control_that_does_not_move_is_no_evidence() -> None:
+    aileron, rudder = posteriors_at_one_speed([side_estimate("aileron"), side_estimate("rudder")])
+    unknown = {name for name, std in zip(aileron.names, aileron.std, strict=True) if not np.isfinite(std)}
+    assert unknown == {"Y_delta_r", "L_delta_r", "N_delta_r"}
+    pooled_of_both = pool([aileron, rudder])
+    k = aileron.names.index("N_delta_r")
+    assert pooled_of_both.theta[k] == pytest.approx(rudder.theta[k])

@@ -8,6 +8,7 @@ import numpy as np
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.signals.messages import FloatArray
+from advisor.model.axes.lateral import CONTROLS
 from advisor.oem.estimate import Estimate
 from advisor.oem.flying_qualities import Quality
 
@@ -41,3 +42,9 @@ class LateralEstimate(Estimate):
     """Controls that the test moves: ``aileron``, ``rudder``."""
     scales_with_speed: bool = False
     """Whether the derivatives belong to a stated air speed and scale with the measured air speed."""
+
+    @property
+    def of_prior(self) -> tuple[str, ...]:
+        """Names of the derivatives by a control that the test does not move."""
+        still = [suffix for suffix, control in CONTROLS.items() if control not in self.flown]
+        return tuple(name for name in self.names if any(name.endswith(suffix) for suffix in still))

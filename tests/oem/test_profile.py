@@ -1,0 +1,107 @@
+"""Posterior along a parameter whose linear interval is no interval of the posterior."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from advisor.oem.profile import Profile, needs_profile, profiled
+from advisor.words.quantiles import NORMAL_95
+
+STD = 0.04
+"""Standard deviation of the profiled lag at its optimum, s."""
+LAG = 0.06
+
+
+def profile(derivative, nats, values=None):
+    """Return the profile of one derivative and the lag, from functions of the lag."""
+    values = LAG + STD * np.arange(-4.0, 5.0) if values is None else values
+    theta = np.column_stack([derivative(values), values])
+    return Profile(0, values, nats(values), theta, np.array([derivative(LAG), LAG]))
+
+
+def parabola(lag):
+    return 0.5 * ((lag - LAG) / STD) ** 2
+
+
+def test_on_a_parabola_with_a_straight_derivative_the_moment_is_the_linear_variance():
+    found = profile(lambda lag: 100.0 * lag, parabola).moment
+    assert np.allclose(np.diag(found), [(100.0 * STD) ** 2, STD**2], rtol=0.02)
+
+
+def test_a_derivative_that_is_flat_at_the_optimum_and_bends_has_the_error_of_the_bend():
+    found = profile(lambda lag: -30.0 - 4000.0 * (lag - LAG) ** 2, parabola)
+    reach = 4000.0 * (NORMAL_95 * STD) ** 2
+    assert NORMAL_95 * np.sqrt(found.moment[0, 0]) >= 0.99 * reach
+
+
+def test_a_flat_ridge_to_one_side_reaches_to_its_end():
+    def nats(lag):
+        return np.where(lag > LAG, 0.1 * (lag - LAG) / STD, parabola(lag))
+
+    found = profile(lambda lag: -30.0 - 200.0 * (lag - LAG), nats)
+    assert NORMAL_95 * np.sqrt(found.moment[0, 0]) >= 0.999 * 200.0 * 4.0 * STD
+
+
+def test_the_ends_of_the_interval_lie_between_the_nodes():
+    alike = profile(lambda lag: lag, parabola).alike
+    assert np.isclose(np.max(alike[:, 0]), LAG + NORMAL_95 * STD, rtol=1e-6)
+
+
+@pytest.mark.parametrize(("std", "needed"), [(0.01, False), (0.03, False), (0.031, True), (0.1, True)])
+def test_a_profile_is_needed_where_the_interval_of_the_lag_reaches_zero(std, needed):
+    assert needs_profile(LAG, std) is needed
+
+
+class Lag:
+    """A lag between 0 and 0.4 s without a prior, whose problem is its value."""
+
+    name, prior, lowest, highest = "servo_lag_s", None, 0.0, 0.4
+
+    def read(self, problem):
+        return problem
+
+    def write(self, problem, value):
+        return value
+
+
+def at(lag, theta, cost):
+    from advisor.oem.solution import Solution
+
+    covariance = np.diag([1e-4, STD**2])
+    return Solution(
+        problem=lag, assembly=None, optimum=SimpleNamespace(log_likelihood_cost=cost), influence=None,
+        theta=np.array([theta]), covariance_cr=covariance, covariance=covariance, noise=None,
+        contributions=np.zeros((1, 2)), systematic=np.zeros((2, 2)),
+    )  # fmt: skip
+
+
+def walked(theta, cost, asked=None):
+    """Return the solution with its posterior along the lag, for optima given by functions of the lag."""
+
+    def refit(problem, near):
+        if asked is not None:
+            asked.append(problem)
+        return at(problem, theta(problem), cost(problem))
+
+    lag = Lag()
+    return profiled(at(LAG, theta(LAG), cost(LAG)), lag, (lag,), 1.0, refit)
+
+
+def test_a_solution_on_a_ridge_has_the_interval_of_the_ridge():
+    found = walked(lambda lag: -30.0 - 4000.0 * (lag - LAG) ** 2, lambda lag: 2.0 * parabola(lag))
+    std = float(np.sqrt(found.widened[0, 0]))
+    assert NORMAL_95 * std >= 0.99 * 4000.0 * (NORMAL_95 * STD) ** 2
+
+
+def test_the_walk_ends_at_the_end_of_the_range_and_where_the_density_has_fallen():
+    asked = []
+    walked(lambda lag: lag, lambda lag: 2.0 * parabola(lag), asked)
+    assert min(asked) == 0.0
+    assert max(asked) <= LAG + 3.1 * STD
+    assert len(asked) <= 6
+
+
+def test_a_parabola_leaves_the_interval_as_it_is():
+    found = walked(lambda lag: 0.0 * lag, lambda lag: 2.0 * parabola(lag))
+    assert np.isclose(found.widened[0, 0], 1e-4, rtol=1e-6)
