@@ -91,8 +91,8 @@ class Activity:
     """Begin of the movement, s since boot."""
     end_s: float
     reason: str
-    """``autopilot``, ``elsewhere``, ``feedback``, ``ground``, ``hover``, ``no_information``, ``small`` or
-    ``unsettled``."""
+    """``aborted``, ``autopilot``, ``bounce``, ``elsewhere``, ``feedback``, ``ground``, ``hover``,
+    ``no_information``, ``small`` or ``unsettled``."""
     text: str
     """Sentence about the movement, for people."""
     stay_s: float

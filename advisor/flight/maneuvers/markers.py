@@ -1,10 +1,11 @@
-"""Markers of manoeuvres in flight, by a switch or by texts, and the input within a marked stretch."""
+"""Markers of manoeuvres in flight, by a switch, texts or a script, and the input within a marked stretch."""
 
 from collections.abc import Iterator
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Markers
+from advisor.flight.maneuvers.announced import read_announcement
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.marks import Mark, Marker, Switched
 from advisor.flight.maneuvers.movement import (
@@ -18,6 +19,7 @@ from advisor.flight.maneuvers.movement import (
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 from advisor.flight.signals.messages import Columns, FloatArray
 from advisor.flight.signals.record import Channel
+from advisor.flight.signals.whole_texts import WholeTexts
 
 HEARD = ("RC_CHANNELS", "STATUSTEXT")
 """Messages that may contain a mark."""
@@ -37,6 +39,7 @@ class MarkerWatch:
             begins, ends = markers.text
             self._texts.append(("text", begins.encode(), ends.encode()))
         self._is_on = False
+        self._whole = WholeTexts()
 
     def start_boot(self) -> None:
         """Begin another power-on. The switch is taken as off until its first message."""
@@ -67,15 +70,19 @@ class MarkerWatch:
                 yield Switched(int(columns.order[i]), float(t[i]), "switch", on)
 
     def _texts_heard(self, columns: Columns, t: FloatArray) -> Iterator[Switched]:
-        for i, raw in enumerate(columns.fields["text"].tolist()):
-            if not np.isfinite(t[i]):
+        for heard in self._whole.heard(columns, t):
+            raw = heard.text
+            if not np.isfinite(heard.at_s):
                 continue
+            if (announcement := read_announcement(raw)) is not None:
+                on = announcement.word == "begin"
+                yield Switched(heard.order, heard.at_s, "script", on, announcement)
             for by, begins, ends in self._texts:
                 # The end comes first, because the text that begins a mark may have the other text as its
                 # beginning.
                 said = [on for on, text in ((False, ends), (True, begins)) if raw.startswith(text)]
                 if said:
-                    yield Switched(int(columns.order[i]), float(t[i]), by, said[0])
+                    yield Switched(heard.order, heard.at_s, by, said[0])
 
 
 SWEPT = "marked by SystemID"
@@ -85,6 +92,7 @@ MARKED = {
     "switch": "marked by a switch",
     "text": "marked by a text of the vehicle",
     "system id": SWEPT,
+    "script": "marked by a script",
 }
 """Reason of the end of a marked stretch, by the kind of marker."""
 _RESTING_S = 0.5
@@ -94,12 +102,12 @@ _BEFORE_S = 0.3
 
 
 def marked_span(mark: Mark, elevator: Channel | None) -> Span:
-    """Return the extent of the manoeuvre in a marked stretch.
+    """Return the extent of the manoeuvre in a marked stretch, with its free response.
 
     Parameters
     ----------
     elevator
-        Elevator from one lead-in before the mark to the mark's end, rad. None if the channel was not
+        Elevator from one lead-in before the mark to the end of the record, rad. None if the channel was not
         received.
 
     Returns
@@ -108,26 +116,21 @@ def marked_span(mark: Mark, elevator: Channel | None) -> Span:
         Span whose record begins up to one lead-in before the mark. A constant elevator has no step, so its
         mark has no input.
     """
+    end_s, by = mark.reach[1], MARKED[mark.by]
     if elevator is None:
-        return Span(mark.start_s, mark.start_s, mark.end_s, mark.end_s, "other", (), MARKED[mark.by])
+        return Span(mark.start_s, mark.start_s, mark.end_s, end_s, "other", (), by)
     record_from_s = min(max(mark.start_s - LEAD_IN_S, float(elevator.t[0])), mark.start_s)
     found = _input(mark, elevator)
     if found is None:
-        return Span(record_from_s, mark.start_s, mark.start_s, mark.end_s, "other", (), MARKED[mark.by])
-    return Span(
-        record_from_s,
-        found.start_s,
-        min(found.last_step_s, mark.end_s),
-        mark.end_s,
-        found.kind,
-        found.steps,
-        MARKED[mark.by],
-    )
+        return Span(record_from_s, mark.start_s, mark.start_s, end_s, "other", (), by)
+    last_step_s = min(found.last_step_s, mark.end_s)
+    return Span(record_from_s, found.start_s, last_step_s, end_s, found.kind, found.steps, by)
 
 
 def _input(mark: Mark, elevator: Channel) -> Movement | None:
     """Return the movement of the elevator within the mark; None for a constant elevator."""
-    within = elevator.cut(mark.start_s, mark.end_s)
+    # The return to trim at the end of a script's input is a part of the input.
+    within = elevator.cut(mark.start_s, min(mark.end_s + 2.0 * _RESTING_S, mark.reach[1]))
     if len(within) < 3:
         return None
     before = elevator.cut(mark.start_s - _BEFORE_S, mark.start_s).y

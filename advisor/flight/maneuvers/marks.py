@@ -1,4 +1,4 @@
-"""Stretches of flight marked as manoeuvres: by hand, by a switch, by a text, or by the autopilot's SystemID.
+"""Stretches of flight marked as manoeuvres: by hand, a switch, a text, a script, or the autopilot's SystemID.
 
 A mark replaces every input that the segmenter finds in the marked stretch. A mark during the stream gives the
 same manoeuvre as a mark known before the stream.
@@ -10,18 +10,22 @@ from typing import Literal
 
 import numpy as np
 
+from advisor.flight.maneuvers.announced import SCRIPT_NOTICE, Announced, Announcement, Announcements
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock, stretch
 
-Marker = Literal["hand", "switch", "text", "system id"]
+Marker = Literal["hand", "switch", "text", "system id", "script"]
 
 LONGEST_S = 100.0
 """Longest mark, s. With its lead-in a mark must fit into the two minutes of channels that a stream keeps."""
-MARK_NOTICES = frozenset({"mark_length", "marked_already", "mark_dropped"})
+MARK_NOTICES = frozenset({"mark_length", "marked_already", "mark_dropped", SCRIPT_NOTICE})
 """Codes of the notices on marks that cannot be used."""
+FREE_S = 3.0
+"""Free response after the END of a script, s: the surfaces rest there, and the motion tells the servos' lags.
+Three seconds are the least free response of an unmarked lateral input."""
 EDGE_S = 2.0
 """Largest distance by which a mark may exceed the end of the log, s. A power cut loses the last second of a
 recording."""
@@ -41,16 +45,25 @@ class Mark:
     from_log_start: bool = False
     """Whether the times are relative to the log's first sample instead of the boot."""
     by: Marker = "hand"
-    """Source of the mark: a hand, a switch, a text or SystemID."""
+    """Source of the mark: a hand, a switch, a text, SystemID or a script."""
     name: str = "A mark"
     """Beginning of a sentence about the mark."""
     flight: int = 0
     """Number of the campaign's log or link, 0 for the first."""
+    announced: Announced | None = None
+    """Input that a script announced for the stretch. None for a mark of another source."""
+    free_s: float = 0.0
+    """Longest free response after the stretch that belongs to the record, s."""
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Begin and end of the record, s since boot: the marked stretch with its lead-in."""
-        return self.start_s - LEAD_IN_S, self.end_s
+        """Begin and end of the record, s since boot: the stretch with its lead-in and free response."""
+        return self.start_s - LEAD_IN_S, self.end_s + self.free_s
+
+    def until(self, last_s: float) -> "Mark":
+        """Return the mark without the time after ``last_s``, s since boot."""
+        end_s = min(self.end_s, last_s)
+        return replace(self, end_s=end_s, free_s=min(self.free_s, max(last_s - end_s, 0.0)))
 
     def overlaps(self, start_s: float, end_s: float) -> bool:
         """Return whether the mark overlaps a stretch of its power-on."""
@@ -68,6 +81,8 @@ class Switched:
     by: Marker
     on: bool
     """Whether the message begins a mark. False if the message ends a mark."""
+    announcement: Announcement | None = None
+    """Text of a script. None for a message of another source."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,10 +99,17 @@ class Due:
 
 
 class Marks:
-    """Marks of one stream, and the segmenter's spans that they may replace."""
+    """Marks of one stream, and the segmenter's spans that they may replace.
 
-    def __init__(self, given: Sequence[Mark] = ()) -> None:
+    Parameters
+    ----------
+    aircraft
+        Name in the aircraft file, which a script must state. None: every script is taken.
+    """
+
+    def __init__(self, given: Sequence[Mark] = (), aircraft: str | None = None) -> None:
         self._given = list(given)
+        self._script = Announcements(aircraft)
         self._heard: list[tuple[float, float]] = []
         self.start_boot(0, 0.0)
 
@@ -97,6 +119,7 @@ class Marks:
         self._first_s = np.nan
         self._switched: list[Switched] = []
         self._open: dict[Marker, float] = {}
+        self._script.start_boot()
         self._waiting: dict[Mark, Mark | None] = {}
         self._closed: list[Mark] = []
         self._held: list[tuple[Span, int | None]] = []
@@ -144,13 +167,15 @@ class Marks:
     def since_s(self, now_s: float) -> float | None:
         """Return the begin of the mark that is open at ``now_s``, s since boot; None without an open mark."""
         begun = [m.start_s for m in self._waiting if m.start_s <= now_s <= m.end_s]
-        return min([*begun, *self._open.values()], default=None)
+        return min([*begun, *self._begun_s], default=None)
 
     def advance(self, order: int) -> None:
         """Note that all messages before ``order`` have been processed."""
         while self._switched and self._switched[0].order <= order:
             switched = self._switched.pop(0)
-            if switched.on:
+            if switched.announcement is not None:
+                self._announced(switched.announcement, switched.at_s)
+            elif switched.on:
                 self._open.setdefault(switched.by, switched.at_s)
             elif switched.by in self._open:
                 self._close(switched.by, switched.at_s)
@@ -162,7 +187,7 @@ class Marks:
         """
         if self.holds(span):
             return True
-        waits = any(since_s < span.end_s for since_s in self._open.values())
+        waits = any(since_s < span.end_s for since_s in self._begun_s)
         if waits:
             self._held.append((span, order))
         return waits
@@ -180,7 +205,8 @@ class Marks:
 
     def due(self, arrived_s: float) -> Due:
         """Return the final marks and spans when all channels have arrived up to ``arrived_s`` since boot."""
-        ready = [m for m in self._waiting if m.end_s <= arrived_s]
+        self._notices += self._script.expire(arrived_s, LONGEST_S)
+        ready = [m for m in self._waiting if m.reach[1] <= arrived_s]
         return self._due(ready) if ready or self._held or self._notices else Due()
 
     def finish(self, last_s: float) -> Due:
@@ -190,6 +216,7 @@ class Marks:
         A mark by hand without an end is dropped.
         """
         self.advance(self._switched[-1].order if self._switched else 0)
+        self._notices += self._script.finish()
         begun_s = self._open.pop("hand", None)
         if begun_s is not None:
             said = "is dropped: the vehicle's clock began anew before its end."
@@ -210,10 +237,29 @@ class Marks:
         held, self._held = self._held, []
         released = tuple((span, order) for span, order in held if not self.hides(span, order))
         notices, self._notices = tuple(self._notices), []
-        return Due(tuple(replace(m, end_s=min(m.end_s, last_s)) for m in ready), released, notices)
+        begun_s = [*self._begun_s, *(m.start_s for m in (*self._waiting, *self._closed)), last_s]
+        until_s = [min((at_s for at_s in begun_s if at_s >= m.end_s), default=np.inf) for m in ready]
+        return Due(tuple(map(Mark.until, ready, [min(s, last_s) for s in until_s])), released, notices)
 
     def _close(self, by: Marker, at_s: float) -> None:
-        mark = Mark(self._open.pop(by), at_s, self._boot, by=by)
+        self._take(Mark(self._open.pop(by), at_s, self._boot, by=by))
+
+    def _announced(self, said: Announcement, at_s: float) -> None:
+        """Take a text of a script."""
+        for complete in self._script.take(said, at_s):
+            if isinstance(complete, Notice):
+                self._notices.append(complete)
+            elif complete.end_s > complete.start_s:
+                where = (complete.start_s, complete.end_s, self._boot)
+                self._take(Mark(*where, by="script", announced=complete.announced, free_s=FREE_S))
+
+    @property
+    def _begun_s(self) -> list[float]:
+        """Begins of all open marks, s since boot."""
+        script_s = self._script.since_s
+        return [*self._open.values(), *(() if script_s is None else (script_s,))]
+
+    def _take(self, mark: Mark) -> None:
         refused = self._refused(mark)
         if refused is None:
             self._waiting[mark] = None

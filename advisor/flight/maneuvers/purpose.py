@@ -64,6 +64,8 @@ _WHAT = {
     "feedback": "recoveries of the attitude",
     "no_information": "movements without a visible effect",
     "unsettled": "movements that never came to rest",
+    "aborted": "inputs that a script ended early",
+    "bounce": "inputs of a bouncing switch",
 }
 
 
@@ -72,8 +74,8 @@ class Because:
     """Reason why a movement is no test input."""
 
     reason: str
-    """``autopilot``, ``elsewhere``, ``feedback``, ``ground``, ``hover``, ``no_information``, ``small`` or
-    ``unsettled``."""
+    """``aborted``, ``autopilot``, ``bounce``, ``elsewhere``, ``feedback``, ``ground``, ``hover``,
+    ``no_information``, ``small`` or ``unsettled``."""
     text: str
     """Sentence about the reason, with its number and limit."""
 

@@ -13,7 +13,8 @@ from advisor.flight.instruments.axes.lateral import examine_side
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.examined import ExaminedRecords
 from advisor.flight.instruments.measured import Evidence
-from advisor.flight.maneuvers.axes.lateral import SideInput, SideMovement, named, part_of_input
+from advisor.flight.maneuvers.announced import PITCH_KINDS, SIDE_KINDS
+from advisor.flight.maneuvers.axes.lateral import SideInput, SideMovement, at_once, named, part_of_input
 from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
 from advisor.flight.maneuvers.feedback import HISTORY_S
 from advisor.flight.maneuvers.ground import why_on_ground
@@ -91,6 +92,10 @@ class Cutting:
         controls. A stretch without any movement counts as one of the elevator. SystemID moves any control,
         even in hover, so each control's visible effect decides.
         """
+        said = mark.announced
+        if said is not None and (no_test := said.no_test(mark.end_s - mark.start_s)) is not None:
+            return [self._listed(mark.start_s, mark.end_s, Because(*no_test), boot)]
+        mark = mark.until(self._leaves_s(mark.end_s))
         spans = {
             loop: marked_span(mark, self._tracks.cut(loop.control, *mark.reach, up_to_order))
             for loop in (PITCH, ROLL, YAW)
@@ -98,18 +103,22 @@ class Cutting:
         moved = part_of_input([SideMovement(loop, span) for loop, span in spans.items()])
         sides = tuple(one for one in moved if one.loop is not PITCH) if self._lateral else ()
         swept = mark.by == "system id"
+        pitching = spans[PITCH]
+        if said is not None:
+            pitching = replace(pitching, kind=said.kind(PITCH_KINDS, pitching.kind))
         events: list[FlightEvent] = []
         if not sides or len(sides) < len(moved):
-            maneuver, evidence = self._cut(spans[PITCH], boot, up_to_order)
+            if sides:
+                pitching = at_once(pitching, SideInput(moved))
+            maneuver, evidence = self._cut(pitching, boot, up_to_order)
             because = self._not_an_input(maneuver, up_to_order) if swept else None
             events += (
                 self._counted(maneuver, evidence) if because is None else [self._activity(maneuver, because)]
             )
         if sides:
             found = SideInput(sides)
-            span = replace(
-                found.main.span, start_s=found.start_s, last_step_s=found.last_step_s, kind=named(found)
-            )
+            kind = named(found) if said is None else said.kind(SIDE_KINDS, named(found))
+            span = replace(at_once(found.main.span, SideInput(moved)), kind=kind)
             side, of_side = self.side(span, boot, up_to_order)
             if not swept or not self.is_no_side_input(side, found, up_to_order):
                 events += self.side_counted(side, of_side)
@@ -130,10 +139,13 @@ class Cutting:
 
     def _activity(self, maneuver: Maneuver, because: Because) -> Activity:
         """Return the event of a movement that was no test input, and count it."""
+        return self._listed(maneuver.span.start_s, maneuver.span.end_s, because, maneuver.boot)
+
+    def _listed(self, start_s: float, end_s: float, because: Because, boot: int) -> Activity:
+        """Return the event of a stretch that was no test input, and count the event."""
         self.activities[because.what] += 1
-        span = maneuver.span
-        stay_s, _ = self._stay(_middle_s(span))
-        return Activity(span.start_s, span.end_s, because.reason, because.text, stay_s, maneuver.boot)
+        stay_s, _ = self._stay(0.5 * (start_s + end_s))
+        return Activity(start_s, end_s, because.reason, because.text, stay_s, boot)
 
     def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         news = _news(maneuver, evidence, self.pitch)
@@ -164,6 +176,10 @@ class Cutting:
     def _stay(self, at_s: float) -> tuple[float, str]:
         """Return the start of the vehicle's stay in its flight mode at this time, and the mode."""
         return next(stay for stay in reversed(self._modes) if stay[0] <= at_s)
+
+    def _leaves_s(self, after_s: float) -> float:
+        """Return the first time after ``after_s`` at which the flight mode may have changed, s since boot."""
+        return max(min((since_s for since_s, _ in self._modes if since_s > after_s), default=np.inf), after_s)
 
     def _cut(self, span: Span, boot: int, up_to_order: int | None) -> tuple[Maneuver, Evidence]:
         """Return the manoeuvre, with its evidence about the instruments."""

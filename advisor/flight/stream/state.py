@@ -75,8 +75,8 @@ class StreamState:
         self._breaks = Breaks()
         self._cutting = Cutting(self.tracks, self._who, aircraft, self._breaks, lateral)
         self._mixing = Mixing(self.tracks)
-        self.marks = Marks(marks)
-        """Marks by hand, by a switch and by texts."""
+        self.marks = Marks(marks, None if aircraft.name == Aircraft.name else aircraft.name)
+        """Marks by hand, by a switch, by texts and by a script."""
         self._markers = MarkerWatch(aircraft.markers)
         self._path = ElevatorPath(self.tracks, self._mixing, self.marks, self._cutting)
         self._side = SidePath(self.tracks, self.marks, self._cutting) if lateral else None

@@ -69,6 +69,11 @@ class SideInput:
         return min(one.span.start_s for one in self.movements)
 
 
+def at_once(span: Span, found: SideInput) -> Span:
+    """Return the extent of one control's movement as that of all controls that move at once."""
+    return replace(span, start_s=found.start_s, last_step_s=found.last_step_s)
+
+
 def first_input(pending: Sequence[SideMovement]) -> tuple[SideInput, list[SideMovement]]:
     """Return the first input among the movements, and the remaining movements.
 
@@ -151,7 +156,7 @@ def named(found: SideInput) -> InputKind:
     """Return the name of an input that pilots use."""
     span = found.main.span
     if len(found.movements) > 1 and len({one.loop for one in found.movements}) > 1:
-        return "other"
+        return "multisine" if all(one.span.kind == "multisine" for one in found.movements) else "other"
     stepped = "3-2-1-1" if span.kind in ("3-2-1-1", "reverse 3-2-1-1") else span.kind
     if found.main.loop == YAW:
         names: dict[str, InputKind] = {

@@ -1,0 +1,189 @@
+"""A script's texts mark its inputs without a word in the aircraft file; a text without a partner is told."""
+
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.maneuvers.events import Activity, Notice, SideManeuverFlown
+from advisor.flight.stream.stream import FlightStream
+from tests.flight.columns import Wire, attitude, fly, heartbeat, plane_parameters, pull, servo, text
+from tests.flight.maneuvers.test_marks import PIECE
+from tests.flight.stream.test_stream import as_plain, flown, maneuvers
+
+BEGIN, END = "ADVISOR BEGIN 3 reverse 3-2-1-1", "ADVISOR END 3 done"
+
+
+def announced(*texts: tuple[float, str], seconds: float = 14.0, mode: int = 0) -> Wire:
+    """A flight from 50 s since boot on, a 3-2-1-1 from 54.0 to 56.8 s, and texts at times since boot."""
+    wire = Wire()
+    fly(wire, 1000.0, 50.0, [4.0], seconds, mode=mode)
+    for at_s, said in texts:
+        text(wire, 950.0 + at_s, said)
+    return wire
+
+
+def told(wire: Wire, aircraft: Aircraft | None = None) -> list[str]:
+    _, events = flown(wire, aircraft or Aircraft())
+    return [event.text for event in events if isinstance(event, Notice) and event.code == "script_mark"]
+
+
+def listed(wire: Wire) -> list[Activity]:
+    _, events = flown(wire)
+    return [event for event in events if isinstance(event, Activity)]
+
+
+def test_begin_and_end_mark_a_manoeuvre_and_its_free_response():
+    _, events = flown(announced((53.0, BEGIN), (57.0, END)))
+    (maneuver,) = maneuvers(events)
+    assert maneuver.span.closed_by == "marked by a script"
+    assert maneuver.span.start_s == pytest.approx(54.0, abs=0.05)
+    assert maneuver.span.end_s == pytest.approx(60.0, abs=0.05)
+
+
+def test_the_announced_name_is_that_of_the_input():
+    _, events = flown(announced((53.0, BEGIN), (57.0, END)))
+    assert [m.span.kind for m in maneuvers(events)] == ["reverse 3-2-1-1"]
+
+
+@pytest.mark.parametrize("name", ["a wobble", "", "rudder doublet"])
+def test_a_name_that_the_elevator_does_not_have_leaves_the_input_its_own(name: str):
+    _, events = flown(announced((53.0, f"ADVISOR BEGIN 3 {name}"), (57.0, END)))
+    assert [m.span.kind for m in maneuvers(events)] == ["3-2-1-1"]
+
+
+def test_in_a_mode_that_closes_the_pitch_loop_an_announced_input_counts_too():
+    _, events = flown(announced((53.0, BEGIN), (57.0, END), mode=5))
+    assert [m.span.closed_by for m in maneuvers(events)] == ["marked by a script"]
+
+
+def test_the_free_response_ends_where_the_next_input_is_announced():
+    _, events = flown(announced((53.0, BEGIN), (57.0, END), (58.5, "ADVISOR BEGIN 4 doublet")))
+    (maneuver,) = maneuvers(events)
+    assert maneuver.span.end_s == pytest.approx(58.5, abs=0.05)
+
+
+def test_an_aborted_input_is_listed_with_its_reason_and_not_judged():
+    wire = announced((53.0, BEGIN), (56.0, "ADVISOR END 3 aborted: the stick moved by 12 %"))
+    _, events = flown(wire)
+    assert maneuvers(events) == []
+    (activity,) = listed(wire)
+    assert activity.reason == "aborted"
+    assert activity.text == (
+        "input 3 (reverse 3-2-1-1) was ended early by the script: the stick moved by 12 %; not judged"
+    )
+    assert (activity.start_s, activity.end_s) == pytest.approx((53.0, 56.0), abs=0.05)
+
+
+def test_an_early_end_in_two_chunks_is_read_whole():
+    wire = announced()
+    why = "ADVISOR END 3 aborted: the height above the ground fell below 60 m"
+    for at_s, number, chunk, part in ((3.0, 0, 0, BEGIN), (6.0, 7, 0, why[:50]), (6.001, 7, 1, why[50:])):
+        wire.send("STATUSTEXT", 1000.0 + at_s, severity=5, text=part.encode(), id=number, chunk_seq=chunk)
+    (activity,) = listed(wire)
+    assert "the height above the ground fell below 60 m; not judged" in activity.text
+
+
+def test_a_switch_that_bounces_is_listed():
+    wire = announced((53.0, BEGIN), (53.2, "ADVISOR END 3 aborted: switch"))
+    (activity,) = listed(wire)
+    assert activity.reason == "bounce"
+    assert "input 3 (reverse 3-2-1-1) ended after 0.20 s (a test lasts at least 0.5 s)" in activity.text
+
+
+def test_a_begin_without_an_end_is_told_and_hides_nothing():
+    wire = announced((53.0, BEGIN))
+    (sentence,) = told(wire)
+    assert sentence == (
+        "ADVISOR BEGIN at 0:53.0, input 3 (reverse 3-2-1-1), has no END before the end of the messages, so "
+        "it marks nothing; mark the stretch by hand if it was flown."
+    )
+    _, events = flown(wire)
+    assert [m.span.closed_by for m in maneuvers(events)] == ["quiet"]
+
+
+def test_a_begin_that_stays_open_for_longer_than_any_mark_is_told_in_flight():
+    wire = announced((53.0, BEGIN), seconds=120.0)
+    stream = FlightStream(Aircraft())
+    events = stream.feed(wire.columns())
+    assert [m.span.closed_by for m in maneuvers(events)] == ["quiet"]
+    (sentence,) = [e.text for e in events if isinstance(e, Notice) and e.code == "script_mark"]
+    assert "has no END within 100 s" in sentence
+
+
+def test_of_two_begins_the_second_counts_and_the_first_is_told():
+    wire = announced((50.5, "ADVISOR BEGIN 2 doublet"), (53.0, BEGIN), (57.0, END))
+    _, events = flown(wire)
+    assert [m.span.kind for m in maneuvers(events)] == ["reverse 3-2-1-1"]
+    (sentence,) = told(wire)
+    assert "input 2 (doublet), has no END before BEGIN 3 at 0:53.0" in sentence
+
+
+def test_an_end_without_a_begin_is_told_and_marks_nothing():
+    wire = announced((57.0, END))
+    assert told(wire) == [
+        "ADVISOR END 3 at 0:57.0 has no BEGIN, so it marks nothing; mark the stretch by hand if it was flown."
+    ]
+    _, events = flown(wire)
+    assert [m.span.closed_by for m in maneuvers(events)] == ["quiet"]
+
+
+def test_the_end_of_another_number_ends_no_input():
+    first, second = told(announced((53.0, BEGIN), (57.0, "ADVISOR END 4 done")))
+    assert "input 3 (reverse 3-2-1-1), has no END before ADVISOR END 4 at 0:57.0" in first
+    assert second.startswith("ADVISOR END 4 at 0:57.0 has no BEGIN")
+
+
+def test_a_text_that_arrives_twice_counts_once():
+    wire = announced((53.0, BEGIN), (53.1, BEGIN), (57.0, END), (57.1, END))
+    assert told(wire) == []
+    _, events = flown(wire)
+    assert len(maneuvers(events)) == 1
+
+
+def test_a_text_without_a_number_is_told_with_the_known_ones():
+    (sentence,) = told(announced((53.0, "ADVISOR BEGIN doublet")))
+    assert sentence.startswith("The text ADVISOR BEGIN doublet is no mark")
+
+
+def test_a_script_of_another_aircraft_is_told_with_both_names():
+    wire = announced((51.0, "ADVISOR SCRIPT big wing 1a2b3c4d"))
+    (sentence,) = told(wire, Aircraft(name="small wing"))
+    assert sentence == (
+        "The script in the autopilot was written for the aircraft big wing, and the aircraft file is that of "
+        "small wing; write the script anew: advisor script ardupilot."
+    )
+    assert told(wire, Aircraft(name="big wing")) == []
+
+
+def test_without_an_aircraft_file_any_script_is_taken():
+    assert told(announced((51.0, "ADVISOR SCRIPT big wing 1a2b3c4d"))) == []
+
+
+def test_announced_inputs_in_flight_are_those_of_a_replay():
+    wire = announced((53.0, BEGIN), (57.0, END), (58.5, BEGIN), (60.0, "ADVISOR END 3 aborted: mode"))
+    stream, live = FlightStream(Aircraft()), []
+    for i in range(0, len(wire), PIECE):
+        live += stream.feed(wire.columns(range(i, min(i + PIECE, len(wire)))))
+    live += stream.finish()
+    _, replayed = flown(wire)
+    assert as_plain(live) == as_plain(replayed)
+    assert len(maneuvers(live)) == 1
+
+
+def test_a_stretch_in_which_several_surfaces_move_has_one_extent_on_both_axes():
+    wire = Wire()
+    heartbeat(wire, 1000.0)
+    plane_parameters(wire, 1000.001)
+    for k in range(700):
+        since_s = k / 50.0
+        pulses = {1: 1500 + 20 * pull(since_s - 4.2), 2: 1500 + 20 * pull(since_s - 4.0), 4: 1500}
+        attitude(wire, 1000.01 + since_s, 50.0 + since_s)
+        servo(wire, 1000.011 + since_s, 50.0 + since_s, pulses)
+    text(wire, 1003.0, "ADVISOR BEGIN 1 multisine")
+    text(wire, 1008.0, "ADVISOR END 1 done")
+    stream = FlightStream(Aircraft(), lateral=True)
+    events = stream.feed(wire.columns()) + stream.finish()
+    (pitch,) = maneuvers(events)
+    (side,) = (event.maneuver for event in events if isinstance(event, SideManeuverFlown))
+    assert pitch.span.start_s == side.span.start_s == pytest.approx(54.0, abs=0.05)
+    assert pitch.span.end_s == side.span.end_s == pytest.approx(61.0, abs=0.05)
+    assert pitch.span.kind == side.span.kind == "multisine"
