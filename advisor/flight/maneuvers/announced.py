@@ -15,8 +15,8 @@ from advisor.flight.maneuvers.maneuver import InputKind
 from advisor.words.printable import printable
 from advisor.words.vehicle_time import clock
 
-TEXTS = b"ADVISOR "
-"""Beginning of every announcement."""
+TEXTS = (b"ADVISOR BEGIN", b"ADVISOR END", b"ADVISOR SCRIPT")
+"""Beginnings of the announcements."""
 SCRIPT_NOTICE = "script_mark"
 """Code of a notice about an announcement that marks nothing, or about a script of another aircraft."""
 _BEGIN = re.compile(r"BEGIN (\d{1,6})(?: +(.*))?")
@@ -91,10 +91,10 @@ class AnnouncedStretch:
 
 
 def read_announcement(raw: bytes) -> Announcement | None:
-    """Return the parts of a script's text; None for a text of another sender."""
+    """Return the parts of a script's text; None for a text that marks nothing and names no aircraft."""
     if not raw.startswith(TEXTS):
         return None
-    said = printable(raw[len(TEXTS) :].decode("utf-8", "replace")).strip()
+    said = printable(raw.removeprefix(b"ADVISOR ").decode("utf-8", "replace")).strip()
     if begin := _BEGIN.fullmatch(said):
         return Announcement("begin", int(begin[1]), (begin[2] or "").strip())
     if end := _END.fullmatch(said):

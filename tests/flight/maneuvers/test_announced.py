@@ -144,6 +144,10 @@ def test_a_text_without_a_number_is_told_with_the_known_ones():
     assert sentence.startswith("The text ADVISOR BEGIN doublet is no mark")
 
 
+def test_further_texts_of_a_script_are_no_marks():
+    assert told(announced((53.0, "ADVISOR WAITS: bank"), (54.0, "ADVISOR NEXT 3 doublet"))) == []
+
+
 def test_a_script_of_another_aircraft_is_told_with_both_names():
     wire = announced((51.0, "ADVISOR SCRIPT big wing 1a2b3c4d"))
     (sentence,) = told(wire, Aircraft(name="small wing"))
