@@ -224,6 +224,13 @@ def _range_deg(maneuver: Maneuver, name: str) -> float:
     return float(np.degrees(np.ptp(y))) if len(y) else 0.0
 
 
+def moved_at_once(maneuver: Maneuver) -> bool:
+    """Return whether the elevator moves together with aileron or rudder, each as a part of the test."""
+    elevator, *others = (_range_deg(maneuver, name) for name in ("elevator", "aileron", "rudder"))
+    least = LEAST_PART * max(elevator, *others)
+    return elevator >= least > 0.0 and max(others) >= least
+
+
 def follows_motion(maneuver: Maneuver, control: str, others: Sequence[str]) -> list[Reason]:
     """Return a reason if a control moves far less than another one, and so only follows the motion."""
     moved, *beside = (_range_deg(maneuver, name) for name in (control, *others))

@@ -1,4 +1,4 @@
-"""Bias of the derivatives due to an omitted pitching moment, and reasons against a manoeuvre because of it.
+"""Bias of the derivatives due to an omitted influence, and reasons against a manoeuvre because of the bias.
 
 S holds the sensitivities of the fitted outputs with respect to the parameters. s is the response to the
 omitted term with the coefficient one. W is the inverse of the noise's covariance. Near the optimum the
@@ -13,9 +13,12 @@ residual's lag-1 correlation is removed first.
 The pitch equation of a rigid body is q̇ = M/Iyy + (Izz − Ixx)/Iyy·p·r. Every body has Izz ≤ Ixx + Iyy, and an
 aircraft has Ixx ≤ Izz, so that the factor lies between 0 and 1. The largest bias by rolling and yawing is
 therefore known without aerodynamics and without the inertias (Etkin & Reid, Dynamics of Flight, 1996, ch. 4).
-The effect of the throttle is estimated from the residual.
+Sideslip in a roll turns the path by −p·β, which is known where β is measured.
+The effects of throttle, aileron and rudder, and a moment that does not grow with V², are estimated from the
+residual.
 """
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from math import sqrt
 
@@ -52,7 +55,7 @@ class Bias:
     """Coefficient of the omitted term over its standard deviation."""
 
 
-def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | None:
+def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray, turning: bool = False) -> Bias | None:
     """Return the bias due to an omitted moment; None for a constant moment, for too short a fit,
     and for a model whose response overflows.
 
@@ -60,6 +63,8 @@ def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | 
     ----------
     term
         Shape (n,): omitted part of q̇ for a coefficient of one, at the stamps of the fitted pitch rate.
+    turning
+        Whether the term is a part of α̇ without a force, instead of a part of q̇.
     """
     fits = estimate.fits[0]
     t = fits["q"].t
@@ -68,14 +73,24 @@ def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | 
     elevator = maneuver.channels["elevator"]
     moved = np.interp(t, elevator.t, elevator.y)
     with np.errstate(over="ignore", invalid="ignore"):
-        columns = _columns(estimate, t, moved - moved[0], term)
-    outputs = [(fits[name], columns[name]) for name in _OUTPUTS if name in fits]
+        columns = _columns(estimate, t, moved - moved[0], term, turning)
+    return bias_of([(fits[name], columns[name]) for name in _OUTPUTS if name in fits], t, len(PARAMETERS))
+
+
+def bias_of(outputs: Sequence[tuple[ChannelFit, FloatArray]], t: FloatArray, derivatives: int) -> Bias | None:
+    """Return the bias of the first ``derivatives`` parameters; None for a response that overflows.
+
+    Parameters
+    ----------
+    outputs
+        Fit of each output, and its sensitivities at the times ``t``, shape (n, m), the omitted term last.
+    """
     if not all(np.all(np.isfinite(column)) for _, column in outputs):
         return None  # The response of a fast unstable model overflows, and tells no bias.
     taken, _, _ = _regressed([_rows(fit, t, column, 0.0) for fit, column in outputs])
     # Coloured residuals make a term look significant that only follows their colour.
     _, coefficient, ratio = _regressed([_rows(fit, t, column, fit.lag1) for fit, column in outputs])
-    return Bias(taken[: len(PARAMETERS)], coefficient, ratio)
+    return Bias(taken[:derivatives], coefficient, ratio)
 
 
 def _regressed(outputs: list[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, float, float]:
@@ -92,28 +107,31 @@ def _regressed(outputs: list[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray
     return taken / size[:-1] * size[-1], coefficient / float(size[-1]), ratio
 
 
-def _columns(estimate: Estimate, t: FloatArray, moved: FloatArray, term: FloatArray) -> dict[str, FloatArray]:
+def _columns(
+    estimate: Estimate, t: FloatArray, moved: FloatArray, term: FloatArray, turning: bool
+) -> dict[str, FloatArray]:
     """Return the sensitivities of each output, shape (n, 11): eight parameters, two states, the term."""
     z_alpha, z_q, z_delta, m_alpha, m_q, m_delta = (
         estimate.value(name) for name in ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
     )
     system = np.array([[z_alpha, 1.0 + z_q], [m_alpha, m_q]])
-    alpha, q = _driven(system, t, np.stack([z_delta * moved, m_delta * moved])[:, :, None])[:, :, 0]
+    alpha, q = driven(system, t, np.stack([z_delta * moved, m_delta * moved])[:, :, None])[:, :, 0]
     regressors = np.stack([np.ones(len(t)), alpha, q, moved], axis=1)
     inputs = np.zeros((2, len(t), 2 * regressors.shape[1] + _LOCAL + 1))
     inputs[0, :, :4] = inputs[1, :, 4:8] = regressors
-    inputs[1, :, -1] = term
+    inputs[0 if turning else 1, :, -1] = term
     initial = np.zeros((2, inputs.shape[2]))
     initial[0, 8] = initial[1, 9] = 1.0
-    states = _driven(system, t, inputs, initial)
+    states = driven(system, t, inputs, initial)
     force = z_alpha * states[0] + z_q * states[1] + inputs[0]
+    force[:, -1] -= inputs[0, :, -1]  # A turn of the path is no force.
     return {"alpha": states[0], "q": states[1], "a_z": (estimate.airspeed_m_s or 1.0) * force}
 
 
-def _driven(
+def driven(
     system: FloatArray, t: FloatArray, inputs: FloatArray, initial: FloatArray | None = None
 ) -> FloatArray:
-    """Return the states, shape (2, n, m), of the linear system for m pairs of inputs, shape (2, n, m)."""
+    """Return the states, shape (k, n, m), of the linear system for m sets of inputs, shape (k, n, m)."""
     states = np.zeros_like(inputs)
     if initial is not None:
         states[:, 0] = initial
@@ -138,9 +156,27 @@ _JUDGED = ("M_alpha", "M_q", "M_delta_e", "Z_alpha")
 """Derivatives whose bias is examined."""
 
 
-def coupled(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
-    """Return a reason for each omitted influence that biases a derivative beyond its 95 % interval."""
-    return [*_rolling_with_yawing(maneuver, estimate), *_throttle(maneuver, estimate)]
+def coupled(maneuver: Maneuver, estimate: Estimate, exceeded: Collection[str] = ()) -> list[Reason]:
+    """Return a reason for each omitted influence that biases a derivative beyond its 95 % interval.
+
+    Parameters
+    ----------
+    exceeded
+        Codes of the limits that the manoeuvre exceeds. Bank, air speed, aileron and rudder are examined
+        beyond their limits only.
+    """
+    return [
+        *_rolling_with_yawing(maneuver, estimate),
+        *(_slipping_in_a_roll(maneuver, estimate) if "bank" in exceeded else ()),
+        *(_changing_speed(maneuver, estimate) if "airspeed" in exceeded else ()),
+        *_moved(maneuver, estimate, "throttle", "leave it where it is"),
+        *(
+            reason
+            for control in ("aileron", "rudder")
+            if control in exceeded
+            for reason in _moved(maneuver, estimate, control, f"use less {control}")
+        ),
+    ]
 
 
 def _rolling_with_yawing(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
@@ -150,18 +186,57 @@ def _rolling_with_yawing(maneuver: Maneuver, estimate: Estimate) -> list[Reason]
     if found is None:
         return []
     cure = "let roll and yaw die down before the first step"
-    return _beyond(estimate, found.of_one, "coupling", "rolling and yawing", cure)
+    return beyond(estimate, found.of_one, "coupling", "rolling and yawing", cure)
 
 
-def _throttle(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
-    if "throttle" not in maneuver.channels:
+def _slipping_in_a_roll(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
+    if not {"p", "beta"} <= maneuver.channels.keys():
         return []
-    found = bias_by(maneuver, estimate, _at_fit(maneuver, estimate, "throttle"))
-    # The statistic is the likelihood ratio of the two models, one with the throttle.
+    beta = _at_fit(maneuver, estimate, "beta")
+    term = -_at_fit(maneuver, estimate, "p") * (beta - np.mean(beta))
+    found = bias_by(maneuver, estimate, term, turning=True)
+    if found is None:
+        return []
+    return beyond(estimate, found.of_one, "bank", "rolling with sideslip", "fly it wings level")
+
+
+def _changing_speed(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
+    """Return a reason if moments that do not grow with V² have moved an estimate."""
+    if "airspeed" not in maneuver.channels or not carries_speed(estimate):
+        return []
+    speed, q = _at_fit(maneuver, estimate, "airspeed"), estimate.fits[0]["q"]
+    term = (speed / float(np.mean(speed)) - 1.0) * np.gradient(q.fitted, q.t)
+    cure = "smaller steps, from steady speed"
+    return _by_residual(maneuver, estimate, term, "airspeed", "the changing air speed", cure)
+
+
+def has_banking(maneuver: Maneuver) -> bool:
+    """Return whether a record contains all that a banked flight adds to the motion in pitch."""
+    return {"p", "r", "bank", "beta", "theta"} <= maneuver.channels.keys()
+
+
+def carries_speed(estimate: Estimate) -> bool:
+    """Return whether the derivatives of an estimate grow with the measured air speed."""
+    return estimate.airspeed_m_s is not None
+
+
+def _moved(maneuver: Maneuver, estimate: Estimate, channel: str, cure: str) -> list[Reason]:
+    """Return a reason if the pitching moment of another control has moved an estimate."""
+    if channel not in maneuver.channels:
+        return []
+    term = _at_fit(maneuver, estimate, channel)
+    return _by_residual(maneuver, estimate, term, channel, f"the {channel}'s pitching moment", cure)
+
+
+def _by_residual(
+    maneuver: Maneuver, estimate: Estimate, term: FloatArray, code: str, what: str, cure: str
+) -> list[Reason]:
+    """Return a reason if a term of unknown size, as estimated from the residual, moves an estimate."""
+    found = bias_by(maneuver, estimate, term)
+    # The statistic is the likelihood ratio of the two models, one with the term.
     if found is None or abs(found.ratio) < sqrt(float(chdtri(1, OUTLIER_BELOW))):
         return []
-    bias = found.coefficient * found.of_one
-    return _beyond(estimate, bias, "throttle", "the throttle's pitching moment", "leave it where it is")
+    return beyond(estimate, found.coefficient * found.of_one, code, what, cure)
 
 
 def _at_fit(maneuver: Maneuver, estimate: Estimate, name: str) -> FloatArray:
@@ -169,16 +244,21 @@ def _at_fit(maneuver: Maneuver, estimate: Estimate, name: str) -> FloatArray:
     return np.interp(estimate.fits[0]["q"].t, channel.t, channel.y)
 
 
-def _beyond(estimate: Estimate, bias: FloatArray, code: str, what: str, cure: str) -> list[Reason]:
+def beyond(
+    estimate: Estimate,
+    bias: FloatArray,
+    code: str,
+    what: str,
+    cure: str,
+    judged: Sequence[str] = _JUDGED,
+) -> list[Reason]:
     """Return a reason with the derivative whose bias exceeds its interval most; empty without one."""
     half = NORMAL_95 * estimate.std
-    share = {name: abs(float(bias[k]) / float(half[k])) for name, k in _PLACES.items() if half[k] > 0.0}
+    places = {name: estimate.names.index(name) for name in judged if name not in estimate.not_identifiable}
+    share = {name: abs(float(bias[k]) / float(half[k])) for name, k in places.items() if half[k] > 0.0}
     name = max(share, key=lambda name: share[name], default="")
     if not name or share[name] <= 1.0:
         return []
     shown, most = distinct_texts(share[name], 1.0, 1)
     text = f"{what} may move {symbol(name)} by {shown} times its interval (limit {most}); {cure}"
     return [Reason(code, text, share[name], 1.0)]
-
-
-_PLACES = {name: PARAMETERS.index(name) for name in _JUDGED}

@@ -23,6 +23,7 @@ from advisor.decision.envelope import (
     flown,
     incomplete,
     leapt,
+    moved_at_once,
     not_heard,
     short_response,
 )
@@ -85,12 +86,16 @@ class Examined:
     """Outputs whose prediction must be precise if the test determines its axis."""
     outside: tuple[Reason, ...]
     """Reasons for exceeded limits of the model."""
+    needless: frozenset[str] = frozenset()
+    """Codes of the limits that a precise estimate makes needless. The estimate contains the influence, or
+    ``lacks`` examines the bias."""
     quick: tuple[Reason, ...] = ()
     """Reasons for steps too short for the aircraft."""
     findings: tuple[InstrumentFinding, ...] = ()
     """Findings of the fit about the instruments."""
-    lacks: Callable[[], Iterable[Reason]] = tuple
-    """Function that returns reasons for moments that the model omits."""
+    lacks: Callable[[frozenset[str]], Iterable[Reason]] = lambda exceeded: ()
+    """Function that returns reasons for influences that the model omits. The argument holds the codes of the
+    needless limits that the manoeuvre exceeds."""
     modes_alone: tuple[Reason, ...] | None = None
     """Reasons for a record that determines no derivative. None if the test determines at least one
     derivative."""
@@ -105,7 +110,14 @@ def objections(x: Examined) -> tuple[Reason, ...]:
     """Return objections to a manoeuvre, the most important first; empty for one that the rules can judge."""
     maneuver, estimate = x.maneuver, x.estimate
     fits = estimate.fits[0] if isinstance(estimate, Estimate) else {}
-    reasons = [*incomplete(maneuver, x.needed, x.period_s, fits), *x.outside]
+    outside = (*x.outside, *changed_speed(maneuver, x.aircraft))
+    exceeded = frozenset(reason.code for reason in outside) & x.needless
+    if exceeded and _stands(x, fits):
+        outside = tuple(reason for reason in outside if reason.code not in exceeded)
+    reasons = [
+        *incomplete(maneuver, x.needed, x.period_s, fits),
+        *(r for r in outside if r.code != "airspeed"),
+    ]
     codes = {reason.code for reason in reasons}
     short = [] if is_informed(x) else short_response(maneuver, x.period_s)
     if maneuver.leapt_s:
@@ -117,14 +129,15 @@ def objections(x: Examined) -> tuple[Reason, ...]:
         return tuple(reasons)
     if refused := refusals((*maneuver.findings, *x.findings)):
         return refused
-    follows = [*changed_speed(maneuver, x.aircraft), *short, *x.quick]
+    follows = [*(r for r in outside if r.code == "airspeed"), *short, *x.quick]
     if codes & NO_CURE_BY_INPUT:
         # A larger input remedies no faulty record: reasons that ask for one would mislead.
         return (*reasons, *follows)
     gentle = _mended(maneuver, _too_gentle(x, fits))
     if isinstance(estimate, NoEstimate):
         return (*reasons, *follows, *gentle)
-    follows = [*(r for r in x.lacks() if r.code not in codes), *follows]
+    codes |= {reason.code for reason in follows}
+    follows = [*(r for r in x.lacks(exceeded) if r.code not in codes), *follows]
     lacking = _badly_explained(x, estimate) or ([] if gentle else _mended(maneuver, _poor(x, estimate)))
     if lacking and lacking[0].code == "turbulence":
         return (*reasons, *lacking, *follows)
@@ -159,8 +172,21 @@ def is_informed(x: Examined) -> bool:
     return known and 100.0 * max(found.prediction[name] for name in x.bands) <= WIDEST_PREDICTION_PERCENT
 
 
+def _stands(x: Examined, fits: Mapping[str, ChannelFit]) -> bool:
+    """Return whether an estimate explains its manoeuvre and predicts the response to its input."""
+    if isinstance(x.estimate, NoEstimate) or _too_gentle(x, fits):
+        return False
+    return not (_badly_explained(x, x.estimate) or _poor(x, x.estimate))
+
+
 def _too_gentle(x: Examined, fits: Mapping[str, ChannelFit]) -> list[Reason]:
-    """Return a reason if the response hardly exceeds the noise, in any output and for every control."""
+    """Return a reason if the response hardly exceeds the noise, in any output and for every control.
+
+    The response to several controls at once has no peak of one control. Then the precision of the estimate
+    answers.
+    """
+    if moved_at_once(x.maneuver) and is_informed(x):
+        return []
     seen = x.responses if fits else tuple(x.rates.values())
     wanting: dict[str, tuple[float, Response]] = {}
     for response in seen:

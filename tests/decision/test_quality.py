@@ -80,7 +80,29 @@ def bad_flight():
     return flown(Scenario(rates=RATES, maneuvers=(Maneuver("3211"), *BAD_MANOEUVRES.values())))
 
 
-@pytest.mark.parametrize("code", BAD_MANOEUVRES)
+NEEDLESS = ("bank", "aileron", "rudder", "airspeed")
+"""Manoeuvres beyond a limit whose estimate has a bias within its interval."""
+
+
+@pytest.mark.parametrize("code", NEEDLESS)
+def test_a_limit_refuses_nothing_where_the_estimate_holds(code):
+    maneuver, estimated, reasons = bad_flight()[1 + list(BAD_MANOEUVRES).index(code)]
+    assert reasons == ()
+    untold = NoEstimate("x", "x")
+    assert code in {reason.code for reason in judge_pitch(maneuver, untold, AIRCRAFT)}
+    imprecise = replace(estimated, prediction=dict.fromkeys(estimated.prediction, 0.5))
+    assert code in {reason.code for reason in judge_pitch(maneuver, imprecise, AIRCRAFT)}
+
+
+@pytest.mark.parametrize("name", ["beta", "p", "r"])
+def test_the_bank_has_its_limit_where_the_record_lacks_a_part_of_the_turn(name):
+    maneuver, estimated, _ = bad_flight()[1 + list(BAD_MANOEUVRES).index("bank")]
+    channels = {key: channel for key, channel in maneuver.channels.items() if key != name}
+    found = judge_pitch(replace(maneuver, channels=channels), estimated, AIRCRAFT)
+    assert [reason.code for reason in found] == ["bank"]
+
+
+@pytest.mark.parametrize("code", BAD_MANOEUVRES.keys() - NEEDLESS)
 def test_a_bad_manoeuvre_is_rejected_with_its_right_reason_first(code):
     _, _, reasons = bad_flight()[1 + list(BAD_MANOEUVRES).index(code)]
     assert reasons[0].code == code

@@ -7,10 +7,12 @@ attack and one air speed. The moments p·q and q·r are not in the model.
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.axes.lateral_omitted import side_coupled
 from advisor.decision.envelope import (
     above,
     banked,
@@ -85,11 +87,22 @@ def judge_lateral(
             responses=tuple(RESPONSES[name] for name in estimate.flown),
             determined=tuple(k for name in estimate.flown for k in _DETERMINED[name]),
             bands=tuple(RESPONSES[name].output for name in informing),
+            needless=_needless(maneuver, estimate),
+            lacks=partial(side_coupled, maneuver, estimate),
             modes_alone=_modes_alone(maneuver, estimate)
             if set(estimate.not_identifiable) == set(estimate.names)
             else None,
         )
     )
+
+
+def _needless(maneuver: Maneuver, estimate: LateralEstimate) -> frozenset[str]:
+    """Return the codes of the limits that a precise lateral estimate makes needless."""
+    measured = {"q", "alpha", "theta", "airspeed"} <= maneuver.channels.keys()
+    if not measured:
+        return frozenset()
+    speed = ("airspeed",) if estimate.scales_with_speed else ()
+    return frozenset({"bank", "elevator", "coupling", *speed})
 
 
 def _period_s(estimate: LateralEstimate | NoEstimate) -> float:

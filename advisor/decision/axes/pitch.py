@@ -16,7 +16,7 @@ from advisor.decision.envelope import (
     throttled,
     too_quick,
 )
-from advisor.decision.omitted import coupled
+from advisor.decision.omitted import carries_speed, coupled, has_banking
 from advisor.decision.quality import Examined, Response, objections
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -55,10 +55,22 @@ def judge_pitch(
     return objections(
         replace(
             x,
+            needless=_needless(maneuver, estimate),
             bands=tuple(estimate.prediction),
             findings=findings_of(estimate, aircraft),
             lacks=partial(coupled, maneuver, estimate),
         )
+    )
+
+
+def _needless(maneuver: Maneuver, estimate: Estimate) -> frozenset[str]:
+    """Return the codes of the limits that a precise estimate of pitch makes needless."""
+    return frozenset(
+        {
+            *_OTHERS,
+            *(("bank",) if has_banking(maneuver) else ()),
+            *(("airspeed",) if carries_speed(estimate) else ()),
+        }
     )
 
 
