@@ -14,7 +14,15 @@ from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.examined import ExaminedRecords
 from advisor.flight.instruments.measured import Evidence
 from advisor.flight.maneuvers.announced import PITCH_KINDS, SIDE_KINDS
-from advisor.flight.maneuvers.axes.lateral import SideInput, SideMovement, at_once, named, part_of_input
+from advisor.flight.maneuvers.axes.lateral import (
+    SideInput,
+    SideMovement,
+    SideStretch,
+    at_once,
+    named,
+    part_of_input,
+    with_elevator,
+)
 from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
 from advisor.flight.maneuvers.feedback import HISTORY_S
 from advisor.flight.maneuvers.ground import why_on_ground
@@ -34,6 +42,9 @@ from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.breaks import Breaks
 from advisor.flight.vehicle.modes import closes_pitch_loop
 
+_EDGE_S = 0.5
+"""Time before and after an elevator movement in which aileron and rudder may begin and end one input, s."""
+
 
 class Cutting:
     """Cutter of manoeuvres from the tracks of one vehicle."""
@@ -50,6 +61,9 @@ class Cutting:
         """Manoeuvres of the elevator, and those of aileron and rudder."""
         self.activities: Counter[str] = Counter()
         """Number of movements that were no test inputs, by their description."""
+        self.side_due: list[SideStretch] = []
+        """Stretches whose record of aileron and rudder is not yet cut, in the order of their completion."""
+        self._claimed: list[SideStretch] = []
 
     @property
     def is_backwards(self) -> bool:
@@ -59,6 +73,8 @@ class Cutting:
     def begin(self, mode: str) -> None:
         """Begin a power-on in a flight mode, without manoeuvres so far."""
         self._modes = [(-np.inf, mode)]
+        self.side_due.clear()
+        self._claimed.clear()
         self.pitch.begin()
         self.sideways.begin()
 
@@ -79,18 +95,61 @@ class Cutting:
         because = self._not_an_input(maneuver, up_to_order)
         if because is not None:
             return [self._activity(maneuver, because)]
+        if self._lateral and (sides := self._beside(span, up_to_order)):
+            joint = self._claim(span, SideInput(sides), boot, up_to_order)
+            if joint is not None:
+                return self._counted(*self._cut(joint, boot, up_to_order))
         airspeed = maneuver.channels.get("airspeed")
         steady = at_steady_speed(maneuver.span, airspeed, self._limits.airspeed_change_percent)
         if steady is not maneuver.span:
             maneuver, evidence = self._cut(steady, boot, up_to_order)
         return self._counted(maneuver, evidence)
 
+    def _beside(self, span: Span, up_to_order: int | None) -> tuple[SideMovement, ...]:
+        """Return the movements of aileron and rudder that form one input with a movement of the elevator."""
+        mark = Mark(span.start_s - _EDGE_S, min(span.last_step_s + 2.0 * _EDGE_S, span.end_s))
+        sides = [
+            SideMovement(loop, marked_span(mark, self._tracks.cut(loop.control, *mark.reach, up_to_order)))
+            for loop in (ROLL, YAW)
+        ]
+        return with_elevator(SideMovement(PITCH, span), sides)
+
+    def _claim(self, span: Span, found: SideInput, boot: int, up_to_order: int | None) -> Span | None:
+        """Return the common extent of an input of several controls, whose lateral record becomes due.
+
+        None if aileron and rudder made no test input of their own.
+        """
+        joint = at_once(span, SideInput((SideMovement(PITCH, span), *found.movements)))
+        sideways = replace(joint, kind=named(found), steps=found.main.span.steps)
+        if self.is_no_side_input(self.side(sideways, boot, up_to_order)[0], found, up_to_order):
+            return None
+        stretch = SideStretch(up_to_order, sideways, found, boot)
+        self.side_due.append(stretch)
+        self._claimed.append(stretch)
+        return joint
+
+    def claims(self, span: Span, up_to_order: int | None) -> bool:
+        """Return whether an input of all controls that is already complete overlaps a span."""
+        return any(
+            one.span.start_s < span.last_step_s and span.start_s < one.span.last_step_s
+            for one in self._claimed
+            if up_to_order is None or (one.order is not None and one.order <= up_to_order)
+        )
+
+    def side_events(self, stretch: SideStretch) -> list[FlightEvent]:
+        """Return the event of a stretch with an input of aileron and rudder; empty if it is no test input."""
+        maneuver, evidence = self.side(stretch.span, stretch.boot, stretch.order)
+        if stretch.swept and self.is_no_side_input(maneuver, stretch.found, stretch.order):
+            return []
+        return self.side_counted(maneuver, evidence)
+
     def marked(self, mark: Mark, boot: int, up_to_order: int | None) -> list[FlightEvent]:
-        """Return the manoeuvres of a marked stretch, without the criteria for unmarked movements.
+        """Return the pitch manoeuvre of a marked stretch, without the criteria for unmarked movements.
 
         The stretch is a manoeuvre of the elevator, of aileron and rudder, or of both, depending on the moved
-        controls. A stretch without any movement counts as one of the elevator. SystemID moves any control,
-        even in hover, so each control's visible effect decides.
+        controls. The lateral manoeuvre becomes due in ``side_due``. A stretch without any movement counts as
+        one of the elevator. SystemID moves any control, even in hover, so each control's visible effect
+        decides.
         """
         said = mark.announced
         if said is not None and (no_test := said.no_test(mark.end_s - mark.start_s)) is not None:
@@ -119,9 +178,7 @@ class Cutting:
             found = SideInput(sides)
             kind = named(found) if said is None else said.kind(SIDE_KINDS, named(found))
             span = replace(at_once(found.main.span, SideInput(moved)), kind=kind)
-            side, of_side = self.side(span, boot, up_to_order)
-            if not swept or not self.is_no_side_input(side, found, up_to_order):
-                events += self.side_counted(side, of_side)
+            self.side_due.append(SideStretch(up_to_order, span, found, boot, swept))
         return events
 
     def is_no_side_input(self, maneuver: Maneuver, found: SideInput, up_to_order: int | None) -> bool:

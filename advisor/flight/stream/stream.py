@@ -64,8 +64,9 @@ class FlightStream(StreamState):
         return events
 
     def _finish_boot(self) -> list[FlightEvent]:
+        flown = self._path.finish(self._master_s)
         lateral = self._side.finish() if self._side is not None else []
-        events = [*self._path.finish(self._master_s), *lateral, *self._texts.finish(self._master_s)]
+        events = [*flown, *lateral, *self._texts.finish(self._master_s)]
         self._past = self._at_best()
         if self._keep_s == np.inf:
             self.power_ons.append(

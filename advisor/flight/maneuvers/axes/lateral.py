@@ -19,6 +19,9 @@ level during a rudder doublet of 3 to 6 deg move the aileron by at most 0.4 deg.
 _NEXT = 0.5
 """Least amplitude of a movement that ends the free response, over that of the input. The model includes every
 movement of both controls, so that a smaller movement does no harm."""
+_MEANWHILE = 0.5
+"""Least common time of two movements that form one input, over the longer movement's time. Hands that hold
+the wings level move for a part of an elevator test. A multisine moves all surfaces for the whole time."""
 TAIL_S = (3.0, 12.0)
 """Least and greatest length of the free response, s. Three periods of a slow Dutch roll last 12 s."""
 PERIODS = 3.0
@@ -67,6 +70,36 @@ class SideInput:
     def start_s(self) -> float:
         """Onset of the first step of all movements, s."""
         return min(one.span.start_s for one in self.movements)
+
+
+@dataclass(frozen=True, slots=True)
+class SideStretch:
+    """A stretch whose extent the elevator or a mark gives, with an input of aileron and rudder."""
+
+    order: int | None
+    """Index of the newest message at which the stretch was complete. None at the end of the messages."""
+    span: Span
+    found: SideInput
+    boot: int
+    swept: bool = False
+    """Whether the autopilot's SystemID moved the controls, so that each visible effect decides."""
+
+
+def with_elevator(elevator: SideMovement, sides: Sequence[SideMovement]) -> tuple[SideMovement, ...]:
+    """Return the movements of aileron and rudder that form one input with a movement of the elevator.
+
+    Each has a part of the amplitude, and both move for at least half of the longer movement's time.
+    """
+    group = part_of_input([elevator, *sides])
+    if elevator not in group:
+        return ()
+    return tuple(one for one in group if one is not elevator and _is_meanwhile(one.span, elevator.span))
+
+
+def _is_meanwhile(one: Span, other: Span) -> bool:
+    common_s = min(one.last_step_s, other.last_step_s) - max(one.start_s, other.start_s)
+    longer_s = max(one.last_step_s - one.start_s, other.last_step_s - other.start_s)
+    return common_s >= _MEANWHILE * longer_s > 0.0
 
 
 def at_once(span: Span, found: SideInput) -> Span:

@@ -6,6 +6,8 @@ response is long enough, in vehicle time.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import groupby
+from operator import itemgetter
 
 from advisor.flight.elevator.elevator_watch import SETTLE_S, ElevatorWatch
 from advisor.flight.maneuvers.axes.lateral import (
@@ -62,12 +64,23 @@ class SidePath:
             if new.source.startswith(self._messages.setdefault(new.channel, new.source.partition(".")[0]))
             for order, t, y in zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
         ]
-        for order, t, name, y in sorted(arrived):
-            for found in self._watches[name].push(t, order, y):
-                if isinstance(found, Span):
-                    self._add(SideMovement(LOOPS[name], found))
+        for order, samples in groupby(sorted(arrived), key=itemgetter(0)):
+            events += self._complete(order)
+            # All controls of one message come before a decision: their inputs may end together.
+            for _, t, name, y in samples:
+                for found in self._watches[name].push(t, order, y):
+                    if isinstance(found, Span):
+                        self._add(SideMovement(LOOPS[name], found))
             while self._pending and self._is_over():
                 events += self._released(order)
+        return [*events, *self._complete(None)]
+
+    def _complete(self, order: int | None) -> list[FlightEvent]:
+        """Return the events of stretches that were complete at the message of this order; None for all."""
+        events: list[FlightEvent] = []
+        due = self._cutting.side_due
+        while due and (order is None or (due[0].order is not None and due[0].order <= order)):
+            events += self._cutting.side_events(due.pop(0))
         return events
 
     def finish(self) -> list[FlightEvent]:
@@ -78,7 +91,7 @@ class SidePath:
         events: list[FlightEvent] = []
         while self._pending:
             events += self._released(None)
-        return events
+        return [*self._complete(None), *events]
 
     @property
     def _newest_s(self) -> float:
@@ -125,7 +138,11 @@ class SidePath:
         ]
         span = self._marks.before(span)
         maneuver, evidence = self._cutting.side(span, self._boot, up_to_order)
-        if self._marks.holds(span) or self._cutting.is_no_side_input(maneuver, found, up_to_order):
+        if (
+            self._marks.holds(span)
+            or self._cutting.claims(span, up_to_order)
+            or self._cutting.is_no_side_input(maneuver, found, up_to_order)
+        ):
             return []
         named_one = replace(maneuver, span=replace(span, kind=named(found)))
         return self._cutting.side_counted(named_one, evidence)
