@@ -21,6 +21,7 @@ import numpy as np
 from scipy.special import expit
 
 from advisor.aircraft.reference import PARAMETERS
+from advisor.flight.instruments.lateness import CLOCKS_S
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import N_PARAMETERS
 from advisor.model.response import respond
@@ -30,7 +31,7 @@ from advisor.oem.estimate import InstrumentEstimate, NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.extra import Prior, penalty
 from advisor.oem.gauss_newton import CONVERGED
-from advisor.oem.instruments import SERVO_LAG, Instrument, extra_of
+from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, Instrument, extra_of
 from advisor.oem.prior import about_zero, precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 from advisor.oem.profile import needs_profile, profiled
@@ -44,6 +45,9 @@ differ by hundreds of times as much."""
 MODEL_ERROR = 1e-3
 """Numerical: error of the model's outputs, relative to their spread. A surface with a lag is taken as linear
 between the grid's stamps (``surface``)."""
+MEASURED_LAG_S = 0.005
+"""Standard deviation of a stated lag of zero, s, if only a command before its stamps contradicts the zero. A
+measured surface is late by its sensor's filter, at most one period of 200 Hz."""
 CONTRADICTS = 3.0
 """Distance of a stated value from the data's value, in combined standard deviations, that is a
 contradiction."""
@@ -213,7 +217,7 @@ def weighed(x: Instrument, share: float) -> Instrument:
 
 def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: Solution) -> InstrumentFit:
     """Return the fit in which a stated value is a prior unless the data exclude it."""
-    alone = identified_at(solution, names)
+    alone = _uncancelled(identified_at(solution, names))
     white = np.sqrt(np.diag(solution.covariance_cr)[N:])
     if all(x.instrument.stated is None or x.found.contradicts for x in alone):
         return InstrumentFit(solution, alone)
@@ -226,6 +230,9 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
             continue
         # A statement is trusted no better than the data confirm it. A confirmed zero holds exactly.
         apart = abs(found.unstated_value - x.stated)
+        if _cancels(one, alone):
+            kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, MEASURED_LAG_S, share))))
+            continue
         if x.known_to > 0.0 and (x.stated != 0.0 or apart > found.unstated_std):
             width = max(x.known_to * abs(x.stated), apart)
             kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, width, share))))
@@ -237,6 +244,26 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
         return InstrumentFit(plain)
     final = final if solution.profile is None else _whole_posterior(final, left)
     return InstrumentFit(final, refreshed(kept, final))
+
+
+def _cancels(one: Identified, all_of_them: Sequence[Identified]) -> bool:
+    """Return whether a delay of the command cancels a lag against a stated lag of zero.
+
+    A measured surface does not move before its own record. A lag and a negative delay that cancel are one
+    net lateness, which the delay alone describes.
+    """
+    x, found = one
+    delays = [other.found.value for other in all_of_them if other.instrument.name == COMMAND_DELAY.name]
+    early = bool(delays) and delays[0] < -CLOCKS_S
+    return x.name == SERVO_LAG.name and x.stated == 0.0 and early and found.unstated_value > 0.0
+
+
+def _uncancelled(alone: tuple[Identified, ...]) -> tuple[Identified, ...]:
+    """Return the instruments, where a lag that a delay cancels contradicts no stated zero."""
+    return tuple(
+        one._replace(found=replace(one.found, contradicts=False)) if _cancels(one, alone) else one
+        for one in alone
+    )
 
 
 def refreshed(identified: Sequence[Identified], solution: Solution) -> tuple[Identified, ...]:
