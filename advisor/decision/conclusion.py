@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Rule
 from advisor.decision.change import Change
-from advisor.decision.heard import Heard, spoken_after, stays
+from advisor.decision.heard import Heard, first_stop, spoken_after, stays
 from advisor.decision.verdict import FlightTestVerdict, NextInput, Remaining, RuleProgress
 
 ENOUGH = NextInput("no further manoeuvre needed", Remaining(0, 0))
@@ -50,14 +50,14 @@ def concluded(
     chosen = criterion.chosen
     changed = change.sentence if change is not None and change.confirmed else ""
     stop = chosen.holds or (not changed and stays(heard, criterion.rule, criterion.usable))
-    if stop and not chosen.holds:
-        said = (
-            f"TEST COMPLETE since manoeuvre {chosen.stopped_at}: no change of the aircraft was found since."
-        )
-    elif not stop and changed and chosen.stopped_at is not None:
+    if chosen.holds or chosen.stopped_at is None:
+        said = criterion.sentence(stop)
+    elif stop:
+        said = f"TEST COMPLETE since manoeuvre {chosen.stopped_at}{_since(criterion)}"
+    elif changed:
         said = f"CONTINUE: {changed}"
     else:
-        said = criterion.sentence(stop)
+        said = f"CONTINUE: {_denied(criterion, heard)}; {_open_now(criterion)}"
     following = ENOUGH if stop else criterion.next()
     before = heard[criterion.flown - 2] if 1 < criterion.flown <= len(heard) + 1 else None
     return FlightTestVerdict(
@@ -68,7 +68,33 @@ def concluded(
         limit_percent=chosen.limit_percent,
         stopped_at=chosen.stopped_at,
         by_rule=criterion.by_rule,
-        next=replace(following, remaining=spoken_after(before, following.remaining)),
+        next=replace(following, remaining=_foretold(stop, before, following.remaining, criterion)),
         warnings=warnings,
         evidence=evidence,
     )
+
+
+def _open_now(criterion: Criterion) -> str:
+    """Return what the criterion lacks now, as a clause."""
+    return criterion.sentence(False).removeprefix("CONTINUE: ")
+
+
+def _since(criterion: Criterion) -> str:
+    """Return the end of the sentence about a stop that was heard and whose criterion does not hold now."""
+    if criterion.chosen.now_percent is None:
+        return ": no change of the aircraft was found since."
+    return f"; later data open it again: {_open_now(criterion)}"
+
+
+def _denied(criterion: Criterion, heard: Sequence[Heard]) -> str:
+    """Return a clause about a stop that is taken back, with the reason."""
+    stopped_at = criterion.chosen.stopped_at
+    if first_stop(heard, criterion.rule) is not None:
+        return f"a manoeuvre behind the stop after manoeuvre {stopped_at} does not count any more"
+    return f"later manoeuvres deny the stop after manoeuvre {stopped_at}"
+
+
+def _foretold(
+    stop: bool, before: Heard | None, found: Remaining | None, criterion: Criterion
+) -> Remaining | None:
+    return found if stop else spoken_after(before, found, criterion.rule, criterion.chosen.now_percent)

@@ -8,6 +8,7 @@ estimates.
 from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
+from math import inf
 
 from advisor.decision.verdict import FlightTestVerdict, Remaining, RuleProgress
 
@@ -68,19 +69,42 @@ def as_heard(found: RuleProgress, rule: str, heard: Sequence[Heard]) -> RuleProg
     return replace(found, stopped_at=stopped, history_percent=(*told, *found.hindsight_percent[n:]))
 
 
-def spoken_after(before: Heard | None, found: Remaining | None) -> Remaining | None:
-    """Return a forecast; None if it differs from the last one by more than the last one's band.
+def spoken_after(
+    before: Heard | None, found: Remaining | None, rule: str, now: float | None
+) -> Remaining | None:
+    """Return the forecast to speak: a number whenever there was one before.
 
-    A forecast that jumps has no value for the crew. The next forecast is announced again.
+    A forecast is a distribution over the manoeuvres that are open. A further manoeuvre narrows it, or the
+    forecast says why it does not.
 
     Parameters
     ----------
     before
         Criterion that the crew heard after the manoeuvre before the newest one.
+    found
+        Forecast from the present estimates; None without one.
+    rule, now
+        Rule that decides, and its present criterion, per cent.
     """
     last = before.remaining if before is not None else None
-    if found is None or last is None or last.median is None or last.p90 is None:
+    if before is None or last is None or last.median is None:
         return found
-    if found.median is None:
-        return None
-    return found if abs(found.median - (last.median - 1)) <= last.p90 - last.median else None
+    expected = max(last.median - 1, 1)
+    most = None if last.p90 is None else max(last.p90 - 1, 1)
+    if found is None:
+        return Remaining(expected, most, "the newest manoeuvre tells no other number")
+    if found.median is not None and (most is None or _most(found) <= most):
+        return found
+    return replace(found, why=_why(before.percent.get(rule), now))
+
+
+def _most(forecast: Remaining) -> float:
+    """Return the number that nine of ten forecasts do not exceed; infinite without one."""
+    return inf if forecast.p90 is None else forecast.p90
+
+
+def _why(before: float | None, now: float | None) -> str:
+    """Return the reason for a forecast that does not narrow, from the criterion before and now, per cent."""
+    if before is None or now is None or now <= before:
+        return "the newest manoeuvre taught less than foretold"
+    return f"the criterion rose from {before:.0f} to {now:.0f} %"

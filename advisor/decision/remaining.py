@@ -70,18 +70,39 @@ def by_information(known: Knowledge, next_covariance: FloatArray, odds: Odds) ->
     return _told(needed + rng.negative_binomial(needed, usable))
 
 
-def until_usable(needed: int, usable: Share) -> Remaining:
-    """Return the number of further manoeuvres until ``needed`` of them are usable, at least one."""
-    if needed > MOST:
-        return Remaining(None, None)
+def until_usable(needed: FloatArray, usable: Share) -> Remaining:
+    """Return the number of further manoeuvres until enough of them are usable.
+
+    Parameters
+    ----------
+    needed
+        Shape (draws,): number of usable manoeuvres in each draw of ``variance_scale``, at least one.
+    """
     rng = np.random.default_rng(0)
-    return _told(needed + rng.negative_binomial(needed, usable.draw(rng)))
+    within = np.minimum(needed, MOST + 1.0)
+    return _told(within + rng.negative_binomial(within, usable.draw(rng)))
+
+
+def variance_scale(freedom: int) -> FloatArray:
+    """Return draws of the true variance over the stated one, shape (draws,), from a scaled inverse χ².
+
+    A few manoeuvres show the scatter and the model's error badly, so that a stated variance is an estimate.
+
+    Parameters
+    ----------
+    freedom
+        Number of independent comparisons behind the stated variance.
+    """
+    rng = np.random.default_rng(1)
+    freedom = max(freedom, 1)
+    return np.asarray(freedom / rng.chisquare(freedom, _DRAWS))
 
 
 def _told(flights: FloatArray | IntArray) -> Remaining:
     """Return the forecast from simulated numbers of further manoeuvres, shape (draws,)."""
     median, p90 = np.quantile(flights, [0.5, 0.9], method="higher")
-    return Remaining(*(int(n) if n <= MOST else None for n in (median, p90)))
+    within = [int(n) if n <= MOST else None for n in (median, p90)]
+    return Remaining(within[0], within[1])
 
 
 def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> float:

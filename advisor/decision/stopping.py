@@ -35,11 +35,6 @@ def warnings(
 ) -> tuple[str, ...]:
     """Return sentences about facts that the criterion alone does not show."""
     plan, found = course.plan, []
-    if chosen.stopped_at is not None and not chosen.holds:
-        found.append(
-            f"The criterion held after manoeuvre {chosen.stopped_at} and does not hold any more: "
-            "later manoeuvres contradict the earlier ones."
-        )
     if change is not None:
         found.append(change.sentence)
     if plan.rule == "information":

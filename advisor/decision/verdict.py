@@ -121,14 +121,17 @@ class Remaining:
 
     median: int | None
     p90: int | None
+    why: str = ""
+    """Reason why the forecast does not narrow the one before; empty where it does."""
 
     @property
     def spoken(self) -> str:
         """Forecast as spoken to a pilot: ``about 2 more, 9 times in 10 at most 4``."""
+        why = f" ({self.why})" if self.why else ""
         if self.median is None:
-            return "no end in sight"
+            return f"no end in sight{why}"
         at_most = f", 9 times in 10 at most {self.p90}" if self.p90 is not None else ""
-        return f"about {self.median} more{at_most}"
+        return f"about {self.median} more{at_most}{why}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -43,7 +43,7 @@ def concluded(verdict: FlightTestVerdict) -> dict[str, Any]:
         "next": following
         and {
             **picked(following, "advice holding_back"),
-            "remaining_maneuvers": plain(following.remaining or Remaining(None, None)),
+            "remaining_maneuvers": picked(following.remaining or Remaining(None, None), "median p90"),
         },
     }
 

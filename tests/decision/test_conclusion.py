@@ -46,8 +46,24 @@ def test_a_stop_that_was_heard_stays_while_its_manoeuvres_are_usable():
     before = [heard(False), heard(True), heard(False)]
     stays = concluded(criterion(False, stopped_at=2), before)
     assert stays.decision == "stop"
+    assert stays.sentence == "TEST COMPLETE since manoeuvre 2; later data open it again: stop is False"
+    ended = concluded(criterion(False, stopped_at=2, usable=(0, 2, 3)), before)
+    assert ended.decision == "continue"
+    assert ended.sentence == (
+        "CONTINUE: a manoeuvre behind the stop after manoeuvre 2 does not count any more; stop is False"
+    )
+
+
+def test_a_stop_whose_criterion_is_not_computed_again_says_that_nothing_changed():
+    kept = criterion(False, stopped_at=2)
+    untold = replace(kept.chosen, now_percent=None)
+    stays = concluded(replace(kept, by_rule={"information": untold}), [heard(False), heard(True)])
     assert stays.sentence == "TEST COMPLETE since manoeuvre 2: no change of the aircraft was found since."
-    assert concluded(criterion(False, stopped_at=2, usable=(0, 2, 3)), before).decision == "continue"
+
+
+def test_a_stop_that_later_data_deny_is_said_as_that_with_what_is_open():
+    denied = concluded(criterion(False, stopped_at=2), [])
+    assert denied.sentence == "CONTINUE: later manoeuvres deny the stop after manoeuvre 2; stop is False"
 
 
 def test_a_confirmed_change_of_the_aircraft_ends_a_stop_that_was_heard():
@@ -58,11 +74,16 @@ def test_a_confirmed_change_of_the_aircraft_ends_a_stop_that_was_heard():
     assert concluded(criterion(False, stopped_at=2), before, suspected).decision == "stop"
 
 
-@pytest.mark.parametrize(("now", "spoken"), [(3, True), (4, True), (7, False)])
-def test_a_forecast_that_jumps_by_more_than_its_band_is_not_spoken(now, spoken):
+@pytest.mark.parametrize(("p90", "why"), [(5, ""), (9, "the criterion rose from 80 to 120 %")])
+def test_a_forecast_narrows_or_says_why_not(p90, why):
     before = [heard(False), heard(False), heard(False, remaining=Remaining(4, 6))]
-    said = concluded(criterion(False, remaining=Remaining(now, 9)), before).next.remaining
-    assert (said is not None) == spoken
+    said = concluded(criterion(False, remaining=Remaining(3, p90)), before).next.remaining
+    assert said == Remaining(3, p90, why)
+
+
+def test_a_forecast_is_never_empty_after_there_was_one():
+    before = [heard(False), heard(False), heard(False, remaining=Remaining(4, 6))]
+    assert concluded(criterion(False), before).next.remaining.median == 3
 
 
 def test_a_change_is_said_only_where_it_ends_a_stop():

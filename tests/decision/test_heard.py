@@ -57,7 +57,9 @@ def test_a_stop_that_was_heard_stays_where_no_change_of_the_aircraft_is_found() 
     verdict = flight_test([*AGREEING, odd], PLAN, heard=heard)
     assert not verdict.by_rule["continuous"].holds
     assert verdict.decision == "stop"
-    assert verdict.sentence.startswith("TEST COMPLETE since manoeuvre 3: no change of the aircraft")
+    assert verdict.sentence.startswith(
+        "TEST COMPLETE since manoeuvre 3; later data open it again: the last 3"
+    )
     assert verdict.next is not None
     assert verdict.next.advice == "no further manoeuvre needed"
 
@@ -75,19 +77,37 @@ def test_a_stop_does_not_rest_on_a_manoeuvre_that_no_longer_counts() -> None:
     assert verdict.decision == "continue"
 
 
-@pytest.mark.parametrize(
-    ("last", "now", "is_spoken"),
-    [((5, 8), (4, 6), True), ((5, 8), (7, 9), True), ((5, 8), (8, 12), False), ((5, 8), (None, None), False),
-     ((1, 1), (1, 2), False), ((None, None), (7, 9), True)],
-)  # fmt: skip
-def test_a_forecast_that_moves_by_more_than_its_band_is_not_spoken(last, now, is_spoken) -> None:
-    before = replace(NOTHING, remaining=Remaining(*last))
-    assert spoken_after(before, Remaining(*now)) == (Remaining(*now) if is_spoken else None)
+def spoken(last: Remaining | None, now: Remaining | None, percent: float = 60.0) -> Remaining | None:
+    """What is spoken after a criterion of 80 per cent, with these forecasts then and now."""
+    before = Heard({"continuous": 80.0}, frozenset(), remaining=last)
+    return spoken_after(before, now, "continuous", percent)
+
+
+@pytest.mark.parametrize("now", [(4, 6), (1, 2), (6, 7), (4, 7)])
+def test_a_forecast_that_narrows_the_one_before_is_spoken_as_it_is(now) -> None:
+    assert spoken(Remaining(5, 8), Remaining(*now)) == Remaining(*now)
+
+
+@pytest.mark.parametrize("now", [(5, 8), (8, 12), (None, None), (7, None)])
+def test_a_forecast_that_does_not_narrow_says_why(now) -> None:
+    taught = spoken(Remaining(5, 8), Remaining(*now))
+    assert taught == Remaining(*now, "the newest manoeuvre taught less than foretold")
+    risen = spoken(Remaining(5, 8), Remaining(*now), percent=120.0)
+    assert risen == Remaining(*now, "the criterion rose from 80 to 120 %")
+
+
+def test_a_forecast_that_cannot_be_told_again_goes_on_from_the_one_before() -> None:
+    found = spoken(Remaining(5, 8), None)
+    assert found == Remaining(4, 7, "the newest manoeuvre tells no other number")
+    assert found.spoken == (
+        "about 4 more, 9 times in 10 at most 7 (the newest manoeuvre tells no other number)"
+    )
 
 
 def test_the_first_forecast_is_spoken() -> None:
-    assert spoken_after(None, Remaining(14, 20)) == Remaining(14, 20)
-    assert spoken_after(NOTHING, Remaining(14, 20)) == Remaining(14, 20)
+    assert spoken(None, Remaining(14, 20)) == Remaining(14, 20)
+    assert spoken(Remaining(None, None), Remaining(7, 9)) == Remaining(7, 9)
+    assert spoken_after(None, Remaining(14, 20), "continuous", 60.0) == Remaining(14, 20)
 
 
 @pytest.mark.parametrize("again", [(), (replace(NOTHING, remaining=Remaining(1, 9)),)])
@@ -95,8 +115,8 @@ def test_a_forecast_is_compared_with_that_after_the_manoeuvre_before(monkeypatch
     """What was heard after the newest manoeuvre is not the one before, where all is decided once more."""
     monkeypatch.setattr(stopping, "next_input", lambda *_: NextInput("next: 3-2-1-1", Remaining(3, 5)))
     spoken = []
-    for last in (Remaining(40, 41), Remaining(4, 6)):
+    for last in (Remaining(2, 4), Remaining(4, 6)):
         heard = [replace(NOTHING, remaining=last), *again]
         following = flight_test(AGREEING[:2], PLAN, heard=heard).next
-        spoken.append(following.remaining if following is not None else "no advice")
-    assert spoken == [None, Remaining(3, 5)]
+        spoken.append(following.remaining if following is not None else None)
+    assert [one is not None and bool(one.why) for one in spoken] == [True, False]

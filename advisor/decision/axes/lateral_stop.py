@@ -20,7 +20,7 @@ from advisor.decision.conditions import ALPHA_MARGIN, BOLDER, FULL_TRAVEL_RAD
 from advisor.decision.first_unit import shown_unit_s, side_unit_s
 from advisor.decision.heard import Heard, first_stop
 from advisor.decision.inputs import StepInput
-from advisor.decision.remaining import Share, until_usable
+from advisor.decision.remaining import Share, until_usable, variance_scale
 from advisor.decision.tolerance import SHARE
 from advisor.decision.verdict import (
     INFORMATION_LIMIT_PERCENT,
@@ -215,15 +215,16 @@ def _remaining(
 ) -> Remaining | None:
     """Return the expected number of further manoeuvres; None if that cannot be told."""
     # The variance of a derivative falls with the number of manoeuvres that move its control.
-    needed = 0
+    scale = variance_scale(len(LATERAL.inputs) * (len(accepted) - 1))
+    needed = np.zeros(len(scale))
     for control in LATERAL.inputs:
         times = sum(control in one.flown for one in accepted)
-        worst = max(share for name, share in shares.items() if JUDGED[name] == control)
+        worst = _percent_of(control, shares)
         if not times or not math.isfinite(worst):
             return None
-        within = times * (worst / INFORMATION_LIMIT_PERCENT) ** 2
-        needed += max(CHECKED, math.ceil(within), times) - times
-    return until_usable(max(needed, 1), Share(len(accepted), flown - len(accepted)))
+        within = np.ceil(times * (worst / INFORMATION_LIMIT_PERCENT) ** 2 * scale)
+        needed += np.maximum(np.maximum(within, CHECKED), times) - times
+    return until_usable(np.maximum(needed, 1.0), Share(len(accepted), flown - len(accepted)))
 
 
 def _sentence(shares: Mapping[str, float], accepted: Sequence[LateralEstimate], stop: bool) -> str:
