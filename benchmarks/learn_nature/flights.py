@@ -1,0 +1,78 @@
+"""Flights of every generator, and those of the gate's autopilot, diagnosed once for their evidence."""
+
+import json
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from advisor.aircraft_file.read import load_aircraft
+from advisor.analysis.axes.lateral import compare_side_logs
+from advisor.analysis.gap import compare_logs
+from advisor.words.problems import UnusableInputError
+from benchmarks.gap_draws import drawn
+from benchmarks.metamorphic.flights import unpacked
+from sim.sealed.cases import AIRCRAFT, LOG, SealedCase, write_case
+
+from .evidence import KeptFlight, evidence_rows
+
+GATE = Path("../shared/gate")
+"""Folder of the gate's cases, next to a checkout."""
+AUTOPILOT = "autopilot"
+_KINDS = {"none": "none", "parameters": "parameters", "unknown": "outside"}
+
+Asked = tuple[str, Callable[[], KeptFlight | None]]
+"""Name of a flight, and the work that diagnoses it; None for a flight without a posterior."""
+
+
+def asked(each: int, seed: int, generators: Sequence[str]) -> Iterator[Asked]:
+    """Yield the flights of generators, and of the gate's autopilot where its cases are at hand."""
+    if AUTOPILOT in generators:
+        yield from _of_the_gate()
+    for name, case in drawn(each, seed, [name for name in generators if name != AUTOPILOT]):
+        yield name, lambda name=name, case=case: _of_a_case(name, case)  # type: ignore[misc]
+
+
+def _of_a_case(name: str, case: SealedCase) -> KeptFlight | None:
+    truth = case.truth
+    right = {"none": ("none", *truth["background"]), "parameters": ("parameters",), "outside": ("unknown",)}
+    names = right.get(truth["kind"], tuple(truth["effects"]))
+    with tempfile.TemporaryDirectory() as folder:
+        write_case(case, Path(folder) / "case")
+        log, file = Path(folder) / "case" / LOG, Path(folder) / "case" / AIRCRAFT
+        return _kept(name, truth["kind"], names, log, file, truth.get("axis", "pitch"))
+
+
+def _of_the_gate() -> Iterator[Asked]:
+    """Yield the gate's diagnoses of an autopilot whose logs are at hand."""
+    listed = GATE / "cases.json"
+    for name, case in json.loads(listed.read_text(encoding="utf-8")).items() if listed.is_file() else ():
+        log = GATE / str(case.get("log", ""))
+        if case.get("command") != "gap" or AUTOPILOT not in name or not log.is_file():
+            continue
+
+        def work(name: str = name, case: dict = case, log: Path = log) -> KeptFlight | None:  # type: ignore[type-arg]
+            names = tuple(case["answer"])
+            kind = _KINDS.get(names[0], "one")
+            axis = "lateral" if "lateral" in case.get("options", ()) else "pitch"
+            with unpacked(log) as plain:
+                return _kept(f"{AUTOPILOT}/{name}", kind, names, plain, GATE / case["aircraft"], axis)
+
+        yield f"{AUTOPILOT}/{name}", work
+
+
+def _kept(
+    name: str, kind: str, right: Sequence[str], log: Path, aircraft_file: Path, axis: str
+) -> KeptFlight | None:
+    """Diagnose a log by the code of the command, and keep its evidence."""
+    aircraft = load_aircraft(aircraft_file)
+
+    def diagnose() -> object:
+        return (
+            compare_side_logs([log], aircraft) if axis == "lateral" else compare_logs([log], aircraft, None)
+        )
+
+    try:
+        rows = evidence_rows(diagnose)
+    except UnusableInputError:
+        return None
+    return KeptFlight(name.split("/")[0], name, kind, tuple(right), rows) if rows else None
