@@ -12,11 +12,11 @@ only what no parameter can explain.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
-from scipy.optimize import minimize
 
-from advisor.oem.restricted import restricted
+from advisor.oem.restricted import LARGEST_MEMORY, SMALLEST_SHARE, bounded, likeliest, restricted
 from advisor.oem.running_sums import accumulated
 from advisor.process.arrays import FloatArray
 
@@ -28,9 +28,6 @@ SIGNIFICANT = 6.0
 """Least gain in twice the log likelihood of coloured over white noise."""
 PROMISING = 1.0
 """Least gain of the best starting value with which the search starts."""
-LARGEST_MEMORY = 0.9995
-SMALLEST_SHARE = 1e-4
-LOG_SMALLEST_SHARE = math.log(SMALLEST_SHARE)
 _NEARLY_ONE = 1.0 - 1e-9
 _ROUND_OFF = float(np.finfo(float).eps)
 """Least residual power per degree of freedom, relative to the mean square before the regression."""
@@ -70,51 +67,66 @@ def find_colour(stretches: Sequence[Stretch]) -> Colour:
     scale = float(np.sqrt(np.mean(np.concatenate([s.residual for s in stretches]) ** 2)))
     if scale == 0.0:
         return Colour(0.0, 0.0, 0.0, np.zeros((1, 1)))
-    prepared = [_orthogonal(s, scale) for s in stretches]
-    freedom = sum(max(len(block) - block.shape[1] + 1, 1) for block in prepared)
-
-    def pooled(memory: float, share: float) -> tuple[float, float]:
-        parts = [restricted(block, memory, share) for block in prepared]
-        # A residual that the columns explain whole is left with round-off, of either sign.
-        power = max(sum(power for power, _ in parts), freedom * _ROUND_OFF)
-        return power, sum(determinant for _, determinant in parts)
-
-    def cost(memory: float, share: float) -> tuple[float, float]:
-        power, determinants = pooled(memory, share)
-        return float(freedom * np.log(power / freedom) + determinants), power / freedom
-
-    white, variance = cost(0.0, 0.0)
-    plain = Colour(scale**2 * variance, 0.0, 0.0, np.array([[2.0 / freedom]]))
-    guesses = [(cost(memory, 0.0)[0], memory, 0.0) for memory in MEMORIES]
+    residuals = _Residuals.of(stretches, scale)
+    white, variance = residuals.cost(0.0, 0.0)
+    plain = Colour(scale**2 * variance, 0.0, 0.0, np.array([[2.0 / residuals.freedom]]))
+    guesses = [(residuals.cost(memory, 0.0)[0], memory, 0.0) for memory in MEMORIES]
     best = min(guesses)
-    guesses += [(cost(best[1], share)[0], best[1], share) for share in WHITE_SHARES[1:]]
+    guesses += [(residuals.cost(best[1], share)[0], best[1], share) for share in WHITE_SHARES[1:]]
     slower = min(0.99, 0.5 + best[1] / 2.0)
-    guesses += [(cost(slower, share)[0], slower, share) for share in WHITE_SHARES[1:]]
+    guesses += [(residuals.cost(slower, share)[0], slower, share) for share in WHITE_SHARES[1:]]
     reached, memory, share = min(guesses)
     if white - reached < PROMISING:
         return plain
-
-    def by_shape(x: FloatArray) -> float:
-        return cost(*_bounded(x))[0]
-
-    found = minimize(
-        by_shape,
-        _unbounded(memory, share),
-        method="Nelder-Mead",
-        options={"xatol": 2e-2, "fatol": 2e-2, "initial_simplex": _simplex(_unbounded(memory, share))},
-    )
-    memory, share = _bounded(found.x)
-    if white - float(found.fun) < SIGNIFICANT:
+    shape, least = residuals.likeliest(_unbounded(memory, share))
+    if white - least < SIGNIFICANT:
         return plain
-    variance = cost(memory, share)[1]
+    memory, share = bounded(*shape)
+    variance = residuals.cost(memory, share)[1]
 
     def joint(x: FloatArray) -> float:
         """Return -2·log-likelihood of the residuals for log variance and shape."""
-        power, determinants = pooled(*_bounded(x[1:]))
-        return float(freedom * x[0] + power * np.exp(-x[0]) + determinants)
+        power, determinants = residuals.pooled(*bounded(x[1], x[2]))
+        return float(residuals.freedom * x[0] + power * np.exp(-x[0]) + determinants)
 
-    centre = np.concatenate([[np.log(variance)], _unbounded(memory, share)])
+    centre = np.concatenate([[np.log(variance)], shape])
     return Colour(scale**2 * variance, memory, share, _uncertainty(joint, centre))
+
+
+class _Residuals:
+    """Residuals of one output in all manoeuvres, with an orthonormal basis of each manoeuvre's columns."""
+
+    def __init__(self, blocks: Sequence[FloatArray]) -> None:
+        self.freedom = sum(max(len(block) - block.shape[1] + 1, 1) for block in blocks)
+        """Number of samples that no parameter explains."""
+        self._floor = self.freedom * _ROUND_OFF
+        """Least residual power. A residual that the columns explain whole is left with round-off, of either
+        sign."""
+        self._sizes = np.array([block.shape for block in blocks], np.int64)
+        self._flat = np.concatenate([block.ravel() for block in blocks])
+        self._pooled: dict[tuple[float, float], tuple[float, float]] = {}
+
+    @classmethod
+    def of(cls, stretches: Sequence[Stretch], scale: float) -> Self:
+        """Return the residuals over ``scale``."""
+        return cls([_orthogonal(stretch, scale) for stretch in stretches])
+
+    def pooled(self, memory: float, share: float) -> tuple[float, float]:
+        """Return residual power and log determinants of all manoeuvres, as ``restricted`` does of one."""
+        if (memory, share) not in self._pooled:
+            power, determinants = restricted(self._flat, self._sizes, memory, share)
+            self._pooled[memory, share] = max(power, self._floor), determinants
+        return self._pooled[memory, share]
+
+    def cost(self, memory: float, share: float) -> tuple[float, float]:
+        """Return -2·log-likelihood at the likeliest variance, and this variance."""
+        power, determinants = self.pooled(memory, share)
+        return self.freedom * math.log(power / self.freedom) + determinants, power / self.freedom
+
+    def likeliest(self, begin: FloatArray) -> tuple[FloatArray, float]:
+        """Return the likeliest shape (2,) near a start, and its -2·log-likelihood."""
+        *shape, least = likeliest(self._flat, self._sizes, self.freedom, self._floor, *begin)
+        return np.array(shape), least
 
 
 def product(rows: FloatArray, colour: Colour) -> FloatArray:
@@ -138,22 +150,13 @@ def powers(rows: FloatArray, colour: Colour) -> FloatArray:
 
 def moved(colour: Colour, step: FloatArray) -> Colour:
     """Return the colour with log variance and shape changed by ``step`` (3,)."""
-    memory, share = _bounded(colour.shape + step[1:])
+    memory, share = bounded(*(colour.shape + step[1:]))
     return Colour(colour.variance * float(np.exp(step[0])), memory, share, colour.uncertainty)
-
-
-def _bounded(x: FloatArray) -> tuple[float, float]:
-    return LARGEST_MEMORY * math.tanh(x[0]), math.exp(min(max(x[1], LOG_SMALLEST_SHARE), 9.0))
 
 
 def _unbounded(memory: float, share: float) -> FloatArray:
     inside = float(np.clip(memory / LARGEST_MEMORY, -_NEARLY_ONE, _NEARLY_ONE))
     return np.array([np.arctanh(inside), np.log(max(share, SMALLEST_SHARE))])
-
-
-def _simplex(x: FloatArray) -> FloatArray:
-    corners: FloatArray = x + np.array([[0.0, 0.0], [0.15, 0.0], [0.0, 1.0]])
-    return corners
 
 
 def _orthogonal(stretch: Stretch, scale: float) -> FloatArray:

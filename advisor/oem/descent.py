@@ -144,8 +144,10 @@ class _Setting(NamedTuple):
     def moved(self, fit: Fit, step: "_Step") -> Fit | None:
         """Return the fit after a step; None where the simulation diverges."""
         optimum, count = fit.optimum, len(fit.optimum.shared)
-        problem = moved_by(step.shared[count:], fit.problem, self.nuisances)
-        assembly = self.motion.laid(problem)
+        problem, assembly = fit.problem, fit.assembly
+        if self.nuisances:
+            problem = moved_by(step.shared[count:], problem, self.nuisances)
+            assembly = self.motion.laid(problem)
         local = optimum.local + step.local
         later = self.motion.begins(assembly) - self.motion.begins(fit.assembly)
         begun = fit.response.begun

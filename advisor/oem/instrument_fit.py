@@ -26,7 +26,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import N_PARAMETERS
 from advisor.model.response import respond
 from advisor.model.short_period import NAMES
-from advisor.oem.descent import Response, descended
+from advisor.oem.descent import Fit, Response, descended
 from advisor.oem.estimate import InstrumentEstimate, NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.extra import Prior, penalty
@@ -35,7 +35,7 @@ from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, Instrument, extra_
 from advisor.oem.prior import about_zero, precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 from advisor.oem.profile import needs_profile, profiled
-from advisor.oem.solution import Solution, evaluate, search, spread_of
+from advisor.oem.solution import Solution, evaluate, reported, search, spread_of
 from advisor.oem.weighing import Weighing
 
 N = len(PARAMETERS)
@@ -131,7 +131,7 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
         return InstrumentFit(plain)
     share = colour_share(plain)
     names = tuple(weighed(x, share) for x in unknown)
-    found = _fitted(*_looked_about(plain, names), names, share)
+    found = _fitted(*_looked_about(plain, names), names, share, final=False)
     if found is not None:
         share = colour_share(found)
         names = tuple(weighed(x, share) for x in unknown)
@@ -176,15 +176,16 @@ def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
         return best
     there = lag.write(best.problem, lag.read(best.problem) / 3.0)
     share = colour_share(best)
-    rival = _fitted(there, _place(best), names, share)
+    rival = _searched(there, _place(best), names, share)
     if rival is None:
         return best
-    apart = 0.5 * share**2 * (rival.optimum.log_likelihood_cost - best.optimum.log_likelihood_cost)
-    if apart < 0.0:
-        best, rival, apart = rival, best, -apart
+    apart = 0.5 * share**2 * (rival.cost - best.optimum.log_likelihood_cost)
+    likelier = best if apart >= 0.0 else _evaluated(rival)
+    if likelier is None:
+        return best
     moved = [x.read(rival.problem) - x.read(best.problem) for x in names]
-    step = np.array([*(rival.theta - best.theta), *moved])
-    return replace(best, modes=float(expit(-apart)) * np.outer(step, step))
+    step = np.array([*(reported(*rival.place) - best.theta), *moved])
+    return replace(likelier, modes=float(expit(-abs(apart))) * np.outer(step, step))
 
 
 def _fitted(
@@ -192,17 +193,32 @@ def _fitted(
     place: tuple[FloatArray, FloatArray],
     names: Sequence[Instrument],
     share: float,
+    final: bool = True,
 ) -> Solution | None:
-    """Return the solution with instruments from a start; None if the search fails.
+    """Return the solution with instruments from a start; None if the search fails."""
+    fit = _searched(problem, place, names, share)
+    return None if fit is None else _evaluated(fit, final)
+
+
+def _searched(
+    problem: OutputErrorProblem,
+    place: tuple[FloatArray, FloatArray],
+    names: Sequence[Instrument],
+    share: float,
+) -> Fit | None:
+    """Return the fit with instruments from a start; None if the search fails.
 
     ``share`` is the factor on the derivative priors' standard deviations in a white-noise fit.
     """
     prior = replace(about_zero(precision(problem, place[0])), share=share)
     fit = descended(_PITCH, problem, names, prior, place)
-    if isinstance(fit, NoEstimate) or fit.optimum.status != CONVERGED:
-        return None
-    found = evaluate(fit.problem, fit.assembly, fit.optimum, fit.extra)
-    return found if isinstance(found, Solution) else None
+    return None if isinstance(fit, NoEstimate) or fit.optimum.status != CONVERGED else fit
+
+
+def _evaluated(fit: Fit, final: bool = True) -> Solution | None:
+    """Return the solution at a fit; None where the data do not determine it."""
+    solution = evaluate(fit.problem, fit.assembly, fit.optimum, fit.extra, final=final)
+    return solution if isinstance(solution, Solution) else None
 
 
 def colour_share(solution: Solution) -> float:

@@ -128,6 +128,7 @@ def evaluate(
     *,
     prior: Priors | None = None,
     parameters: Sequence[Any] = (),
+    final: bool = True,
 ) -> Solution | NoEstimate:
     """Return the solution at an optimum, with its errors.
 
@@ -136,6 +137,8 @@ def evaluate(
     extra, noise, kept : arguments of ``evaluation.errors_of``.
     prior : priors of the derivatives, whose errors count. None: the priors of the short period, whose errors
         do not.
+    final : whether the errors contain dynamics that the model lacks; a solution on the way to another one
+        needs none.
     """
     errors = errors_of(
         assembly,
@@ -144,7 +147,7 @@ def evaluate(
         optimum.noise,
         extra,
         precision(problem, optimum.shared) if prior is None else prior.precision,
-        fitted=optimum.fitted,
+        fitted=optimum.fitted if final else None,
         prior_share=None if prior is None else prior.share,
         noise=noise,
         kept=kept,

@@ -14,6 +14,9 @@ import numpy as np
 from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
+STEADY = 1e-15
+"""Numerical: relative change of a variance from one sample to the next below which the filter is steady."""
+
 
 @dataclass(frozen=True, slots=True)
 class Whitening:
@@ -52,8 +55,12 @@ def schedule(samples: int, memory: float, white_share: float) -> tuple[FloatArra
         total = predicted + white_share
         scale[i] = 1.0 / np.sqrt(total)
         gain[i] = memory * predicted / total
+        later = memory * memory * predicted * (1.0 - predicted / total) + 1.0 - memory * memory
+        if abs(later - predicted) <= STEADY * predicted:
+            scale[i:], gain[i:] = scale[i], gain[i]
+            return scale, gain, log_determinant + (samples - i) * np.log(total)
         log_determinant += np.log(total)
-        predicted = memory * memory * predicted * (1.0 - predicted / total) + 1.0 - memory * memory
+        predicted = later
     return scale, gain, log_determinant
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.linalg import toeplitz
 
-from advisor.oem.colour import Colour, Stretch, find_colour, product
+from advisor.oem.colour import Colour, Stretch, find_colour, moved, product
 from benchmarks.accuracy import noise, study
 
 ONE_IN_COLOURED_NOISE = pytest.mark.xfail(
@@ -28,6 +28,24 @@ def test_the_colour_of_noise_is_found_though_the_fit_has_eaten_part_of_it(memory
     # What matters is the noise's power at low frequencies.
     slow = [c.variance * ((1 + c.memory) / (1 - c.memory) + c.white_share) for c in found]
     assert np.median(slow) == pytest.approx((1 + memory) / (1 - memory) + share, rel=0.25)
+
+
+def test_no_shape_near_the_colour_of_noise_is_likelier():
+    one = stretch(0.95, 1.0, 4)
+    colour = find_colour([one])
+    basis = np.linalg.qr(COLUMNS)[0]
+
+    def cost(step):
+        other = moved(colour, np.append(0.0, step))
+        gamma = toeplitz(other.memory ** np.arange(600)) + other.white_share * np.eye(600)
+        inverse = np.linalg.inv(gamma)
+        whole = basis.T @ inverse @ basis
+        pulled = basis.T @ inverse @ one.residual
+        power = one.residual @ inverse @ one.residual - pulled @ np.linalg.solve(whole, pulled)
+        return 598 * np.log(power) + np.linalg.slogdet(gamma)[1] + np.linalg.slogdet(whole)[1]
+
+    steps = 0.1 * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+    assert all(cost(step) > cost(np.zeros(2)) for step in steps)
 
 
 def test_white_noise_is_called_white():

@@ -10,10 +10,9 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.fit import Fit, Known
-from advisor.gap.inference.marginal import marginal
 from advisor.oem.arrow import solved_within
 from advisor.oem.axes.lateral.disturbance import Course
-from advisor.oem.axes.lateral.gusts import Air, Sums, likeliest
+from advisor.oem.axes.lateral.gusts import Air, Integrated, Sums, likeliest
 from advisor.oem.covariance import colours_of
 from advisor.oem.weighing import Weighing
 
@@ -66,15 +65,11 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | 
     near
         Gusts of a similar fit, at which the search begins.
     """
-    prior, sums = known.prior(fit.values), _sums(fit, courses)
-
-    def cost(volume: float, inner: FloatArray) -> float:
-        likelihood = -0.5 * (volume + float(inner[0, 0]))
-        return -2.0 * marginal(likelihood, inner[1:, 1:], inner[1:, 0], prior, prior).right
-
-    air = likeliest(sums, fit.noise, cost, None if near is None else near.air)
+    sums = _sums(fit, courses)
+    prior = Integrated(*known.prior(fit.values))
+    air = likeliest(sums, fit.noise, prior, None if near is None else near.air)
     beside = (air._replace(angle=air.angle * np.exp(step)) for step in (-_BEND, 0.0, _BEND))
-    less, least, more = (cost(*one.weighed(sums)) for one in beside)
+    less, least, more = (other.cost(sums, prior)[0] for other in beside)
     bend = (less - 2.0 * least + more) / (2.0 * _BEND**2)
     empty = np.empty((len(fit.values), len(fit.values)))
     return Gusts(air, air.angle / np.sqrt(max(bend, _BEND)), np.nan, empty, empty[0]).at(fit, courses)

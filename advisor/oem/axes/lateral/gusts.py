@@ -6,12 +6,12 @@ correlation, as in Dryden's turbulence across the flight path. Noise of an instr
 enters its own output alone. The likelihoods of the residuals distinguish both.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import solve_triangular
+from scipy.linalg.lapack import dpotrf, dpotri
 from scipy.optimize import minimize
 from scipy.special import expit
 
@@ -29,8 +29,10 @@ from advisor.oem.weighing import Weighing
 MEMORY_S = 1.0
 """Prior: correlation time of the gust angle, s. One test is too short to determine it: with the time free,
 gusts on a jet become a drift of 60 s."""
-_RANGE, _MOST_STEPS = (1e-3, 1e3), 400
+_RANGE, _MOST_STEPS = (1e-3, 1e3), 100
 """Numerical: range of every standard deviation relative to its start, and most steps of the search."""
+_FLAT = 0.02
+"""Numerical: largest slope of -2 log likelihood, per standard error of a parameter, at its optimum."""
 
 
 class Sums(NamedTuple):
@@ -62,6 +64,45 @@ class Sums(NamedTuple):
         )
 
 
+class Integrated(NamedTuple):
+    """Gaussian prior of the parameters over which a likelihood is integrated; of zero precision for a
+    restricted likelihood."""
+
+    precision: FloatArray
+    """Shape (k,): inverse prior variances."""
+    pull: FloatArray
+    """Shape (k,): prior means minus the values of a fit."""
+
+    def left(self, inner: FloatArray) -> tuple[float, float, FloatArray]:
+        """Return the squares that the parameters leave, and the log determinant of their information.
+
+        The third result are the slopes (1 + k, 1 + k) of both by ``inner``.
+        ``inner`` (1 + k, 1 + k) holds weighted products of the residual and of the parameters' derivatives.
+        """
+        whole = inner[1:, 1:] + np.diag(self.precision)
+        inverse = np.linalg.inv(whole)
+        end = inner[1:, 0] + self.precision * self.pull
+        step = np.append(-1.0, inverse @ end)
+        slopes = np.outer(step, step)
+        slopes[1:, 1:] += inverse
+        return float(inner[0, 0] - end @ step[1:]), float(np.linalg.slogdet(whole)[1]), slopes
+
+
+class _Weighed(NamedTuple):
+    """Residuals of one manoeuvre under given gusts."""
+
+    volume: float
+    """Log determinant of the residuals' covariance."""
+    inner: FloatArray
+    """Shape (k, k): inner products of the columns, weighted by the inverse of the residuals' covariance."""
+    spread: FloatArray
+    """Shape (knots, knots): covariance of the gust angles after the residuals."""
+    likeliest: FloatArray
+    """Shape (knots, k): gust angles of least squares for each column."""
+    stiff: FloatArray
+    """Shape (knots, knots): inverse covariance of the gust angles before the residuals."""
+
+
 class Air(NamedTuple):
     """White noise of the outputs and the gust angle's statistics."""
 
@@ -78,10 +119,28 @@ class Air(NamedTuple):
         """Return the log determinant of the residuals' covariance, and the products (k, k) weighted by its
         inverse, of all manoeuvres together."""
         parts = [self._weighed(one) for one in sums]
-        return sum(volume for volume, _ in parts), np.sum([inner for _, inner in parts], axis=0)
+        return sum(part.volume for part in parts), np.sum([part.inner for part in parts], axis=0)
 
-    def _weighed(self, sums: Sums) -> tuple[float, FloatArray]:
-        """Return log determinant and products of one manoeuvre.
+    def cost(self, sums: Sequence[Sums], prior: Integrated) -> tuple[float, FloatArray]:
+        """Return -2 log likelihood without the parameters, and its slopes (outputs + 1,) by the logarithms of
+        the white noise and of the gust angle.
+
+        The derivative of a log determinant is the trace of the inverse times the change (Magnus & Neudecker,
+        *Matrix Differential Calculus*, ch. 8).
+        """
+        parts, weight = [self._weighed(one) for one in sums], self.noise**-2.0
+        left, volume, slopes = prior.left(np.sum([part.inner for part in parts], axis=0))
+        by_noise, by_angle = np.zeros(len(weight)), 0.0
+        for one, part in zip(sums, parts, strict=True):
+            turned = part.likeliest @ slopes
+            spread = part.spread + turned @ part.likeliest.T
+            products = np.tensordot(one.squares, slopes, 2) - 2.0 * np.tensordot(one.pulls, turned, 2)
+            by_noise += 2.0 * one.counts - 2.0 * weight * (products + np.tensordot(one.grams, spread, 2))
+            by_angle += 2.0 * (len(spread) - float(np.sum(spread * part.stiff)))
+        return left + volume + sum(part.volume for part in parts), np.append(by_noise, by_angle)
+
+    def _weighed(self, sums: Sums) -> _Weighed:
+        """Return the residuals of one manoeuvre under these gusts.
 
         The gust angle is a first-order Markov process, so the inverse of its covariance at the knots has
         three diagonals.
@@ -89,57 +148,60 @@ class Air(NamedTuple):
         weight, n = self.noise**-2.0, sums.grams.shape[1]
         memory = np.exp(-KNOTS_S / MEMORY_S)
         fresh = self.angle**2 * -np.expm1(-2.0 * KNOTS_S / MEMORY_S)  # variance that a step adds
-        whole, k = np.tensordot(weight, sums.grams, 1), np.arange(n)
-        whole[k, k] += (1.0 + memory**2 * ((k > 0) & (k < n - 1))) / fresh
-        whole[k[1:], k[:-1]] -= memory / fresh
-        whole[k[:-1], k[1:]] -= memory / fresh
-        lower = np.linalg.cholesky(whole)
-        explained = solve_triangular(lower, np.tensordot(weight, sums.pulls, 1), lower=True)
+        stiff, k = np.zeros((n, n)), np.arange(n)
+        stiff[k, k] = (1.0 + memory**2 * ((k > 0) & (k < n - 1))) / fresh
+        stiff[k[1:], k[:-1]] = stiff[k[:-1], k[1:]] = -memory / fresh
+        whole = stiff + np.tensordot(weight, sums.grams, 1)
+        pulls = np.tensordot(weight, sums.pulls, 1)
+        lower, _ = dpotrf(whole, lower=1)
+        spread, _ = dpotri(lower, lower=1)
+        spread = np.tril(spread) + np.tril(spread, -1).T
+        likeliest = spread @ pulls
         volume = float(sums.counts @ np.log(self.noise**2)) + 2.0 * float(np.sum(np.log(np.diag(lower))))
         volume += 2.0 * np.log(self.angle) + (n - 1) * np.log(fresh)
-        return volume, np.tensordot(weight, sums.squares, 1) - explained.T @ explained
+        return _Weighed(
+            volume, np.tensordot(weight, sums.squares, 1) - pulls.T @ likeliest, spread, likeliest, stiff
+        )
 
 
-def likeliest(
-    sums: Sequence[Sums],
-    noise: FloatArray,
-    cost: Callable[[float, FloatArray], float],
-    near: Air | None = None,
-) -> Air:
-    """Return the white noise and gusts of least cost.
+def likeliest(sums: Sequence[Sums], noise: FloatArray, prior: Integrated, near: Air | None = None) -> Air:
+    """Return the white noise and gusts of largest likelihood.
 
     Parameters
     ----------
     noise
         Shape (outputs,): standard deviation of each output's residual.
-    cost
-        -2 log likelihood, as a function of what ``Air.weighed`` returns.
+    prior
+        Prior of the parameters, over which the likelihood is integrated.
     near
         Gusts of a similar fit, at which the search begins.
     """
-    there = np.flatnonzero(sum(one.counts for one in sums))
+    counts = np.sum([one.counts for one in sums], axis=0)
+    there = np.flatnonzero(counts)
     own = noise[there]
     powers = [own**-2.0 @ np.trace(one.grams[there], axis1=1, axis2=2) / np.sum(one.counts) for one in sums]
     sizes = np.append(own, 1.0 / max(float(np.mean(np.sqrt(powers))), 1e-12))
+    # In this unit the curvature of -2 log likelihood is about 2.
+    unit = np.append(2.0 * counts[there], sum(one.grams.shape[1] for one in sums)) ** -0.5
 
     def air(x: FloatArray) -> Air:
         white = np.ones(len(noise))
-        white[there] = np.exp(x[:-1])
-        return Air(white, float(np.exp(x[-1])))
+        white[there] = np.exp(x[:-1] * unit[:-1])
+        return Air(white, float(np.exp(x[-1] * unit[-1])))
+
+    def at(x: FloatArray) -> tuple[float, FloatArray]:
+        value, slopes = air(x).cost(sums, prior)
+        return value, np.append(slopes[there], slopes[-1]) * unit
 
     first = sizes if near is None else np.append(near.noise[there], near.angle)
-    low, high = (np.log(share * sizes) for share in _RANGE)
-    begun: FloatArray = np.clip(np.log(first), low, high)
-
-    def at(x: FloatArray) -> float:
-        return cost(*air(x).weighed(sums))
-
-    found = minimize(
-        at, begun, method="Nelder-Mead",
+    low, high = (np.log(share * sizes) / unit for share in _RANGE)
+    begun: FloatArray = np.clip(np.log(first) / unit, low, high)
+    optimum = minimize(
+        at, begun, jac=True, method="L-BFGS-B",
         bounds=np.column_stack([low, high]).tolist(),
-        options={"maxfev": _MOST_STEPS, "xatol": 0.02, "fatol": 0.1},
+        options={"maxfun": _MOST_STEPS, "gtol": _FLAT, "ftol": 0.0},
     )  # fmt: skip
-    return air(found.x)
+    return air(optimum.x)
 
 
 def in_moving_air(solution: Solution) -> Solution:
@@ -158,29 +220,16 @@ def in_moving_air(solution: Solution) -> Solution:
     columns = np.column_stack([solution.residual, free])
     courses = list(zip(laid.blocks, courses_of(fit), strict=True))
     sums = [Sums.of(laid.channel[block], columns[block], course) for block, course in courses]
-    air = likeliest(sums, noise, _restricted)
+    prior = Integrated(*np.zeros((2, free.shape[1])))
+    air = likeliest(sums, noise, prior)
     weighing = Weighing.by(solution.noise.colours, laid)
     white = weighing.forward(columns)
-    left, volume = _left(white.T @ white)
+    left, volume, _ = prior.left(white.T @ white)
     freedom = max(len(white) - free.shape[1] - len(laid.own) * laid.maneuvers, 1)
     still = weighing.volume + volume + freedom * (1.0 + np.log(max(left, 1e-300) / freedom))
-    share = float(expit(0.5 * (still - _restricted(*air.weighed(sums)))))
+    share = float(expit(0.5 * (still - air.cost(sums, prior)[0])))
     blown = solution.covariance_cr + cramer_rao(laid, rows, air.noise) - cramer_rao(laid, rows, noise)
     for block, course in courses:
         pull = rows[block].T @ course.columns
         blown += pull @ air.angles(course.knots) @ pull.T
     return replace(solution, covariance=share * blown + (1.0 - share) * solution.covariance)
-
-
-def _restricted(volume: float, inner: FloatArray) -> float:
-    """Return -2 log restricted likelihood of residuals, from what ``Air.weighed`` returns."""
-    return volume + sum(_left(inner))
-
-
-def _left(inner: FloatArray) -> tuple[float, float]:
-    """Return the squares that the parameters leave and the log determinant of their information.
-
-    ``inner`` (1 + k, 1 + k) holds weighted products of the residual and of the parameters' derivatives.
-    """
-    taken = inner[0, 1:] @ np.linalg.solve(inner[1:, 1:], inner[1:, 0])
-    return float(inner[0, 0] - taken), float(np.linalg.slogdet(inner[1:, 1:])[1])

@@ -48,8 +48,8 @@ def solve_lateral(problem: LateralProblem, nuisances: Sequence[Nuisance] = ()) -
     fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
     if isinstance(fit, NoEstimate) or _has_diverged(fit):
         return RUNS_AWAY
-    solution = _evaluated(fit, prior)
-    for _ in range(2):
+    solution = _evaluated(fit, prior, final=False)
+    for final in (False, True):
         if isinstance(solution, NoEstimate):
             return solution
         share = share_of(solution.covariance_cr[:N, :N], solution.scattered[:N, :N])
@@ -61,7 +61,7 @@ def solve_lateral(problem: LateralProblem, nuisances: Sequence[Nuisance] = ()) -
         if (why := refused(fit.optimum)) is not None:
             return why
         problem, start = fit.problem, fit.place
-        solution = _evaluated(fit, prior)
+        solution = _evaluated(fit, prior, final)
     return solution if isinstance(solution, NoEstimate) else _above_bound(in_moving_air(solution))
 
 
@@ -76,10 +76,11 @@ def _has_diverged(fit: Fit) -> bool:
     return not gain >= 0.0
 
 
-def _evaluated(fit: Fit, prior: Priors) -> Solution | NoEstimate:
+def _evaluated(fit: Fit, prior: Priors, final: bool) -> Solution | NoEstimate:
     """Return the solution at a fit, with errors for instruments of coloured noise."""
-    found = evaluate(fit.problem, fit.assembly, fit.optimum, fit.extra, prior=prior, parameters=fit.nuisances)
-    return found if isinstance(found, NoEstimate) else _above_bound(found)
+    at = fit.problem, fit.assembly, fit.optimum, fit.extra
+    solution = evaluate(*at, prior=prior, parameters=fit.nuisances, final=final)
+    return solution if isinstance(solution, NoEstimate) else _above_bound(solution)
 
 
 def _above_bound(found: Solution) -> Solution:

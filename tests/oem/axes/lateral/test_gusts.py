@@ -7,7 +7,8 @@ import pytest
 
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral import solution as lateral_solution
-from advisor.oem.axes.lateral.disturbance import Linear, courses_of
+from advisor.oem.axes.lateral.disturbance import Course, Linear, courses_of
+from advisor.oem.axes.lateral.gusts import Air, Integrated, Sums
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.axes.lateral.solution import solve_lateral
 from advisor.oem.rows import Signal
@@ -61,3 +62,20 @@ def test_errors_of_one_test_contain_its_gusts(coloured):
         narrow.append(std_of(coloured[-1]))
     assert np.mean(np.array(off) / wide < 1.96) > 0.85
     assert np.mean(np.array(off) / narrow < 1.96) < 0.75
+
+
+def test_slopes_of_the_likelihood_are_its_differences():
+    rng, outputs = np.random.default_rng(3), len(LATERAL.outputs)
+    channel = np.repeat(np.arange(outputs), 30)
+    course = Course(0.1 * np.arange(8), rng.standard_normal((len(channel), 8)))
+    sums = [Sums.of(channel, rng.standard_normal((len(channel), 4)), course)]
+    prior = Integrated(np.array([0.0, 1.0, 4.0]), np.array([0.0, 0.5, -0.2]))
+    place, step = np.log([0.5, 1.0, 2.0, 1.5, 0.8, 0.3]), 1e-5
+
+    def cost(x):
+        return Air(np.exp(x[:-1]), float(np.exp(x[-1]))).cost(sums, prior)
+
+    differences = [
+        (cost(place + move)[0] - cost(place - move)[0]) / (2.0 * step) for move in step * np.eye(len(place))
+    ]
+    assert cost(place)[1] == pytest.approx(differences, rel=1e-6)
