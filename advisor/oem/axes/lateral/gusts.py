@@ -180,22 +180,26 @@ def likeliest(sums: Sequence[Sums], noise: FloatArray, prior: Integrated, near: 
     there = np.flatnonzero(counts)
     own = noise[there]
     powers = [own**-2.0 @ np.trace(one.grams[there], axis1=1, axis2=2) / np.sum(one.counts) for one in sums]
-    sizes = np.append(own, 1.0 / max(float(np.mean(np.sqrt(powers))), 1e-12))
+    size = 1.0 / max(float(np.mean(np.sqrt(powers))), 1e-12)
     # In this unit the curvature of -2 log likelihood is about 2.
     unit = np.append(2.0 * counts[there], sum(one.grams.shape[1] for one in sums)) ** -0.5
 
     def air(x: FloatArray) -> Air:
         white = np.ones(len(noise))
         white[there] = np.exp(x[:-1] * unit[:-1])
-        return Air(white, float(np.exp(x[-1] * unit[-1])))
+        return Air(white, size * float(np.sinh(x[-1] * unit[-1])))
 
     def at(x: FloatArray) -> tuple[float, FloatArray]:
         value, slopes = air(x).cost(sums, prior)
-        return value, np.append(slopes[there], slopes[-1]) * unit
+        return value, np.append(slopes[there], slopes[-1] / np.tanh(x[-1] * unit[-1])) * unit
 
-    first = sizes if near is None else np.append(near.noise[there], near.angle)
-    low, high = (np.log(share * sizes) / unit for share in _RANGE)
-    begun: FloatArray = np.clip(np.log(first) / unit, low, high)
+    def place(noise: FloatArray, angle: float) -> FloatArray:
+        """Return the search's variables; of small gusts the likelihood is a parabola in their angle."""
+        return np.append(np.log(noise), np.arcsinh(angle / size)) / unit
+
+    low, high = (place(share * own, share * size) for share in _RANGE)
+    begun = place(own, size) if near is None else place(near.noise[there], near.angle)
+    begun = np.clip(begun, low, high)
     optimum = minimize(
         at, begun, jac=True, method="L-BFGS-B",
         bounds=np.column_stack([low, high]).tolist(),
