@@ -12,12 +12,12 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.fit import Fit, Known
 from advisor.oem.arrow import solved_within
 from advisor.oem.axes.lateral.disturbance import Course
-from advisor.oem.axes.lateral.gusts import Air, Integrated, Sums, likeliest
+from advisor.oem.axes.lateral.gusts import MEMORY_SPREAD, Air, Integrated, Sums, likeliest
 from advisor.oem.covariance import colours_of
 from advisor.oem.weighing import Weighing
 
 _BEND = 0.2
-"""Finite-difference step of the gust angle's logarithm, for the curvature of the likelihood."""
+"""Finite-difference step of the logarithms of gust angle and memory, for the curvature of the likelihood."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class Gusts:
 
     air: Air
     angle_std: float
-    """Standard error of the gust angle's standard deviation, rad, with all other parameters fixed."""
+    """Standard error of the gust angle's standard deviation, rad, with the gusts' memory free."""
     likelihood: float
     """Log likelihood of the residuals, on the scale of ``Fit.likelihood``."""
     matrix: FloatArray
@@ -68,9 +68,13 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | 
     sums = _sums(fit, courses)
     prior = Integrated(*known.prior(fit.values))
     air = likeliest(sums, fit.noise, prior, None if near is None else near.air)
-    beside = (air._replace(angle=air.angle * np.exp(step)) for step in (-_BEND, 0.0, _BEND))
-    less, least, more = (other.cost(sums, prior)[0] for other in beside)
-    bend = (less - 2.0 * least + more) / (2.0 * _BEND**2)
+    step = np.exp(_BEND)
+    beside = [air._replace(angle=air.angle * by) for by in (1.0 / step, step)]
+    beside += [air._replace(memory_s=air.memory_s * by) for by in (1.0 / step, step)]
+    shorter, longer, earlier, later = (other.cost(sums, prior)[1][-2:] for other in beside)
+    (own, mixed), (_, memory) = np.array([longer - shorter, later - earlier]) / (2.0 * _BEND)
+    # The prior bends the likelihood along the memory at least by this.
+    bend = 0.5 * (own - mixed**2 / max(memory, 2.0 / MEMORY_SPREAD**2))
     empty = np.empty((len(fit.values), len(fit.values)))
     return Gusts(air, air.angle / np.sqrt(max(bend, _BEND)), np.nan, empty, empty[0]).at(fit, courses)
 

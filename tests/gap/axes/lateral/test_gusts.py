@@ -63,14 +63,12 @@ def test_the_likelihood_is_the_normal_density_of_white_noise_and_a_markov_gust_a
     fit, courses, _ = flight
     rng = np.random.default_rng(5)
     gusty = with_residual(fit, 0.01 * rng.standard_normal(len(fit.fitted)))
-    gusts = Gusts(Air(2.0 * NOISE, ANGLE), np.nan, np.nan, np.empty(0), np.empty(0)).at(gusty, courses)
+    gusts = Gusts(Air(2.0 * NOISE, ANGLE, 2.5), np.nan, np.nan, np.empty(0), np.empty(0)).at(gusty, courses)
     density, gradient = 0.0, 0.0
     for m, course in enumerate(courses):
         rows = np.flatnonzero(fit.assembly.owner == m)
         white = np.diag((2.0 * NOISE[fit.assembly.channel[rows]]) ** 2)
-        angles = ANGLE**2 * np.exp(
-            -np.abs(course.knots[:, None] - course.knots) / 1.0
-        )  # the gusts forget themselves within a second
+        angles = ANGLE**2 * np.exp(-np.abs(course.knots[:, None] - course.knots) / 2.5)
         both = white + course.columns @ angles @ course.columns.T
         density += multivariate_normal(cov=both, allow_singular=True).logpdf(gusty.residual[rows])
         gradient = gradient + gusty.columns[rows].T @ np.linalg.solve(both, gusty.residual[rows])

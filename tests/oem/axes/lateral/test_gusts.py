@@ -8,7 +8,7 @@ import pytest
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral import solution as lateral_solution
 from advisor.oem.axes.lateral.disturbance import Course, Linear, courses_of
-from advisor.oem.axes.lateral.gusts import Air, Integrated, Sums
+from advisor.oem.axes.lateral.gusts import Air, Integrated, Sums, likeliest
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.axes.lateral.solution import solve_lateral
 from advisor.oem.rows import Signal
@@ -70,12 +70,31 @@ def test_slopes_of_the_likelihood_are_its_differences():
     course = Course(0.1 * np.arange(8), rng.standard_normal((len(channel), 8)))
     sums = [Sums.of(channel, rng.standard_normal((len(channel), 4)), course)]
     prior = Integrated(np.array([0.0, 1.0, 4.0]), np.array([0.0, 0.5, -0.2]))
-    place, step = np.log([0.5, 1.0, 2.0, 1.5, 0.8, 0.3]), 1e-5
+    place, step = np.log([0.5, 1.0, 2.0, 1.5, 0.8, 0.3, 0.6]), 1e-5
 
     def cost(x):
-        return Air(np.exp(x[:-1]), float(np.exp(x[-1]))).cost(sums, prior)
+        return Air(np.exp(x[:-2]), *np.exp(x[-2:])).cost(sums, prior)
 
     differences = [
         (cost(place + move)[0] - cost(place - move)[0]) / (2.0 * step) for move in step * np.eye(len(place))
     ]
     assert cost(place)[1] == pytest.approx(differences, rel=1e-6)
+
+
+@pytest.mark.parametrize("memory_s", [0.7, 2.4])
+def test_gusts_of_any_memory_keep_their_size(memory_s):
+    rng = np.random.default_rng(4)
+    still = solve_lateral(problem_of(rng))
+    laid, noise = still.assembly, still.optimum.noise
+    fit = Linear(still.problem, laid, vector(JET), still.sensitivities, noise)
+    (course,) = courses_of(fit)
+    far = np.abs(course.knots[:, None] - course.knots)
+    root = np.linalg.cholesky(np.exp(-far / memory_s))
+    sums = []
+    for _ in range(6):
+        blown = 2.0 * GUSTS_RAD * course.columns @ root @ rng.standard_normal(len(far))
+        residual = blown + noise[laid.channel] * rng.standard_normal(len(laid.z))
+        left = fit.unabsorbed(0, residual[:, None])
+        sums.append(Sums.of(laid.channel, left, course))
+    air = likeliest(sums, noise, Integrated(np.empty(0), np.empty(0)))
+    assert air.angle == pytest.approx(2.0 * GUSTS_RAD, rel=0.25)
