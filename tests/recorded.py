@@ -107,7 +107,9 @@ def _fitted_once(fit_jointly: Callable[..., Any], maneuvers: Sequence[Maneuver],
 def _estimated_once(function: Callable[..., Result]) -> Callable[..., Result]:
     """The function of manoeuvres and an aircraft, whose result is kept by every sample and number of both."""
 
-    def recalled(flown: Any, aircraft: Aircraft) -> Result:
+    def recalled(flown: Any, aircraft: Aircraft, search: object = None) -> Result:
+        if search is not None:
+            return function(flown, aircraft, search)
         asked = tuple(flown) if isinstance(flown, Sequence) else flown
         return _made_once((function.__qualname__, asked, aircraft), lambda: function(flown, aircraft))
 

@@ -18,7 +18,7 @@ from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.oem.axes.lateral.estimator import JointSearch, estimate_lateral
 from advisor.process.parts import Parts
 from advisor.words.problems import Problem
 
@@ -46,6 +46,7 @@ class LateralCampaign(AxisCampaign):
         self._state: LateralState | None = None
         self._unknown: Problem | None = None
         self._joint: tuple[tuple[int, ...], LateralEstimate | None] | None = None
+        self._search = JointSearch()
         plan = replace(aircraft.campaign, rule="information", parameters=tuple(JUDGED))
         super().__init__("lateral", aircraft, plan, parts)
 
@@ -138,10 +139,14 @@ class LateralCampaign(AxisCampaign):
         joined = self._joined()
         if self._joint is None or self._joint[0] != joined:
             maneuvers = [self.judged[i].maneuver for i in joined]
-            found = self._parts.make(
-                "lateral, joint estimate", lambda: estimate_lateral(maneuvers, self._aircraft), untold
+            # At the end all manoeuvres are searched from the data alone.
+            search = None if self._ended else self._search
+            joint = self._parts.make(
+                "lateral, joint estimate",
+                lambda: estimate_lateral(maneuvers, self._aircraft, search),
+                untold,
             )
-            self._joint = joined, found if isinstance(found, LateralEstimate) else None
+            self._joint = joined, joint if isinstance(joint, LateralEstimate) else None
         return self._joint[1]
 
     def _joined(self) -> tuple[int, ...]:

@@ -18,7 +18,7 @@ def joint(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Number of manoeuvres of each joint estimate that is made; single ones are not counted."""
     made: list[int] = []
 
-    def estimated(maneuvers, aircraft):
+    def estimated(maneuvers, *_):
         if len(maneuvers) == 1:
             return estimate(maneuvers[0].span.kind.split()[0], percent=30.0)
         made.append(len(maneuvers))
@@ -86,9 +86,7 @@ def test_an_exclusion_in_the_file_of_decisions_counts_for_roll_and_yaw(joint: li
 
 
 def test_a_stop_ends_where_a_manoeuvre_on_which_it_rests_is_excluded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        lateral, "estimate_lateral", lambda maneuvers, aircraft: estimate("aileron", "rudder", percent=2.0)
-    )
+    monkeypatch.setattr(lateral, "estimate_lateral", lambda *_: estimate("aileron", "rudder", percent=2.0))
     monkeypatch.setattr(lateral, "judge_lateral", lambda maneuver, found, aircraft: ())
     campaign = flown("rudder", "aileron")
     assert campaign.flight_test.decision == "stop"
@@ -104,7 +102,7 @@ def test_a_manoeuvre_that_contradicts_all_the_others_is_left_out_and_said(
     theta = [sound.theta + std * rng.standard_normal(len(std)) for _ in range(6)]
     theta[3] = theta[3] * 1.4
     estimates = iter([replace(sound, theta=one) for one in theta])
-    monkeypatch.setattr(lateral, "estimate_lateral", lambda maneuvers, aircraft: next(estimates, sound))
+    monkeypatch.setattr(lateral, "estimate_lateral", lambda *_: next(estimates, sound))
     monkeypatch.setattr(lateral, "judge_lateral", lambda maneuver, found, aircraft: ())
     monkeypatch.setattr(LateralCampaign, "_may_stop", False)
     campaign = flown(*["rudder", "aileron"] * 3)

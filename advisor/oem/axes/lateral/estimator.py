@@ -7,6 +7,7 @@ frequency ω = |λ| and the damping ζ = -Re λ/ω, and the roll mode has the ti
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
 from advisor.oem.axes.lateral.instruments import nuisances_of
 from advisor.oem.axes.lateral.prepare import prepare_lateral
-from advisor.oem.axes.lateral.solution import lateral_not_identifiable, solve_lateral
+from advisor.oem.axes.lateral.solution import Near, Searched, lateral_not_identifiable, search_lateral
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import channel_fits
 from advisor.oem.flying_qualities import Quality
@@ -103,15 +104,70 @@ def _quality(value: float, slope: FloatArray, errors: Errors) -> Quality:
     return Quality(float(value), errors.std(slope))
 
 
-def estimate_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> LateralEstimate | NoEstimate:
-    """Return the lateral derivatives of manoeuvres that share them, or the reason for a missing estimate."""
+class LateralFit(NamedTuple):
+    """Solution of manoeuvres that share their derivatives."""
+
+    maneuvers: Sequence[Maneuver]
+    searched: Searched
+
+    @property
+    def estimate(self) -> LateralEstimate:
+        """Derivatives, modes and errors as reported."""
+        return _reported(self.searched.solution)
+
+    def near(self, maneuvers: Sequence[Maneuver]) -> Near:
+        """Return the search as the start for other manoeuvres."""
+        place = {id(maneuver): k for k, maneuver in enumerate(self.maneuvers)}
+        return Near(self.searched, [place.get(id(maneuver)) for maneuver in maneuvers])
+
+
+@dataclass(slots=True)
+class JointSearch:
+    """Joint searches of a campaign, each of which goes on from the one before.
+
+    A further manoeuvre then takes half of the time.
+    """
+
+    newest: LateralFit | None = None
+
+
+def estimate_lateral(
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, search: JointSearch | None = None
+) -> LateralEstimate | NoEstimate:
+    """Return the lateral derivatives of manoeuvres that share them, or the reason for a missing estimate.
+
+    Parameters
+    ----------
+    search
+        Searches of earlier manoeuvres of the aircraft, from which this one goes on. None: the search begins
+        with a regression.
+    """
+    fit = fit_lateral(maneuvers, aircraft, None if search is None else search.newest)
+    if isinstance(fit, NoEstimate):
+        return fit
+    if search is not None:
+        search.newest = fit
+    return fit.estimate
+
+
+def fit_lateral(
+    maneuvers: Sequence[Maneuver], aircraft: Aircraft, earlier: LateralFit | None = None
+) -> LateralFit | NoEstimate:
+    """Return the solution of manoeuvres that share their derivatives, or the reason for a missing one.
+
+    Parameters
+    ----------
+    earlier
+        Fit of earlier manoeuvres of one aircraft, from which the search goes on.
+    """
     if not maneuvers:
         return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")
     problem = prepare_lateral(maneuvers, aircraft)
     if isinstance(problem, NoEstimate):
         return problem
-    solution = solve_lateral(problem, nuisances_of(problem, aircraft))
-    return solution if isinstance(solution, NoEstimate) else _reported(solution)
+    near = None if earlier is None else earlier.near(maneuvers)
+    searched = search_lateral(problem, nuisances_of(problem, aircraft), near)
+    return searched if isinstance(searched, NoEstimate) else LateralFit(maneuvers, searched)
 
 
 def _reported(solution: Solution) -> LateralEstimate:

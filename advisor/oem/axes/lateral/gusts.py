@@ -34,7 +34,7 @@ aircraft pass them at 20 to 130 m/s. One test hardly determines the time. Withou
 become a drift of 60 s."""
 _RANGE, _MOST_STEPS = (1e-3, 1e3), 100
 """Numerical: range of every standard deviation relative to its start, and most steps of the search."""
-_FLAT = 0.02
+_FLAT = 0.1
 """Numerical: largest slope of -2 log likelihood, per standard error of a parameter, at its optimum."""
 
 
@@ -154,7 +154,7 @@ class Air(NamedTuple):
         change = 2.0 * kept * float(np.trace(spread[1:-1, 1:-1])) - 2.0 * float(np.trace(spread, 1))
         volume = float(np.sum(spread * stiff)) - (n - 1)
         by_kept = change / fresh + 2.0 * kept / (1.0 - kept**2) * volume
-        return by_kept * kept * KNOTS_S / self.memory_s
+        return float(by_kept * kept * KNOTS_S / self.memory_s)
 
     def _weighed(self, sums: Sums) -> _Weighed:
         """Return the residuals of one manoeuvre under these gusts.

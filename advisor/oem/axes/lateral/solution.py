@@ -7,9 +7,11 @@ second and third fit weight the priors by the noise colour of the fit before.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
+from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
 from advisor.oem.axes.lateral.gusts import in_moving_air
 from advisor.oem.axes.lateral.instruments import Nuisance, begun
@@ -21,7 +23,7 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
-from advisor.oem.solution import RUNS_AWAY, Solution, evaluate, refused
+from advisor.oem.solution import NOTHING_TO_TELL, RUNS_AWAY, Solution, evaluate, refused
 from advisor.words.quantiles import NORMAL_95
 
 FIRST_LOOK = 8
@@ -35,20 +37,51 @@ _MOTION = LateralMotion()
 _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
 
 
+class Searched(NamedTuple):
+    """A solution, and the first look on the way to it."""
+
+    look: Solution
+    """Solution with fixed servos and clocks, whose residuals give the first colour of the noise."""
+    solution: Solution
+
+
+class Near(NamedTuple):
+    """The search of earlier records of one aircraft."""
+
+    searched: Searched
+    places: Sequence[int | None]
+    """Index of each record of a problem among the earlier records; None for a new record."""
+
+
 def solve_lateral(problem: LateralProblem, nuisances: Sequence[Nuisance] = ()) -> Solution | NoEstimate:
+    """Estimate the lateral derivatives of a problem; ``nuisances`` are estimated with them."""
+    searched = search_lateral(problem, nuisances)
+    return searched if isinstance(searched, NoEstimate) else searched.solution
+
+
+def search_lateral(
+    problem: LateralProblem, nuisances: Sequence[Nuisance], near: Near | None = None
+) -> Searched | NoEstimate:
     """Estimate the lateral derivatives of a problem.
 
     Parameters
     ----------
     nuisances : servos and clocks that are estimated with the derivatives.
+    near : search of earlier records of one aircraft, from which the search goes on.
     """
     problem = begun(problem, nuisances)
     start = lateral_start(problem)
     prior = priors_of(problem, start[0])
-    fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
-    if isinstance(fit, NoEstimate) or _has_diverged(fit):
-        return RUNS_AWAY
-    solution = _evaluated(fit, prior, final=False)
+    resumed = None if near is None else _resumed(problem, nuisances, start, near)
+    if near is None or resumed is None:
+        fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
+        if isinstance(fit, NoEstimate) or _has_diverged(fit):
+            return RUNS_AWAY
+        look = _evaluated(fit, prior, final=False)
+    else:
+        problem, start = resumed
+        look = near.searched.look
+    solution = look
     for final in (False, True):
         if isinstance(solution, NoEstimate):
             return solution
@@ -62,7 +95,27 @@ def solve_lateral(problem: LateralProblem, nuisances: Sequence[Nuisance] = ()) -
             return why
         problem, start = fit.problem, fit.place
         solution = _evaluated(fit, prior, final)
-    return solution if isinstance(solution, NoEstimate) else _above_bound(in_moving_air(solution))
+    if isinstance(solution, NoEstimate) or isinstance(look, NoEstimate):
+        return solution if isinstance(solution, NoEstimate) else NOTHING_TO_TELL
+    return Searched(look, _above_bound(in_moving_air(solution)))
+
+
+def _resumed(
+    problem: LateralProblem,
+    nuisances: Sequence[Nuisance],
+    start: tuple[FloatArray, FloatArray],
+    near: Near,
+) -> tuple[LateralProblem, tuple[FloatArray, FloatArray]] | None:
+    """Return problem and place at servos, clocks and derivatives of another solution; None without these."""
+    there = near.searched.solution
+    values = {x.name: x.read(there.problem) for x in there.parameters}
+    if values.keys() != {x.name for x in nuisances}:
+        return None
+    for x in nuisances:
+        problem = x.write(problem, values[x.name])
+    pairs = zip(near.places, start[1], strict=True)
+    local = np.array([own if k is None else there.optimum.local[k] for k, own in pairs])
+    return problem, (there.optimum.shared, local)
 
 
 def _has_diverged(fit: Fit) -> bool:

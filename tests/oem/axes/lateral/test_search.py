@@ -7,7 +7,7 @@ from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.oem.axes.lateral.instruments import Nuisance
 from advisor.oem.axes.lateral.motion import LateralMotion
 from advisor.oem.axes.lateral.problem import LateralProblem, assemble_lateral
-from advisor.oem.axes.lateral.solution import solve_lateral
+from advisor.oem.axes.lateral.solution import Near, search_lateral, solve_lateral
 from advisor.oem.axes.lateral.start import lateral_start
 from advisor.oem.descent import descended
 from advisor.oem.extra import Prior, moved_by
@@ -138,3 +138,17 @@ def test_a_rudder_doublet_without_side_force_tells_the_dutch_roll(doublets):
     found, known = (modes_of(state_matrix(theta, trim)).dutch_roll for theta in (solution.theta, vector(JET)))
     assert abs(found) == pytest.approx(abs(known), rel=0.01)
     assert -found.real == pytest.approx(-known.real, abs=0.01)
+
+
+def test_a_search_that_goes_on_from_earlier_records_ends_where_one_from_a_regression_does():
+    rng = np.random.default_rng(6)
+    tests = [problem for _ in range(2) for problem in both_inputs(JET, rng).records]
+    clocks = [replace(x, prior=Prior(0.0, 0.02)) for x in CLOCKS if x.kind in ("command", "delay")]
+    earlier = search_lateral(LateralProblem(tuple(tests[:3])), clocks)
+    whole = LateralProblem(tuple(tests))
+    resumed = search_lateral(whole, clocks, Near(earlier, [0, 1, 2, None])).solution
+    anew = solve_lateral(whole, clocks)
+    std = np.sqrt(np.diag(anew.widened))[:15]
+    assert np.max(np.abs(resumed.theta - anew.theta) / std) < 0.02
+    assert np.sqrt(np.diag(resumed.widened))[:15] == pytest.approx(std, rel=0.02)
+    assert resumed.optimum.iterations < anew.optimum.iterations + 2
