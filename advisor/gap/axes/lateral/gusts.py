@@ -12,7 +12,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.fit import Fit, Known
 from advisor.oem.arrow import solved_within
 from advisor.oem.axes.lateral.disturbance import Course
-from advisor.oem.axes.lateral.gusts import MEMORY_SPREAD, Air, Integrated, Sums, likeliest
+from advisor.oem.axes.lateral.gusts import MEMORY_S, Air, Integrated, Sums, likeliest
 from advisor.oem.covariance import colours_of
 from advisor.oem.weighing import Weighing
 
@@ -73,8 +73,8 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | 
     beside += [air._replace(memory_s=air.memory_s * by) for by in (1.0 / step, step)]
     shorter, longer, earlier, later = (other.cost(sums, prior)[1][-2:] for other in beside)
     (own, mixed), (_, memory) = np.array([longer - shorter, later - earlier]) / (2.0 * _BEND)
-    # The prior bends the likelihood along the memory at least by this.
-    bend = 0.5 * (own - mixed**2 / max(memory, 2.0 / MEMORY_SPREAD**2))
+    spread = float(np.log(MEMORY_S[1] / MEMORY_S[0])) / 12.0**0.5
+    bend = 0.5 * (own - mixed**2 / max(memory, 2.0 / spread**2))
     empty = np.empty((len(fit.values), len(fit.values)))
     return Gusts(air, air.angle / np.sqrt(max(bend, _BEND)), np.nan, empty, empty[0]).at(fit, courses)
 

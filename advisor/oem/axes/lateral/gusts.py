@@ -26,12 +26,11 @@ from advisor.oem.solution import Solution
 from advisor.oem.turbulence import KNOTS_S
 from advisor.oem.weighing import Weighing
 
-USUAL_MEMORY_S, MEMORY_SPREAD = 1.6, 0.59
-"""Prior: median of the gust angle's correlation time, s, and standard deviation of its logarithm.
+MEMORY_S = 0.5, 5.0
+"""Prior: range of the gust angle's correlation time, s, uniform in its logarithm.
 
-The correlation time is 0.5 to 5 s in 95 % of flights. Dryden's lengths are 20 to 600 m near the ground, and
-aircraft pass them at 20 to 130 m/s. One test hardly determines the time. Without a prior, gusts on a jet
-become a drift of 60 s."""
+Dryden's lengths are 20 to 600 m near the ground, and aircraft pass them at 20 to 130 m/s. One test hardly
+determines the time. With any time allowed, slow errors of a model in still air become gusts of 60 s."""
 _RANGE, _MOST_STEPS = (1e-3, 1e3), 100
 """Numerical: range of every standard deviation relative to its start, and most steps of the search."""
 _FLAT = 0.1
@@ -113,7 +112,7 @@ class Air(NamedTuple):
     """Shape (outputs,): standard deviation of each output's white noise."""
     angle: float
     """Standard deviation of the gust angle, rad."""
-    memory_s: float = USUAL_MEMORY_S
+    memory_s: float = (MEMORY_S[0] * MEMORY_S[1]) ** 0.5
     """Correlation time of the gust angle, s."""
 
     def angles(self, knots: FloatArray) -> FloatArray:
@@ -127,16 +126,15 @@ class Air(NamedTuple):
         return sum(part.volume for part in parts), np.sum([part.inner for part in parts], axis=0)
 
     def cost(self, sums: Sequence[Sums], prior: Integrated) -> tuple[float, FloatArray]:
-        """Return -2 log likelihood without the parameters, with the prior of the gusts' memory.
+        """Return -2 log likelihood without the parameters, and its slopes (outputs + 2,).
 
-        The second result are the slopes (outputs + 2,) by the logarithms of noise, gust angle and memory.
+        The slopes are those by the logarithms of noise, gust angle and memory.
         The derivative of a log determinant is the trace of the inverse times the change (Magnus & Neudecker,
         *Matrix Differential Calculus*, ch. 8).
         """
         parts, weight = [self._weighed(one) for one in sums], self.noise**-2.0
         left, volume, slopes = prior.left(np.sum([part.inner for part in parts], axis=0))
-        off = float(np.log(self.memory_s / USUAL_MEMORY_S)) / MEMORY_SPREAD
-        by_noise, by_angle, by_memory = np.zeros(len(weight)), 0.0, 2.0 * off / MEMORY_SPREAD
+        by_noise, by_angle, by_memory = np.zeros(len(weight)), 0.0, 0.0
         for one, part in zip(sums, parts, strict=True):
             turned = part.likeliest @ slopes
             spread = part.spread + turned @ part.likeliest.T
@@ -144,7 +142,7 @@ class Air(NamedTuple):
             by_noise += 2.0 * one.counts - 2.0 * weight * (products + np.tensordot(one.grams, spread, 2))
             by_angle += 2.0 * (len(spread) - float(np.sum(spread * part.stiff)))
             by_memory += self._by_memory(spread, part.stiff)
-        total = left + volume + sum(part.volume for part in parts) + off**2
+        total = left + volume + sum(part.volume for part in parts)
         return total, np.append(by_noise, (by_angle, by_memory))
 
     def _by_memory(self, spread: FloatArray, stiff: FloatArray) -> float:
@@ -200,7 +198,7 @@ def likeliest(sums: Sequence[Sums], noise: FloatArray, prior: Integrated, near: 
     size = 1.0 / max(float(np.mean(np.sqrt(powers))), 1e-12)
     # In this unit the curvature of -2 log likelihood is about 2.
     knots = sum(one.grams.shape[1] for one in sums)
-    unit = np.append(2.0 * counts[there], (knots, MEMORY_SPREAD**-2.0)) ** -0.5
+    unit = np.append(2.0 * counts[there], (knots, knots)) ** -0.5
 
     def air(x: FloatArray) -> Air:
         white = np.zeros(len(noise))
@@ -216,7 +214,7 @@ def likeliest(sums: Sequence[Sums], noise: FloatArray, prior: Integrated, near: 
         """Return the search's variables; of small gusts the likelihood is a parabola in their angle."""
         return np.append(np.log(noise), (np.arcsinh(angle / size), np.log(memory_s))) / unit
 
-    low, high = (place(share * own, share * size, share * USUAL_MEMORY_S) for share in _RANGE)
+    low, high = (place(share * own, share * size, end) for share, end in zip(_RANGE, MEMORY_S, strict=True))
     first = Air(own, size) if near is None else near._replace(noise=near.noise[there])
     begun = place(*first)
     begun = np.clip(begun, low, high)
