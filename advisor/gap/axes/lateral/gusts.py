@@ -12,12 +12,9 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.fit import Fit, Known
 from advisor.oem.arrow import solved_within
 from advisor.oem.axes.lateral.disturbance import Course
-from advisor.oem.axes.lateral.gusts import MEMORY_S, Air, Integrated, Sums, likeliest
+from advisor.oem.axes.lateral.gusts import Air, Integrated, Sums, likeliest
 from advisor.oem.covariance import colours_of
 from advisor.oem.weighing import Weighing
-
-_BEND = 0.2
-"""Finite-difference step of the logarithms of gust angle and memory, for the curvature of the likelihood."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,15 +65,8 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | 
     sums = _sums(fit, courses)
     prior = Integrated(*known.prior(fit.values))
     air = likeliest(sums, fit.noise, prior, None if near is None else near.air)
-    step = np.exp(_BEND)
-    beside = [air._replace(angle=air.angle * by) for by in (1.0 / step, step)]
-    beside += [air._replace(memory_s=air.memory_s * by) for by in (1.0 / step, step)]
-    shorter, longer, earlier, later = (other.cost(sums, prior)[1][-2:] for other in beside)
-    (own, mixed), (_, memory) = np.array([longer - shorter, later - earlier]) / (2.0 * _BEND)
-    spread = float(np.log(MEMORY_S[1] / MEMORY_S[0])) / 12.0**0.5
-    bend = 0.5 * (own - mixed**2 / max(memory, 2.0 / spread**2))
     empty = np.empty((len(fit.values), len(fit.values)))
-    return Gusts(air, air.angle / np.sqrt(max(bend, _BEND)), np.nan, empty, empty[0]).at(fit, courses)
+    return Gusts(air, air.angle_std(sums, prior), np.nan, empty, empty[0]).at(fit, courses)
 
 
 def coloured_likelihood(fit: Fit) -> float:

@@ -33,6 +33,8 @@ Dryden's lengths are 20 to 600 m near the ground, and aircraft pass them at 20 t
 determines the time. With any time allowed, slow errors of a model in still air become gusts of 60 s."""
 _RANGE, _MOST_STEPS = (1e-3, 1e3), 100
 """Numerical: range of every standard deviation relative to its start, and most steps of the search."""
+_BEND = 0.2
+"""Numerical: finite-difference step of the logarithms of gust angle and memory."""
 _FLAT = 0.1
 """Numerical: largest slope of -2 log likelihood, per standard error of a parameter, at its optimum."""
 
@@ -144,6 +146,17 @@ class Air(NamedTuple):
             by_memory += self._by_memory(spread, part.stiff)
         total = left + volume + sum(part.volume for part in parts)
         return total, np.append(by_noise, (by_angle, by_memory))
+
+    def angle_std(self, sums: Sequence[Sums], prior: Integrated) -> float:
+        """Return the standard error of the gust angle, rad, with the gusts' memory free."""
+        sizes = np.exp([-_BEND, _BEND])
+        near = [self._replace(angle=self.angle * by) for by in sizes]
+        near += [self._replace(memory_s=self.memory_s * by) for by in sizes]
+        smaller, larger, shorter, longer = (air.cost(sums, prior)[1][-2:] for air in near)
+        (own, mixed), (_, memory) = np.array([larger - smaller, longer - shorter]) / (2.0 * _BEND)
+        least = 24.0 / np.log(MEMORY_S[1] / MEMORY_S[0]) ** 2  # curvature of a uniform prior, by its variance
+        bend = 0.5 * (own - mixed**2 / max(memory, least))
+        return float(self.angle / np.sqrt(max(bend, _BEND)))
 
     def _by_memory(self, spread: FloatArray, stiff: FloatArray) -> float:
         """Return the slope of one manoeuvre's -2 log likelihood by the logarithm of the memory."""
