@@ -1,11 +1,13 @@
 """Results of ``advisor simulator check`` as text and as a document."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import degrees, isfinite, tau
 from typing import Any
 
 from advisor.simulators.check import CheckedSimulator
+from advisor.words.digits import with_half
 from advisor.words.plain import picked
+from advisor.words.quantiles import NORMAL_95
 
 SCHEMA = "advisor.simulator/1"
 _LACKS = {
@@ -25,7 +27,7 @@ def document(found: CheckedSimulator) -> dict[str, Any]:
         "schema": SCHEMA,
         "usable": fault is None,
         **picked(found, "simulator airspeed_m_s height_m alpha_rad trim a_z_m_s2 rest_q_rad_s takes lacks"),
-        **picked(found, "derivatives side lag_s dead_time_s omega_rad_s damping notes"),
+        **picked(found, "derivatives std side lag_s dead_time_s omega_rad_s damping notes"),
         "problems": [] if fault is None else [picked(fault.refuse(found.simulator).problem, "code text fix")],
     }
 
@@ -47,13 +49,18 @@ def lines(found: CheckedSimulator) -> Iterator[str]:
         yield f"short period {found.omega_rad_s:.2f} rad/s ({hertz:.2f} Hz), damping {found.damping:.2f}"
     else:
         yield "short period none: it is statically unstable here"
-    yield "numbers     " + ", ".join(f"{name} {value:.4g}" for name, value in found.derivatives.items())
+    yield f"numbers     {_with_errors(found.derivatives, found.std)}"
     if found.side:
-        yield "roll, yaw   " + ", ".join(f"{name} {value:.4g}" for name, value in found.side.items())
+        yield f"roll, yaw   {_with_errors(found.side, found.std)}"
+    yield "            ±: half the 95 % interval, for the motion that no linear model describes"
     yield f"takes       elevator{''.join(f', {name}' for name in found.takes)}"
     for name in found.lacks:
         yield f"does not take {name}: {_LACKS[name]}"
     yield from found.notes
+
+
+def _with_errors(values: Mapping[str, float], std: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} {with_half(value, NORMAL_95 * std[name])}" for name, value in values.items())
 
 
 def _control(name: str, value: float) -> str:

@@ -8,17 +8,13 @@ from math import nan
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.record import Channel
-from advisor.gap.records.prepare import prepare
 from advisor.gap.result import spelled
-from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, natural_frequency
+from advisor.gap.simulator.layout import DERIVATIVES, natural_frequency
 from advisor.simulators.axes.lateral import TURNS
-from advisor.simulators.flying import Flying
+from advisor.simulators.identified import identified_pitch, identified_side
 from advisor.simulators.interface import InterfaceFault, control_fault, interface_fault, side_fault
 from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Inputs, Replay, Simulator
-from advisor.simulators.surrogate import surrogate_of
 from advisor.words.problems import UnusableInputError
 
 _STEP_S, _LEAD_S = 0.005, 1.0
@@ -28,8 +24,13 @@ _UNIT_S, _LASTS_S = 0.4, 9.0
 _SIDE_UNIT_S, _SIDE_LASTS_S = 0.5, 5.0
 """Time unit of the aileron and rudder doublet, s, and length of its record, s."""
 _SIZE_RAD = float(np.radians(1.0))
-"""Size of a control's step, rad: small enough for a linear response, far above rounding."""
-_MOTION = ("beta", "p", "r")
+"""Size of a control's step, rad, by which signs and units are checked."""
+_SMALL = 0.2
+"""Size of a step for the derivatives, relative to ``_SIZE_RAD``. The path turns little, so that gravity's
+terms of third order stay below 0.03 % of a derivative."""
+_PROPORTIONAL = 0.2
+"""Largest relative deviation from a proportional response, beyond which a simulator has play or a dead band.
+Its derivatives are then those of the full step."""
 _NEEDED = ("p", "r", "bank", "beta")
 _REST_S = 5.0
 """Length of the flight with resting controls, s."""
@@ -59,6 +60,8 @@ class CheckedSimulator:
     lacks: tuple[str, ...]
     """Controls, parts of the condition, and ``increments`` that the simulator does not support."""
     derivatives: Mapping[str, float] = field(default_factory=dict)
+    std: Mapping[str, float] = field(default_factory=dict)
+    """Standard deviation of each derivative of pitch, roll and yaw, by the motion that is not linear."""
     lag_s: float = nan
     """First-order lag between the command and the motion, s."""
     dead_time_s: float = nan
@@ -132,26 +135,30 @@ def _check_side(found: CheckedSimulator, simulator: Simulator, condition: Condit
         if missing:
             notes.append(f"It returns no {', '.join(missing)}: the {control} is not checked.")
             continue
-        own, answer = _side_derivatives(replay, np.interp(replay.t, t, moved), control)
+        own, std, answer = _side_derivatives(simulator, condition, t, moved, control)
         fault = side_fault(replay) or control_fault(control, own[TURNS[control][0]], answer)
         if fault is not None:
             return replace(found, side=side, fault=fault, notes=tuple(notes))
         side |= own
+        found = replace(found, std={**found.std, **std})
     return replace(found, side=side, notes=tuple(notes))
 
 
-def _side_derivatives(replay: Replay, moved: FloatArray, control: str) -> tuple[dict[str, float], float]:
-    """Return L and N derivatives by motion and control, and the response's size (``control_fault``)."""
-    motion = [np.asarray(getattr(replay, name)) for name in _MOTION]
-    columns = np.column_stack([*motion, moved, np.ones(len(moved))])
+def _side_derivatives(
+    simulator: Simulator, condition: Condition, t: FloatArray, moved: FloatArray, control: str
+) -> tuple[dict[str, float], dict[str, float], float]:
+    """Return L and N by motion and control, their errors, and the response's size (``control_fault``)."""
+    still = np.zeros(t.size)
+    ways = [
+        simulator.replay(condition, Inputs(t, still, {control: sign * _SMALL * moved}))
+        for sign in (1.0, -1.0)
+    ]
+    values = identified_side(ways[0], ways[1], t, _SMALL * moved)
     turns, against = TURNS[control]
-    found: dict[str, float] = {}
-    for letter, rate in (("L", motion[1]), ("N", motion[2])):
-        slopes = np.linalg.lstsq(columns, np.gradient(rate, replay.t))[0]
-        found |= {
-            f"{letter}_{name}": float(x) for name, x in zip((*_MOTION, turns[2:]), slopes, strict=False)
-        }
-    return found, abs(found[turns] / found[against]) if found[against] else np.inf
+    named = {name.replace("_u", f"_{turns[2:]}"): value for name, value in values.items()}
+    found = {name: value.value for name, value in named.items()}
+    answer = abs(found[turns] / found[against]) if found[against] else np.inf
+    return found, {name: value.std for name, value in named.items()}, answer
 
 
 def _refuse_unmoved(flown: Replay, said: str) -> None:
@@ -174,24 +181,28 @@ def _identified(
     found: CheckedSimulator, simulator: Simulator, condition: Condition, flown: Replay, t: FloatArray
 ) -> CheckedSimulator:
     """Return the results with derivatives, lag, dead time and natural motion added."""
-    flights = prepare([_as_maneuver(flown, t)], Aircraft())
-    flying = Flying(simulator, flights, {1: condition.height_m}, {1: {}}, condition.mass_kg, lambda *_: None)
-    command = np.zeros((1, len(ENTRIES)))
-    replays = flying.replays(command, held=False)
-    surrogate = surrogate_of(
-        flights, flying.as_flown(replays), replays, command, simulator.linearise(condition)
-    )
-    numbers = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
+    elevator = _three_two_one_one(t)
+    size = _SMALL
+    one = simulator.replay(condition, Inputs(t, size * elevator))
+    if abs(float(np.ptp(one.q)) / (size * float(np.ptp(flown.q))) - 1.0) > _PROPORTIONAL:
+        one, size = flown, 1.0
+    other = simulator.replay(condition, Inputs(t, -size * elevator))
+    pitch = identified_pitch(one, other, t, size * elevator)
+    values = {name: value.value for name, value in pitch.derivatives.items()}
+    numbers = np.array([values[name] for name in DERIVATIVES])
     omega = natural_frequency(numbers)
     damping = -(numbers[0] + numbers[4]) / (2.0 * omega) if omega > 0.0 else nan
     notes = [*found.notes]
+    if size == 1.0:
+        notes.append("Its response is not proportional to the elevator: the derivatives are those of 1 deg.")
     if found.rest_q_rad_s > _RESTS_RAD_S:
         notes.append(
             f"With resting controls it turns by {np.degrees(found.rest_q_rad_s):.2f} deg/s: its trim is not "
             "steady, and every replay starts with that motion."
         )
     return replace(
-        found, derivatives=surrogate.derivatives, lag_s=surrogate.lag_s, dead_time_s=surrogate.delay_s,
+        found, derivatives=values, std={name: value.std for name, value in pitch.derivatives.items()},
+        lag_s=pitch.lag_s.value, dead_time_s=pitch.dead_time_s.value,
         omega_rad_s=omega, damping=float(damping), notes=tuple(notes),
     )  # fmt: skip
 
@@ -208,15 +219,3 @@ def _steps(t: FloatArray, unit_s: float, units: Sequence[float]) -> FloatArray:
     for k, (begin, end) in enumerate(pairwise(onsets)):
         out[(t >= begin) & (t < end)] = _SIZE_RAD if k % 2 == 0 else -_SIZE_RAD
     return out
-
-
-def _as_maneuver(flown: Replay, t: FloatArray) -> Maneuver:
-    """Return a replay as a manoeuvre without instrument errors."""
-    series = {
-        "alpha": flown.alpha, "q": flown.q, "theta": flown.theta, "a_z": flown.a_z,
-        "airspeed": flown.airspeed_m_s, "height": flown.height_m,
-    }  # fmt: skip
-    channels = {name: Channel(name, flown.t, y, "simulator", "simulated") for name, y in series.items()}
-    channels["elevator"] = Channel("elevator", t, _three_two_one_one(t), "simulator", "commanded")
-    last = _LEAD_S + 7.0 * _UNIT_S
-    return Maneuver(1, 0, Span(0.0, _LEAD_S, last, float(t[-1]), "3-2-1-1", (), "quiet"), channels)

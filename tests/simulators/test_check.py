@@ -5,18 +5,55 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli import group as cli
 from advisor.simulators.check import check
 from advisor.simulators.linear import LinearSimulator
-from advisor.simulators.protocol import Condition
+from advisor.simulators.protocol import Condition, Replay
 from advisor.words.problems import UnusableInputError
 from tests.simulators.makeshift import Level
 from tests.simulators.nonlinear import Nonlinear
 
 MODEL = {"Z_alpha": -2.7, "Z_q": 0.0, "Z_delta_e": -0.15, "M_alpha": -23.0, "M_q": -3.4, "M_delta_e": -29.0}
 LEVEL = Condition(25.0, 300.0)
+
+
+@dataclass(frozen=True)
+class Stepped:
+    """A linear simulator with its own step, which holds the elevator and states the force after its edge."""
+
+    step_s: float
+    takes: frozenset[str] = frozenset()
+    takes_increments: bool = False
+    description: str = "a linear simulator"
+    speed_limit_s: float = np.inf
+
+    def replay(self, condition, inputs, increments=None):
+        h, speed = self.step_s, condition.airspeed_m_s
+        a = np.array([[MODEL["Z_alpha"], 1.0 + MODEL["Z_q"]], [MODEL["M_alpha"], MODEL["M_q"]]])
+        b = np.array([MODEL["Z_delta_e"], MODEL["M_delta_e"]])
+        joined = np.zeros((3, 3))
+        joined[:2, :2], joined[:2, 2] = a, b
+        stepped = expm(joined * h)
+        t = np.arange(round(inputs.t[-1] / h) + 1) * h
+        u = np.interp(t + 0.5 * h, inputs.t, inputs.elevator)
+        x, theta, rows = np.zeros(2), 0.0, []
+        for deflection in u:
+            force = MODEL["Z_alpha"] * x[0] + MODEL["Z_q"] * x[1] + MODEL["Z_delta_e"] * deflection
+            rows.append((*x, theta, speed * force - 9.80665))
+            after = stepped[:2, :2] @ x + stepped[:2, 2] * deflection
+            theta, x = theta + 0.5 * h * (x[1] + after[1]), after
+        alpha, q, attitude, a_z = np.array(rows).T
+        still = np.full(len(t), speed)
+        return Replay(t, alpha, q, attitude, a_z, still, np.full(len(t), condition.height_m))
+
+    def linearise(self, condition):
+        """Hand nothing out."""
+
+    def close(self):
+        """Do nothing: no process runs."""
 
 
 class Turned(Nonlinear):
@@ -46,9 +83,31 @@ def test_dead_time_lag_and_short_period_are_those_of_the_simulator():
 def test_a_linear_simulator_shows_its_own_numbers():
     found = check(LinearSimulator(MODEL), LEVEL, Aircraft())
     for name, value in MODEL.items():
-        assert found.derivatives[name] == pytest.approx(value, rel=0.02, abs=0.02)
+        assert found.derivatives[name] == pytest.approx(value, rel=1e-3, abs=1e-4)
     assert found.damping == pytest.approx((2.7 + 3.4) / (2.0 * found.omega_rad_s), rel=0.02)
     assert found.a_z_m_s2 == pytest.approx(-9.80665, abs=0.01)
+
+
+@pytest.mark.parametrize("step_s", [0.005, 0.02])
+def test_a_simulator_with_its_own_step_shows_its_numbers_to_a_thousandth(step_s):
+    found = check(Stepped(step_s), LEVEL, Aircraft())
+    for name, value in MODEL.items():
+        assert found.derivatives[name] == pytest.approx(value, rel=1e-3, abs=1e-4)
+        assert found.std[name] < 1e-3
+    assert found.lag_s == pytest.approx(0.0, abs=1e-4)
+
+
+def test_the_interval_of_a_simulator_with_curves_contains_its_slope_in_trim():
+    found = check(Nonlinear(), LEVEL, Aircraft())
+    # q̇ = -25 α - 3 q - 30 δ - 0.5 α̇, with α̇ = (1 + Z_q) q - 3 α - 0.1 δ.
+    for name, slope in {"Z_alpha": -3.0, "M_alpha": -23.5, "M_q": -3.5, "M_delta_e": -29.95}.items():
+        assert found.derivatives[name] == pytest.approx(slope, rel=0.03)
+        assert 0.0 < found.std[name] < 0.1 * abs(slope)
+
+
+def test_a_simulator_with_play_is_said_to_answer_out_of_proportion():
+    found = check(Nonlinear(half_play_rad=0.004), LEVEL, Aircraft())
+    assert any("not proportional" in note for note in found.notes)
 
 
 def test_an_elevator_that_pitches_up_trailing_edge_down_is_a_fault():
