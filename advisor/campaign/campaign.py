@@ -13,7 +13,14 @@ from advisor.campaign.instruments import side_signs, together, with_fit
 from advisor.campaign.journal import Journal
 from advisor.campaign.late_limits import recount
 from advisor.campaign.running_estimate import Settled, Settling
-from advisor.campaign.state import OF_ELEVATOR, AxisName, CampaignState, JudgedManeuver, WholeFlights
+from advisor.campaign.state import (
+    OF_ELEVATOR,
+    AxisName,
+    CampaignState,
+    JudgedManeuver,
+    WholeFlights,
+    has_begun,
+)
 from advisor.decision.crew_plan import CrewPlan, crew_plan
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import (
@@ -156,7 +163,7 @@ class Campaign:
             marking_since_s=stream.marks.by_hand_since_s,
             settling=settled.estimate if settled else None,
             readable=settled is not None and settled.readable,
-            enough=settled.enough if settled else None,
+            enough=settled.enough if settled and not self._tests_sideways else None,
             estimate_from=tuple(judged.maneuver.number for judged in elevator.joined),
             elevator_notes=flights.elevator_notes,
             reader_notes=(
@@ -273,10 +280,18 @@ class Campaign:
 
     @property
     def _plan(self) -> CrewPlan | None:
-        """Plan of both axes; None if only one axis has been flown."""
-        if self._lateral is None or not self._lateral.maneuvers or not self._elevator.judged:
+        """Plan of both axes; None if the test of one axis has not begun."""
+        if self._lateral is None or not has_begun(self._lateral.judged):
+            return None
+        if not has_begun(self._elevator.judged):
             return None
         return crew_plan(self._elevator.flight_test, self._lateral.flight_test)
+
+    @property
+    def _tests_sideways(self) -> bool:
+        """Whether roll and yaw are tested, and the elevator only trims."""
+        lateral = self._lateral
+        return lateral is not None and has_begun(lateral.judged) and not has_begun(self._elevator.judged)
 
     def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
         """Keep the better record of a manoeuvre that arrived twice; an exclusion of either remains."""

@@ -1,7 +1,7 @@
 """Frozen state of a campaign at one moment, for screens, texts and documents, with both axes and the whole
 flight."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 from statistics import median
@@ -58,6 +58,11 @@ OF_ELEVATOR = frozenset({"no_maneuver", "no_elevator", "no_alpha"})
 _EVERY_S = 1.0
 """Vehicle time between two pictures of the whole flight, s. A picture of many minutes does not visibly change
 sooner."""
+
+
+def has_begun(judged: Iterable[JudgedManeuver]) -> bool:
+    """Return whether the test of an axis has begun: by a named or marked input, or an accepted movement."""
+    return any(one.maneuver.span.is_test_input or one.verdict.accepted for one in judged)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -161,11 +166,19 @@ class CampaignState:
 
     @property
     def plan(self) -> CrewPlan | None:
-        """Plan of both axes; None if only one axis has been flown."""
+        """Plan of both axes; None if the test of one axis has not begun."""
         side = self.lateral
-        if side is None or not side.maneuvers or not self.maneuvers:
+        if side is None or not has_begun(side.maneuvers) or not has_begun(self.maneuvers):
             return None
         return crew_plan(self.flight_test, side.flight_test)
+
+    @property
+    def tested_sideways(self) -> LateralState | None:
+        """The lateral state if the test of roll and yaw has begun, and that of the elevator has not."""
+        side = self.lateral
+        if side is None or has_begun(self.maneuvers) or not has_begun(side.maneuvers):
+            return None
+        return side
 
     @property
     def lateral_alone(self) -> LateralState | None:

@@ -52,11 +52,18 @@ def nothing_tested(history: Sequence[CandidateManeuver]) -> str:
     """Return the sentence about a history without a usable manoeuvre; empty if one is usable."""
     if usable_ones(history):
         return ""
-    if not history:
+    if not has_begun(history):
         return "No test input of the elevator has been flown."
     one = len(history) == 1
     which = "The one input" if one else f"None of the {len(history)} inputs"
     return f"{which} of the elevator can{'not' if one else ''} be used."
+
+
+def has_begun(history: Sequence[CandidateManeuver]) -> bool:
+    """Return whether the test of an axis has begun: by a named or marked input, or by a usable movement."""
+    return any(
+        flown.maneuver is None or flown.maneuver.span.is_test_input or flown.usable for flown in history
+    )
 
 
 def is_named(flown: CandidateManeuver) -> bool:

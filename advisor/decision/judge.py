@@ -6,11 +6,11 @@ from math import degrees, floor
 from advisor.aircraft.aircraft import CampaignPlan, Rule
 from advisor.decision.consistency import USUAL, Outlier, outliers
 from advisor.decision.course import CriterionCourse
-from advisor.decision.history import CandidateManeuver
+from advisor.decision.history import CandidateManeuver, has_begun
 from advisor.decision.larger import Larger, larger_and_agreeing
 from advisor.decision.paper_rules import MANEUVER_RULES
 from advisor.decision.pooling import posteriors_at_one_speed
-from advisor.decision.verdict import ManeuverVerdict, Reason, RuleResult
+from advisor.decision.verdict import NO_TEST, ManeuverVerdict, Reason, RuleResult
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.words.digits import distinct_texts
 
@@ -36,7 +36,8 @@ def judge_campaign(
         costly = plan.rule != "information" and not accepted[i]
         larger = larger_and_agreeing(history[: i + 1], accepted, course) if costly else None
         rules = {name: results[i] for name, results in by_rule.items()}
-        verdicts.append(_verdict(flown, plan.rule, rules, contradicted.get(i), larger))
+        begun = has_begun(history[: i + 1])
+        verdicts.append(_verdict(flown, plan.rule, rules, contradicted.get(i), larger, begun))
     return tuple(verdicts)
 
 
@@ -82,6 +83,7 @@ def _verdict(
     rules: Mapping[Rule, RuleResult],
     outlier: Outlier | None,
     larger: Larger | None,
+    begun: bool,
 ) -> ManeuverVerdict:
     reasons = _reasons(flown, rule, rules[rule], outlier, larger)
     notes = flown.estimate.notes if isinstance(flown.estimate, Estimate) else ()
@@ -89,7 +91,8 @@ def _verdict(
     if flown.excluded_because is not None:
         sentence = f"EXCLUDED by hand: {flown.excluded_because}"
     elif reasons:
-        sentence = f"{'UNUSABLE' if reasons[0].by_instrument else 'REPEAT'}: {reasons[0].text}"
+        rejected = "REPEAT" if begun else NO_TEST
+        sentence = f"{'UNUSABLE' if reasons[0].by_instrument else rejected}: {reasons[0].text}"
     else:
         sentence = f"ACCEPTED: {_why_accepted(flown, rule, rules[rule])}"
     return ManeuverVerdict(

@@ -20,6 +20,8 @@ def limit_percent(rule: Rule, plan: CampaignPlan) -> float:
 
 UNTRUSTED = frozenset({"missing", "frozen"})
 """Codes of reasons for a faulty channel. No other finding from a faulty channel is reported."""
+NO_TEST = "NO TEST INPUT"
+"""Word for a movement before the first test input of its axis, such as a pilot's trimming."""
 NO_CURE_BY_INPUT = UNTRUSTED | {"rate", "gap", "advisor_down", "clock"}
 """Codes of reasons that no input can remedy. With such a reason the advice names no other input."""
 

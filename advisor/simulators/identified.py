@@ -120,12 +120,11 @@ class _PitchFit:
     def __init__(self, one: Replay, other: Replay, t: FloatArray, elevator: FloatArray) -> None:
         self._h, self._speed = float(t[1] - t[0]), float(one.airspeed_m_s[0])
         self._elevator = elevator
-        self._ends: FloatArray = np.arange(len(t) + 1) * self._h
-        own: FloatArray = np.asarray(one.t[one.t <= self._ends[-1]], dtype=np.float64)
+        self._ends: FloatArray = np.arange(len(t) + 1, dtype=np.float64) * self._h
+        own: FloatArray = one.t[one.t <= self._ends[-1]]
         self._own = own
-        self._alpha, self._q, faster = (
-            odd_part(one, other, name, own) for name in ("alpha", "q", "airspeed_m_s")
-        )
+        self._alpha, self._q = (odd_part(one, other, name, own) for name in ("alpha", "q"))
+        faster = odd_part(one, other, "airspeed_m_s", own)
         along = [np.interp(own, flown.t, _lift_axis_force(flown)) for flown in (one, other)]
         self._normal = 0.5 * (along[0] - along[1]) / self._speed
         self._faster = odd_part(one, other, "airspeed_m_s", t) / self._speed

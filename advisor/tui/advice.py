@@ -1,9 +1,10 @@
 """The pilot's one word of advice, from the campaign's verdicts."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
+from advisor.session.behind import spoken
 from advisor.session.view import View
 
 Word = Literal["CONTINUE", "REPEAT", "TEST COMPLETE", "RECOVER", "WAIT", "BEHIND", "NO LINK", "NO DATA"]
@@ -17,26 +18,51 @@ class Advice:
     word: Word
     sentence: str
     tone: Tone
+    age: str = ""
+    """Age of the word, for small letters beside it; empty for a word of the present."""
 
 
 _OLD = "the verdicts below are that old, and the link and its recording go on."
 
 
 def advise(view: View) -> Advice:
-    """Return the most important advice: a lost link, unusable data, the manoeuvre in flight, or the verdicts.
+    """Return the most important advice: unusable data, the manoeuvre in flight, or the verdicts.
 
-    Once the flight test says stop on each axis that is tested, no further data are needed.
+    The last word stays while the link is lost or this computer is behind, and its age stands beside it. Once
+    the flight test says stop on each axis that is tested, no further data are needed.
     """
-    state, verdict = view.state, view.state.flight_test
     if view.health.condition == "stale":
         return Advice("WAIT", view.health.sentence, "bad")
+    is_old = bool(view.health.behind) or view.health.condition == "lost"
+    word = _by_verdicts(view, is_old)
+    if not is_old:
+        return word
     if view.health.behind:
-        return Advice("BEHIND", f"{view.health.behind.capitalize()}: {_OLD}", "bad")
-    if view.health.condition == "lost":
-        return Advice("NO LINK", f"{view.health.sentence}{_another(view)}", "bad")
+        none = Advice("BEHIND", f"{view.health.behind.capitalize()}: {_OLD}", "bad")
+        age = f"{spoken(view.health.behind_s)} old"
+    else:
+        none = Advice("NO LINK", f"{view.health.sentence}{_another(view)}", "bad")
+        age = f"no link: {view.health.sentence}"
+    return replace(word, age=age) if _is_a_word(word, view) else none
+
+
+def _is_a_word(word: Advice, view: View) -> bool:
+    """Return whether the verdicts give a word, for which a manoeuvre must be judged or in flight."""
+    if word.word in ("RECOVER", "TEST COMPLETE"):
+        return True
+    side = view.state.lateral
+    return bool(view.state.maneuvers or (side is not None and side.maneuvers))
+
+
+def _by_verdicts(view: View, is_old: bool) -> Advice:
+    """Return the advice of the verdicts. Of old data no absence is advice."""
+    state, verdict, last = view.state, view.state.flight_test, view.last
+    side = state.tested_sideways
+    if side is not None:
+        verdict, last = side.flight_test, side.maneuvers[-1]
     plan = view.plan
     complete = verdict.decision == "stop" if plan is None else plan.is_complete
-    if view.obstacles and not complete:
+    if view.obstacles and not complete and not is_old:
         return Advice("NO DATA", f"{view.obstacles[0]}{_another(view)}{_elevator(view)}", "bad")
     if state.enough:
         return Advice("RECOVER", state.enough, "good")
@@ -45,7 +71,7 @@ def advise(view: View) -> Advice:
     if state.vehicle is None:
         return Advice("WAIT", view.health.sentence, "quiet")
     sentence = plan.sentence if plan is not None and verdict.decision == "stop" else verdict.sentence
-    if view.last and not view.last.verdict.accepted:
+    if last and not last.verdict.accepted and last.maneuver.span.is_test_input:
         return Advice("REPEAT", sentence, "warn")
     return Advice("CONTINUE", sentence, "quiet")
 

@@ -16,6 +16,7 @@ from textual.screen import Screen
 from textual.worker import Worker, WorkerState
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.campaign.state import has_begun
 from advisor.session.conducting import Conducting, SessionReport
 from advisor.session.source import Tempo
 from advisor.session.view import SideView, View, view_before_first
@@ -178,11 +179,12 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
     def _open_on_the_axis_flown(self, report: SessionReport) -> None:
         """Show the axis of the first manoeuvre, unless a key has chosen an axis."""
         lateral = report.state.lateral
-        sideways = lateral is not None and bool(lateral.maneuvers)
-        if self._axis_chosen or not (report.state.maneuvers or sideways):
+        pitching = has_begun(report.state.maneuvers)
+        sideways = lateral is not None and has_begun(lateral.maneuvers)
+        if self._axis_chosen or not (pitching or sideways):
             return
         self._axis_chosen = True
-        if not report.state.maneuvers:
+        if not pitching:
             self._side = SideView()
             self.refresh_bindings()
 

@@ -11,6 +11,7 @@ from advisor.decision.judge import accepted_estimates, judge_campaign
 from advisor.decision.verdict import Reason
 from advisor.oem.estimate import Estimate, NoEstimate
 from tests.decision.campaigns import SAMPLES, drawn, estimate, flown, with_change, with_residual
+from tests.decision.test_advice import manoeuvre
 
 QUIET = Reason("amplitude", "too gentle, pitch rate 3 deg/s; use about 1.5 times the stick", 3.0, 5.0)
 PLAN = CampaignPlan(rule="continuous")
@@ -142,6 +143,15 @@ def test_a_manoeuvre_that_contradicts_all_the_others_is_refused_by_the_rule_info
     assert [r.code for r in judge_campaign(costly, PLAN)[1].reasons] == ["cost"]
     # As long as it was the newest of two nobody could know which of them was odd.
     assert judge_campaign(history[:2], replace(PLAN, rule="information"))[1].accepted
+
+
+def test_a_movement_before_the_first_test_input_is_no_test_and_one_after_it_is_to_be_repeated() -> None:
+    named = manoeuvre()
+    unnamed = replace(named, span=replace(named.span, kind="other"))
+    trimming = CandidateManeuver(estimate(), reasons=(QUIET,), maneuver=unnamed)
+    first = CandidateManeuver(estimate(), maneuver=named)
+    words = [one.sentence.partition(":")[0] for one in judge_campaign([trimming, first, trimming], PLAN)]
+    assert words == ["NO TEST INPUT", "ACCEPTED", "REPEAT"]
 
 
 def test_a_manoeuvre_without_an_estimate_is_refused_with_its_reason() -> None:

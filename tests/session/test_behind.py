@@ -176,12 +176,14 @@ def test_nothing_is_in_the_air_once_the_log_has_ended() -> None:
     assert flying_in_words(ended) == "nothing: the log has ended"
 
 
-def test_the_word_gives_way_to_the_backlog_and_no_old_value_stands_as_new() -> None:
+def test_the_word_stays_with_its_age_and_no_old_value_stands_as_new() -> None:
     state = flights.state(5, in_the_air=True)
-    assert advise(view(state, UP_TO_DATE)).word != "BEHIND"
+    now = advise(view(state, UP_TO_DATE))
     late = view(state, behind(UP_TO_DATE))
-    assert advise(late).word == "BEHIND"
-    assert advise(late).sentence.startswith("This computer is 130 s behind: ")
+    assert advise(late) == replace(now, age="130 s old")
+    none = advise(view(flights.state(0), behind(UP_TO_DATE)))
+    assert none.word == "BEHIND"
+    assert none.sentence.startswith("This computer is 130 s behind: ")
     assert flying_in_words(late) == "not known: this computer is 130 s behind"
     assert "✗ bank 34 deg" in limits_now(late)
     assert "V 31 m/s" in limits_now(late)

@@ -14,6 +14,8 @@ from advisor.tui.panes.limits_now import limits_now
 from advisor.tui.panes.pilot import BigWord, how_far
 from advisor.tui.stick_drawing import stick_drawing, stick_line
 from advisor.words.problems import Problem
+from tests.campaign.side_builders import judged
+from tests.campaign.side_builders import state as lateral_state
 from tests.tui import flights
 from tests.tui.stage import stage
 from tests.tui.stand_ins import HandFedSource
@@ -41,9 +43,46 @@ def test_the_word_follows_the_verdicts(state, word: str):
     assert advise(view(state)).word == word
 
 
-def test_a_lost_link_comes_before_everything():
-    advice = advise(view(flights.state(7), LOST))
+def test_a_lost_link_is_the_word_where_no_manoeuvre_was_judged():
+    advice = advise(view(flights.state(0), LOST))
     assert (advice.word, advice.sentence) == ("NO LINK", "Nothing heard for 4 s.")
+
+
+@pytest.mark.parametrize(
+    ("state", "word"),
+    [
+        (flights.state(7), "TEST COMPLETE"),
+        (replace(flights.state(3), enough="Enough: recover."), "RECOVER"),
+        (flights.state(3, bad=(3,)), "REPEAT"),
+        (replace(flights.state(3), no_data=(Problem("rate", "Nothing arrives.", "Wait."),)), "CONTINUE"),
+    ],
+)
+def test_the_last_word_stays_on_a_lost_link_and_says_since_when_it_is_old(state, word):
+    advice = advise(view(state, LOST))
+    assert (advice.word, advice.age) == (word, "no link: Nothing heard for 4 s.")
+
+
+def movement(judged, kind="other", accepted=False):
+    span = replace(judged.maneuver.span, kind=kind)
+    verdict = replace(judged.verdict, accepted=accepted, sentence="NO TEST INPUT: too gentle; more stick")
+    return replace(judged, maneuver=replace(judged.maneuver, span=span), verdict=verdict)
+
+
+def test_trimming_of_the_elevator_takes_no_part_in_a_test_of_roll_and_yaw():
+    trimming = tuple(map(movement, flights.state(2, bad=(1, 2)).maneuvers))
+    side = lateral_state(judged(1, "aileron"))
+    state = replace(flights.state(0), maneuvers=trimming, lateral=side)
+    assert state.plan is None
+    assert state.tested_sideways is side
+    assert advise(view(state)).word == "CONTINUE"
+    assert advise(view(state)).sentence == side.flight_test.sentence
+    assert for_the_pilot(trimming[-1], False) == ("✗", "NO TEST INPUT", "too gentle")
+
+
+def test_a_named_input_of_each_axis_puts_both_into_the_plan():
+    state = replace(flights.state(2), lateral=lateral_state(judged(1, "aileron")))
+    assert state.plan is not None
+    assert state.tested_sideways is None
 
 
 SLOW = Problem("rate", "ATTITUDE arrives at 4.0 Hz, too slow.", "Ask for 50 Hz.")

@@ -58,6 +58,11 @@ class Span:
         """Whether the elevator has come to rest after its last step."""
         return self.last_step_s < self.end_s
 
+    @property
+    def is_test_input(self) -> bool:
+        """Whether the movement is a test input: by the shape of a named input, or by a mark."""
+        return self.kind != "other" or self.closed_by.startswith("marked")
+
 
 @dataclass(frozen=True, slots=True)
 class Maneuver:

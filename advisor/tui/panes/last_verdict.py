@@ -4,7 +4,7 @@ from textual.app import ComposeResult
 from textual.containers import Vertical
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.decision.verdict import ManeuverVerdict
+from advisor.decision.verdict import NO_TEST, ManeuverVerdict
 from advisor.oem.estimate import Estimate
 from advisor.session.view import View
 from advisor.tui.advice import without_word
@@ -34,6 +34,8 @@ def for_the_pilot(judged: JudgedManeuver, test_is_complete: bool) -> tuple[str, 
         return symbol, word, judged.excluded_because
     if judged.verdict.accepted:
         return symbol, "GOOD", sentence
+    if judged.verdict.sentence.startswith(NO_TEST):
+        return symbol, NO_TEST, sentence.partition("; ")[0]
     if test_is_complete:
         return symbol, "NOT USED", sentence.partition("; ")[0]
     return symbol, "REPEAT", sentence

@@ -44,8 +44,10 @@ class Why(Part, Lines):
     EITHER_AXIS = True
 
     def show(self, view: View) -> None:
-        """Write the sentence of the advice."""
-        self.write(without_word(advise(view).sentence))
+        """Write the sentence of the advice, behind the age of an old word."""
+        advice = advise(view)
+        age = f"({advice.age.removesuffix('.')})  " if advice.age else ""
+        self.write(f"{age}{without_word(advice.sentence)}")
 
 
 class NextInput(Part, Redrawn, Lines):

@@ -30,7 +30,8 @@ The large word is what to do now:
 - **REPEAT**: the last manoeuvre is rejected; the line below gives the reason and the remedy.
 - **RECOVER**: further response of the manoeuvre in the air adds nothing.
 - **TEST COMPLETE**: the criterion fell below its limit. A later rejected manoeuvre is **NOT USED**.
-- **WAIT**, **NO LINK**: no vehicle is heard (any more).
+- **WAIT**, **NO LINK**, **BEHIND**: no vehicle is heard, or this computer is late. After a first verdict the
+  last word stays, and its age stands below.
 - **NO DATA**: the vehicle does not send what is needed; the line below says what to change.
 
 ✓ accepted, ✗ rejected, ∅ excluded by hand.
