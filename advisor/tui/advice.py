@@ -19,7 +19,7 @@ class Advice:
     sentence: str
     tone: Tone
     age: str = ""
-    """Age of the word, for small letters beside it; empty for a word of the present."""
+    """Age of the word, for the line below; empty for a word of the present."""
 
 
 _OLD = "the verdicts below are that old, and the link and its recording go on."
@@ -28,7 +28,7 @@ _OLD = "the verdicts below are that old, and the link and its recording go on."
 def advise(view: View) -> Advice:
     """Return the most important advice: unusable data, the manoeuvre in flight, or the verdicts.
 
-    The last word stays while the link is lost or this computer is behind, and its age stands beside it. Once
+    The last word stays while the link is lost or this computer is behind, and its age stands below. Once
     the flight test says stop on each axis that is tested, no further data are needed.
     """
     if view.health.condition == "stale":
