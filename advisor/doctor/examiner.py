@@ -1,6 +1,7 @@
 """The telemetry examination: messages in, findings out, without reading files or printing."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft_file.log_facts import FLYING_SHARE, SLOWEST_M_S
 from advisor.campaign.instruments import together
 from advisor.decision.first_unit import frequency
+from advisor.doctor.as_flown import as_flown
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit, in_order
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, expect
 from advisor.doctor.instruments import (
@@ -174,19 +176,18 @@ class Examiner:
         flown = estimate_jointly(self._maneuvers, self._aircraft) if self._maneuvers else None
         if not isinstance(flown, Estimate) or not is_believable(flown):
             flown = None
-        noise, colour = dict(NOISE), np.ones(len(PARAMETERS))
+        seen = Assumed(TYPICAL, NOISE, "a typical aircraft of 10 kg (yours: model in the aircraft file)")
+        seen = replace(seen, aircraft=self._aircraft)
         if flown is not None:
-            noise |= {name: fit.noise for name, fit in flown.fits[0].items()}
-            colour = np.maximum(1.0, flown.std / flown.std_cr)
+            seen = as_flown(seen, self._maneuvers, flown)
         if {"Z_alpha", "M_alpha", "M_q", "M_delta_e"} <= self._aircraft.model.keys():
             model = ShortPeriod.from_mapping(self._aircraft.model)
-            return Assumed(model, noise, "the model in the aircraft file", colour, self._aircraft)
+            return replace(seen, model=model, source="the model in the aircraft file")
         if flown is not None:
             number = len(self._maneuvers)
             source = f"an estimate from {number} manoeuvre{'s' if number > 1 else ''} flown"
-            return Assumed(ShortPeriod(flown.theta), noise, source, colour, self._aircraft)
-        source = "a typical aircraft of 10 kg (yours: model in the aircraft file)"
-        return Assumed(TYPICAL, noise, source, colour, self._aircraft)
+            return replace(seen, model=ShortPeriod(flown.theta), source=source)
+        return seen
 
     def _paced(self, arrivals: dict[str, Arrival]) -> dict[str, Paced]:
         """Return the channels that identification needs, with the messages that determine their rates."""

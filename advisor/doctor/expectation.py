@@ -2,12 +2,12 @@
 
 Nothing is simulated with noise. A measurement's information follows from its sensitivity to each parameter
 (Cramér-Rao). A sampled command adds an uncertainty: the edges of the input lie somewhere between two samples.
-Natural lateness and places of instruments, and a servo's lag that the file leaves open, are estimated with
-the derivatives, as in flight.
+Natural lateness and places of instruments, and a servo's lag, are estimated with the derivatives, as in
+flight. The flown manoeuvres give the amplitude, the noise and its colour, each manoeuvre by its own estimate.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -18,7 +18,8 @@ from advisor.decision.foresight import foresee, local_at_trim, response_from_tri
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import OUTPUTS
 from advisor.model.short_period import ShortPeriod
-from advisor.oem.instruments import USUAL_LAG, extra_of, unknown_instruments
+from advisor.oem.extra import Prior
+from advisor.oem.instruments import SERVO_LAG, USUAL_LAG, Instrument, extra_of, unknown_instruments
 from advisor.oem.prepare import OUTPUTS as COUNTED
 from advisor.oem.prior import precision_without_alpha
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
@@ -53,7 +54,11 @@ class Assumed:
     source: str
     """Source of the model and the noise, in words."""
     colour: FloatArray = field(default_factory=lambda: np.ones(len(PARAMETERS)))
-    """Ratio of corrected errors to Cramér-Rao bounds in flight, shape (8,); 1 for white residuals."""
+    """Ratio of a single manoeuvre's errors to its Cramér-Rao bounds, shape (8,); 1 for white residuals."""
+    amplitude_deg: float | None = None
+    """Elevator amplitude of the flown manoeuvres on either side of trim, deg; None before the first one."""
+    lag_s: float | None = None
+    """Servo's lag of the flown manoeuvres, s; None before the first one."""
     aircraft: Aircraft = field(default_factory=Aircraft)
     """The crew's aircraft file, which states or leaves open a servo's lag and a vane's place."""
 
@@ -93,7 +98,11 @@ def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float 
     unit_response = response_from_trim(_about_trim(model), shape)
     if unit_response is None:
         return ExpectedErrors(dict.fromkeys(PARAMETERS, np.nan), unit_s, np.nan)
-    amplitude = np.radians(RESPONSE_ALPHA_DEG) / float(np.max(np.abs(unit_response[shape.rows[0]["alpha"]])))
+    if assumed.amplitude_deg is not None:
+        amplitude = float(np.radians(assumed.amplitude_deg))
+    else:
+        largest = float(np.max(np.abs(unit_response[shape.rows[0]["alpha"]])))
+        amplitude = np.radians(RESPONSE_ALPHA_DEG) / largest
     std = assumed.colour * _errors(assumed, edges, amplitude, end_s, rates_hz, outputs, airspeed_m_s)
     return ExpectedErrors(
         dict(zip(PARAMETERS, std.tolist(), strict=True)), unit_s, float(np.degrees(amplitude))
@@ -115,15 +124,15 @@ def _errors(
     airspeed_m_s: float | None,
 ) -> FloatArray:
     theta = _about_trim(assumed.model)
-    stated_s = assumed.aircraft.elevator.lag_s
-    servo = Servo(USUAL_LAG.mean if stated_s is None else stated_s)
+    known_s = (assumed.aircraft.elevator.lag_s, assumed.lag_s, USUAL_LAG.mean)
+    servo = Servo(next(lag_s for lag_s in known_s if lag_s is not None))
 
     def problem(at: FloatArray) -> OutputErrorProblem:
         return _problem(at, amplitude, end_s, rates_hz, outputs, airspeed_m_s, servo)
 
     laid = assemble(problem(edges))
     local = local_at_trim(theta, laid)
-    names = [x for x in unknown_instruments(problem(edges), assumed.aircraft) if x.stated is None]
+    names = list(_estimated(unknown_instruments(problem(edges), assumed.aircraft)))
     shifts = _SHIFT_S * np.eye(len(edges))
     ends = [response_from_trim(theta, assemble(problem(edges + s))) for s in (*shifts, *-shifts)]
     if local is None or any(end is None for end in ends):
@@ -139,6 +148,16 @@ def _errors(
     covariance = expected.covariance + edge_error_s(rates_hz["elevator"]) ** 2 * moved.T @ moved
     result: FloatArray = np.sqrt(np.diag(covariance))
     return result
+
+
+def _estimated(unknown: Iterable[Instrument]) -> Iterator[Instrument]:
+    """Yield the instruments that an estimate has as parameters. A stated lag is known to a tenth,
+    and other statements hold."""
+    for x in unknown:
+        if x.stated is None:
+            yield x
+        elif x.name == SERVO_LAG.name and x.stated > 0.0:
+            yield replace(x, prior=Prior(x.stated, x.known_to * x.stated))
 
 
 def edge_error_s(rate_hz: float) -> float:

@@ -9,10 +9,18 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.first_unit import frequency
-from advisor.doctor.expectation import NOISE, TYPICAL, UNITS_OF_TIME, Assumed, edge_error_s, expect
+from advisor.doctor.expectation import (
+    NOISE,
+    TYPICAL,
+    UNITS_OF_TIME,
+    Assumed,
+    _estimated,
+    edge_error_s,
+    expect,
+)
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.instrument_fit import fit_instruments
-from advisor.oem.instruments import unknown_instruments
+from advisor.oem.instruments import SERVO_LAG, USUAL_LAG, unknown_instruments
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve
@@ -74,8 +82,27 @@ def test_many_fits_with_noise_and_a_natural_lateness_scatter_as_expected() -> No
 def test_a_servo_whose_lag_the_file_leaves_open_tells_less_of_the_moment() -> None:
     rates = {"elevator": 50.0, "alpha": 50.0, "q": 50.0}
     known, left_open = (expect(assumed, rates, None) for assumed in (stated(0.05), ASSUMED))
-    assert left_open.std["M_delta_e"] > 1.5 * known.std["M_delta_e"]
-    assert left_open.std["M_q"] > 1.2 * known.std["M_q"]
+    assert left_open.std["M_delta_e"] > 1.05 * known.std["M_delta_e"]
+
+
+@pytest.mark.parametrize(("lag_s", "std_s"), [(None, 0.05), (0.2, 0.02)])
+def test_a_stated_lag_is_known_to_a_tenth_of_itself(lag_s: float | None, std_s: float) -> None:
+    (lag,) = _estimated([replace(SERVO_LAG, stated=lag_s, prior=USUAL_LAG)])
+    assert lag.prior is not None
+    assert lag.prior.std == pytest.approx(std_s)
+
+
+def test_a_stated_lag_of_zero_holds() -> None:
+    assert list(_estimated([replace(SERVO_LAG, stated=0.0, prior=USUAL_LAG)])) == []
+
+
+def test_the_amplitude_and_the_lag_of_flown_manoeuvres_take_the_place_of_assumed_ones() -> None:
+    rates = {"elevator": 50.0, "alpha": 50.0, "q": 50.0}
+    small, large = (expect(replace(stated(0.0), amplitude_deg=deg), rates, None) for deg in (1.0, 4.0))
+    assert (small.amplitude_deg, large.amplitude_deg) == (pytest.approx(1.0), pytest.approx(4.0))
+    assert small.std["M_alpha"] > 2.0 * large.std["M_alpha"]
+    quick, slow = (expect(replace(ASSUMED, lag_s=lag_s), rates, None) for lag_s in (0.01, 0.2))
+    assert slow.std["M_delta_e"] > 1.2 * quick.std["M_delta_e"]
 
 
 def test_the_manoeuvre_moves_the_angle_of_attack_as_far_as_it_says() -> None:

@@ -1,0 +1,48 @@
+"""Conditions of the expected errors, as the flown manoeuvres give them: amplitude, noise, colour and lag.
+
+A joint estimate's errors contain the scatter between the manoeuvres and the model's error, which no single
+manoeuvre has. Noise and colour therefore come from the manoeuvres' own estimates.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.campaign.joint_estimate import NEWEST
+from advisor.decision.envelope import flown as flown_values
+from advisor.doctor.expectation import NOISE, Assumed
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.oem.estimate import Estimate
+from advisor.oem.estimator import estimate
+
+
+def as_flown(assumed: Assumed, maneuvers: Sequence[Maneuver], joint: Estimate) -> Assumed:
+    """Return the assumptions with amplitude, noise, colour and lag of the flown manoeuvres.
+
+    Parameters
+    ----------
+    maneuvers
+        Manoeuvres in the order flown, at least one.
+    joint
+        Their joint estimate, whose servo's lag is the surest.
+    """
+    newest = maneuvers[-NEWEST:]
+    singles = [one for m in newest if isinstance(one := estimate(m, assumed.aircraft), Estimate)] or [joint]
+    noise = {name: _median([one.fits[0][name].noise for one in singles if name in one.fits[0]])
+             for name in singles[-1].fits[0]}  # fmt: skip
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratios = np.array([one.std / one.std_cr for one in singles])
+    colour = np.maximum(1.0, np.median(np.where(np.isfinite(ratios), ratios, 1.0), axis=0))
+    amplitudes = [0.5 * float(np.degrees(np.ptp(flown_values(m, "elevator")))) for m in newest]
+    return replace(
+        assumed,
+        noise=NOISE | noise,
+        colour=colour,
+        amplitude_deg=_median(amplitudes),
+        lag_s=joint.servo_lag_s,
+    )
+
+
+def _median(values: Sequence[float]) -> float:
+    return float(np.median(values))
