@@ -204,9 +204,10 @@ def report(
     """
     best = filtered or (solution if quick else efficient(solution))
     source = filtered or solution
-    best = replace(
-        best, covariance=replace(source, covariance=best.covariance, systematic=best.systematic).widened
-    )
+    within = replace(source, covariance=best.covariance, systematic=best.systematic)
+    # Optima along a profile explain the record alike, and so predict the response to its input alike.
+    predicted = within.widened if source.profile is None else replace(within, modes=None).widened
+    best = replace(best, covariance=within.widened)
     airspeed_m_s = solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s
     given = found_of(aircraft)
     common = np.zeros((N, N)) if given is None else given.covariance_at(airspeed_m_s)
@@ -236,7 +237,7 @@ def report(
         gust_rad=air.gust_angle if air is not None and air.present else None,
         filtered=filtered is not None,
         servo_lag_s=best.problem.servo.lag_s,
-        prediction={} if quick else prediction_band(best.assembly, best, best.covariance),
+        prediction={} if quick else prediction_band(best.assembly, best, predicted),
     )
 
 

@@ -1,16 +1,22 @@
 """Posterior along a parameter whose linear interval is no interval of the posterior."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
+from advisor.oem import estimator
 from advisor.oem.profile import Profile, needs_profile, profiled
 from advisor.words.quantiles import NORMAL_95
+from benchmarks.accuracy import clean, flown
 
 STD = 0.04
 """Standard deviation of the profiled lag at its optimum, s."""
 LAG = 0.06
+KNOWN = Aircraft(elevator=Elevator(lag_s=0.0))
 
 
 def profile(derivative, nats, values=None):
@@ -105,3 +111,16 @@ def test_the_walk_ends_at_the_end_of_the_range_and_where_the_density_has_fallen(
 def test_a_parabola_leaves_the_interval_as_it_is():
     found = walked(lambda lag: 0.0 * lag, lambda lag: 2.0 * parabola(lag))
     assert np.isclose(found.widened[0, 0], 1e-4, rtol=1e-6)
+
+
+def test_the_response_to_the_flown_input_is_predicted_alike_along_the_ridge(monkeypatch):
+    """The band of a record on a ridge is that of its own hill, whatever the derivatives' intervals are."""
+    widths = []
+    monkeypatch.setattr(estimator, "prediction_band", lambda *found: widths.append(found[2]) or {})
+    monkeypatch.setattr(estimator, "notes", lambda *_, **__: ())
+    for profile in (None, object()):
+        fit = estimator.fit_jointly([flown(1, clean()[2])], KNOWN)
+        wide = 100.0 * np.eye(len(fit.fitted.solution.covariance))
+        on_ridge = replace(fit.fitted.solution, profile=profile, modes=wide if profile else None)
+        estimator.report(on_ridge, fit.prepared, KNOWN)
+    assert np.allclose(widths[0], widths[1])
