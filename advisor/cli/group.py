@@ -37,6 +37,7 @@ COMMANDS = {
     "doctor": "Check before a flight whether the telemetry is good enough; say what to change.",
     "study": "Repeat the paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",
     "mcp": "Let an assistant read logs: doctor, analyze, gap and report as tools.",
+    "script": "Write the test inputs as a script that the autopilot flies.",
     "aircraft": "Write an aircraft file, or say what one lacks and what that costs.",
     "sample": "Put a sample flight and its aircraft file into this folder.",
     "locate": "Print where settings and recordings are kept.",
