@@ -35,10 +35,9 @@ def source_of_log(log: Path, aircraft: Aircraft, target_system: int | None = Non
     UnusableInputError
         The log cannot be read, holds no aircraft, or is not ArduPilot's.
     """
-    series = LogSeries([log])
-    facts = facts_of(series.batches(), aircraft, target_system)
-    if series.unreadable:
-        raise UnusableInputError.of(list(series.unreadable.values()))
+    from advisor.mavlink.logs.whole import read_whole_log
+
+    facts = facts_of(read_whole_log(log), aircraft, target_system)
     if facts.vehicle.autopilot != "ardupilot":
         raise UnusableInputError(
             "autopilot",

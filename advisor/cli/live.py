@@ -51,6 +51,11 @@ if TYPE_CHECKING:
     help="Send the announcements to this connection instead, e.g. to a --master of MAVProxy.",
 )
 @click.option(
+    "--uplink",
+    is_flag=True,
+    help="Send each advised input to the script of advisor script, as SCR_USER1 to 4; nothing else is sent.",
+)
+@click.option(
     "--signing-key",
     type=click.Path(path_type=Path),
     metavar="FILE",
@@ -72,6 +77,7 @@ def command(
     request_rates: bool,
     announce: bool,
     announce_to: str | None,
+    uplink: bool,
     signing_key: Path | None,
     source_system: int,
     show: Show | None = None,
@@ -113,7 +119,7 @@ def command(
     keeping = Keeping(
         start.campaign.master, new_door(), source_system, start.campaign.target_system, start.recording,
         start.goes_on, read_key(signing_key) if signing_key else None, request_rates,
-        announce or announce_to is not None, announce_to,
+        announce or announce_to is not None, announce_to, uplink,
     )  # fmt: skip
     recordings: list[Path] = []
     with in_order(partial(_ended, recordings)), started(start, keeping) as process:
@@ -125,7 +131,7 @@ def command(
             start.campaign.master,
             aircraft,
             start.campaign.target_system,
-            partial(_announce, link) if announce or announce_to else None,
+            partial(_tell, link, keeping.announce, uplink) if keeping.announce or uplink else None,
             by_hand=by_hand,
             kept=partial(_decided, (*start.earlier, process.recording)),
             names=[*(printable(log.name) for log in start.earlier), start.campaign.master],
@@ -181,10 +187,19 @@ def _source(earlier: Sequence[Path], link: "KeptLink") -> "Source":
     return ResumedSource(earlier, LinkSource(link)) if earlier else LinkSource(link)
 
 
-def _announce(link: "KeptLink", event: object) -> None:
+def _tell(link: "KeptLink", announce: bool, uplink: bool, event: object) -> None:
+    """Announce a verdict to the ground stations, and send the next input to the autopilot's script."""
     from advisor.campaign.campaign import ManeuverJudged
 
-    if isinstance(event, ManeuverJudged):
+    if not isinstance(event, ManeuverJudged):
+        return
+    if uplink:
+        from advisor.scripts.next_order import next_order
+
+        advised = event.flight_test.next if event.plan is None else event.plan.next
+        if advised is not None and advised.input is not None:
+            link.advise(*next_order(advised.input))
+    if announce:
         verdict, plan = event.flight_test, event.plan
         axis = "roll and yaw" if event.axis == "lateral" else ""
         stop = verdict.sentence if verdict.decision == "stop" else ""

@@ -86,7 +86,7 @@ def _switch(_: click.Context, __: click.Parameter, channel: int) -> int:
     default=30.0,
     show_default=True,
     metavar="M",
-    help="Height above home below which no input is flown, m.",
+    help="Height above home below which no input is flown, m. 0: a script for the check on the ground.",
 )
 @target_system_option
 @json_option

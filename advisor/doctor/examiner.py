@@ -26,6 +26,7 @@ from advisor.doctor.instruments import (
     sender_limits,
 )
 from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
+from advisor.doctor.scripting import ScriptParameters
 from advisor.doctor.survey import Arrival, Survey, bank_name
 from advisor.flight.maneuvers.events import READER_NOTICE, ManeuverFlown, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -64,10 +65,12 @@ class Examiner:
         self._surveyed_system: int | None = None
         self._maneuvers: list[Maneuver] = []
         self._notes: list[str] = []
+        self._script = ScriptParameters()
 
     def feed(self, columns: Sequence[Columns]) -> None:
         """Process the next messages."""
         self._keep(self._stream.feed(columns))
+        self._script.feed(columns)
         vehicle = self._stream.vehicle
         if vehicle is not None and vehicle.system != self._surveyed_system:
             self._survey, self._surveyed_system = Survey(vehicle), vehicle.system
@@ -162,6 +165,7 @@ class Examiner:
                 *self._notes,
                 *([str(unknown)] if (unknown := self._stream.sides_unknown) else ()),
                 *dict.fromkeys(note for m in self._maneuvers for note in m.data_notes),
+                *self._script.notes(vehicle, self._stream.elevator),
                 *(self._survey.pauses if self._survey else ()),
                 *(clock_notes(clocks) if clocks else ()),
             ),

@@ -47,7 +47,7 @@ def _head(table: ScriptTable) -> list[str]:
             limits.airspeed_percent,
             "%, largest change of the air speed: limits.airspeed_change_percent",
         ),
-        _number("LOWEST_M", limits.lowest_m, "m above home, below which an input ends"),
+        _number("LOWEST_M", limits.lowest_m, "m above home, below which an input ends; 0: ground check"),
         _number("STICK_PERCENT", limits.stick_percent, "% of travel, motion of a stick that ends an input"),
         _number("LINK_S", limits.link_s, "s, silence of a ground station that was heard before"),
         _number(

@@ -145,12 +145,13 @@ local function trouble(before, now)
   if before.link and not now.link then return "link lost" end
   if now.mode ~= before.mode then return "mode changed" end
   if moved_stick(before, now, STICK_PERCENT) then return "stick" end
+  local pitched = now.pitch - before.pitch
+  if math.abs(now.bank) > BANK_DEG then return string.format("bank %.0f deg", now.bank) end
+  if math.abs(pitched) > PITCH_DEG then return string.format("pitch by %.0f deg", pitched) end
+  if LOWEST_M <= 0 then return nil end   -- a script for the ground check has neither height nor air speed
   local down = ahrs:get_relative_position_D_home()
   if down == nil then return "height unknown" end
   if -down < LOWEST_M then return string.format("height %.0f m", -down) end
-  if math.abs(now.bank) > BANK_DEG then return string.format("bank %.0f deg", now.bank) end
-  local pitched = now.pitch - before.pitch
-  if math.abs(pitched) > PITCH_DEG then return string.format("pitch by %.0f deg", pitched) end
   if now.airspeed ~= nil and before.airspeed ~= nil then
     local change = 100 * (now.airspeed / before.airspeed - 1)
     if math.abs(change) > AIRSPEED_PERCENT then return string.format("air speed by %.0f %%", change) end

@@ -14,6 +14,7 @@ from advisor.flight.elevator.elevator_outputs import find_elevator
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.scripts.ardupilot import ardupilot_script
+from advisor.scripts.flight_limits import FlightLimits
 from advisor.scripts.inputs import CONTROLS, NAMES, STEPPED
 from advisor.scripts.table import ScriptTable, Source, script_table
 from tests.scripts.engine import BUDGET, USUAL, Engine
@@ -255,6 +256,17 @@ def test_the_script_waits_for_steady_flight_and_says_for_what(name: str, value: 
     engine.run(8.0)
     assert engine.said("ADVISOR BEGIN") == []
     assert engine.said("ADVISOR WAITS")[-1] == f"ADVISOR WAITS: {why}"
+
+
+def test_a_script_for_the_ground_check_moves_the_surfaces_at_no_height_and_no_air_speed() -> None:
+    table = script_table(Aircraft(), Source(), ("3-2-1-1",), limits=FlightLimits.of(Aircraft(), lowest_m=0.0))
+    engine = _loaded(table)
+    engine.state |= {"height": -0.4, "airspeed": 0.5}
+    engine.radio[7] = 1900
+    engine.run(BOUNCE_S + STEADY_S + 0.3)
+    assert len(engine.said("ADVISOR BEGIN")) == 1
+    engine.run(5.0)
+    assert engine.said("ADVISOR END") == ["ADVISOR END 1 done"]
 
 
 def test_a_stick_that_moves_delays_the_begin() -> None:

@@ -7,7 +7,7 @@ Below its cut-off f a second-order Butterworth low-pass delays every motion by �
 notch of width b at f adds b/(2πf²). The short period is far below both filter frequencies.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import isfinite, pi, sqrt
 
 import numpy as np
@@ -54,9 +54,15 @@ class Parameters:
 
     PARAM_VALUE carries every value in a floating-point field. ArduPilot converts integers to floating point;
     PX4 copies their bytes ("C cast" and "bytewise" in MAVLink).
+
+    Parameters
+    ----------
+    wanted
+        Function that returns whether the parameter of a name is kept.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, wanted: Callable[[str], bool] = tells_of_outputs) -> None:
+        self._wanted = wanted
         self._known: dict[Sender, dict[str, Stated]] = {}
         self._wired: dict[tuple[object, ...], Wiring] = {}
 
@@ -68,7 +74,7 @@ class Parameters:
         for name, kind, value, whole in zip(names_in(columns), kinds, cast, bytewise, strict=True):
             stated = float(value), float(whole) if int(kind) in _INTEGERS else float(value)
             before = self._known.get((columns.system, columns.component), {}).get(name)
-            if tells_of_outputs(name) and before != stated:
+            if self._wanted(name) and before != stated:
                 yield name, before, stated
 
     def keep(self, sender: Sender, name: str, stated: Stated | None) -> None:

@@ -21,10 +21,20 @@ from threading import Thread
 from advisor.mavlink.link import running_links
 from advisor.mavlink.link.announce import Announcer, SeparateConnection
 from advisor.mavlink.link.inquiry import Inquiry
-from advisor.mavlink.link.keeping import AnnounceOrder, CallOrder, Heard, Hello, Keeping, Request, Told
+from advisor.mavlink.link.keeping import (
+    AnnounceOrder,
+    CallOrder,
+    Heard,
+    Hello,
+    Keeping,
+    Request,
+    Told,
+    UplinkOrder,
+)
 from advisor.mavlink.link.link import Link
 from advisor.mavlink.link.outgoing import Talker
 from advisor.mavlink.link.rates import STREAMS, RateRequest
+from advisor.mavlink.link.uplink import Uplink
 from advisor.process import interrupt
 from advisor.words.problems import UnusableInputError
 
@@ -73,6 +83,7 @@ class Keeper:
     def __init__(self, keeping: Keeping) -> None:
         self._keeping = keeping
         self._announcer = Announcer() if keeping.announce else None
+        self._uplink = Uplink() if keeping.uplink else None
         self._link = Link(
             keeping.master,
             source_system=keeping.source_system,
@@ -80,7 +91,7 @@ class Keeper:
             record_to=keeping.record_to,
             goes_on=keeping.goes_on,
             key=keeping.signing_key,
-            talkers=_talkers(keeping, self._announcer),
+            talkers=[*_talkers(keeping, self._announcer), *([self._uplink] if self._uplink else [])],
             inherited=keeping.inherited,
         )
         self._listener = Listener(keeping.door.address, authkey=keeping.door.key)
@@ -201,6 +212,8 @@ class Keeper:
                         connection.send(time.monotonic() - at_work_s)
                     case AnnounceOrder(method, arguments) if self._announcer:
                         getattr(self._announcer, method)(*arguments)
+                    case UplinkOrder(which, size_deg, unit_s) if self._uplink:
+                        self._uplink.order(which, size_deg, unit_s)
                     case CallOrder(method, arguments):
                         getattr(self._link, method)(*arguments)
                     case Request.STOP:

@@ -63,6 +63,8 @@ class Keeping:
     announce: bool = False
     announce_to: str | None = None
     """Connection to a ground station for announcements. None for announcements over the link itself."""
+    uplink: bool = False
+    """Whether the next input is sent to the autopilot's script."""
     inherited: int | None = None
     """File descriptor of an earlier process's UDP socket, in which packets wait. None to open a new
     socket."""
@@ -116,6 +118,15 @@ class AnnounceOrder:
 
     method: Literal["judged", "say"]
     arguments: tuple[object, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class UplinkOrder:
+    """Next input for the autopilot's script, if the uplink is on: number, size in deg, time unit in s."""
+
+    which: int
+    size_deg: float
+    unit_s: float
 
 
 class Request(Enum):

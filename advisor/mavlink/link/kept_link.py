@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING, Self
 from advisor.aircraft.controls import Elevator
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.health import LinkStatistics, ReportedHealth
-from advisor.mavlink.link.keeping import AnnounceOrder, CallOrder, Door, Heard, Hello, Request, Told
+from advisor.mavlink.link.keeping import (
+    AnnounceOrder,
+    CallOrder,
+    Door,
+    Heard,
+    Hello,
+    Request,
+    Told,
+    UplinkOrder,
+)
 from advisor.process.liveness import OLD_AFTER_S
 
 if TYPE_CHECKING:
@@ -89,6 +98,11 @@ class KeptLink:
         """Request the announcement of a verdict, unless the manoeuvre belongs to a continued recording."""
         if self._connection is not None and self._position > self._before:
             self._send(AnnounceOrder("judged", (maneuver, sentence, stop, axis, about)))
+
+    def advise(self, which: int, size_deg: float, unit_s: float) -> None:
+        """Send the next input to the autopilot's script, unless an earlier flight advised the input."""
+        if self._connection is not None and self._position > self._before:
+            self._send(UplinkOrder(which, size_deg, unit_s))
 
     def follow(self, system: int) -> None:
         """Follow another vehicle. The stream records the choice; nothing is sent to a vehicle."""

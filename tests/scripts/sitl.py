@@ -1,0 +1,140 @@
+"""ArduPlane in software in the loop, flown over loopback by a pilot of a few lines."""
+
+import os
+import socket
+import struct
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+
+SITL = Path(__file__).parents[3] / "shared" / "sitl"
+SPEEDUP = os.environ.get("ADVISOR_SITL_SPEEDUP", "2")
+"""Simulated seconds in a second. A loaded machine calls scripts too rarely at more than 2."""
+HOME_M = 584.0
+WALL_S = 110.0
+"""Longest real time of a flight, s."""
+
+
+@dataclass
+class Pilot:
+    """A pilot at the transmitter, who hears the telemetry."""
+
+    link: Any
+    tlog: BinaryIO
+    t: float = 0.0
+    height_m: float = 0.0
+    sticks: list[int] = field(default_factory=lambda: [1500, 1500, 1000, 1500, 0, 0, 1000, 1800])
+    texts: list[tuple[float, str]] = field(default_factory=list)
+    outputs: list[tuple[float, tuple[int, ...]]] = field(default_factory=list)
+    """Times since boot, s, and pulses of outputs 1 to 4, us."""
+    since_s: float = field(default_factory=time.monotonic)
+
+    def fly(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
+        """Fly with the present sticks for some simulated seconds, or until a condition holds."""
+        end, sent = self.t + seconds, -1.0
+        while self.t < end:
+            assert time.monotonic() - self.since_s < WALL_S, "the flight takes too long on this machine"
+            message = self.link.recv_match(blocking=True, timeout=1)
+            if message is None:
+                continue
+            self._hear(message)
+            if self.t - sent > 0.05:
+                sent = self.t
+                self.link.mav.rc_channels_override_send(1, 1, *self.sticks)
+            if until():
+                return True
+        return False
+
+    def heard(self, begin: str, count: int = 1) -> Callable[[], bool]:
+        """Return the condition that so many texts have begun so."""
+        return lambda: sum(text.startswith(begin) for _, text in self.texts) >= count
+
+    def at(self, begin: str) -> float:
+        """Return the time of the first text that begins so, s."""
+        return next(t for t, text in self.texts if text.startswith(begin))
+
+    def pulses(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return times, s, and pulses of outputs 1 to 4, shape (n, 4)."""
+        return np.array([t for t, _ in self.outputs]), np.array([us for _, us in self.outputs], dtype=float)
+
+    def _hear(self, message: Any) -> None:
+        self.tlog.write(struct.pack(">Q", int(time.time() * 1e6)) + message.get_msgbuf())
+        match message.get_type():
+            case "ATTITUDE":
+                self.t = message.time_boot_ms / 1000.0
+            case "VFR_HUD":
+                self.height_m = message.alt - HOME_M
+            case "STATUSTEXT":
+                self.texts.append((self.t, message.text))
+            case "SERVO_OUTPUT_RAW":
+                raw = (message.servo1_raw, message.servo2_raw, message.servo3_raw, message.servo4_raw)
+                self.outputs.append((message.time_usec / 1e6, raw))
+
+
+@contextmanager
+def airborne(script: str, folder: Path) -> Iterator[Pilot]:
+    """Start ArduPlane with a script, take off, and hand over the aircraft in FBWA above 45 m."""
+    os.environ["MAVLINK20"] = "1"
+    from pymavlink import mavutil
+
+    (folder / "scripts").mkdir()
+    (folder / "scripts" / "inflight.lua").write_text(script, encoding="utf-8")
+    with (folder / "arduplane").open("wb") as unpacked:
+        subprocess.run(["xz", "-dkc", SITL / "arduplane.xz"], stdout=unpacked, check=True)
+    (folder / "arduplane").chmod(0o755)
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    words = ["./arduplane", "--model", "plane", "--speedup", SPEEDUP, "--home", "-35.36,149.16,584,353"]
+    words += ["--defaults", str(SITL / "plane.parm"), "--wipe", "--base-port", str(port)]
+    with (folder / "sitl.out").open("wb") as said, (folder / "flight.tlog").open("wb") as tlog:
+        process = subprocess.Popen(
+            words, cwd=folder, stdin=subprocess.DEVNULL, stdout=said, stderr=said,
+            env=os.environ | {"PLANE_COEFFICIENTS": str(SITL / "light.json")},
+        )  # fmt: skip
+        link = None
+        try:
+            link = _connected(mavutil, port)
+            pilot = Pilot(link, tlog)
+            _take_off(pilot)
+            yield pilot
+        finally:
+            if link is not None:
+                link.close()
+            process.terminate()
+            process.wait(10)
+
+
+def _connected(mavutil: Any, port: int) -> Any:
+    for _ in range(50):
+        time.sleep(0.2)
+        with suppress(OSError):
+            return mavutil.mavlink_connection(
+                f"tcp:127.0.0.1:{port}", source_system=255, dialect="ardupilotmega", retries=0
+            )
+    raise OSError(f"no ArduPlane on port {port}")
+
+
+def _take_off(pilot: Pilot) -> None:
+    link = pilot.link
+    link.wait_heartbeat(timeout=30)
+    for number, hz in ((30, 50), (36, 50), (27, 50), (11020, 50), (74, 10), (33, 10), (29, 5)):
+        link.mav.command_long_send(1, 1, 511, 0, number, 1e6 / hz, 0, 0, 0, 0, 0)
+    link.mav.param_request_list_send(1, 1)
+    assert pilot.fly(60.0, pilot.heard("EKF3 IMU0 is using GPS"))
+    link.set_mode("TAKEOFF")
+    link.mav.command_long_send(1, 1, 400, 0, 1, 21196, 0, 0, 0, 0, 0)
+    assert pilot.fly(60.0, lambda: pilot.height_m > 45.0)
+    pilot.sticks[2], pilot.sticks[1] = 1600, 1800
+    link.set_mode("FBWB")
+    assert pilot.fly(40.0, lambda: pilot.height_m > 70.0)
+    pilot.sticks[2], pilot.sticks[1] = 1500, 1500
+    pilot.fly(8.0)
+    link.set_mode("FBWA")
+    pilot.fly(2.0)
