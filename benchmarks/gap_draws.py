@@ -22,15 +22,24 @@ from sim.sealed.cases import SealedCase
 class Draw(Protocol):
     """Flights of a generator."""
 
-    def __call__(self, count: int, seed: int, only: str | None, natural_share: float) -> Iterator[SealedCase]:
-        """Yield flights of one kind, or of all kinds; a share of the flights has natural nuisances."""
+    def __call__(
+        self, count: int, seed: int, only: str | None, natural_share: float, noise_factor: float = 0.0
+    ) -> Iterator[SealedCase]:
+        """Yield flights of one kind, or of all kinds; a share of the flights has natural nuisances.
+
+        With a ``noise_factor`` filters act in every flight, and the noise is smaller by down to that factor.
+        """
 
 
-def _own(count: int, seed: int, only: str | None, natural_share: float) -> Iterator[SealedCase]:
-    return draw(count, seed, GROUPS if only is None else (cast(Group, only),), natural_share)
+def _own(
+    count: int, seed: int, only: str | None, natural_share: float, noise_factor: float = 0.0
+) -> Iterator[SealedCase]:
+    return draw(count, seed, GROUPS if only is None else (cast(Group, only),), natural_share, noise_factor)
 
 
-def _arduplane(count: int, seed: int, only: str | None, natural_share: float) -> Iterator[SealedCase]:
+def _arduplane(
+    count: int, seed: int, only: str | None, natural_share: float, noise_factor: float = 0.0
+) -> Iterator[SealedCase]:
     """Yield flights of ArduPlane, whose telemetry is natural in every flight."""
     return arduplane(count, seed, only)
 
@@ -39,6 +48,8 @@ DRAWS: Mapping[str, Draw] = {"own": _own, "second": second, "third": third} | (
     {"arduplane": _arduplane} if is_here() else {}
 )
 """Flights of each generator by number, seed, kind, and share with natural nuisances."""
+LEAST_NOISE = 0.2
+"""Least share of a generator's noise in the strata of the world: down to .5 % of the peaks."""
 WORLDLY = ("own", "second", "third")
 """Generators whose telemetry is made like the world's by ``in_the_world``. ArduPlane's is so already."""
 
@@ -81,5 +92,5 @@ def _flights(generator: str, stratum: Stratum, count: int, seed: int) -> Iterato
     if not stratum.in_world:
         yield from DRAWS[generator](count, seed, stratum.only, SHARE)
     elif generator in WORLDLY:
-        for case in DRAWS[generator](count, seed, stratum.only, 1.0):
+        for case in DRAWS[generator](count, seed, stratum.only, 1.0, LEAST_NOISE):
             yield in_the_world(case, seed)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+import numpy as np
 
 from sim.sealed.cases import SealedCase, key_beside, write_set
 
@@ -86,6 +87,11 @@ def aircraft_file(
     if model is not None:
         document["model"] = {derivative: _rounded(value) for derivative, value in model.items()}
     return document
+
+
+def quiet_factor(seed: int, least: float) -> float:
+    """Return a factor on the noise of a flight, drawn between ``least`` and 1, evenly in the logarithm."""
+    return float(np.exp(np.random.default_rng([seed, 79]).uniform(np.log(least), 0.0)))
 
 
 def _rounded(value: float | None) -> float | None:

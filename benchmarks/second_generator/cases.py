@@ -1,7 +1,7 @@
 """The files of a case: the log and the aircraft file that the diagnosis sees, the truth that it does not."""
 
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -12,16 +12,22 @@ from sim.sealed.cases import SealedCase
 
 from .design import assignments
 from .draw import Case, draw_case, largest_speed_change
-from .nature import SHARE
-from .telemetry import record
+from .nature import SHARE, in_the_world
+from .telemetry import quieter, record
 
 
 def cases(
-    count: int, seed: int, only: str | None = None, natural_share: float = SHARE
+    count: int, seed: int, only: str | None = None, natural_share: float = SHARE, noise_factor: float = 0.0
 ) -> Iterator[SealedCase]:
-    """Yield ``count`` cases, each flown; a share of them has natural nuisances."""
+    """Yield ``count`` cases, each flown; a share of them has natural nuisances.
+
+    With a ``noise_factor`` filters act in every flight, and the noise is smaller by down to that factor.
+    """
     for index, assignment in enumerate(assignments(count, seed, only), start=1):
         case = draw_case(assignment, seed, index, natural_share)
+        if noise_factor:
+            factor = generator.quiet_factor(case.record_seed, noise_factor)
+            case = replace(case, nature=in_the_world(case.nature), noise=quieter(case.noise, factor))
         yield SealedCase(f"{index:04d}", truth(case), log_bytes(case), aircraft_file(case))
 
 

@@ -16,6 +16,7 @@ from .sensors import first_order, second_order
 SHARE = 1.0 / 3.0
 SEA_LEVEL_DENSITY = 1.225  # kg/m³
 RENEWED = 20.0  # Hz at which an autopilot renews its angle of attack
+USUAL_CUTOFF = 20.0  # Hz of an autopilot's filters of gyro and accelerometers
 OF_A_VANE = frozenset({"alpha_lag", "alpha_scale", "alpha_bias", "alpha_vane_offset", "alpha_skew"})
 
 
@@ -65,6 +66,11 @@ class Nature:
             )
             out["alpha"] = Stream(alpha.stamps, {"alpha": alpha.channels["alpha"][first[which]]})
         return out
+
+
+def in_the_world(nature: Nature) -> Nature:
+    """Return the nuisances of a flight in which filters always act."""
+    return replace(nature, cutoff=nature.cutoff or USUAL_CUTOFF)
 
 
 def draw_nature(rng: np.random.Generator, names: tuple[str, ...], height: float, share: float) -> Nature:

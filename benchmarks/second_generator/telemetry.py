@@ -1,6 +1,6 @@
 """What the logger writes down: stamps of each stream, noise, a low-pass; messages bring the quantisation."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.signal import butter, lfilter, sosfiltfilt
@@ -41,6 +41,12 @@ class Noise:
         names = {"imu_q": "q", "command": "", "thrust": "", "groundspeed": "airspeed"}
         name = names.get(channel, channel)
         return float(getattr(self, name)) if name else 0.0
+
+
+def quieter(noise: Noise, factor: float) -> Noise:
+    """Return the noise with all standard deviations times a factor."""
+    channels = ("alpha", "q", "theta", "a_x", "a_z", "airspeed", "climb", "height")
+    return replace(noise, **{name: factor * getattr(noise, name) for name in channels})
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """The files of a case: the log and the aircraft file that the diagnosis sees, the truth that it does not."""
 
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from benchmarks.sealed.tlog import MANUAL, STABILIZE, tlog
 from sim.sealed.cases import SealedCase
 
 from .cases import EFFECTS, Case, assignments, draw_case
-from .nature import SHARE, Nature, drawn
+from .nature import SHARE, USUAL_FILTER_HZ, Nature, drawn
 from .plan import as_key
 from .recording import record
 from .trim import short_period
@@ -21,15 +21,28 @@ LATE = ("alpha_skew", "alpha_lag")
 
 
 def cases(
-    count: int, seed: int, only: str | None = None, natural_share: float = SHARE
+    count: int, seed: int, only: str | None = None, natural_share: float = SHARE, noise_factor: float = 0.0
 ) -> Iterator[SealedCase]:
-    """Yield ``count`` cases, each flown; a share of them has natural nuisances."""
+    """Yield ``count`` cases, each flown; a share of them has natural nuisances.
+
+    With a ``noise_factor`` filters act in every flight, and the noise is smaller by down to that factor.
+    """
     for index, assignment in enumerate(assignments(count, seed, only), start=1):
         case = draw_case(assignment, seed, index)
         above_sea_m = case.ground_m + case.setup.plan.aircraft.height_m
         nature = drawn(np.random.default_rng([case.noise_seed, 3]), above_sea_m, natural_share)
+        if noise_factor:
+            nature = replace(nature, filter_hz=nature.filter_hz or USUAL_FILTER_HZ)
+            case = quieter(case, generator.quiet_factor(case.noise_seed, noise_factor))
         told = truth(case) | {"nature": nature.facts()}
         yield SealedCase(f"{index:04d}", told, log_bytes(case, nature), aircraft_file(case, nature))
+
+
+def quieter(case: Case, factor: float) -> Case:
+    """Return the case with the noise of its instruments times a factor."""
+    kit = case.setup.kit
+    noise = {channel: factor * std for channel, std in kit.noise.items()}
+    return replace(case, setup=replace(case.setup, kit=replace(kit, noise=noise)))
 
 
 def log_bytes(case: Case, nature: Nature) -> bytes:

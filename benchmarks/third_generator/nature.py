@@ -15,6 +15,8 @@ from .fleet import Floats
 from .flight import STEP_S, Channels
 
 SHARE = 1.0 / 3.0
+USUAL_FILTER_HZ = 20.0
+"""Cut-off of an autopilot's filters of gyro and accelerometers, Hz."""
 _SCALE_HEIGHT_M = 9042.0
 """Height over which the density of the lower troposphere falls by a factor of e, m."""
 

@@ -1,6 +1,7 @@
 """Draw and fly sealed cases of the bundled aircraft."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from ..record import write_tlog
 from ..sealed.cases import SealedCase, write_set
 from ..servo import Calibration
 from .draw import GROUPS, SHARES, Case, Group, draw_case
-from .natural import SHARE, read_airspeed
+from .natural import SHARE, in_the_world, read_airspeed
 from .simulated import SimulatedCase, draw_simulated
 
 
@@ -34,9 +35,12 @@ def generate(
 
 
 def draw(
-    count: int, seed: int, groups: Sequence[Group], natural_share: float = SHARE
+    count: int, seed: int, groups: Sequence[Group], natural_share: float = SHARE, noise_factor: float = 0.0
 ) -> Iterator[SealedCase]:
-    """Yield the flown cases of a set, of which a share has natural nuisances."""
+    """Yield the flown cases of a set, of which a share has natural nuisances.
+
+    With a ``noise_factor`` filters act in every flight, and the noise is smaller by down to that factor.
+    """
     generator = np.random.default_rng([seed, 2026])
     shares = np.array([SHARES[GROUPS.index(group)] for group in groups])
     if not shares.any():
@@ -46,6 +50,8 @@ def draw(
         own = np.random.default_rng([seed, number])
         name = own.bytes(6).hex()
         case = draw_simulated(own) if group == "simulator" else draw_case(group, own, natural_share)
+        if noise_factor:
+            case = replace(case, scenario=in_the_world(case.scenario, noise_factor))
         log = BytesIO()
         write_tlog(flight_of(case.scenario), log)
         yield SealedCase(name, case.key(), log.getvalue(), aircraft_file(case))

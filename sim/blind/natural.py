@@ -21,6 +21,18 @@ _ALPHA_S = (0.02, 0.09)
 """Range of the lag of an autopilot's computed angle of attack, s."""
 _CUTOFFS_HZ = (15.0, 20.0, 30.0)
 """Usual cut-offs of an autopilot's filters, Hz."""
+_USUAL_HZ = 20.0
+"""Cut-off of ArduPilot's filters by default, Hz."""
+_STANDARD_DEVIATIONS = (
+    "percent",
+    "alpha_deg",
+    "pitch_rate_deg_s",
+    "pitch_deg",
+    "accelerometer_m_s2",
+    "airspeed_m_s",
+    "climb_m_s",
+)
+"""Fields of the noise that are standard deviations."""
 _HIGHEST_M = 2500.0
 """Largest height of the ground above sea level, m."""
 _GUSTS_M_S = (0.02, 0.08)
@@ -57,6 +69,21 @@ def natural(scenario: Scenario, names: list[str], speed_share: float) -> Scenari
     if not (OF_ALPHA | OF_THE_AIR) & set(names) and generator.random() < 0.5:
         alpha = computed
     return replace(scenario, faults=faults, air=air, alpha=alpha)
+
+
+def quiet_factor(seed: int, least: float) -> float:
+    """Return a factor on the noise of a flight, drawn between ``least`` and 1, evenly in the logarithm."""
+    return float(np.exp(np.random.default_rng([seed, 78]).uniform(np.log(least), 0.0)))
+
+
+def in_the_world(scenario: Scenario, least_noise: float) -> Scenario:
+    """Return a natural scenario in which filters always act, with noise down to a share of the scenario's."""
+    filters = scenario.faults.filters
+    if not filters.gyro_hz:
+        filters = Filters(_USUAL_HZ, _USUAL_HZ, "stated")
+    factor, noise = quiet_factor(scenario.seed, least_noise), scenario.noise
+    quiet = {name: factor * getattr(noise, name) for name in _STANDARD_DEVIATIONS}
+    return replace(scenario, faults=replace(scenario.faults, filters=filters), noise=replace(noise, **quiet))
 
 
 def without_vane_noise(scenario: Scenario) -> Scenario:

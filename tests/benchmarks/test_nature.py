@@ -3,13 +3,17 @@
 import numpy as np
 import pytest
 
+from benchmarks.sealed.generator import quiet_factor
 from benchmarks.sealed.tlog import Stream
 from benchmarks.second_generator.nature import Nature as SecondNature
 from benchmarks.second_generator.nature import draw_nature
+from benchmarks.second_generator.nature import in_the_world as in_the_second_world
+from benchmarks.second_generator.telemetry import Noise as SecondNoise
+from benchmarks.second_generator.telemetry import quieter
 from benchmarks.third_generator.flight import STEP_S
 from benchmarks.third_generator.nature import Nature as ThirdNature
 from benchmarks.third_generator.nature import drawn
-from sim.blind.natural import natural, read_airspeed, without_vane_noise
+from sim.blind.natural import in_the_world, natural, read_airspeed, without_vane_noise
 from sim.scenario import Noise, Scenario
 
 
@@ -89,3 +93,26 @@ def test_thin_air_slows_the_pitot_tube_but_not_the_receiver(shown_by):
     found = shown_by({"airspeed": np.array([50.0]), "climb": np.array([14.0])})
     assert found["airspeed"].tolist() == pytest.approx([30.0])
     assert found["groundspeed"].tolist() == pytest.approx([48.0])
+
+
+def test_in_the_world_filters_act_in_every_own_flight_and_the_noise_is_smaller():
+    for seed in range(20):
+        scenario = natural(Scenario(seed=seed, noise=Noise(alpha_deg=0.1, colour=0.4)), [], 1.0)
+        world = in_the_world(scenario, 0.2)
+        assert world.faults.filters.gyro_hz == (scenario.faults.filters.gyro_hz or 20.0)
+        assert world.faults.command_late_s == scenario.faults.command_late_s
+        assert 0.02 <= world.noise.alpha_deg <= 0.1
+        assert world.noise.colour == 0.4
+
+
+def test_in_the_world_filters_act_in_every_flight_of_the_second_generator():
+    assert in_the_second_world(SecondNature()).cutoff == 20.0
+    assert in_the_second_world(SecondNature(cutoff=15.0)).cutoff == 15.0
+
+
+def test_the_noise_of_a_flight_is_smaller_by_a_factor_that_its_seed_draws():
+    factors = [quiet_factor(seed, 0.2) for seed in range(200)]
+    assert 0.2 <= min(factors) < 0.3 < 0.9 < max(factors) <= 1.0
+    assert quiet_factor(3, 0.2) == quiet_factor(3, 0.2)
+    noise = quieter(SecondNoise(*[1.0] * 8, colour=0.5), 0.25)
+    assert (noise.alpha, noise.height, noise.colour) == (0.25, 0.25, 0.5)
