@@ -8,6 +8,7 @@ sheets and of logs of autopilots: MEMS gyro and accelerometer, attitude filter, 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from io import BytesIO
+from zlib import crc32
 
 import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -68,7 +69,7 @@ def draw_world(rng: np.random.Generator) -> World:
 
 def in_the_world(case: SealedCase, seed: int) -> SealedCase:
     """Return the case with the telemetry of the world; the aircraft file states the read air speed."""
-    number = int.from_bytes(case.name.encode()[-6:], "big")
+    number = crc32(case.log)
     world = draw_world(np.random.default_rng([seed, number]))
     aircraft = dict(case.aircraft)
     reference = aircraft.get("reference_airspeed_m_s")
