@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.campaign.arriving_information import ArrivingInformation
 from advisor.campaign.axes.lateral import LateralCampaign
 from advisor.campaign.axes.pitch import ElevatorCampaign
 from advisor.campaign.axis_campaign import AxisCampaign
@@ -18,9 +19,11 @@ from advisor.campaign.state import (
     AxisName,
     CampaignState,
     JudgedManeuver,
+    LateralState,
     WholeFlights,
     has_begun,
 )
+from advisor.decision.arriving import Arriving
 from advisor.decision.crew_plan import CrewPlan, crew_plan
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import (
@@ -114,6 +117,7 @@ class Campaign:
         self._whole_flights = WholeFlights()
         self._ended = False
         self._settling = Settling() if settle else None
+        self._information = ArrivingInformation() if settle else None
 
     def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
         """Process the next messages, in order of arrival. The result does not depend on how the messages are
@@ -164,6 +168,7 @@ class Campaign:
             settling=settled.estimate if settled else None,
             readable=settled is not None and settled.readable,
             enough=settled.enough if settled and not self._tests_sideways else None,
+            arriving=self._arrived(flying, model, lateral),
             estimate_from=tuple(judged.maneuver.number for judged in elevator.joined),
             elevator_notes=flights.elevator_notes,
             reader_notes=(
@@ -194,6 +199,19 @@ class Campaign:
         return self._parts.make(
             "estimate of the manoeuvre being flown",
             lambda: settling.follow(flying, self._elevator.learnt, model),
+            lambda _: None,
+        )
+
+    def _arrived(
+        self, flying: Maneuver | None, model: Estimate | None, lateral: LateralState | None
+    ) -> Arriving | None:
+        """Return the errors with the information of the manoeuvre that is being flown, for live displays."""
+        information = self._information
+        if information is None:
+            return None
+        return self._parts.make(
+            "information of the manoeuvre being flown",
+            lambda: information.follow(flying, model, self._elevator.flight_test, lateral),
             lambda _: None,
         )
 

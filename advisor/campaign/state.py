@@ -7,6 +7,7 @@ from math import isfinite
 from statistics import median
 from typing import Literal
 
+from advisor.decision.arriving import Arriving
 from advisor.decision.crew_plan import CrewPlan, crew_plan
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.elevator.elevator_guess import Guess
@@ -127,6 +128,8 @@ class CampaignState:
     with ``model``."""
     enough: str | None = None
     """Advice to recover, given when more free response would not improve the estimate."""
+    arriving: Arriving | None = None
+    """Errors of the derivatives with the information of the input that is being flown, at whole seconds."""
     estimate_from: tuple[int, ...] = ()
     """Numbers of the manoeuvres in the joint estimate ``model``."""
     elevator_notes: tuple[str, ...] = ()

@@ -224,11 +224,17 @@ def _range_deg(maneuver: Maneuver, name: str) -> float:
     return float(np.degrees(np.ptp(y))) if len(y) else 0.0
 
 
+def moved_controls(maneuver: Maneuver) -> tuple[str, ...]:
+    """Return the controls that move as a part of the test, and not only with the motion."""
+    ranges = {name: _range_deg(maneuver, name) for name in ("elevator", "aileron", "rudder")}
+    least = LEAST_PART * max(ranges.values())
+    return tuple(name for name, moved in ranges.items() if moved >= least > 0.0)
+
+
 def moved_at_once(maneuver: Maneuver) -> bool:
     """Return whether the elevator moves together with aileron or rudder, each as a part of the test."""
-    elevator, *others = (_range_deg(maneuver, name) for name in ("elevator", "aileron", "rudder"))
-    least = LEAST_PART * max(elevator, *others)
-    return elevator >= least > 0.0 and max(others) >= least
+    moved = moved_controls(maneuver)
+    return "elevator" in moved and len(moved) > 1
 
 
 def follows_motion(maneuver: Maneuver, control: str, others: Sequence[str]) -> list[Reason]:

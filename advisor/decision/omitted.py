@@ -77,6 +77,20 @@ def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray, turning: b
     return bias_of([(fits[name], columns[name]) for name in _OUTPUTS if name in fits], t, len(PARAMETERS))
 
 
+def sensitivities(maneuver: Maneuver, estimate: Estimate) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Return the stamps of the pitch rate, and the sensitivities of the outputs there, shape (n, 11) each.
+
+    The columns are the eight parameters and two initial states of a linear model with an estimate's values.
+    The last column is the lateness of the elevator, which every record determines anew.
+    """
+    t, elevator = maneuver.channels["q"].t, maneuver.channels["elevator"]
+    moved = behind(t, np.interp(t, elevator.t, elevator.y) - elevator.y[0], estimate.servo_lag_s)
+    late = estimate.value("M_delta_e") * np.gradient(moved, t)
+    with np.errstate(over="ignore", invalid="ignore"):
+        columns = _columns(estimate, t, moved, late, False)
+    return t, {name: np.nan_to_num(column) for name, column in columns.items()}
+
+
 def bias_of(outputs: Sequence[tuple[ChannelFit, FloatArray]], t: FloatArray, derivatives: int) -> Bias | None:
     """Return the bias of the first ``derivatives`` parameters; None for a response that overflows.
 
@@ -141,6 +155,13 @@ def driven(
         held = states[:, k - 1] + 0.5 * step_s * inputs[:, k - 1]
         states[:, k] = one @ held + 0.5 * step_s * inputs[:, k]
     return states
+
+
+def behind(t: FloatArray, command: FloatArray, lag_s: float) -> FloatArray:
+    """Return the course of a servo with a first-order lag, s, for a command that begins at zero."""
+    if not lag_s > 0.0:
+        return command
+    return driven(np.array([[-1.0 / lag_s]]), t, (command / lag_s)[None, :, None])[0, :, 0]
 
 
 def _rows(fit: ChannelFit, t: FloatArray, columns: FloatArray, lag1: float) -> tuple[FloatArray, FloatArray]:

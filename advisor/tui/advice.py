@@ -7,7 +7,9 @@ from typing import Literal
 from advisor.session.behind import spoken
 from advisor.session.view import View
 
-Word = Literal["CONTINUE", "REPEAT", "TEST COMPLETE", "RECOVER", "WAIT", "BEHIND", "NO LINK", "NO DATA"]
+Word = Literal[
+    "CONTINUE", "REPEAT", "TEST COMPLETE", "RECOVER", "ENOUGH", "WAIT", "BEHIND", "NO LINK", "NO DATA"
+]
 Tone = Literal["good", "warn", "bad", "quiet"]
 
 
@@ -66,6 +68,8 @@ def _by_verdicts(view: View, is_old: bool) -> Advice:
         return Advice("NO DATA", f"{view.obstacles[0]}{_another(view)}{_elevator(view)}", "bad")
     if state.enough:
         return Advice("RECOVER", state.enough, "good")
+    if state.arriving is not None and state.arriving.is_enough:
+        return Advice("ENOUGH", "Each derivative of this input is within its tolerance: let go.", "good")
     if complete:
         return Advice("TEST COMPLETE", verdict.sentence, "good")
     if state.vehicle is None:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from advisor.decision.arriving import Arriving
 from advisor.decision.inputs import StepInput
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.session.source import LinkHealth
@@ -36,6 +37,7 @@ def view(state=None, health: LinkHealth = GOOD) -> View:
         (flights.state(3, bad=(3,)), "REPEAT"),
         (flights.state(7), "TEST COMPLETE"),
         (replace(flights.state(3), enough="Enough: recover."), "RECOVER"),
+        (replace(flights.state(2), arriving=Arriving(60.0, {"M_alpha": 98.0})), "ENOUGH"),
         (replace(flights.state(0), vehicle=None), "WAIT"),
     ],
 )

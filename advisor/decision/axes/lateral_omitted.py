@@ -40,7 +40,7 @@ def side_coupled(maneuver: Maneuver, estimate: LateralEstimate, exceeded: Collec
 
 
 def _biased(maneuver: Maneuver, estimate: LateralEstimate) -> Iterator[Reason]:
-    linear = _Linear(maneuver, estimate)
+    linear = _Linear(maneuver, estimate, estimate.fits[0]["p"].t)
     if len(linear.t) < _FEWEST:
         return
     judged = [name for name in JUDGED if name[2:] not in ("delta_a", "delta_r") or _is_flown(name, estimate)]
@@ -75,12 +75,28 @@ def _significant(found: Bias | None) -> FloatArray:
     return found.coefficient * found.of_one
 
 
-class _Linear:
-    """Sensitivities of a lateral fit about straight flight, at the stamps of the fitted roll rate."""
+def side_sensitivities(
+    maneuver: Maneuver, estimate: LateralEstimate
+) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Return the stamps of the roll rate, and the sensitivities of the outputs there, shape (n, 24) each.
 
-    def __init__(self, maneuver: Maneuver, estimate: LateralEstimate) -> None:
-        self._maneuver, self._fits = maneuver, estimate.fits[0]
-        self.t = self._fits["p"].t
+    The columns are the fifteen derivatives, three constants and four initial states of a linear model. The
+    last two columns are the lateness of aileron and rudder, which every record determines anew.
+    """
+    linear = _Linear(maneuver, estimate, maneuver.channels["p"].t)
+    by_aileron = linear.columns(linear.late("L_delta_a", "aileron"), _P)
+    by_rudder = linear.columns(linear.late("N_delta_r", "rudder"), _R)
+    return linear.t, {
+        name: np.nan_to_num(np.column_stack([column, by_rudder[name][:, -1]]))
+        for name, column in by_aileron.items()
+    }
+
+
+class _Linear:
+    """Sensitivities of a lateral fit about straight flight, at the stamps of the roll rate."""
+
+    def __init__(self, maneuver: Maneuver, estimate: LateralEstimate, t: FloatArray) -> None:
+        self._maneuver, self._fits, self.t = maneuver, estimate.fits[0], t
         self._speed = float(np.mean(maneuver.channels["airspeed"].y)) if self._has("airspeed") else 1.0
         means = [float(np.mean(maneuver.channels[n].y)) if self._has(n) else 0.0 for n in ("alpha", "theta")]
         theta = np.where(np.isfinite(estimate.theta), estimate.theta, 0.0)
@@ -102,6 +118,10 @@ class _Linear:
         y = np.interp(self.t, channel.t, channel.y)
         return np.asarray(y - np.mean(y))
 
+    def late(self, derivative: str, control: str) -> FloatArray:
+        """Return the acceleration by a control that acts one second earlier, shape (n,), rad/s²."""
+        return np.asarray(self._theta[derivative] * np.gradient(self._inputs[control], self.t))
+
     def bias(self, term: FloatArray, row: int) -> Bias | None:
         """Return the bias due to an omitted part of an acceleration; None for a response that overflows.
 
@@ -112,6 +132,12 @@ class _Linear:
         row
             Index of the state with the omitted part.
         """
+        columns = self.columns(term, row)
+        outputs = [(fit, columns[name]) for name, fit in self._fits.items() if name in columns]
+        return bias_of(outputs, self.t, len(SIDE_PARAMETERS))
+
+    def columns(self, term: FloatArray, row: int) -> dict[str, FloatArray]:
+        """Return the sensitivities of each output, shape (n, 23), with those by the omitted term last."""
         beta, p, r, _ = self.states
         regressors = np.stack([beta, p, r, self._inputs["aileron"], self._inputs["rudder"], np.ones_like(p)])
         k = len(regressors)
@@ -129,15 +155,10 @@ class _Linear:
         force[:, -1] -= inputs[0, :, -1]
         columns = {"p": states[1], "r": states[2], "bank": states[3], "beta": states[0]}
         columns["a_y"] = self._speed * force
-        outputs = [(fit, columns[name]) for name, fit in self._fits.items() if name in columns]
-        order = [f"{letter}_{ending}" for letter in "YLN" for ending in _ENDINGS]
-        found = bias_of(outputs, self.t, 3 * k)
-        if found is None:
-            return None
-        of_one = np.zeros(len(SIDE_PARAMETERS))
-        for place, name in enumerate(SIDE_PARAMETERS):
-            of_one[place] = found.of_one[order.index(name)]
-        return Bias(of_one, found.coefficient, found.ratio)
+        # The fifteen derivatives in their order come before the constants.
+        order = [e * k + i for e in range(3) for i in range(k - 1)] + [e * k + k - 1 for e in range(3)]
+        order += range(3 * k, 3 * k + 5)
+        return {name: column[:, order] for name, column in columns.items()}
 
     def _has(self, name: str) -> bool:
         return name in self._maneuver.channels and len(self._maneuver.channels[name]) > 1
@@ -145,6 +166,3 @@ class _Linear:
     def _moved(self, name: str) -> FloatArray:
         found = self.deviation(name)
         return np.zeros(len(self.t)) if found is None else found
-
-
-_ENDINGS = ("beta", "p", "r", "delta_a", "delta_r", "0")

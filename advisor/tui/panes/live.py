@@ -1,21 +1,26 @@
 """The manoeuvre that is being flown: its curves and its running estimate."""
 
+from math import floor
+
 from textual.app import ComposeResult
 from textual.events import Resize
 
 from advisor.campaign.state import CampaignState
+from advisor.decision.arriving import WITHIN_PERCENT, Arriving
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
 from advisor.report.facts.estimates import estimated_parameter
 from advisor.session.view import View
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.pilot import bar
 from advisor.tui.plot.chart import Chart, Ink, Series
 from advisor.tui.plot.widget import Plot
-from advisor.words.quantities import channel
+from advisor.words.quantities import channel, symbol
 
 TRACES: dict[str, Ink] = {"alpha": "measured", "q": "measured", "elevator": "input"}
 _ROWS_FOR_ONE = 5
+_BAR = 10
 
 
 class Live(Pane):
@@ -30,7 +35,8 @@ class Live(Pane):
 The manoeuvre in the air: measured (dots) and the model fitted so far (line), as it comes in,
 and the moment derivatives with their 95 % intervals once the input is over, the servo is
 known and they agree with the manoeuvres before. When further free response adds nothing, the pane says
-so: recover. Between manoeuvres nothing moves here; the last trace stays.
+so: recover. A bar for each derivative shows the information of the input in the air, with that of the
+manoeuvres before. All bars full: ENOUGH, let go. Between manoeuvres nothing moves here; the last trace stays.
 """
 
     def compose(self) -> ComposeResult:
@@ -38,6 +44,7 @@ so: recover. Between manoeuvres nothing moves here; the last trace stays.
         yield Lines(
             "Nothing is being flown; the trace begins with the first step of the elevator.", id="settling"
         )
+        yield Lines("", id="arrived")
         for name in TRACES:
             empty = Chart(channel(name).label, "t [s]", why_empty="nothing is being flown.")
             yield Plot(empty, id=f"live-{name}")
@@ -49,11 +56,20 @@ so: recover. Between manoeuvres nothing moves here; the last trace stays.
             if self.border_subtitle:
                 self.query_one("#settling", Lines).write("Nothing is in the air; the last trace stays.")
             self.subtitle("")
+            self._write_arrived([])
             return
         self.subtitle(f"in the air: manoeuvre {flying.number}")
         self.query_one("#settling", Lines).write(view.state.enough or _settling_in_words(view.state))
+        self._write_arrived(arrived_in_words(view.state.arriving))
         for name, ink in TRACES.items():
             self.query_one(f"#live-{name}", Plot).chart = _trace(flying, settling, name, ink)
+
+    def _write_arrived(self, lines: list[str]) -> None:
+        """Write the bars of the arriving information, or hide their lines."""
+        bars = self.query_one("#arrived", Lines)
+        if bars.display != bool(lines):
+            bars.display = bool(lines)
+        bars.write("\n".join(lines))
 
     def on_resize(self, event: Resize) -> None:
         """Show as many plots as have room."""
@@ -73,6 +89,23 @@ def _trace(flying: Maneuver, settling: Estimate | None, name: str, ink: Ink) -> 
         return Chart(quantity.label, "t [s]", series=(measured,))
     fitted = Series("fitted so far", fit.t - start_s, fit.fitted * quantity.factor, "fitted")
     return Chart(quantity.label, "t [s]", series=(measured, fitted))
+
+
+def arrived_in_words(arrived: Arriving | None) -> list[str]:
+    """Return a line with the word, and lines with two bars of the information; empty without information."""
+    if arrived is None or not arrived.percent:
+        return []
+    word = "ENOUGH: let go" if arrived.is_enough else "not yet enough; errors in % of the tolerance"
+    cells = [
+        f"{symbol(name):>5} {bar(_full(percent), _BAR)} {percent:4.0f}"
+        for name, percent in arrived.percent.items()
+    ]
+    return [word, *("  ".join(cells[k : k + 2]) for k in range(0, len(cells), 2))]
+
+
+def _full(percent: float) -> float:
+    """Return the filled share of a bar, in whole parts: the bar is full only within the tolerance."""
+    return floor(_BAR * WITHIN_PERCENT / max(percent, 1.0)) / _BAR
 
 
 def _settling_in_words(state: CampaignState) -> str:

@@ -124,7 +124,11 @@ def flying_in_words(view: View) -> str:
     marked_s = view.state.marking_since_s
     if marked_s is not None:
         return f"marked by hand for {view.state.now_s - marked_s:.0f} s"
-    return "between manoeuvres" if view.state.flying is None else view.state.progress
+    if view.state.flying is None:
+        return "between manoeuvres"
+    arrived = view.state.arriving
+    enough = arrived is not None and arrived.is_enough
+    return f"{view.state.progress}; ENOUGH: let go" if enough else view.state.progress
 
 
 class CrewNotes(Part, HangingLines):

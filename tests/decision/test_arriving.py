@@ -1,0 +1,76 @@
+"""The information of an input in the air makes the errors smaller, and says when it is enough."""
+
+from dataclasses import replace
+from functools import cache
+from math import sqrt
+
+import pytest
+
+from advisor.campaign.arriving_information import ArrivingInformation
+from advisor.decision.arriving import Arriving, arriving
+from advisor.decision.verdict import FlightTestVerdict, RuleProgress
+from advisor.tui.panes.live import arrived_in_words
+from tests.decision.test_coupling import T, flown
+
+BEFORE = dict.fromkeys(("M_alpha", "M_q", "M_delta_e", "Z_alpha"), 120.0)
+
+
+@cache
+def once():
+    """A 3-2-1-1 and its estimate, which is that of all manoeuvres before."""
+    return flown(0.5)
+
+
+def errors(until_s: float):
+    maneuver, estimated = once()
+    return arriving(maneuver, until_s, (estimated, BEFORE), (None, {})).percent
+
+
+def test_an_input_that_is_flown_again_leaves_the_root_of_half_of_each_variance():
+    for percent in errors(13.98).values():
+        assert percent == pytest.approx(120.0 / sqrt(2.0), rel=0.15)
+
+
+def test_every_second_makes_each_error_smaller():
+    courses = [errors(until_s) for until_s in (4.0, 5.0, 6.0, 8.0)]
+    for name in BEFORE:
+        course = [percent[name] for percent in courses]
+        assert course == sorted(course, reverse=True)
+        assert course[-1] < course[0] < 120.0
+
+
+def test_it_is_enough_when_each_derivative_is_within_its_tolerance():
+    assert Arriving(60.0, {"M_alpha": 99.0, "M_q": 100.0}).is_enough
+    assert not Arriving(60.0, {"M_alpha": 99.0, "M_q": 101.0}).is_enough
+    assert not Arriving(60.0, {}).is_enough
+
+
+def test_before_any_estimate_nothing_is_said():
+    assert arriving(once()[0], 8.0, (None, BEFORE), (None, {})).percent == {}
+
+
+def test_a_derivative_without_an_error_before_is_not_judged():
+    maneuver, estimated = once()
+    before = {**BEFORE, "M_q": None}
+    assert "M_q" not in arriving(maneuver, 8.0, (estimated, before), (None, {})).percent
+
+
+def test_samples_count_up_to_whole_seconds_whenever_somebody_looks():
+    maneuver, estimated = once()
+    progress = RuleProgress(None, (), 100.0, parameter_percent=BEFORE)
+    test = FlightTestVerdict("information", "continue", "", None, 100.0, None, {"information": progress})
+    seen = {}
+    for end_s in T[T > 4.0][::7]:
+        so_far = replace(maneuver, span=replace(maneuver.span, end_s=float(end_s)))
+        found = ArrivingInformation().follow(so_far, estimated, test, None)
+        if found is not None:
+            assert seen.setdefault(found.until_s, found) == found
+    assert {until_s - 2.0 for until_s in seen} == set(range(2, 11))
+
+
+def test_the_bars_are_full_within_the_tolerance_and_the_word_stands_above_them():
+    word, bars = arrived_in_words(Arriving(60.0, {"M_alpha": 100.0, "M_q": 101.0}))
+    assert word.startswith("not yet enough")
+    assert bars == "  M_α ██████████  100    M_q █████████·  101"
+    assert arrived_in_words(Arriving(60.0, {"M_alpha": 50.0}))[0] == "ENOUGH: let go"
+    assert arrived_in_words(None) == []
