@@ -6,6 +6,7 @@ import numpy as np
 
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
+from advisor.flight.maneuvers.markers import MARKED
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 
@@ -48,10 +49,12 @@ class ElevatorSign:
 
 def turned(maneuver: Maneuver) -> Maneuver:
     """Return the manoeuvre with the elevator's deflections reversed in sign."""
-    elevator = maneuver.channels["elevator"]
+    elevator, kind = maneuver.channels["elevator"], maneuver.span.kind
+    # A script states the name of its input by the motion of the nose.
+    is_named = maneuver.span.closed_by == MARKED["script"]
     span = replace(
         maneuver.span,
-        kind=_OTHER.get(maneuver.span.kind, maneuver.span.kind),
+        kind=kind if is_named else _OTHER.get(kind, kind),
         steps=tuple((onset, -level) for onset, level in maneuver.span.steps),
     )
     scale = maneuver.scale and replace(maneuver.scale, reversed=not maneuver.scale.reversed)

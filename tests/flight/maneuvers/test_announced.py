@@ -1,9 +1,13 @@
 """A script's texts mark its inputs without a word in the aircraft file; a text without a partner is told."""
 
+import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.elevator.elevator_sign import turned
 from advisor.flight.maneuvers.events import Activity, Notice, SideManeuverFlown
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.signals.record import Channel
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, attitude, fly, heartbeat, plane_parameters, pull, servo, text
 from tests.flight.maneuvers.test_marks import PIECE
@@ -171,6 +175,16 @@ def test_announced_inputs_in_flight_are_those_of_a_replay():
     _, replayed = flown(wire)
     assert as_plain(live) == as_plain(replayed)
     assert len(maneuvers(live)) == 1
+
+
+@pytest.mark.parametrize(
+    ("closed_by", "kind"), [("marked by a script", "3-2-1-1"), ("quiet", "reverse 3-2-1-1")]
+)
+def test_the_announced_name_stays_where_the_elevator_moves_the_other_way(closed_by: str, kind: str):
+    t = np.arange(0.0, 5.0, 0.02)
+    span = Span(0.0, 1.0, 3.0, 5.0, "3-2-1-1", ((1.0, 0.1), (3.0, 0.0)), closed_by)
+    maneuver = Maneuver(1, 0, span, {"elevator": Channel("elevator", t, 0.1 * t, "SERVO_OUTPUT_RAW")})
+    assert turned(maneuver).span.kind == kind
 
 
 def test_a_stretch_in_which_several_surfaces_move_has_one_extent_on_both_axes():
