@@ -277,6 +277,8 @@ class Diagnosis(Weighed):
     taken_back: tuple[str, ...] = ()
     """Sentences on corrections that raise the gap of held-out manoeuvres, and that the improved simulator
     lacks. The diagnosis' sentence ends with these sentences."""
+    corrects: bool = True
+    """Whether the corrections do not increase the gap of held-out manoeuvres."""
     trims: tuple[TrimDifference, ...] = ()
     """Trimmed flight of the user's own simulator and of the aircraft."""
     in_simulator: InSimulator | None = None
@@ -292,7 +294,7 @@ class Diagnosis(Weighed):
     @property
     def improves(self) -> bool:
         """Whether the diagnosis gives an improved simulator, by an effect or by other derivatives."""
-        return self.verdict in IMPROVING
+        return self.verdict in IMPROVING and self.corrects
 
 
 def spelled(effect: str) -> str:

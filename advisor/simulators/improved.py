@@ -7,6 +7,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.diagnose import Examined
+from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.result import InSimulator
@@ -25,7 +26,6 @@ from advisor.simulators.unseen import (
     percent_of,
     predicted,
     unknown_offset,
-    with_nuisances,
 )
 from advisor.words.problems import UnusableInputError
 
@@ -65,7 +65,8 @@ def in_simulator(
     kept = tuple(range(len(flights))) if unseen is None else unseen.kept
     derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
     given = SearchPoint(derivatives, whole.findings.last.fitted.point.own)
-    before = predicted(problem, given, floor, kept, unknown_offset(whole.diagnosis, None))
+    plain = (whole if unseen is None else unseen.found).findings.models[0].fitted
+    before = predicted(problem, given, plain, floor, kept, unknown_offset(whole.diagnosis, None))
     was = whole_gap(before.mean_square, floor)
     original = with_series(problem, [as_flown[f.number].beyond for f in flights], 1.0)
     unchanged = InSimulator(
@@ -87,7 +88,7 @@ def in_simulator(
         refused = replace(unchanged, after=None, percent=None, refused=str(error.problem))
         return replace(as_it_was, told=refused)
     offset = unknown_offset(whole.diagnosis, unseen.found.diagnosis)
-    after = predicted(now, part.point, floor, kept, offset)
+    after = predicted(now, part.point, plain, floor, kept, offset)
     here = whole_gap(after.mean_square, floor)
     if here > was:
         # Nothing is added that raises the gap.
@@ -96,7 +97,7 @@ def in_simulator(
         unchanged,
         after=here,
         percent=percent_of(was, here),
-        after_air_and_instruments=_without_air(whole, now, with_nuisances(part.point, unseen), kept, offset),
+        after_air_and_instruments=_without_air(whole, after),
         qualification=qualified(original, before, after, kept),
     )
     return Flown(before, after, was, here, part.on_paper, found)
@@ -191,13 +192,9 @@ def with_series(problem: EffectProblem, grids: Sequence[FloatArray], sign: float
     return replace(problem, flights=replace(problem.flights, flights=tuple(flights)))
 
 
-def _without_air(
-    whole: Examined, problem: EffectProblem, point: SearchPoint, kept: Sequence[int], offset_rad: float
-) -> float:
-    """Return the gap without the part that air and natural instrument errors explain."""
-    floor = floor_of(whole)
-    left = predicted(problem, point, floor, kept, offset_rad).mean_square
-    air, last = whole.findings.air, whole.findings.last.held_out
+def _without_air(whole: Examined, after: HeldOut) -> float:
+    """Return the gap without the part that the air's course explains."""
+    left, air = after.mean_square, whole.findings.air
     if air is not None:
-        left = left * np.minimum(air.mean_square_beyond_air / last.mean_square, 1.0)
-    return whole_gap(left, floor)
+        left = left * np.minimum(air.mean_square_beyond_air / whole.findings.last.held_out.mean_square, 1.0)
+    return whole_gap(left, floor_of(whole))

@@ -6,6 +6,7 @@ likeliest effect, which is added to the surrogate. If the aircraft flies like th
 effect, the replays are diagnosed in full.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,14 +15,15 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
-from advisor.gap.alternative import Alternative
+from advisor.gap.alternative import Alternative, AlternativeEvidence, Contribution, together
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
+from advisor.gap.decision import Decision
 from advisor.gap.diagnose import Examined, examine
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.prepare import prepare
-from advisor.gap.result import VISIBLE, Cause, Diagnosis, Value
+from advisor.gap.result import VISIBLE, Cause, Diagnosis, GapVerdict, Value
 from advisor.gap.search.baseline import base_entries, fit_baseline
 from advisor.gap.search.screen import Screen
 from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES
@@ -29,7 +31,6 @@ from advisor.gap.verdict.causes import parameters_of
 from advisor.gap.verdict.statements import what
 from advisor.gap.verdict.text import answers_of
 from advisor.simulators.around import skewed
-from advisor.simulators.contradicted import answered_by, with_share
 from advisor.simulators.flying import AsGiven, Flying
 from advisor.simulators.improved import with_series
 from advisor.simulators.inputs import on_grid
@@ -37,7 +38,7 @@ from advisor.simulators.protocol import Replay
 from advisor.simulators.rate_filter import cause_of, lateness, unfiltered
 from advisor.simulators.surrogate import trimmed_at
 from advisor.simulators.unseen import floor_of, predicted, unknown_offset
-from advisor.words.certainty import as_sure
+from advisor.words.certainty import DECIDED, as_sure
 from advisor.words.problems import UnusableInputError
 
 _BLOCKS = frozenset({"input", "alpha_sensor", "pitch_rate_sensor", "accelerometer", "timing"})
@@ -46,6 +47,8 @@ _CLEARLY = 0.5
 """Largest gap without the simulator's effect, relative to the gap of the simulator as given. A smaller
 difference between two fits of one flight is no evidence."""
 _MOTION = ("alpha", "q", "theta", "a_z")
+_IMPOSSIBLE = 1e-300
+"""Numerical: probability that replaces zero in log odds."""
 
 
 @dataclass(frozen=True)
@@ -72,9 +75,9 @@ class Mirrored:
             )
         mine = Alternative("effect", first.effect, first.block)
         known = diagnosis.evidence
-        evidence = with_share(known, mine, first.probability) if known else ()
+        evidence = _with_share(known, mine, first.probability) if known else ()
         return replace(
-            answered_by(diagnosis, evidence, mine), sentence=as_sure(sentence, answers_of(evidence)),
+            _answered_by(diagnosis, evidence, mine), sentence=as_sure(sentence, answers_of(evidence)),
             where=where, causes=self.causes, effects={}, waterfall=((first.effect, self.after),), shrink=None,
             in_simulator=simulated,
         )  # fmt: skip
@@ -164,7 +167,8 @@ def _gap_without(
     derivatives = np.array([as_file.model[name] for name in DERIVATIVES])
     given = SearchPoint(derivatives, whole.findings.last.fitted.point.own)
     offset = unknown_offset(whole.diagnosis, None)
-    return whole_gap(predicted(now, given, floor, range(len(flights)), offset).mean_square, floor)
+    plain = whole.findings.models[0].fitted
+    return whole_gap(predicted(now, given, plain, floor, range(len(flights)), offset).mean_square, floor)
 
 
 def _as_flights(maneuvers: Sequence[Maneuver], flying: Flying, replays: Sequence[Replay]) -> list[Maneuver]:
@@ -220,3 +224,41 @@ def _negative(cause: Cause) -> Cause:
     first, *rest = cause.parameters.items()
     name, size = first
     return replace(cause, parameters={name: Value(-size.value, size.std), **dict(rest)})
+
+
+def _with_share(
+    known: Sequence[AlternativeEvidence], alternative: Alternative, share: float
+) -> tuple[AlternativeEvidence, ...]:
+    """Return the evidence with more probability for one alternative, and proportionally less for the others.
+
+    The likeliest alternative is first.
+    """
+    scale = (1.0 - share) / max(sum(one.probability for one in known), _IMPOSSIBLE)
+    others = [replace(one, probability=scale * one.probability) for one in known]
+    mine = next((one for one in others if one.alternative == alternative), None)
+    mine = mine or AlternativeEvidence(alternative, (), 0.0)
+    more = replace(mine, probability=mine.probability + share)
+    rest = [one for one in others if one.alternative != alternative]
+    return tuple(sorted([more, *rest], key=lambda one: -one.probability))
+
+
+def _answered_by(
+    diagnosis: Diagnosis, evidence: tuple[AlternativeEvidence, ...], answer: Alternative
+) -> Diagnosis:
+    """Return the diagnosis with an answer from flights of the simulator, and its odds."""
+    verdict: GapVerdict = "effect" if answer.is_effect else answer.kind  # type: ignore[assignment]
+    d = replace(diagnosis, verdict=verdict, evidence=evidence, answer=answer, why=(), rival="", decisions=())
+    ranked = together((one.alternative, one.probability) for one in evidence)
+    if len(ranked) < 2:
+        return d
+    (_, p), (rival, q) = ranked[:2]
+    odds = math.log(p / max(q, _IMPOSSIBLE))
+    about = answer.block if answer.kind == "unknown" else answer.name
+    return replace(
+        d, rival=rival.label,
+        why=(Contribution("flown", odds, "flights of the simulator with the correction"),),
+        decisions=(
+            Decision(about, "against its rival", odds, 0.0, "nats"),
+            Decision(about, "decided", p, DECIDED, "probability"),
+        ),
+    )  # fmt: skip

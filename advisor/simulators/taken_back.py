@@ -1,4 +1,7 @@
-"""Corrections that increase the gap on held-out manoeuvres, and are withdrawn."""
+"""Corrections that increase the gap on held-out manoeuvres, which the improved simulator does not get.
+
+The posterior is the answer. A withdrawn correction shortens the improved simulator and moves no probability.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -8,26 +11,19 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.result import VISIBLE, spelled
-from advisor.simulators.contradicted import contradicted
-from advisor.simulators.unseen import (
-    Flown,
-    UnseenManeuvers,
-    by_the_file,
-    floor_of,
-    percent_of,
-    resaid,
-    shrink_on,
-)
+from advisor.simulators.unseen import Flown, UnseenManeuvers, by_the_file, floor_of, resaid, shrink_on
 
 
 def without_worse(
     whole: Examined, unseen: UnseenManeuvers, measure: Callable[[UnseenManeuvers], Flown]
 ) -> tuple[Examined, Flown]:
-    """Return the diagnosis without effects that visibly increase the gap, and the measurement without them.
+    """Return the diagnosis without further effects that visibly increase the gap, and the measurement without
+    them.
 
-    The candidate sets are the derivatives alone, then one more effect each, in the order of the search. First
-    the set with the least gap on manoeuvres held out in turn is kept. Then the set of corrections with the
-    least gap on held-out manoeuvres is kept. A sentence names each withdrawn effect.
+    The candidate sets are the first effect alone, then one more effect each, in the order of the search.
+    First the set with the least gap on manoeuvres held out in turn is kept. Then the set with the least gap
+    on held-out manoeuvres is kept. A sentence names each withdrawn effect. If the whole correction increases
+    the gap, the diagnosis offers no improved simulator.
     """
     whole = without_raised(whole)
     found = unseen.found
@@ -35,22 +31,22 @@ def without_worse(
     if every.on_paper:
         return whole, every
     stay = len(found.named)
-    for most in reversed(range(stay)):
+    for most in reversed(range(1, stay)):
         tried = measure(replace(unseen, found=_shortened(found, most)))
         if tried.gap_after < best.gap_after - VISIBLE:
             best, stay = tried, most
     numbers = [flight.number for flight in whole.findings.problem.flights.flights]
-    kept = [numbers[i] for i in unseen.kept]
+    kept = unused([numbers[i] for i in unseen.kept])
     if best.gap_after > best.gap_before + VISIBLE:
-        said = taken_back_said(["every correction"], unused(kept), every.gap_after, best.gap_before)
-        none = whole.with_most(0)
-        told = (*whole.diagnosis.taken_back, said)
-        return replace(none, diagnosis=replace(contradicted(none.diagnosis, 0.0), taken_back=told)), best
+        said = taken_back_said(["every correction"], kept, best.gap_after, best.gap_before)
+        told = replace(
+            whole.diagnosis, taken_back=(*whole.diagnosis.taken_back, said), shrink=None, corrects=False
+        )
+        return replace(whole, diagnosis=told), best
     taken = [k for k, name in enumerate(whole.named) if name in found.named[stay:]]
     if not taken:
         return whole, every
-    removed = 0.01 * percent_of(best.gap_before, best.gap_after)
-    return _without(whole, taken[0], unused(kept), every.gap_after, best.gap_after, removed), best
+    return _without(whole, taken[0], kept, every.gap_after, best.gap_after), best
 
 
 def _shortened(found: Examined, most: int) -> Examined:
@@ -68,25 +64,23 @@ def _shortened(found: Examined, most: int) -> Examined:
 
 
 def without_raised(whole: Examined) -> Examined:
-    """Return a diagnosis without the effects that increase the gap on manoeuvres held out in turn."""
+    """Return a diagnosis without the further effects that increase the gap on manoeuvres held out in turn."""
     gaps = [whole_gap(model.held_out.mean_square, floor_of(whole)) for model in whole.findings.models]
     stay = len(whole.named)
-    for most in reversed(range(stay)):
+    for most in reversed(range(1, stay)):
         if gaps[most] < gaps[stay] - VISIBLE:
             stay = most
     if stay == len(whole.named):
         return whole
-    removed = 0.01 * percent_of(whole.diagnosis.gap.before, gaps[stay])
-    return _without(whole, stay, "manoeuvres held out in turn", gaps[-1], gaps[stay], removed)
+    return _without(whole, stay, "manoeuvres held out in turn", gaps[-1], gaps[stay])
 
 
-def _without(whole: Examined, most: int, flown: str, worse: float, better: float, removed: float) -> Examined:
+def _without(whole: Examined, most: int, flown: str, worse: float, better: float) -> Examined:
     """Return a diagnosis with at most the first ``most`` effects, which names the others and their gap."""
     effects = [spelled(effect) for effect in whole.named[most:]]
     said = (*whole.diagnosis.taken_back, taken_back_said(effects, flown, worse, better))
     stays = whole.with_most(most)
-    told = stays.diagnosis if most else contradicted(stays.diagnosis, removed)
-    return replace(stays, diagnosis=replace(told, taken_back=said), fewer=whole.fewer)
+    return replace(stays, diagnosis=replace(stays.diagnosis, taken_back=said), fewer=whole.fewer)
 
 
 def with_unseen_shrink(whole: Examined, unseen: UnseenManeuvers, aircraft: Aircraft) -> Examined:

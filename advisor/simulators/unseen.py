@@ -13,9 +13,10 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.nuisances import PROPELLER
 from advisor.gap.diagnose import Examined
-from advisor.gap.fitting.fit import fit
+from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import shrink_interval, whole_gap
+from advisor.gap.fitting.natural import with_natural
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.refit import own_refitted
 from advisor.gap.result import Diagnosis, InSimulator, Shrink
@@ -100,7 +101,7 @@ def sized_without(found: Examined, apart: Collection[int]) -> Examined:
 def as_changed(unseen: UnseenManeuvers, whole: Examined) -> SearchPoint:
     """Return the model of an export, for all manoeuvres.
 
-    Nuisance parameters belong to the flight, not to the simulator; only the propeller's are exported. Initial
+    Natural numbers belong to the flight, not to the simulator; only the propeller's are exported. Initial
     states, and the side on which play rests, start from the whole diagnosis.
     """
     found, everything = unseen.found, whole.findings.last.fitted.point
@@ -114,34 +115,31 @@ def as_changed(unseen: UnseenManeuvers, whole: Examined) -> SearchPoint:
     return replace(point.keeping(kept), own=everything.own, sides=everything.sides, edges=None)
 
 
-def with_nuisances(point: SearchPoint, unseen: UnseenManeuvers) -> SearchPoint:
-    """Return a model with the nuisance parameters of the diagnosis without held-out manoeuvres."""
-    found = unseen.found.findings.last.fitted.point
-    for effect, values in zip(found.effects, found.values, strict=True):
-        if effect.is_nuisance and effect not in point.effects:
-            point = point.with_effect(effect, values)
-    return point
-
-
 def predicted(
     problem: EffectProblem,
-    point: SearchPoint,
+    model: SearchPoint,
+    fitted: EffectFit,
     floor: FloatArray,
     kept: Sequence[int],
     offset_rad: float = 0.0,
 ) -> HeldOut:
     """Return the residuals of a model, with mean squares over the held-out manoeuvres.
 
-    Only initial state, trim and offsets of each manoeuvre are refitted, weighted by ``floor``, shape
+    The model flies with the flight's natural numbers, fitted next to its own derivatives without the held-out
+    manoeuvres. Initial state, trim and offsets of each manoeuvre are refitted, weighted by ``floor``, shape
     (channels,).
 
     Parameters
     ----------
+    fitted
+        Fit of the flight without effects, whose natural numbers start the search.
     offset_rad
         Offset of α that was removed from the data and that the model does not contain.
     """
+    aside = kept if len(kept) < len(problem.flights) else ()
+    flown = with_natural(problem, model, fitted.point, fitted.noise, aside)
     plain = replace(problem, whitening=None)
-    held = own_refitted(plain, point, floor)
+    held = own_refitted(plain, replace(flown, edges=None), floor)
     return over_maneuvers(plain, with_offset(plain, held, offset_rad) if offset_rad else held, kept)
 
 
@@ -178,11 +176,12 @@ def by_the_file(whole: Examined, unseen: UnseenManeuvers) -> Flown:
     """Return the file model's residuals before and after the correction from the other manoeuvres."""
     diagnosis, problem, floor = whole.diagnosis, whole.findings.problem, floor_of(whole)
     assert problem.prior_derivatives is not None
+    plain = unseen.found.findings.models[0].fitted
     given = SearchPoint(problem.prior_derivatives, whole.findings.last.fitted.point.own)
-    before = after = predicted(problem, given, floor, unseen.kept, unknown_offset(diagnosis, None))
+    before = after = predicted(problem, given, plain, floor, unseen.kept, unknown_offset(diagnosis, None))
     if changes_something(unseen.found.diagnosis):
         offset = unknown_offset(diagnosis, unseen.found.diagnosis)
-        after = predicted(problem, as_changed(unseen, whole), floor, unseen.kept, offset)
+        after = predicted(problem, as_changed(unseen, whole), plain, floor, unseen.kept, offset)
     was, now = (whole_gap(held.mean_square, floor) for held in (before, after))
     return Flown(before, after, was, now)
 

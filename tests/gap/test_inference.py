@@ -13,7 +13,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.diagnose import diagnose
-from advisor.gap.inference.diagnose import _with_air
+from advisor.gap.inference.diagnose import _named_air
 from advisor.gap.inference.engine import _lead, decided, first_stage
 from advisor.gap.inference.explanation import Evidence, Explanation, Row
 from advisor.gap.inference.marginal import Prior, marginal
@@ -28,10 +28,10 @@ from advisor.gap.inference.posterior import (
 )
 from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.residual import Residual
-from advisor.gap.inference.sizes import natural_share, with_sizes
+from advisor.gap.inference.sizes import natural_nats, natural_share, with_sizes
 from advisor.gap.inference.stage import Stage, stage_of, within_model_error
 from advisor.gap.records.prepare import prepare
-from advisor.gap.verdict.reasons import none_means_no_gap, weighed
+from advisor.gap.verdict.reasons import capped, weighed
 from advisor.process.parts import Parts
 from advisor.report.gap_causes import decision_in_words
 from tests.gap.generator import Setup, fly
@@ -118,6 +118,8 @@ def test_the_evidence_of_wrong_derivatives_is_the_mean_over_all_sets_of_them():
 class Model(SimpleNamespace):
     """An explanation with a log likelihood, whose change of the outputs by its effect is nothing."""
 
+    unseen = 0.0
+
     def lifted(self, nats):
         return Model(likelihood=self.likelihood + nats)
 
@@ -146,9 +148,8 @@ def test_a_residual_that_moving_air_explains_is_no_law_without_a_name(size):
     assert {r.alternative for r in rows} == {DELAY}
 
 
-@pytest.mark.parametrize(("left", "named"), [(2.0, DELAY), (8.0, stated_as("turbulence"))])
-def test_moving_air_is_the_answer_where_it_removes_more_of_the_gap_than_the_effect(left, named):
-    """Without the effect the gap is 10. The air leaves 1 of what the effect leaves."""
+def named_in_moving_air(alternative, left):
+    """Return the row of an answer in moving air that leaves 1 of what the answer leaves of a gap of 10."""
 
     def mean_square(gap):
         return SimpleNamespace(mean_square=np.array([1.0 + gap]))
@@ -156,13 +157,27 @@ def test_moving_air_is_the_answer_where_it_removes_more_of_the_gap_than_the_effe
     air = SimpleNamespace(
         is_natural=False, gust=False, angle_std=0.02, mean_square_beyond_air=np.array([2.0]), steady=-3.0
     )
-    late = SimpleNamespace(name="transport_delay", held_out=mean_square(left))
-    rows = [Row(DELAY, late, {"fit": 0.0}), Row(MOMENT, late, {"fit": 0.0})]
+    model = SimpleNamespace(name="", held_out=mean_square(left))
     plain = SimpleNamespace(held_out=mean_square(10.0))
-    told = _with_air(rows, plain, SimpleNamespace(found=air), 0.0, np.ones(1))
-    assert [row.alternative for row in told] == [named, MOMENT]
-    # Air that rests with the elevator is that much less likely; what is not air loses nothing.
-    assert [row.weight for row in told] == [-3.0 if named != DELAY else 0.0, 0.0]
+    rows = [Row(alternative, model, {"fit": 0.0})]
+    (told,) = _named_air(rows, plain, SimpleNamespace(found=air), 0.0, np.ones(1))
+    return told
+
+
+@pytest.mark.parametrize(("left", "named"), [(2.0, DELAY), (8.0, stated_as("turbulence"))])
+def test_an_effect_in_moving_air_has_the_name_of_the_cause_that_removes_more_of_the_gap(left, named):
+    assert named_in_moving_air(DELAY, left).alternative == named
+
+
+@pytest.mark.parametrize("answer", [PARAMETERS, MOMENT])
+def test_moving_air_never_takes_the_answer_from_wrong_numbers_or_from_a_law_without_a_name(answer):
+    told = named_in_moving_air(answer, 8.0)
+    assert (told.alternative, told.weight) == (answer, 0.0)
+
+
+def test_right_derivatives_in_moving_air_are_turbulence_that_rests_less_with_the_elevator():
+    told = named_in_moving_air(NONE, 8.0)
+    assert (told.alternative, told.weight) == (stated_as("turbulence"), -3.0)
 
 
 def explanation(alternative=None, nats=0.0, **more):
@@ -180,7 +195,7 @@ SPREAD = FieldPrior(none=0.3, parameters=0.3, effect=0.3, unknown=0.1)
 class Flight:
     """A flight whose models are made by hand; ``table`` has an effect by its name."""
 
-    is_stated, tried, parts = True, (3, 0), Parts()
+    is_stated, tried, parts, maneuvers = True, (3, 0), Parts(), 3
 
     def __init__(self, nats, second=(), residual=0.5, moving=None, together=()):
         self.nats, self.second, self.left, self.moving = nats, dict(second), residual, moving
@@ -200,6 +215,9 @@ class Flight:
 
     def residual(self, one, heat):
         return Residual(self.left, {"moment_equation": 1.0}, 0.5)
+
+    def natural_nats(self, lead, pair):
+        return -50.0
 
     def in_moving_air(self, stage):
         if self.moving is None:
@@ -285,12 +303,14 @@ def staged(plain, effects=(), laws=(), best=None):
     return SimpleNamespace(plain=nothing, effects=some, laws=others, best=some[0] if some else nothing)
 
 
-def pairs(first_nats, second):
-    """Return the ways with a delay of so many nats and a second cause."""
+def pairs(first_nats, second, natural=-50.0, alone=()):
+    """Return the ways with a delay of so many nats and a second cause, with ``natural`` for a small delay."""
     stage_1 = staged(0.0, [("transport_delay", first_nats)])
     way = Row(DELAY, stage_1.best, {"fit": first_nats})
     prior = FieldPrior(none=0.4, parameters=0.2, effect=0.3, unknown=0.1)
-    return list(_pairs([way], stage_1.plain, stage_1.best, second, (26, 18), prior))
+    ways = [way, *(Row(one, SimpleNamespace(), {}) for one in alone)]
+    flight = SimpleNamespace(tried=(26, 18), natural_nats=lambda lead, pair: natural)
+    return list(_pairs(flight, ways, stage_1.plain, stage_1.best, second, prior))
 
 
 def test_a_second_cause_keeps_the_first_one_as_the_answer():
@@ -298,6 +318,28 @@ def test_a_second_cause_keeps_the_first_one_as_the_answer():
     assert way.alternative == DELAY
     assert way.model.name == "actuator_lag"
     assert way.terms["second"] == pytest.approx(20.0 + np.log(0.3 / 25 / 0.6))
+
+
+@pytest.mark.parametrize(("natural", "named"), [(5.0, LAG), (-5.0, DELAY)])
+def test_a_pair_whose_first_effect_is_as_small_as_on_every_aircraft_has_the_name_of_the_second(
+    natural, named
+):
+    told = posterior_of(pairs(50.0, staged(0.0, [("actuator_lag", 20.0)]), natural, [LAG]))
+    assert told.answer == named
+
+
+@given(st.floats(0.02, 0.5), st.floats(0.0, 3.0))
+def test_a_small_size_is_rather_natural_and_a_large_one_rather_an_effect(share, size):
+    """Two Gaussian densities of widths 1 and ``share`` are equal at this size."""
+    equal = np.sqrt(-2.0 * np.log(share) / (share**-2 - 1.0))
+    assert (natural_nats(np.array([size]), np.ones(1), share) > 0.0) == (size < equal)
+
+
+def test_fewer_than_three_manoeuvres_show_no_law_without_a_name():
+    flight = Flight({}, residual=12.0)
+    flight.maneuvers = 2
+    rows = rows_of(flight, stage_of(flight, None, 6), SPREAD)
+    assert not any(row.alternative.kind == "unknown" for row in rows)
 
 
 @pytest.mark.parametrize(("first", "unknown"), [(990.0, 0.01), (30.0, 0.25)])
@@ -316,34 +358,40 @@ def test_play_differs_from_servo_to_servo_three_times_as_much_as_other_effects()
 
 
 @pytest.mark.parametrize(
-    ("effect", "share"), [("actuator_lag", 0.2), ("transport_delay", 0.2), ("alpha_vane_offset", 0.02)]
+    ("effect", "share"),
+    [
+        ("actuator_lag", 0.2),
+        ("transport_delay", 0.2),
+        ("actuator_deadband", 0.15),
+        ("pitch_rate_scale", 0.1),
+        ("alpha_vane_offset", 0.02),
+    ],
 )
-def test_a_servos_time_is_known_to_a_fifth_of_an_effects_size_and_all_else_to_a_fiftieth(effect, share):
+def test_the_natural_size_of_servo_and_gyro_is_that_of_their_data_sheets(effect, share):
     assert natural_share(SimpleNamespace(effect=effect)) == share
 
 
 @pytest.mark.parametrize("gap", [2.0, 5.0, 40.0])
 def test_with_a_gap_of_two_no_gap_is_at_most_five_per_cent(gap):
     sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
-    assert none_means_no_gap(sure, gap, 0.0).of(NONE) <= 0.05
+    assert capped(sure, gap, 0.0).of(NONE) == pytest.approx(0.05)
 
 
-def test_a_gap_within_the_noise_leaves_no_gap_as_it_is():
-    sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
-    assert none_means_no_gap(sure, 0.0, 0.0).of(NONE) > 0.99
+def test_what_the_cap_takes_goes_to_the_numbers_as_far_as_fitted_ones_remove_the_gap():
+    told = capped(posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)]), 10.0, 4.0)
+    assert told.of(PARAMETERS) == pytest.approx(0.95 * 0.6)
+    assert told.of(MOMENT) == pytest.approx(0.95 * 0.4)
 
 
-def test_a_visible_gap_goes_to_the_numbers_as_far_as_fitted_ones_remove_it():
-    sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
-    told = none_means_no_gap(sure, 10.0, 4.0)
-    assert told.of(PARAMETERS) == pytest.approx(0.6, abs=0.01)
-    assert told.of(MOMENT) == pytest.approx(0.4, abs=0.01)
+@given(st.floats(0.0, 1.99), st.lists(st.floats(-20.0, 20.0), min_size=6, max_size=6))
+def test_below_a_gap_of_two_the_evidence_alone_says_how_likely_no_gap_is(gap, nats):
+    told = posterior_of(map(row, EVERY, nats))
+    assert capped(told, gap, 0.0) == told
 
 
-def test_without_a_simulator_a_gap_that_fitted_numbers_leave_has_no_name():
-    sure = posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)])
-    told = none_means_no_gap(sure, 3.0, 3.0)
-    assert told.of(MOMENT) == pytest.approx(1.0, abs=0.01)
+def test_the_cap_leaves_an_answer_that_is_less_likely_as_it_is():
+    told = posterior_of([row(NONE, -5.0), row(PARAMETERS), row(MOMENT)])
+    assert capped(told, 40.0, 0.0) == told
 
 
 def test_every_number_of_every_effect_has_a_width_that_follows_the_aircraft():

@@ -19,7 +19,6 @@ from advisor.cli.stages import Stages
 from advisor.exports.models.axes.handed_over import improved_side
 from advisor.exports.models.axes.lateral import prove_side, stays_of_side
 from advisor.exports.models.proof import Proof
-from advisor.gap.result import IMPROVING
 from advisor.report.axes.lateral_gap import side_gap_document, side_gap_lines, whole_document
 from advisor.report.gap_causes import why_of
 from advisor.report.table import PlainConsole
@@ -81,8 +80,7 @@ def lateral_answer(
     found = compared.gap
     written, outcomes = None, []
     if writes:
-        improves = found.verdict in IMPROVING
-        written = asked.improved(improves, lambda: replace(improved_side(compared), pitch=None))
+        written = asked.improved(found.improves, lambda: replace(improved_side(compared), pitch=None))
         outcomes = write_exports(asked.orders, partial(improved_side, compared))
     if found.traces:
         write_figure(asked.figure, lambda: side_gap_document(found))

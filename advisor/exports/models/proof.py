@@ -65,6 +65,8 @@ class Proof:
     by_maneuver: tuple[tuple[int, float, float], ...]
     """Number of each held-out manoeuvre, with its gap before and after."""
     first: str
+    parts: tuple[str, ...]
+    """Parts of the improvement: effects, then the fitted derivatives."""
     second: str | None
     """Verdict on the improved simulator."""
     sentence: str
@@ -104,7 +106,7 @@ def proved(axis: ImprovedAxis) -> Proof:
     return Proof(
         maneuvers=tuple(before.by_maneuver), before=before.gap, after=after.gap, floor=after.floor,
         by_maneuver=tuple((n, was[n], now[n]) for n in now if n in was),
-        first=axis.first, second=second, sentence=sentence, not_carried=after.not_carried,
+        first=axis.first, parts=axis.parts, second=second, sentence=sentence, not_carried=after.not_carried,
         taken_back=taken, gap_with_them=every.gap if taken else None, alone=axis.alone,
     )  # fmt: skip
 

@@ -8,6 +8,7 @@ import numpy as np
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
+from advisor.gap.fitting.natural import with_natural
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.refit import own_refitted
 from advisor.gap.records.flights import PreparedManeuver
@@ -146,4 +147,5 @@ def file_model_of(problem: EffectProblem, fitted: EffectFit) -> HeldOut | None:
     refitted."""
     if problem.prior_derivatives is None:
         return None
-    return own_refitted(problem, replace(fitted.point, derivatives=problem.prior_derivatives), fitted.noise)
+    file = replace(fitted.point, derivatives=problem.prior_derivatives).keeping([])
+    return own_refitted(problem, with_natural(problem, file, fitted.point, fitted.noise), fitted.noise)

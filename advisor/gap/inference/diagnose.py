@@ -72,7 +72,7 @@ def infer(
 
     def beyond(rows: list[Row[PitchModel]]) -> list[Row[PitchModel]]:
         with_offset = _with_offset(rows, kinematics, problem, prior, flight.tried[0])
-        return _with_air(with_offset, stage.plain, sought, known, floor)
+        return _named_air(with_offset, stage.plain, sought, known, floor)
 
     progress("looking for a second cause", 0.52)
     found = decided(flight, stage, prior, beyond)
@@ -124,24 +124,29 @@ def _known_air(problem: EffectProblem, aircraft: Aircraft) -> float:
     return float(sigma) / problem.flights.reference_m_s
 
 
-def _with_air(
+def _named_air(
     rows: Sequence[Row[PitchModel]], plain: PitchModel, sought: SoughtAir, known: float, floor: FloatArray
 ) -> list[Row[PitchModel]]:
-    """Return the rows with moving air as the main cause, if air removes more of the gap than an effect."""
+    """Return the rows with moving air as the answer of still-air models without a larger cause.
+
+    Air that exceeds natural air acts in every model. Next to right derivatives the air is the answer. Next to
+    an effect, the pair has the name of the cause that removes more of the gap. Wrong derivatives stay wrong
+    in moving air, and an effect without a name is what the air does not explain.
+    """
     air = sought.found
     if air is None or air.is_natural or (not air.gust and air.angle_std <= known):
         return list(rows)
-    name = stated_as("gust" if air.gust else "turbulence")
-    beyond = air.mean_square_beyond_air
+    name, beyond = stated_as("gust" if air.gust else "turbulence"), air.mean_square_beyond_air
+    plain_gap = whole_gap(plain.held_out.mean_square, floor)
 
-    def outweighed(row: Row[PitchModel]) -> bool:
-        if row.alternative.kind == "unknown":
+    def is_air(row: Row[PitchModel]) -> bool:
+        if row.alternative.kind in ("unknown", "parameters"):
             return False
         left = row.model.held_out.mean_square
         by_air = whole_gap(left, floor) - whole_gap(np.minimum(beyond, left), floor)
-        return whole_gap(plain.held_out.mean_square, floor) - whole_gap(left, floor) < by_air
+        return row.alternative == NONE or plain_gap - whole_gap(left, floor) < by_air
 
-    return [_gaining(relabelled(row, name), "steady", air.steady) if outweighed(row) else row for row in rows]
+    return [_gaining(relabelled(row, name), "steady", air.steady) if is_air(row) else row for row in rows]
 
 
 def floor_of(problem: EffectProblem, last: EffectFit, held_out: HeldOut) -> FloatArray:

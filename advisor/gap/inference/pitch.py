@@ -15,8 +15,8 @@ from advisor.gap.inference.evidence import FlightProblem, evidence_of, log_likel
 from advisor.gap.inference.explanation import Explanation
 from advisor.gap.inference.posterior import UNKNOWN, stated_as
 from advisor.gap.inference.residual import Residual, residual_of
-from advisor.gap.inference.sizes import natural_share
-from advisor.gap.inference.stage import AT_THE_FILE, LAWS, REFINED, Pairs, Stage, likeliest
+from advisor.gap.inference.sizes import natural_nats, natural_share
+from advisor.gap.inference.stage import AT_THE_FILE, LAWS, REFINED, SAME_OPTIMUM, Pairs, Stage, likeliest
 from advisor.gap.kit.variant import Variant
 from advisor.gap.search.screen import Screen, Screened
 from advisor.process.parts import Parts
@@ -93,6 +93,10 @@ class PitchFlight:
         full = partial(fit, loose, iterations=8, beaten_by=far)
         tried = [(q, kept(part(q.name), partial(full, q.point, q.noise))) for q in chosen]
         fits = [(q.variant, made) for q, made in tried if made is not None and np.isfinite(made.cost)]
+        without = _without_the_effect(loose, plain, [made for _, made in fits])
+        if base is None and without.cost < plain.cost - 2.0 * SAME_OPTIMUM:
+            # The plain model had ended in a local minimum, and so had all that began there.
+            return replace(self, plain=without, looked={}).explained(base, most)
         heat = temperature(problem, min((plain, *(made for _, made in fits)), key=lambda made: made.cost))
         model = partial(self._model, loose, plain=plain, heat=heat)
         models = [kept(part(v.effect), partial(model, v, made)) for v, made in fits]
@@ -111,6 +115,19 @@ class PitchFlight:
     def residual(self, one: PitchModel, heat: float) -> Residual:
         """Return the disturbance that explains the residual of a model best."""
         return residual_of(self.problem, one.fitted, heat)
+
+    def natural_nats(self, lead: PitchModel, pair: PitchModel) -> float:
+        """Return the log prior gain of the lead's size in a pair, if that size is natural to every
+        aircraft."""
+        variant, point = lead.variant, pair.fitted.point
+        assert variant is not None
+        sizes = np.asarray(point.values[point.index_of(variant.effect)])
+        return natural_nats(sizes, np.array(variant.prior_std), natural_share(variant))
+
+    @property
+    def maneuvers(self) -> int:
+        """Number of manoeuvres."""
+        return len(self.problem.flights)
 
     def in_moving_air(self, stage: Stage[PitchModel]) -> None:
         """Return None: moving air is compared with the answer afterwards."""
@@ -153,6 +170,16 @@ class PitchFlight:
             natural=evidence_of(problem, made, heat, natural_share(variant)).more(extra),
             likelihood=likelihood, unseen=unseen, change=change_of(problem, plain, made),
         )  # fmt: skip
+
+
+def _without_the_effect(problem: FlightProblem, plain: EffectFit, fits: Sequence[EffectFit]) -> EffectFit:
+    """Return the plain model, searched again from where the likeliest model with an effect ended."""
+    best = min(fits, key=lambda made: made.cost, default=plain)
+    if best.cost >= plain.cost - 2.0 * SAME_OPTIMUM:
+        return plain
+    start = replace(best.point.keeping(range(len(plain.point.effects))), sides=plain.point.sides)
+    made = fit(problem, start, best.noise, iterations=8)
+    return made if np.isfinite(made.cost) and made.cost < plain.cost else plain
 
 
 def change_of(problem: EffectProblem, one: EffectFit, other: EffectFit) -> float:

@@ -12,6 +12,7 @@ from advisor.gap.inference.explanation import E, Row
 from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.residual import Residual, if_lacking, if_right
 from advisor.gap.inference.stage import Flight, Stage
+from advisor.gap.inference.with_motion import WITNESSES
 
 _ALWAYS = frozenset({"air"})
 """Blocks with a disturbance in most flights, whose residual indicates no missing law."""
@@ -75,7 +76,7 @@ def rows_of(
     """
     ways = [*_ways(flight, stage, prior)]
     if second is not None:
-        ways += _pairs(ways, stage.plain, *second, flight.tried, prior)
+        ways += _pairs(flight, ways, stage.plain, *second, prior)
     moving = flight.in_moving_air(stage)
     if moving is not None:
         # Moving air is as likely before the flight as any one effect.
@@ -85,6 +86,9 @@ def rows_of(
             for way in _ways(flight, moving, prior)
         ]
     ways.sort(key=lambda way: -way.weight)
+    if flight.maneuvers < WITNESSES:
+        # An effect without a name must repeat.
+        return [way for way in ways if way.alternative.kind != "unknown"]
     models = {id(way.model.solution): way.model for way in ways}
     near = list(models.items())[:_SEARCHED]
     residuals = {key: flight.residual(one, stage.heat) for key, one in near}
@@ -120,12 +124,12 @@ def _ways(flight: Flight[E], stage: Stage[E], prior: FieldPrior) -> Iterator[Row
 
 
 def _pairs(
-    ways: Sequence[Row[E]], plain: E, lead: E, second: Stage[E], tried: tuple[int, int], prior: FieldPrior
+    flight: Flight[E], ways: Sequence[Row[E]], plain: E, lead: E, second: Stage[E], prior: FieldPrior
 ) -> Iterator[Row[E]]:
     """Yield the models in which an effect acts together with a second effect."""
     # A law without a name may look like both causes, the likelier the more motion it explains.
     first = next(way for way in ways if way.explanation is lead and way.alternative.is_effect)
-    of_first = max(lead.evidence.either - plain.evidence.either, 0.0)
+    of_first, tried = max(lead.evidence.either - plain.evidence.either, 0.0), flight.tried
     for one in (*second.effects, *second.laws):
         outside = any(one is law for law in second.laws)
         share = 0.5 * prior.unknown / tried[1] if outside else prior.effect / max(tried[0] - 1, 1)
@@ -136,6 +140,13 @@ def _pairs(
         if left > 0.0 and one.alternative is not None:
             terms = {**way.terms, "second": more + float(np.log(left))}
             yield replace(way, alternative=one.alternative, terms=terms)
+        alone = next((w.explanation for w in ways if w.alternative == one.alternative), None)
+        if not outside and one.alternative is not None and alone is not None:
+            # As little of the first effect as every aircraft has is no finding: the second effect is.
+            natural = 0.5 / max(flight.tried[0], 1) * (prior.none + prior.parameters)
+            own = flight.natural_nats(lead, one)
+            terms = {**first.terms, "prior": float(np.log(natural)), "natural": own, "second": more}
+            yield replace(way, alternative=one.alternative, explanation=alone, terms=terms)
         if left < 1.0:
             yield replace(way, terms={**way.terms, "second": more + float(np.log1p(-left))})
 

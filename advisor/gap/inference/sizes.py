@@ -43,10 +43,17 @@ _ARM = {"alpha_vane_offset": 0.2, "accelerometer_offset": 0.1}
 """Prior: standard deviation of an arm, as a share of the distance flown per radian of the short period.
 
 A small UAV flies 2.5 m in one radian of its short period. A jet with a nose boom of 13 m flies 50 m."""
-_NATURAL, _OF_A_SERVO = 0.02, 0.2
-"""Prior: size of an effect natural to every aircraft, as a share of its size on an aircraft with the effect.
-The lag and the delay of a servo are known to 10 ms, play to 0.2 mrad, scales to 0.2 %."""
-_SERVO = ("actuator_lag", "transport_delay")
+_NATURAL = 0.02
+"""Prior: size of an effect natural to every aircraft, as a share of its size on an aircraft with the
+effect."""
+_OF_DATA_SHEETS = {
+    "actuator_lag": 0.2, "transport_delay": 0.2, "actuator_backlash": 0.15, "actuator_deadband": 0.15,
+    "pitch_rate_scale": 0.1, "pitch_rate_bias": 0.3,
+}  # fmt: skip
+"""Prior: natural share of effects whose natural size data sheets state. The lag and the delay of a servo are
+known to 10 ms. A servo ignores 2 to 4 µs of its command, 0.2 deg, and its gears play as much: 1.5 mrad to
+either side. The scale of a MEMS gyro is right to 1 %. The zero rate of a gyro that was calibrated before the
+flight moves by 0.01 to 0.05 deg/s per kelvin: 0.17 deg/s after 5 to 15 K."""
 _OF_RANGE = 0.5
 """Prior: standard deviation of any other parameter, as a share of the largest searched value."""
 
@@ -87,7 +94,20 @@ def of_range(variant: Variant) -> tuple[float, ...]:
 
 def natural_share(variant: Variant) -> float:
     """Return the size of an effect on every aircraft, as a share of the effect's prior width."""
-    return _OF_A_SERVO if variant.effect in _SERVO else _NATURAL
+    return _OF_DATA_SHEETS.get(variant.effect, _NATURAL)
+
+
+def natural_nats(sizes: FloatArray, std: FloatArray, share: float) -> float:
+    """Return the log density ratio, nats, of sizes natural to every aircraft to those of an effect.
+
+    Parameters
+    ----------
+    sizes, std
+        Shape (k,): an effect's parameters, and their prior widths on an aircraft with the effect.
+    share
+        Natural width, as a share of ``std``.
+    """
+    return float(-0.5 * np.sum((sizes / std) ** 2) * (share**-2 - 1.0) - len(std) * np.log(share))
 
 
 def _departures(flights: PreparedManeuvers) -> tuple[float, float]:

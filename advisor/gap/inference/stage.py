@@ -15,6 +15,9 @@ AT_THE_FILE = 3
 derivatives. A wrong derivative hides such an effect in a fit with free derivatives."""
 _FORMS = 2
 """Numerical: number of variants of one effect that are fully fitted."""
+SAME_OPTIMUM = 1.0
+"""Numerical: difference of the log posterior density, nats of white noise, of two searches that ended in one
+optimum."""
 REFINED = 120.0
 """Numerical: evidence deficit to the best explanation, nats, beyond which no explanation is fitted
 further."""
@@ -71,6 +74,14 @@ class Flight(Protocol[E]):
     @property
     def tried(self) -> tuple[int, int]:
         """Number of candidate effects, and number of distinct names among the laws outside the catalogue."""
+
+    @property
+    def maneuvers(self) -> int:
+        """Return the number of manoeuvres."""
+
+    def natural_nats(self, lead: E, pair: E) -> float:
+        """Return the log prior gain of the lead's size in a pair, if that size is natural to every
+        aircraft."""
 
     def explained(self, base: E | None, most: int) -> tuple[float, list[E]]:
         """Return the temperature, the model ``base`` alone, and ``base`` with each likely effect or law.
@@ -152,10 +163,16 @@ def within_model_error(flight: Flight[E], everyone: Sequence[E], error: float) -
     error
         Error of the outputs due to the forms of effects common to all explanations, as a share of the peaks.
     """
-    best = max(everyone, key=lambda one: one.likelihood)
+    # What the best model loses on held-out manoeuvres is no advantage over the others.
+    best = max(everyone, key=_told)
 
     def lifted(one: E) -> E:
-        least = best.likelihood - most_nats(flight.apart(one, best), error, best.form_error)
+        least = _told(best) - most_nats(flight.apart(one, best), error, best.form_error)
         return one.lifted(max(0.0, least - one.likelihood))
 
     return [one if one is best else lifted(one) for one in everyone]
+
+
+def _told(one: E) -> float:
+    """Return what the residuals of the fit and of held-out manoeuvres say of a model, nats."""
+    return one.likelihood + one.unseen

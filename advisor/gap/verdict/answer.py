@@ -51,7 +51,7 @@ from advisor.gap.verdict.numbers import (
     traces_of,
     waterfall_of,
 )
-from advisor.gap.verdict.reasons import none_means_no_gap, weighed
+from advisor.gap.verdict.reasons import capped, weighed
 from advisor.gap.verdict.statements import in_simulator
 from advisor.gap.verdict.text import answers_of, sentence_of
 from advisor.words.certainty import as_sure
@@ -80,7 +80,7 @@ def answer_of(
     file_model = file_model_of(problem, plain.fitted)
     given = file_model or plain.held_out
     gaps = (whole_gap(held.mean_square, floor) for held in (given, plain.held_out))
-    posterior = none_means_no_gap(found.posteriors[0], *gaps)
+    posterior = capped(found.posteriors[0], *gaps)
     answer = posterior.answer
     named = _named(found, answer)[:most]
     if seen is not None:

@@ -12,8 +12,8 @@ from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, Posterior, posterior_of, relabelled
 from advisor.words.certainty import DECIDED
 
-_GAP_AT_5_PERCENT = 2.0
-"""Contract: gap on held-out manoeuvres at which "no gap" has a probability of 5 % at most."""
+_VISIBLE_GAP, _LEAST_DOUBT = 2.0, 0.05
+"""Contract: gap on held-out manoeuvres, and the largest probability of "no gap" in its presence."""
 _WORDS = {
     "prior": "how often each is right, before the flight is looked at",
     "fit": "fit to the manoeuvres",
@@ -22,6 +22,7 @@ _WORDS = {
     "model_error": "allowance for the error of every simulator",
     "residual": "residual that is left",
     "second": "second cause in addition",
+    "natural": "first cause as small as on every aircraft",
     "air": "how often the air moves",
     "offset": "offset of the angle of attack by the flight path",
     "steady": "air as strong before and after the input as during it",
@@ -80,30 +81,33 @@ def _best_row(posterior: Posterior[Any], alternative: Alternative) -> Row[Any]:
     return max((r for r in posterior.rows if r.alternative == alternative), key=lambda row: row.weight)
 
 
-def none_means_no_gap(posterior: Posterior[Any], gap: float, left: float) -> Posterior[Any]:
-    """Return the posterior in which "none" means that nothing is above the floor.
+def capped(posterior: Posterior[Any], gap: float, left: float) -> Posterior[Any]:
+    """Return the posterior in which "no gap" has a probability of at most 5 % in the presence of a visible
+    gap.
 
-    A visible gap moves probability from "none" to wrong derivatives, as far as fitted derivatives remove the
-    gap. The rest of that probability goes to the likeliest block of an effect without a name. Without a
-    simulator, all of it does.
+    A visible gap without an explanation is a gap of the derivatives, as far as fitted derivatives remove it.
+    The rest has no name. Below the contract's gap the evidence alone says how likely "no gap" is.
 
     Parameters
     ----------
     gap
-        Gap of the aircraft file's derivatives, or of the plain model where the file states none.
+        Gap of the aircraft file's derivatives with the flight's natural numbers, or of the plain model where
+        the file states none.
     left
         Gap of the plain model, whose derivatives are fitted.
     """
-    stays = 0.05 ** ((gap / _GAP_AT_5_PERCENT) ** 2)
-    by_numbers = float(np.clip(1.0 - left / max(gap, 1e-12), 0.0, 1.0))
-    blocks = [row.alternative for row in posterior.rows if row.alternative.kind == "unknown"]
+    none = posterior.of(NONE)
+    if gap < _VISIBLE_GAP or none <= _LEAST_DOUBT:
+        return posterior
+    by_numbers = float(np.clip(1.0 - left / gap, 0.0, 1.0))
+    block = next((row.alternative for row in posterior.rows if row.alternative.kind == "unknown"), PARAMETERS)
+    taken = 1.0 - _LEAST_DOUBT / none
+    parts = ((NONE, 1.0 - taken), (PARAMETERS, taken * by_numbers), (block, taken * (1.0 - by_numbers)))
     rows: list[Row[Any]] = []
     for row in posterior.rows:
         if row.alternative != NONE:
             rows.append(row)
             continue
-        parts = [(NONE, stays), (PARAMETERS, (1.0 - stays) * by_numbers)]
-        parts += [(blocks[0], (1.0 - stays) * (1.0 - by_numbers))] if blocks else []
         rows += [
             relabelled(replace(row, terms={**row.terms, "gap": float(np.log(part))}), name)
             for name, part in parts

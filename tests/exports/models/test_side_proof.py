@@ -23,6 +23,7 @@ WEAK = replace(AIRCRAFT, model=TRUE | OFF)
 
 PROOF = Proof(
     maneuvers=(2, 3), before=2.0, after=1.0, floor={}, by_maneuver=(), first="x", second="none", sentence="",
+    parts=("aileron_actuator_backlash", NUMBERS),
     not_carried=(), taken_back=("aileron_actuator_backlash",), gap_with_them=3.0,
 )  # fmt: skip
 
@@ -32,21 +33,22 @@ def stays(*taken: str) -> SideGap:
     return stays_of_side(compared, replace(PROOF, taken_back=taken)).gap
 
 
-def test_an_effect_that_raises_the_gap_of_the_proof_gives_its_probability_to_the_numbers():
+def test_an_effect_that_raises_the_gap_of_the_proof_leaves_the_file_and_keeps_its_probability():
     found = stays("aileron_actuator_backlash")
-    assert found.verdict == "parameters"
-    assert found.diagnosis.probabilities.parameters == pytest.approx(0.75)
+    assert found.verdict == "effect"
+    assert found.diagnosis.probabilities == FOUND.diagnosis.probabilities
     assert not any(one.cause.present for one in found.diagnosis.causes)
+    assert found.improves
     assert found.sentence.endswith(
         "Taken back: aileron actuator backlash, with which the gap is 3 instead of 1 on manoeuvres 2, 3, "
         "which no fit has used."
     )
 
 
-def test_where_the_numbers_raise_it_as_well_the_cause_is_unknown_in_the_place_of_the_effect():
+def test_where_the_numbers_raise_it_as_well_no_improved_simulator_is_offered():
     found = stays("aileron_actuator_backlash", NUMBERS)
-    assert found.verdict == "unknown"
-    assert found.diagnosis.where.block == "aileron"
+    assert found.verdict == "effect"
+    assert not found.improves
     assert "Taken back: aileron actuator backlash and the fitted numbers," in found.sentence
 
 

@@ -13,7 +13,6 @@ from advisor.exports.models.improvement import ExportedServo, servo_of
 from advisor.flight.maneuvers.marks import Mark
 from advisor.gap.axes.lateral.diagnosis import SideDiagnosis
 from advisor.gap.effects import EFFECTS
-from advisor.gap.result import IMPROVING
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import NoEstimate
@@ -48,8 +47,8 @@ def improved_side(compared: SideCompared) -> FlownModel:
     """
     aircraft, state, diagnosis = compared.aircraft, compared.state, compared.gap.diagnosis
     model = flown_model(state, aircraft)
-    unchanged = compared.gap.verdict not in IMPROVING
-    if model.side is None or diagnosis is None or diagnosis.verdict != "effect":
+    unchanged = not compared.gap.improves
+    if model.side is None or diagnosis is None or not any(one.cause.present for one in diagnosis.causes):
         return replace(model, unchanged=unchanged)
     side, found = model.side, _servos_found(diagnosis, aircraft)
     if aircraft.simulator in (None, "linear"):

@@ -20,19 +20,14 @@ from advisor.exports.models.proof import NUMBERS, ImprovedAxis, Kept, Proof, par
 from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import FloatArray
-from advisor.gap.alternative import Alternative
-from advisor.gap.axes.lateral.comparison import compare_side, sentence_of_side
-from advisor.gap.inference.posterior import PARAMETERS
+from advisor.gap.axes.lateral.comparison import compare_side
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.result import IMPROVING
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.axes.lateral.prediction import predicted_lateral
 from advisor.oem.estimate import NoEstimate
-from advisor.simulators.contradicted import handed_over
 from advisor.simulators.flying import Progress
-from advisor.words.certainty import as_sure
 from advisor.words.quantiles import NORMAL_95
 
 _Found = TypeVar("_Found")
@@ -59,7 +54,7 @@ def prove_side(
     fitted, kept = (compared.maneuvers, fresh) if fresh is not None else parted(compared.maneuvers)
     fitted, against = beside_simulator(fitted, compared.aircraft, progress)
     told = _flown(compare_side(fitted, against, prior))
-    refuse_unimproved(told.verdict in IMPROVING, told.sentence, len(fitted))
+    refuse_unimproved(told.improves, told.sentence, len(fitted))
     behind = behind_found(told.diagnosis, against)
     plain, found = (_flown(estimate_lateral(fitted, one)) for one in (against, behind))
     causes = told.diagnosis.causes if told.diagnosis else ()
@@ -132,24 +127,18 @@ def _ahead(given: SideControl, against: SideControl, found: SideControl) -> Side
 
 
 def stays_of_side(compared: SideCompared, proof: Proof | None) -> SideCompared:
-    """Return a comparison without the parts that a proof withdrew, which its sentence names.
+    """Return a comparison whose improved simulator lacks the parts that a proof withdrew, which its sentence
+    names.
 
-    The effect's probability goes to the derivatives if they are kept, else to an effect without a name.
+    The posterior stays: a proof moves no probability.
     """
     gap, d = compared.gap, compared.gap.diagnosis
-    if proof is None or proof.gap_with_them is None or d is None or d.answer is None:
+    if proof is None or proof.gap_with_them is None or d is None:
         return compared
-    stays = PARAMETERS
-    if NUMBERS in proof.taken_back:
-        place = d.causes[0].block if d.answer.is_effect and d.causes else "rolling_moment"
-        stays = Alternative("unknown", "unknown", place)
-    evidence = handed_over(d.evidence, d.answer, stays)
     causes = tuple(replace(one, cause=replace(one.cause, present=False)) for one in d.causes)
-    d = replace(d, evidence=evidence, answer=stays, causes=causes, why=(), rival="", decisions=())
-    derivatives = gap.derivatives if stays == PARAMETERS else ()
-    lead = sentence_of_side(d.verdict, derivatives) if stays == PARAMETERS else d.sentence
-    sentence = f"{as_sure(lead, d.answers)} {proof.taken_back_said}"
-    found = replace(gap, verdict=d.verdict, sentence=sentence, derivatives=derivatives, diagnosis=d)
+    sentence = f"{gap.sentence} {proof.taken_back_said}"
+    corrects = NUMBERS not in proof.taken_back
+    found = replace(gap, sentence=sentence, diagnosis=replace(d, causes=causes), corrects=corrects)
     return replace(compared, gap=found)
 
 

@@ -22,9 +22,8 @@ from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.simulators.compare import Compared
-from advisor.simulators.contradicted import contradicted
 from advisor.simulators.flying import Progress
-from advisor.simulators.unseen import percent_of, sized_without
+from advisor.simulators.unseen import sized_without
 
 
 def prove(
@@ -97,17 +96,18 @@ def prove(
 
 
 def stays_of(proof: Proof, found: Diagnosis, given: Mapping[str, float]) -> Diagnosis:
-    """Return a diagnosis without the withdrawn parts, which its sentence names."""
+    """Return a diagnosis whose improved simulator lacks the withdrawn parts, which its sentence names.
+
+    The posterior stays: a proof moves no probability.
+    """
     said = proof.taken_back_said
     if not said:
         return found
-    lead = next(iter(named(found)), NUMBERS)
     for part in proof.taken_back:
         found = without(found, part, given)
-    if lead in proof.taken_back:
-        found = contradicted(found, 0.01 * percent_of(proof.before, proof.after))
-        found = replace(found, sentence=" ".join([*found.static, found.sentence, *found.taken_back]))
-    return replace(found, taken_back=(*found.taken_back, said), sentence=f"{found.sentence} {said}")
+    corrects = found.corrects and len(proof.taken_back) < len(proof.parts)
+    taken = (*found.taken_back, said)
+    return replace(found, taken_back=taken, sentence=f"{found.sentence} {said}", corrects=corrects)
 
 
 def as_it_ended(found: Diagnosis, maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Diagnosis:
@@ -129,15 +129,11 @@ def as_it_ended(found: Diagnosis, maneuvers: Sequence[Maneuver], aircraft: Aircr
 
 
 def without(found: Diagnosis, part: str, given: Mapping[str, float]) -> Diagnosis:
-    """Return a diagnosis without one effect, or with the derivatives of the simulator as given."""
+    """Return a diagnosis whose improved simulator lacks one effect, or has the derivatives as given."""
     if part == NUMBERS:
         own = {name: replace(one, value=given.get(name, one.value)) for name, one in found.model.items()}
         return replace(found, model=own, derivatives=())
-    return replace(
-        found,
-        effects={effect: sizes for effect, sizes in found.effects.items() if effect != part},
-        causes=tuple(replace(c, present=c.present and c.effect != part) for c in found.causes),
-    )
+    return replace(found, effects={effect: size for effect, size in found.effects.items() if effect != part})
 
 
 def named(found: Diagnosis) -> list[str]:

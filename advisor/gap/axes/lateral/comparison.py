@@ -14,7 +14,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.axes.lateral.diagnosis import Kind, SideDiagnosis, diagnose_side
 from advisor.gap.axes.lateral.models import case_of
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.result import ComparedDerivative, Trace, Value
+from advisor.gap.result import IMPROVING, ComparedDerivative, Trace, Value
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import NoEstimate
@@ -37,6 +37,13 @@ class SideGap:
     """Probabilities of all explanations; None where no model fits."""
     traces: tuple[Trace, ...] = ()
     """Measured and simulated outputs of the manoeuvres; empty unless requested."""
+    corrects: bool = True
+    """Whether the corrections do not increase the gap of held-out manoeuvres."""
+
+    @property
+    def improves(self) -> bool:
+        """Whether the comparison gives an improved simulator, by an effect or by other derivatives."""
+        return self.verdict in IMPROVING and self.corrects
 
 
 def compare_side(

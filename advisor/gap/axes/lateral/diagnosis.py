@@ -17,7 +17,7 @@ from advisor.gap.axes.lateral.gusts import coloured_likelihood
 from advisor.gap.axes.lateral.laws import side_laws
 from advisor.gap.axes.lateral.measure import measured, sums
 from advisor.gap.axes.lateral.models import Case, base_of, free_near
-from advisor.gap.fitting.prior import ERROR_IF_RIGHT
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.inference.engine import Decided, decided, first_stage
 from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, relabelled
@@ -25,7 +25,7 @@ from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Cause, Gap, Shrink, Unseen, Value, Where, ranked
 from advisor.gap.search.air import NATURAL_GUST_ANGLE
 from advisor.gap.verdict.causes import MOST_CAUSES
-from advisor.gap.verdict.reasons import none_means_no_gap, weighed
+from advisor.gap.verdict.reasons import capped, weighed
 from advisor.gap.verdict.statements import what
 from advisor.gap.verdict.text import answers_of, place
 from advisor.model.axes.lateral import LATERAL
@@ -129,7 +129,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
     ----------
     prior : shares of the answers before the flight.
     """
-    first = case.fit(case.begin, case.natural)
+    first = _first(case)
     plain = first and case.fit(first.point, first.free, share=colour_share(first))
     as_given = plain and case.fit(
         plain.point._replace(theta=case.theta), free_near(case, plain), ERROR_IF_RIGHT * 1e-3
@@ -138,7 +138,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
         return None
     flight = SideFlight(case, plain, list(side_effects(case.flown)), list(side_laws(case, plain)))
     found = decided(flight, first_stage(flight), prior, lambda rows: [_named_air(row) for row in rows])
-    found = _tied_to_the_gap(case, found, as_given)
+    found = _capped(case, found, as_given)
     told, last = weighed(found.posteriors[0]), found.chosen[-1].fit
     left = _held_out(case, found.chosen[-1], found.heat)
     gap, shrink = measured(last, case.numbers, sums(last, as_given.residual**2), left)
@@ -153,6 +153,18 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
         derivatives=dict(zip(SIDE_PARAMETERS, values, strict=True)), waterfall=_waterfall(case, found),
         shrink=shrink if told.answer == PARAMETERS or len(found.chosen) > 1 else None,
     )  # fmt: skip
+
+
+def _first(case: Case) -> Fit | None:
+    """Return the likelier fit without effects of two searches: from the flight's derivatives and from the
+    file's.
+
+    An effect that distorts the derivatives of the flight leads the first search into a local minimum.
+    """
+    known = case.prior_of(ERROR_IF_WRONG, case.natural)
+    starts = (case.begin, case.begin._replace(theta=case.theta))
+    fits = [fit for fit in (case.fit(at, case.natural) for at in starts) if fit is not None]
+    return max(fits, key=known.height, default=None)
 
 
 def _held_out(case: Case, model: SideModel, heat: float) -> FloatArray:
@@ -171,17 +183,18 @@ def _held_out(case: Case, model: SideModel, heat: float) -> FloatArray:
     return found
 
 
-def _tied_to_the_gap(case: Case, found: Decided[SideModel], as_given: Fit) -> Decided[SideModel]:
-    """Return the posterior in which "none" means that nothing is above the noise.
+def _capped(case: Case, found: Decided[SideModel], as_given: Fit) -> Decided[SideModel]:
+    """Return the posterior in which "no gap" is unlikely in the presence of a visible gap.
 
     Without a manoeuvre that can be held out, the posterior is unchanged.
     """
     plain, last = found.chosen[0], found.chosen[-1].fit
-    left = _held_out(case, plain, found.heat)
-    gap, _ = measured(last, case.numbers, sums(last, as_given.residual**2), left)
+    gap, _ = measured(
+        last, case.numbers, sums(last, as_given.residual**2), _held_out(case, plain, found.heat)
+    )
     if np.isnan(gap.after):
         return found
-    first = none_means_no_gap(found.posteriors[0], gap.before, gap.after if case.stated else gap.before)
+    first = capped(found.posteriors[0], gap.before, gap.after if case.stated else gap.before)
     named = found.chosen if any(one.alternative == first.answer for one in found.chosen) else (plain,)
     return replace(found, posteriors=(first, *found.posteriors[1:]), chosen=named)
 

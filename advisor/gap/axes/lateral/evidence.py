@@ -34,14 +34,21 @@ def information_of(fit: Fit, share: float) -> Information:
     )
 
 
-def colour_share(fit: Fit) -> float:
-    """Return the ratio of the derivatives' standard error under white noise to that from the residuals."""
+def colour_share(fit: Fit, lacking: bool = False) -> float:
+    """Return the ratio of the derivatives' standard error under white noise to that from the residuals.
+
+    Parameters
+    ----------
+    lacking
+        Whether the error contains the dynamics that the model lacks, as that of an estimate.
+    """
     no_prior = np.zeros(len(fit.point.theta))
-    errors = errors_of(fit.assembly, fit.residual, fit.sensitivities, fit.noise, None, no_prior)
+    about = fit.assembly, fit.residual, fit.sensitivities, fit.noise
+    errors = errors_of(*about, None, no_prior, fitted=fit.fitted if lacking else None)
     if errors is None:
         return 1.0
     scattered = widened_by_scatter(errors["covariance"], errors["contributions"])
-    return share_of(errors["covariance_cr"], scattered)
+    return share_of(errors["covariance_cr"], scattered + errors["systematic"])
 
 
 def posterior_at(fit: Fit, known: Known, share: float) -> tuple[FloatArray, FloatArray]:

@@ -87,6 +87,10 @@ class Known:
         """Return the prior relative to the values (15 + k,) of a fit."""
         return Prior(self.precision, self.mean - values)
 
+    def height(self, fit: "Fit") -> float:
+        """Return the log posterior density of a fit, up to a constant."""
+        return fit.likelihood - 0.5 * float(self.precision @ (fit.values - self.mean) ** 2)
+
 
 class Point(NamedTuple):
     """Parameters of a fit: derivatives, effect parameters and local parameters."""

@@ -11,7 +11,7 @@ from advisor.gap.axes.lateral.effects import SideEffect, block_of
 from advisor.gap.axes.lateral.evidence import Gain, colour_share, information_of, squares_of, step_of
 from advisor.gap.axes.lateral.fit import Fit, Free, Known, moved_by
 from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
-from advisor.gap.axes.lateral.models import Case, free_near, free_with
+from advisor.gap.axes.lateral.models import Case, base_of, base_setting, free_near, free_with
 from advisor.gap.axes.lateral.residual import residual_of
 from advisor.gap.axes.lateral.starts import Start, Starts
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
@@ -19,8 +19,16 @@ from advisor.gap.inference.explanation import Evidence, Explanation
 from advisor.gap.inference.marginal import marginal
 from advisor.gap.inference.posterior import UNKNOWN
 from advisor.gap.inference.residual import Residual
-from advisor.gap.inference.sizes import natural_share
-from advisor.gap.inference.stage import AT_THE_FILE, LAWS, Pairs, Stage, likeliest, within_model_error
+from advisor.gap.inference.sizes import natural_nats, natural_share
+from advisor.gap.inference.stage import (
+    AT_THE_FILE,
+    LAWS,
+    SAME_OPTIMUM,
+    Pairs,
+    Stage,
+    likeliest,
+    within_model_error,
+)
 from advisor.oem.axes.lateral.disturbance import Course, courses_of
 from advisor.process.parts import Parts
 
@@ -90,24 +98,52 @@ class SideFlight:
         table = _beside(base, self.table)
         starts = Starts(self.case, plain, table)
         of_laws = Starts(self.case, plain, _beside(base, self.laws)).of_each
-        chosen = [(one, ERROR_IF_WRONG) for one in likeliest(starts.of_each, most)]
-        chosen += [(one, ERROR_IF_WRONG) for one in likeliest(of_laws, LAWS)]
-        near = self.is_stated and self.case.fit(
-            plain.point, free_near(self.case, plain), ERROR_IF_RIGHT, share
-        )
-        if near:
-            others = [effect for effect in table if effect.name not in {one.name for one, _ in chosen}]
+        chosen = [(one, plain, ERROR_IF_WRONG) for one in likeliest(starts.of_each, most)]
+        chosen += [(one, plain, ERROR_IF_WRONG) for one in likeliest(of_laws, LAWS)]
+        near = self._at_the_file(plain, share, base) if self.is_stated else None
+        if near is not None:
+            others = [effect for effect in table if effect.name not in {one.name for one, *_ in chosen}]
             tight = Starts(self.case, near, others, ERROR_IF_RIGHT).of_each
-            chosen += [(one, ERROR_IF_RIGHT) for one in likeliest(tight, AT_THE_FILE)]
+            chosen += [(one, near, ERROR_IF_RIGHT) for one in likeliest(tight, AT_THE_FILE)]
         everyone = [replace(self._model(None, plain, plain, share), starts=starts)]
-        models = (self._added(one, tolerance, plain, share) for one, tolerance in chosen)
-        return share**-2, [*everyone, *filter(None, models)]
+        models = (self._added(one, at, tolerance, plain, share) for one, at, tolerance in chosen)
+        everyone += filter(None, models)
+        again = self._searched_again(everyone, share) if base is None else None
+        if again is not None:
+            # The plain model had ended in a local minimum, and so had all models that began there.
+            return replace(self, plain=again).explained(base, most)
+        # What the likeliest model still lacks is an error of every model.
+        share = colour_share(max(everyone, key=lambda one: one.likelihood).fit, lacking=True)
+        weighed = (
+            replace(self._model(one.effect, one.fit, plain, share), starts=one.starts) for one in everyone
+        )
+        return share**-2, list(weighed)
 
-    def _added(self, one: Start, tolerance: float, plain: Fit, share: float) -> SideModel | None:
+    def _at_the_file(self, plain: Fit, share: float, base: SideModel | None) -> Fit | None:
+        """Return the fit about the file's derivatives, which a wrong effect in the flight does not
+        distort."""
+        if base is not None:
+            return self.case.fit(plain.point, free_near(self.case, plain), ERROR_IF_RIGHT, share)
+        start = self.case.begin._replace(theta=self.case.theta)
+        return self.case.fit(start, self.case.natural, ERROR_IF_RIGHT, share)
+
+    def _searched_again(self, everyone: Sequence[SideModel], share: float) -> Fit | None:
+        """Return the plain model from where the likeliest effect ended; None if that is no better optimum."""
+        plain, *added = everyone
+        best = max(added, key=lambda one: one.likelihood, default=None)
+        if best is None or best.effect is None:
+            return None
+        setting = {**best.fit.point.setting, **base_setting(self.case, best.effect)}
+        fit = self.case.fit(best.fit.point._replace(setting=setting), self.case.natural, share=share)
+        known = self.case.prior_of(ERROR_IF_WRONG, self.case.natural, share)
+        better = fit is not None and known.height(fit) > known.height(plain.fit) + SAME_OPTIMUM
+        return fit if better else None
+
+    def _added(self, one: Start, at: Fit, tolerance: float, plain: Fit, share: float) -> SideModel | None:
         """Return the model with an effect; None where the model runs away or a fault ends the fit."""
 
         def work() -> SideModel | None:
-            fit = self.case.fit(one.point, free_with(self.case, one.effect, plain), tolerance, share)
+            fit = self.case.fit(one.point, free_with(self.case, one.effect, at), tolerance, share)
             return None if fit is None else self._model(one.effect, fit, plain, share)
 
         return self.parts.kept(f"roll and yaw, effect {one.name}", work)
@@ -145,6 +181,19 @@ class SideFlight:
                 price = looked.together(starts[lead.name], other)
                 if price < starts[lead.name].price - 2.0 * stage.heat * np.log(len(self.table)):
                     yield price, lead.name, other.name
+
+    def natural_nats(self, lead: SideModel, pair: SideModel) -> float:
+        """Return the log prior gain of the lead's size in a pair, if that size is natural to every
+        aircraft."""
+        effect = lead.effect
+        assert effect is not None
+        sizes = [pair.fit.point.setting[place][0] for place in effect.places] - base_of(self.case, effect)
+        return natural_nats(sizes, np.array(effect.std), natural_share(effect.variant))
+
+    @property
+    def maneuvers(self) -> int:
+        """Number of manoeuvres."""
+        return len(self.case.flown)
 
     def in_moving_air(self, stage: Stage[SideModel]) -> Stage[SideModel]:
         """Return the likely explanations refitted with side gusts, which disturb all outputs together.

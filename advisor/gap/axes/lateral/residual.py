@@ -1,6 +1,6 @@
 """Residual of a lateral model: the disturbance of each block that explains most of the residual."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -8,6 +8,7 @@ from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.fit import Fit
 from advisor.gap.axes.lateral.setting import Flown
 from advisor.gap.inference.residual import NATURAL, Residual, shares_of
+from advisor.gap.inference.with_motion import BIN_S, moving_power
 from advisor.gap.noise.probes import Probe, at_its_size, coloured_between
 from advisor.oem.axes.lateral.disturbance import AIR, Course, blocks_of, courses_of
 from advisor.oem.axes.lateral.motion import FLOOR
@@ -25,18 +26,46 @@ def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
     linear = fit.linear(flown)
     probes = [_probe(fit, block, courses_of(linear, block), noise) for block in blocks_of(linear)]
     probes.sort(key=lambda probe: -probe.gain)
-    sizes = []
-    for k in np.unique(fit.assembly.channel):
-        rows = fit.assembly.channel == k
-        power = float(np.mean(fit.residual[rows] ** 2))
-        peak = max(float(np.ptp(fit.assembly.z[rows])) / 2.0, 1e-12)
-        sizes.append(np.sqrt(max(power - noise[k] ** 2, 0.0)) / peak)
+    channels = np.unique(fit.assembly.channel)
+    peaks = {k: max(float(np.ptp(fit.assembly.z[fit.assembly.channel == k])) / 2.0, 1e-12) for k in channels}
+    motions = [_motion(fit, m, peaks) for m in range(fit.assembly.maneuvers)]
+    sizes = [_size(fit, k, motions) / peaks[k] for k in channels]
     by_air = next(probe.explained for probe in probes if probe.block == AIR)
     most = probes[0].explained
     whole, beside = (float(np.sqrt(e) * max(sizes) / NATURAL) for e in (most, max(most - by_air, 0.0)))
     named = [probe for probe in probes if probe.block != AIR]
     blocks = shares_of([probe.block for probe in named], [share**2 * probe.gain for probe in named])
     return Residual(whole, blocks, beside)
+
+
+def _motion(fit: Fit, m: int, peaks: Mapping[int, float]) -> FloatArray:
+    """Return the mean square of a manoeuvre's motion in each bin, relative to the peaks, shape (bins,)."""
+    named = fit.assembly.rows[m]
+    moved = []
+    for rows in named.values():
+        y = fit.fitted[rows] - np.median(fit.fitted[rows])
+        moved.append(_binned(fit, m, rows, (y / peaks[int(fit.assembly.channel[rows][0])]) ** 2))
+    return np.asarray(np.mean(moved, axis=0))
+
+
+def _binned(fit: Fit, m: int, rows: slice, values: FloatArray) -> FloatArray:
+    """Return the means of the values (n,) of one output in each bin of a manoeuvre, shape (bins,)."""
+    t = fit.assembly.t[fit.assembly.blocks[m]]
+    bins = max(int((t.max() - t.min()) / BIN_S), 1)
+    at = np.clip(((fit.assembly.t[rows] - t.min()) / BIN_S).astype(int), 0, bins - 1)
+    count = np.bincount(at, minlength=bins)
+    return np.asarray(np.bincount(at, values, minlength=bins) / np.maximum(count, 1))
+
+
+def _size(fit: Fit, channel: int, motions: Sequence[FloatArray]) -> float:
+    """Return the root mean square of an output's residual that grows with the motion."""
+    squares, moved = [], []
+    for m, motion in enumerate(motions):
+        for rows in fit.assembly.rows[m].values():
+            if fit.assembly.channel[rows][0] == channel:
+                squares.append(_binned(fit, m, rows, fit.residual[rows] ** 2))
+                moved.append(motion)
+    return float(np.sqrt(moving_power(squares, moved)))
 
 
 def _probe(fit: Fit, block: str, courses: Sequence[Course], noise: FloatArray) -> Probe:

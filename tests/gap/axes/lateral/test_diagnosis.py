@@ -17,7 +17,7 @@ from advisor.gap.axes.lateral.comparison import SideGap
 from advisor.gap.axes.lateral.diagnosis import (
     SideCause,
     SideDiagnosis,
-    _tied_to_the_gap,
+    _capped,
     diagnose_side,
 )
 from advisor.gap.axes.lateral.evidence import Gain
@@ -221,11 +221,9 @@ def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_a
     late = Free(("aileron", "delay_s"), 0.01, 1e-3, column=np.ones(3))
     fit = Fit(None, None, (late,), *(np.ones(3) for _ in range(2)), 0.0, *(np.ones((3, 1)) for _ in range(3)))
     again = []
-    monkeypatch.setattr(flight_of_side, "colour_share", lambda _: 1.0)
+    monkeypatch.setattr(flight_of_side, "colour_share", lambda *_, **__: 1.0)
     monkeypatch.setattr(flight_of_side, "Starts", lambda *_: SimpleNamespace(of_each=[]))
-    monkeypatch.setattr(
-        SideFlight, "_model", lambda *_: SideModel(**dict.fromkeys(SideModel.__dataclass_fields__))
-    )
+    monkeypatch.setattr(SideFlight, "_model", lambda *_: side_model(fit))
     case = SimpleNamespace(stated=(), natural=(), fit=lambda at, free, **_: again.extend(free) or fit)
     SideFlight(case, fit, []).explained(SimpleNamespace(fit=fit, effect=None), 3)
     assert [one.column for one in again] == [None]
@@ -265,12 +263,15 @@ def test_the_air_is_weighed_in_the_residual_of_the_likeliest_explanation(monkeyp
     ("maneuvers", "gap", "stated", "answer", "chosen"),
     [
         (2, 0.0, ["L_p"], "none", 1),
+        (2, 1.9, ["L_p"], "none", 1),
         (2, 10.0, ["L_p"], "parameters", 1),
         (2, 10.0, [], "unknown", 1),
         (1, 10.0, ["L_p"], "none", 2),
     ],
 )
-def test_none_means_no_gap_on_held_out_manoeuvres(monkeypatch, maneuvers, gap, stated, answer, chosen):
+def test_no_gap_is_unlikely_beside_a_visible_gap_of_held_out_manoeuvres(
+    monkeypatch, maneuvers, gap, stated, answer, chosen
+):
     """Fitted derivatives remove the whole gap, which without stated ones they are no part of.
 
     One manoeuvre is held out of nothing.
@@ -284,7 +285,7 @@ def test_none_means_no_gap_on_held_out_manoeuvres(monkeypatch, maneuvers, gap, s
     monkeypatch.setattr(diagnosis, "sums", lambda *_: None)
     monkeypatch.setattr(diagnosis, "_held_out", lambda *_: None)
     case = SimpleNamespace(numbers=(), stated=stated)
-    found = _tied_to_the_gap(case, Decided((posterior_of(rows),), models, (), 1.0), models[0].fit)
+    found = _capped(case, Decided((posterior_of(rows),), models, (), 1.0), models[0].fit)
     assert found.posteriors[0].answer.kind == answer
     assert len(found.chosen) == chosen
 

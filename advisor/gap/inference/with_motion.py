@@ -1,0 +1,44 @@
+"""Part of a residual that grows with the motion, and repeats in every manoeuvre.
+
+A law that a simulator lacks acts when the aircraft moves, in each manoeuvre again. Moving air, drift and
+noise act before, during and after an input alike. The square of the residual is therefore a level of each
+manoeuvre plus a share of the squared motion, and only that share speaks for a missing law.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from advisor.flight.signals.messages import FloatArray
+
+BIN_S = 0.5
+"""Numerical: length of a bin, s: longer than a coloured residual's memory, shorter than the motion's
+decay."""
+WITNESSES = 3
+"""Least number of manoeuvres that show that a residual repeats: two of three always agree by chance alone."""
+
+
+def moving_power(residuals: Sequence[FloatArray], motions: Sequence[FloatArray]) -> float:
+    """Return the mean square of the residual that grows with the motion; 0 with fewer than three manoeuvres.
+
+    The share of the squared motion is estimated with a level of each manoeuvre. One standard error of the
+    share, from the scatter between manoeuvres, is subtracted, because a share that does not repeat is none.
+
+    Parameters
+    ----------
+    residuals, motions
+        Per manoeuvre, shape (bins,): mean square of the residual and of the motion in bins of equal length.
+    """
+    if len(residuals) < WITNESSES:
+        return 0.0
+    about = [motion - np.mean(motion) for motion in motions]
+    power = np.array([float(x @ x) for x in about])
+    pull = np.array([float(x @ residual) for x, residual in zip(about, residuals, strict=True)])
+    if np.sum(power) <= 0.0:
+        return 0.0
+    share = float(np.sum(pull) / np.sum(power))
+    # Leave-one-out (jackknife) error of a ratio of sums.
+    without = (np.sum(pull) - pull) / np.maximum(np.sum(power) - power, 1e-300)
+    n = len(without)
+    error = float(np.sqrt((n - 1) / n * np.sum((without - np.mean(without)) ** 2)))
+    return max(share - error, 0.0) * float(np.mean(np.concatenate(motions)))
