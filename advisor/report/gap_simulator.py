@@ -41,8 +41,8 @@ def _shrunk(found: InSimulator) -> Iterator[str]:
             f" less, flown in manoeuvres that no search has used ({numbers})"
         )
         yield (
-            f"gap {short(found.after_air_and_instruments)} without what this flight's air and instruments "
-            "explain there, which is no shrink"
+            f"gap {short(found.after_air_and_instruments)} without what this flight's air explains there, "
+            "which is no shrink"
         )
     if found.on_paper:
         names = ", ".join(spelled(name) for name in found.on_paper)

@@ -52,8 +52,8 @@ _OF_DATA_SHEETS = {
 }  # fmt: skip
 """Prior: natural share of effects whose natural size data sheets state. The lag and the delay of a servo are
 known to 10 ms. A servo ignores 2 to 4 µs of its command, 0.2 deg, and its gears play as much: 1.5 mrad to
-either side. The scale of a MEMS gyro is right to 1 %. The zero rate of a gyro that was calibrated before the
-flight moves by 0.01 to 0.05 deg/s per kelvin: 0.17 deg/s after 5 to 15 K."""
+either side. The scale of a MEMS gyro is right to 1 %. The zero rate of a gyro
+moves by 0.01 to 0.05 deg/s per kelvin after its calibration: 0.17 deg/s in flight."""
 _OF_RANGE = 0.5
 """Prior: standard deviation of any other parameter, as a share of the largest searched value."""
 

@@ -1,8 +1,8 @@
 """Part of a residual that grows with the motion, and repeats in every manoeuvre.
 
 A law that a simulator lacks acts when the aircraft moves, in each manoeuvre again. Moving air, drift and
-noise act before, during and after an input alike. The square of the residual is therefore a level of each
-manoeuvre plus a share of the squared motion, and only that share speaks for a missing law.
+noise act before, during and after an input alike. The squared residual is a level of each manoeuvre plus a
+share of the squared motion. Only that share speaks for a missing law.
 """
 
 from collections.abc import Sequence

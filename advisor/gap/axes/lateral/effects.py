@@ -88,9 +88,9 @@ _SERVO = (
     (BACKLASH, ("half_play_rad",), (0.01,)),
     (DEADBAND_ABOUT_TRIM, ("half_deadband_rad", "neutral_rad"), (0.01, 0.005)),
 )
-"""Effects of a servo, each with its entries in the simulator and their prior standard deviations. Servos of
-small aircraft lag by about 50 ms. A slowness of 1.5 s/rad is a rate of 40 deg/s. Worn linkages have half a
-degree of play."""
+"""Prior: effects of a servo, each with its entries in the simulator and their prior standard deviations.
+Servos of small aircraft lag by about 50 ms. A slowness of 1.5 s/rad is a rate of 40 deg/s. Worn linkages have
+half a degree of play."""
 _READINGS = {
     "p": ("roll rate", "pitch_rate_skew", "pitch_rate_sensor"),
     "r": ("yaw rate", "pitch_rate_skew", "pitch_rate_sensor"),
@@ -100,7 +100,7 @@ _READINGS = {
 }
 """Name of each output, its skew effect in pitch, and the block of its scale error, if any."""
 _SCALE_STD, _SKEW_STD_S, _ARM_STD_M = 0.1, 0.1, 0.3
-"""Prior standard deviations: scale error (1), skew of stamps (s), and arm of an accelerometer (m)."""
+"""Prior: standard deviations of scale error (1), skew of stamps (s), and arm of an accelerometer (m)."""
 
 
 def block_of(of: str) -> str:

@@ -28,8 +28,8 @@ from advisor.oem.prior import Priors
 MOST = 40
 """Numerical: largest number of trial steps of a fit; a fit from a tabulated start takes three to six."""
 SETTLED = 0.05
-"""Decrease of the cost, -2 log likelihood, in one step, below which a fit has converged: far below one
-nat."""
+"""Numerical: decrease of the cost, -2 log likelihood, in one step, below which a fit has converged: far below
+one nat."""
 N = len(LATERAL.shared)
 
 

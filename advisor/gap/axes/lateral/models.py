@@ -24,10 +24,10 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.prepare import signal_of
 
 SMALL_SHARE = 0.1
-"""Least size of a derivative for its relative error, over the derivative's natural size
+"""Prior: least size of a derivative for its relative error, over the derivative's natural size
 (``natural_size``)."""
 NATURAL_STEP = 1e-3
-"""Finite-difference step of a natural delay (s) or arm (m)."""
+"""Numerical: finite-difference step of a natural delay (s) or arm (m)."""
 _PLACES = {"command": COMMAND, "air": AIR_SPEED}
 """Place in a setting of each kind of nuisance parameter that belongs to no control or output."""
 _ENTRIES = {"delay": "skew_s", "arm": "arm_m", "lag": "lag_s"}

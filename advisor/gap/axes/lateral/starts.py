@@ -52,7 +52,7 @@ def _read_later(fit: Fit, of: str, setting: Setting) -> FloatArray:
 
 
 SECANT = (0.25, 2.0)
-"""Range of a secant estimate of an effect's size, relative to the simulated size."""
+"""Numerical: range of a secant estimate of an effect's size, relative to the simulated size."""
 
 
 class Start(NamedTuple):
