@@ -1,6 +1,6 @@
 """Inputs of three surfaces at once, flown by ArduPlane, against the truth by its simulator's formulas.
 
-    python -m benchmarks.at_once [LOG ...] [--coefficients FILE] [--keep FILE]
+    python -m benchmarks.at_once [TLOG ...] [--coefficients FILE] [--keep FILE]
 
 Without a log, ArduPlane in software in the loop flies three multisines of 20 s. Each moves elevator, aileron
 and rudder at once. The table shows each derivative of both axes, with its truth at the true air speed flown.
@@ -119,6 +119,8 @@ def _true_speed(log: Path, maneuvers: Sequence[JudgedManeuver]) -> float:
         v = 0.01 * np.sqrt(sum(columns.fields[name].astype(float) ** 2 for name in ("vx", "vy", "vz")))
         for span in (one.maneuver.span for one in maneuvers if one.verdict.accepted):
             speeds += v[(t >= span.record_from_s) & (t <= span.end_s)].tolist()
+    if not np.any(speeds):
+        raise SystemExit(f"{log.name} has no velocity over the ground: give a tlog with GLOBAL_POSITION_INT.")
     return float(np.mean(speeds))
 
 
