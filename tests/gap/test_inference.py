@@ -335,11 +335,12 @@ def test_a_small_size_is_rather_natural_and_a_large_one_rather_an_effect(share, 
     assert (natural_nats(np.array([size]), np.ones(1), share) > 0.0) == (size < equal)
 
 
-def test_fewer_than_three_manoeuvres_show_no_law_without_a_name():
+@pytest.mark.parametrize(("maneuvers", "unknown"), [(2, False), (3, True)])
+def test_a_law_without_a_name_needs_three_manoeuvres_that_show_it(maneuvers, unknown):
     flight = Flight({}, residual=12.0)
-    flight.maneuvers = 2
-    rows = rows_of(flight, stage_of(flight, None, 6), SPREAD)
-    assert not any(row.alternative.kind == "unknown" for row in rows)
+    flight.maneuvers = maneuvers
+    told = posterior_of(rows_of(flight, stage_of(flight, None, 6), SPREAD))
+    assert (told.of(MOMENT) > 0.5) is unknown
 
 
 @pytest.mark.parametrize(("first", "unknown"), [(990.0, 0.01), (30.0, 0.25)])

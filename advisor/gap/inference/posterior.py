@@ -87,17 +87,22 @@ def rows_of(
         ]
     ways.sort(key=lambda way: -way.weight)
     if flight.maneuvers < WITNESSES:
-        # An effect without a name must repeat.
-        return [way for way in ways if way.alternative.kind != "unknown"]
+        # An effect without a name must repeat, which fewer manoeuvres do not show.
+        ways = [way for way in ways if way.alternative.kind != "unknown"]
     models = {id(way.model.solution): way.model for way in ways}
     near = list(models.items())[:_SEARCHED]
-    residuals = {key: flight.residual(one, stage.heat) for key, one in near}
+    residuals = {key: _repeating(flight, flight.residual(one, stage.heat)) for key, one in near}
     of_others = residuals[near[0][0]]
     return [
         row
         for way in ways
         for row in _with_residual(way, residuals.get(id(way.model.solution), of_others), prior)
     ]
+
+
+def _repeating(flight: Flight[E], residual: Residual) -> Residual:
+    """Return the residual with the size zero, if too few manoeuvres show whether the residual repeats."""
+    return residual if flight.maneuvers >= WITNESSES else replace(residual, size=0.0, size_beside_air=None)
 
 
 def _ways(flight: Flight[E], stage: Stage[E], prior: FieldPrior) -> Iterator[Row[E]]:
