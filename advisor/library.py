@@ -12,6 +12,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis.gap import diagnose_logs
 from advisor.analysis.marks_file import read_by_hand
+from advisor.analysis.table_log import as_in_tables
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.events import ManeuverFlown
@@ -53,7 +54,7 @@ def read(log: str | PathLike[str], aircraft: Aircraft | str | PathLike[str] | No
     Parameters
     ----------
     log : str or path
-        Path of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, compressed or not. Marks in
+        Path of a ``.tlog``, an ArduPilot ``.bin``, a PX4 ``.ulg`` or a table, compressed or not. Marks in
         ``LOG.maneuvers.yaml`` next to the log count.
     aircraft : Aircraft, str or path, optional
         The aircraft, or its YAML file; by default nothing is known of it.
@@ -71,9 +72,11 @@ def read(log: str | PathLike[str], aircraft: Aircraft | str | PathLike[str] | No
         The aircraft file, or the file of marks, is wrong.
     """
     path = Path(log)
-    described = aircraft if isinstance(aircraft, Aircraft) else _described(aircraft)
+    described = as_in_tables(aircraft if isinstance(aircraft, Aircraft) else _described(aircraft), [path])
     stream = FlightStream(described, marks=read_by_hand(path).marks, keep_all=True)
-    events = [event for columns in read_whole_log(path) for event in stream.feed(columns)] + stream.finish()
+    events = [
+        event for columns in read_whole_log(path, columns=described.columns) for event in stream.feed(columns)
+    ] + stream.finish()
     return Flight(
         path,
         described,

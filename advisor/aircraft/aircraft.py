@@ -36,11 +36,14 @@ class Markers:
 
 @dataclass(frozen=True)
 class TableColumns:
-    """Names of the columns of a table that a simulator wrote (``simulator: log:FILE.csv`` or ``.mat``)."""
+    """Names of the columns of a table (``.csv`` or ``.mat``) of a flight, or of a simulator's ``log:FILE``. A
+    column without a name here is found by its usual name."""
 
-    time: Annotated[str, Key("Column of the time, s.")]
-    elevator: Annotated[str, Key("Column of the elevator's deflection, positive trailing edge down.")]
-    q: Annotated[str, Key("Column of the pitch rate, positive nose up.")]
+    time: Annotated[str | None, Key("Column of the time, s.")] = None
+    elevator: Annotated[str | None, Key(
+        "Column of the elevator's deflection, positive trailing edge down.",
+    )] = None  # fmt: skip
+    q: Annotated[str | None, Key("Column of the pitch rate, positive nose up.")] = None
     alpha: Annotated[str | None, Key("Column of the angle of attack.")] = None
     theta: Annotated[str | None, Key("Column of the pitch angle.")] = None
     bank: Annotated[str | None, Key("Column of the bank angle.")] = None
@@ -57,8 +60,13 @@ class TableColumns:
     )] = None  # fmt: skip
     height: Annotated[str | None, Key("Column of the height above sea level, m.")] = None
     throttle: Annotated[str | None, Key("Column of the throttle, 0 to 1.")] = None
+    aileron: Annotated[str | None, Key("Column of the aileron, positive for a roll to the left.")] = None
+    rudder: Annotated[str | None, Key("Column of the rudder, positive for a yaw to the left.")] = None
+    beta: Annotated[str | None, Key("Column of the sideslip, positive with wind from the right.")] = None
+    a_y: Annotated[str | None, Key("Column of the specific force along body y, m/s².")] = None
+    climb_rate: Annotated[str | None, Key("Column of the climb rate, m/s.")] = None
     units: Annotated[Literal["rad", "deg"], Key(
-        "Unit of every angle and every angular rate of the table.",
+        "Unit of every angle and every angular rate whose column does not name its unit at its end.",
     )] = "rad"  # fmt: skip
     scale: Annotated[Mapping[str, float], Key(
         "Factor from the column to the quantity of this class: ``a_z: -9.80665`` for a load factor, "

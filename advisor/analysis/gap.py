@@ -81,7 +81,11 @@ def _recorded(
         others = [*reversed(logs[:flight]), *logs[flight + 1 :]]
         name = printable(log.name)
         try:
-            events = [event for columns in read_whole_log(log, others) for event in stream.feed(columns)]
+            events = [
+                event
+                for columns in read_whole_log(log, others, columns=aircraft.columns)
+                for event in stream.feed(columns)
+            ]
         except UnusableInputError as error:
             unreadable.append(error.problem)
             notes.append(f"Left out: {error.problem.about(name)}")

@@ -11,6 +11,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from advisor.aircraft.aircraft import TableColumns
 from advisor.analysis.marks_file import read_by_hand
 from advisor.campaign.hand_decisions import ByHand, on_all
 from advisor.flight.signals.messages import Columns
@@ -29,7 +30,8 @@ class LogSeries:
     date; else the given order is used.
     """
 
-    def __init__(self, logs: Sequence[Path]) -> None:
+    def __init__(self, logs: Sequence[Path], columns: TableColumns | None = None) -> None:
+        self._columns = columns
         self.logs = _oldest_first(logs) if len(logs) > 1 else list(logs)
         """Paths of the logs in the order of flights."""
         self.reordered = self.logs != list(logs)
@@ -92,7 +94,7 @@ class LogSeries:
         from advisor.mavlink.logs.whole import read_whole_log
 
         others = sorted(set(range(len(self.logs))) - {flight}, key=lambda n: (abs(n - flight), n))
-        return read_whole_log(self.logs[flight], [self.logs[n] for n in others])
+        return read_whole_log(self.logs[flight], [self.logs[n] for n in others], columns=self._columns)
 
     def load(self) -> list[Columns]:
         """Return the messages of all logs that can be read.

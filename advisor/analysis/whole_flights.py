@@ -86,7 +86,7 @@ def read_whole(
     ConfigurationError
         The file of decisions by hand that belongs to a log is wrong.
     """
-    series = LogSeries(logs)
+    series = LogSeries(logs, aircraft.columns)
     by_hand = NOTHING if no_marks else series.read_by_hand()
 
     def begin() -> tuple[Campaign, dict[int, FlightStream]]:

@@ -118,11 +118,12 @@ _KEPT = ("theta", "covariance_cr", "covariance")
 def analyze(task: BatchTask) -> Analyzed:
     """Analyze a log like ``advisor analyze``. An unusable log has a result too."""
     from advisor.analysis.log_series import LogSeries
+    from advisor.analysis.table_log import as_in_tables
     from advisor.analysis.whole_flights import left_out_of
     from advisor.campaign.campaign import Campaign
 
-    series = LogSeries([task.log])
-    campaign = Campaign(task.aircraft, by_hand=series.read_by_hand(), lateral=True)
+    series = LogSeries([task.log], task.aircraft.columns)
+    campaign = Campaign(as_in_tables(task.aircraft, [task.log]), by_hand=series.read_by_hand(), lateral=True)
     for columns in series.batches():
         campaign.feed(columns)
     if series.unreadable:

@@ -170,4 +170,4 @@ def _facts(log: Path, aircraft: Aircraft, target_system: int | None) -> "LogFact
     from advisor.mavlink.logs.whole import read_whole_log
 
     compile_once(partial(click.echo, err=True))
-    return facts_of(read_whole_log(log), aircraft, target_system)
+    return facts_of(read_whole_log(log, columns=aircraft.columns), aircraft, target_system)

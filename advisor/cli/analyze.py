@@ -62,7 +62,7 @@ def command(
     from advisor.analysis.log_series import LogSeries
     from advisor.analysis.whole_flights import holds_no_test
 
-    series = LogSeries(asked.logs)
+    series = LogSeries(asked.logs, aircraft.columns)
     by_hand = NOTHING if asked.no_marks else series.read_by_hand()
     from advisor.campaign.campaign import Campaign
 

@@ -49,7 +49,10 @@ def command(asked: LogsAsked, target: str, seconds: float, request_rates: bool, 
     findings, problem = None, None
     try:
         if _is_log(target):
-            findings = examine_log(Path(target), aircraft, asked.target_system)
+            from advisor.analysis.table_log import as_in_tables
+
+            log = Path(target)
+            findings = examine_log(log, as_in_tables(aircraft, [log]), asked.target_system)
         else:
             findings = _examine_link(target, aircraft, asked.target_system, seconds, request_rates)
     except UnusableInputError as error:
@@ -106,7 +109,7 @@ def examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Ex
     from advisor.mavlink.wire.frames import FrameScanner, Received
 
     examiner, scanner = Examiner(aircraft, target_system), FrameScanner()
-    for columns in read_whole_log(log, scanner=scanner):
+    for columns in read_whole_log(log, scanner=scanner, columns=aircraft.columns):
         examiner.feed(columns)
     vehicle = examiner.vehicle
     senders = scanner.statistics.senders

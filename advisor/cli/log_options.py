@@ -67,7 +67,12 @@ class LogsAsked:
         ConfigurationError
             As :func:`advisor.cli.options.read_aircraft`.
         """
-        return read_aircraft(self.aircraft_file, self.rule)
+        aircraft = read_aircraft(self.aircraft_file, self.rule)
+        if not self.logs:
+            return aircraft
+        from advisor.analysis.table_log import as_in_tables
+
+        return as_in_tables(aircraft, self.logs)
 
 
 def log_options(

@@ -45,7 +45,7 @@ def command(asked: LogsAsked, speed: float, show: Show | None = None) -> None:
     from advisor.session.replay import LogPlayer
     from advisor.session.source import Tempo
 
-    series = LogSeries(asked.logs)
+    series = LogSeries(asked.logs, aircraft.columns)
     by_hand = NOTHING if asked.no_marks else series.read_by_hand()
     title = printable(", ".join(series.names))
     player = partial(

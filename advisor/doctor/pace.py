@@ -26,6 +26,7 @@ _DROPPED = (
     "the autopilot could not write all records: log fewer or use a faster card; a manoeuvre with such a "
     "gap is flown again"
 )
+_PAUSED = "the table has a pause; a manoeuvre with such a gap is flown again"
 _FELL = (
     "keep other ground stations from setting stream rates (MAVProxy --streamrate=-1; -1 in Mission Planner's "
     "telemetry rates) and check the radio link"
@@ -114,7 +115,8 @@ def steadiness_limits(
             text = f"{name} was missing for {arrival.largest_gap_s:.2f} s at its worst"
         else:
             continue
-        limits.append(Limit(code, text, mend if carrier == "telemetry" else _DROPPED))
+        fix = {"telemetry": mend, "table": _PAUSED}.get(carrier, _DROPPED)
+        limits.append(Limit(code, text, fix))
     return limits
 
 

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from advisor.aircraft.aircraft import Aircraft, TableColumns
 from advisor.analysis.gap import _simulator_at_true_speed
-from advisor.analysis.table_log import _quantities
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.result import Diagnosis
+from advisor.mavlink.logs.tables.quantities import quantities_of
 from advisor.simulators.compare import compare
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Condition, Inputs
@@ -41,7 +41,7 @@ def test_units_and_signs_that_a_mapping_states_change_no_quantity(units, elevato
         name: scale.get(name, 1.0) * (angle if name in ("elevator", "q", "alpha") else 1.0) for name in names
     }
     table = {column: true[name] / stated[name] for name, column in names.items()}
-    found = _quantities(table, TableColumns(**names, units=units, scale=scale), "x.csv")
+    found = quantities_of(table, TableColumns(**names, units=units, scale=scale), "x.csv")
     for name, y in true.items():
         np.testing.assert_allclose(found[name], y, rtol=1e-12)
 

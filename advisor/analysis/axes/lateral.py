@@ -147,7 +147,9 @@ def flies_roll_or_yaw(
 ) -> bool:
     """Return whether a log holds a manoeuvre of aileron or rudder, without an analysis of the campaign."""
     stream = FlightStream(aircraft, target_system, marks, lateral=True)
-    events = [event for columns in read_whole_log(log) for event in stream.feed(columns)]
+    events = [
+        event for columns in read_whole_log(log, columns=aircraft.columns) for event in stream.feed(columns)
+    ]
     return any(isinstance(event, SideManeuverFlown) for event in (*events, *stream.finish()))
 
 

@@ -17,6 +17,28 @@ _ARCHIVES = {
     b"\x28\xb5\x2f\xfd": "zstd",
 }
 """Name of each archive that the advisor does not unpack, by its first bytes."""
+_OTHERS: tuple[tuple[bytes, str, str, str], ...] = (
+    (b"H Product:Blackbox", "blackbox", "is a Blackbox log of Betaflight or INAV",
+     "Decode it with blackbox_decode, and name the columns of its CSV in the aircraft file (columns:)."),
+    (b"#ROSBAG V", "ros_bag", "is a bag of ROS 1",
+     "Write its topics into one CSV with a header line, such as with: rostopic echo -b FILE -p TOPIC."),
+    (b"SQLite format 3\0", "database", "is an SQLite database, such as a bag of ROS 2 (.db3)",
+     "Write its topics into one CSV with a header line: time, rates, surfaces."),
+    (b"\x89MCAP0\r\n", "mcap", "is an MCAP recording",
+     "Write its topics into one CSV with a header line: time, rates, surfaces."),
+    (b"PAR1", "parquet", "is a Parquet table", "Write it as CSV: pandas.read_parquet(FILE).to_csv(CSV)."),
+    (b"\x93NUMPY", "numpy", "is an array of NumPy without names of columns",
+     "Write it as CSV with a header line: time, rates, surfaces."),
+    (b"\xd4\xc3\xb2\xa1", "capture", "is a capture of network packets (pcap)",
+     "Play it to the advisor with tcpreplay: advisor live --master udpin:0.0.0.0:14550."),
+    (b"\x0a\x0d\x0d\x0a", "capture", "is a capture of network packets (pcapng)",
+     "Play it to the advisor with tcpreplay: advisor live --master udpin:0.0.0.0:14550."),
+    (b"<?xml", "xml", "is XML, such as a track of GPX or KML",
+     "Give the autopilot's own log, or a CSV with time, rates and surfaces."),
+    (b"{", "json", "is JSON", "Write its series as CSV with a header line, one row for each time."),
+    (b"[", "json", "is JSON", "Write its series as CSV with a header line, one row for each time."),
+)  # fmt: skip
+"""First bytes, code, name and remedy of files that people have instead of a log."""
 _PACKED_INSIDE = (b"\x1f\x8b", b"PK\x03\x04")
 
 
@@ -62,6 +84,9 @@ def refusal(name: str, beginning: bytes) -> Problem:
             f"{name} is a web page, not a log.",
             "Download the file itself, not the page that shows it.",
         )
+    for magic, code, kind, fix in _OTHERS:
+        if beginning.removeprefix(b"\xef\xbb\xbf").startswith(magic):
+            return Problem(code, f"{name} {kind}, which the advisor does not read.", fix)
     for one in FORMATS:
         if refused := one.refusal(name, beginning):
             return refused

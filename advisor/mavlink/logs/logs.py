@@ -5,19 +5,23 @@ from pathlib import Path
 
 import numpy as np
 
+from advisor.aircraft.aircraft import TableColumns
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.identity import READER
 from advisor.mavlink.logs.kinds import Found, recognised, refusal
 from advisor.mavlink.logs.unpack import beginning_of, unpacked
 from advisor.mavlink.records.equivalent import message
 from advisor.mavlink.wire.frames import FrameScanner
-from advisor.words.problems import UnusableInputError
+from advisor.words.problems import ConfigurationError, UnusableInputError
 
 
 def open_log(
-    path: Path, wanted: Iterable[str] | None = None, scanner: FrameScanner | None = None
+    path: Path,
+    wanted: Iterable[str] | None = None,
+    scanner: FrameScanner | None = None,
+    columns: TableColumns | None = None,
 ) -> Iterator[list[Columns]]:
-    """Stream the messages of a ``.tlog``, an ArduPilot ``.bin`` or a PX4 ``.ulg``, packed or not.
+    """Stream the messages of a ``.tlog``, an ArduPilot ``.bin``, a PX4 ``.ulg`` or a table, packed or not.
 
     A ``.bin`` and a ``.ulg`` contain the autopilot's own records. Records become
     the messages that telemetry would have carried, in one batch.
@@ -29,22 +33,28 @@ def open_log(
         Names of the messages to return. None for all messages that MAVLink defines.
     scanner : FrameScanner, optional
         Scanner for a tlog instead of one made with ``wanted``, whose statistics the caller uses.
+    columns : TableColumns, optional
+        Names of a table's columns; None for usual names.
 
     Raises
     ------
     UnusableInputError
         The file is missing or no regular file. During the reading: the file contains no messages.
     """
-    return _read(path, beginning_of(path), wanted, scanner or FrameScanner(wanted))
+    return _read(path, beginning_of(path), wanted, scanner or FrameScanner(wanted), columns)
 
 
 def _read(
-    path: Path, beginning: bytes, wanted: Iterable[str] | None, scanner: FrameScanner
+    path: Path,
+    beginning: bytes,
+    wanted: Iterable[str] | None,
+    scanner: FrameScanner,
+    columns: TableColumns | None,
 ) -> Iterator[list[Columns]]:
     """Yield the messages of one log. An error of the reader ends this log only, with a sentence."""
     try:
-        yield from _messages(path, beginning, wanted, scanner)
-    except UnusableInputError:
+        yield from _messages(path, beginning, wanted, scanner, columns)
+    except (UnusableInputError, ConfigurationError):
         raise
     except MemoryError as error:
         raise UnusableInputError(
@@ -59,7 +69,11 @@ def _read(
 
 
 def _messages(
-    path: Path, beginning: bytes, wanted: Iterable[str] | None, scanner: FrameScanner
+    path: Path,
+    beginning: bytes,
+    wanted: Iterable[str] | None,
+    scanner: FrameScanner,
+    columns: TableColumns | None,
 ) -> Iterator[list[Columns]]:
     with unpacked(path, beginning) as log:
         if log is not path:
@@ -67,6 +81,9 @@ def _messages(
         found = recognised(beginning)
         if found is None:
             raise UnusableInputError.of([refusal(log.name, beginning)])
+        if columns is not None and found.format.read_columns is not None:
+            yield from found.format.read_columns(log, columns)
+            return
         for number, batch in enumerate(found.format.read(log, wanted, found.starts_at, scanner)):
             yield [_skipped(found, batch), *batch] if found.starts_at and number == 0 else batch
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from advisor.aircraft.aircraft import TableColumns
 from advisor.flight.signals.channels import ARMED
 from advisor.flight.signals.messages import Columns, cut
 from advisor.flight.stream.identity import READER
@@ -28,7 +29,10 @@ _STATE = ("PARAM_VALUE", MESSAGE)
 
 
 def read_whole_log(
-    path: Path, others: Sequence[Path] = (), scanner: FrameScanner | None = None
+    path: Path,
+    others: Sequence[Path] = (),
+    scanner: FrameScanner | None = None,
+    columns: TableColumns | None = None,
 ) -> Iterator[list[Columns]]:
     """Stream the messages of a log, with those about the whole log first.
 
@@ -44,18 +48,20 @@ def read_whole_log(
         log without any.
     scanner
         Scanner for a tlog, whose statistics the caller uses.
+    columns
+        Names of a table's columns; None for usual names.
 
     Raises
     ------
     UnusableInputError
         As :func:`advisor.mavlink.logs.logs.open_log`.
     """
-    batches = open_log(path, scanner=scanner)
+    batches = open_log(path, scanner=scanner, columns=columns)
     first = next(batches, None)
     if first is None:
         return
     is_tlog = first[0].carrier == "telemetry"
-    telling = list(open_log(path, ["HEARTBEAT", *_STATE])) if is_tlog else [first]
+    telling = list(open_log(path, ["HEARTBEAT", *_STATE], None, columns)) if is_tlog else [first]
     known, notes = _stated(telling), []
     if not known:
         lender, known = _lent(others)

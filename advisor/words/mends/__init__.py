@@ -9,14 +9,16 @@ from typing import Literal
 from advisor.words.mends.dataflash import Dataflash
 from advisor.words.mends.mends import GOOD_HZ, Mends, sentence
 from advisor.words.mends.sdlog2 import Sdlog2
+from advisor.words.mends.table import Table
 from advisor.words.mends.telemetry import ArduPilotTelemetry, OtherTelemetry, Px4Telemetry
 from advisor.words.mends.ulog import Ulog
 
 __all__ = ["GOOD_HZ", "Carrier", "Mends", "mends_of", "sentence"]
 
-Carrier = Literal["telemetry", "dataflash", "ulog", "sdlog2"]
-"""Kind of record: a link or its ``.tlog``, ArduPilot's own log (``.bin``), PX4's own log (``.ulg``), or PX4's
-own log before 2017 (``.px4log``)."""
+Carrier = Literal["telemetry", "dataflash", "ulog", "sdlog2", "table"]
+"""Kind of record: a link or its ``.tlog``, or an autopilot's own log, or a table with named columns.
+
+The own logs are ArduPilot's (``.bin``), PX4's (``.ulg``) and PX4's before 2017 (``.px4log``)."""
 
 
 def mends_of(autopilot: str, carrier: Carrier, log_profile: int | None = None) -> Mends:
@@ -35,5 +37,7 @@ def mends_of(autopilot: str, carrier: Carrier, log_profile: int | None = None) -
         return Ulog(log_profile)
     if carrier == "sdlog2":
         return Sdlog2()
+    if carrier == "table":
+        return Table()
     telemetry: dict[str, Mends] = {"ardupilot": ArduPilotTelemetry(), "px4": Px4Telemetry()}
     return telemetry.get(autopilot, OtherTelemetry())

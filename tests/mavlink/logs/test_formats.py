@@ -15,7 +15,7 @@ ULOG = b"ULog\x01\x12\x35"
 
 def test_each_module_of_the_room_is_a_format() -> None:
     modules = {path.stem for path in Path(formats.__path__[0]).glob("*.py")} - {"__init__"}
-    assert modules == {"dataflash", "telemetry", "ulog"}
+    assert modules == {"dataflash", "table", "telemetry", "ulog"}
     assert len(FORMATS) == len(modules)
 
 
@@ -45,8 +45,10 @@ def test_each_format_refuses_its_own_relatives() -> None:
 
 def test_what_is_no_log_is_told_all_formats() -> None:
     problem = refusal("a.jpg", b"\xff\xd8\xff")
-    assert problem.text == "a.jpg holds no MAVLink messages, DataFlash records or ULog (3 bytes read)."
-    assert problem.fix == "Give a .tlog as a ground station records it, an ArduPilot .bin or a PX4 .ulg."
+    holds = "no MAVLink messages, DataFlash records, columns of a flight or ULog (3 bytes read)."
+    assert problem.text == f"a.jpg holds {holds}"
+    given = "an ArduPilot .bin, a table with named columns (.csv, .mat) or a PX4 .ulg."
+    assert problem.fix == f"Give a .tlog as a ground station records it, {given}"
 
 
 def test_a_batch_searches_a_folder_for_every_format(tmp_path: Path) -> None:

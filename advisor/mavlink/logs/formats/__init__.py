@@ -9,6 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
 
+from advisor.aircraft.aircraft import TableColumns
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.words.problems import Problem
@@ -39,6 +40,9 @@ class LogFormat:
     refusal: Callable[[str, bytes], Problem | None] = nothing_refused
     """Function that returns a problem for an unreadable relative of the format, from file name and beginning.
     An encrypted log is an example."""
+    read_columns: Callable[[Path, TableColumns], Iterator[list[Columns]]] | None = None
+    """Function that streams the messages of a table, whose columns the aircraft file may name; None for a log
+    with names of its own."""
     has_magic: bool = True
     """Whether the format has fixed first bytes. Telemetry has none, and is tried last."""
 
@@ -50,7 +54,7 @@ def _found() -> Iterator[LogFormat]:
 
 FORMATS: tuple[LogFormat, ...] = tuple(sorted(_found(), key=lambda one: (one.has_magic, one.ending)))
 """All formats, telemetry first, in the order of the user's sentence."""
-ENDINGS: tuple[str, ...] = tuple(one.ending for one in FORMATS)
-"""Usual file endings of logs."""
+ENDINGS: tuple[str, ...] = tuple(one.ending for one in FORMATS if one.read_columns is None)
+"""Usual file endings of the logs for which a folder is searched. Most tables in a folder are no flights."""
 GIVE = f"Give {', '.join(one.given for one in FORMATS[:-1])} or {FORMATS[-1].given}."
 """Sentence that lists the readable logs."""

@@ -1,0 +1,1 @@
+"""Tables with named columns (CSV, MAT) as logs: the file, the names, the messages."""
