@@ -18,7 +18,7 @@ from advisor.gap.result import (
     Trace,
     Where,
 )
-from advisor.gap.verdict.text import answers_of, in_words, limits_of, title_of
+from advisor.gap.verdict.text import answers_of, by_flight_alone, in_words, limits_of, title_of
 from advisor.process.parts import FailedPart
 from advisor.report.facts.gap import changed, grown_said, heading, shrink_said, size_of_gap, where_said
 from advisor.report.facts.reasons import how_sure
@@ -110,7 +110,7 @@ def weighed_document(d: Weighed) -> dict[str, Any]:
     """Return the document part with the alternatives' probabilities, their evidence, and the reasons."""
     answers = answers_of(d.evidence)
     return {
-        "how_sure": how_sure(answers),
+        "how_sure": how_sure(answers, by_flight_alone(d.evidence)),
         "probabilities": d.probabilities,
         "evidence": [_evidence(one) for one in d.evidence],
         "why_heading": heading(d),

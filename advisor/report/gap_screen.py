@@ -12,7 +12,8 @@ from rich.table import Table
 from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
-from advisor.gap.verdict.text import answers_of, limits_of, title_of
+from advisor.gap.verdict.notes import UNEXPLAINED
+from advisor.gap.verdict.text import answers_of, by_flight_alone, limits_of, title_of
 from advisor.process.installed import SIMULATOR
 from advisor.report.facts.gap import changes, grown_said, shrink_said, size_of_gap, where_said
 from advisor.report.facts.reasons import how_sure
@@ -71,7 +72,7 @@ class GapScreen:
             yield Panel(Group(*_picture(d)), title=where, title_align="left")
         if self.everything:
             yield from self._course()
-        if d.causes:
+        if d.causes and (d.verdict != "none" or self.everything):
             yield ""
             yield from ranking(d.causes, d.gap.before)
         if self.why:
@@ -132,8 +133,10 @@ class GapScreen:
 def _answer(d: Diagnosis) -> Iterator[Text]:
     """Yield the sentence, the differing derivatives, the errors in an engineer's units, and the limits."""
     yield Text(d.sentence)
-    if sure := how_sure(answers_of(d.evidence)):
+    if sure := how_sure(answers_of(d.evidence), by_flight_alone(d.evidence)):
         yield Text(sure)
+    if d.verdict == "unknown":
+        yield from (Text(note) for note in d.notes if note.startswith(UNEXPLAINED))
     if d.verdict == "parameters":
         yield from (Text(f"  {line}") for line in changes(d.derivatives))
     if d.verdict not in ("none", "untested") and d.gap.after != d.gap.before and d.traces:
@@ -178,7 +181,7 @@ def _hanging(mark: str, text: str, width: int) -> Text:
 
 def _numbers(d: Diagnosis) -> Text:
     lines = [size_of_gap(d.verdict, d.gap)]
-    if d.shrink is not None:
+    if d.shrink is not None and d.verdict != "none":
         lines.append(shrink_said(d.shrink, d.gap))
         if d.shrink.beyond_air_percent is not None:
             lines.append(f"without the air's own course: {d.shrink.beyond_air_percent:.0f} % less")

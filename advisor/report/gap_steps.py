@@ -13,10 +13,11 @@ from advisor.gap.result import Cause, Diagnosis, spelled
 from advisor.gap.verdict.text import answers_of
 from advisor.report.facts.gap import changed
 from advisor.report.facts.reasons import in_percent
-from advisor.report.facts.sizes import sizes_of
+from advisor.report.facts.sizes import short, sizes_of
 from advisor.report.improved import improved_name
 from advisor.words.certainty import Answers, doubt_of
 
+_PROVE = "Prove the change: {after} again, then on manoeuvres that no fit has used."
 _FLY = "fly as many manoeuvres again, with another time unit and another amplitude"
 _TELLS = 0.1
 """Words: log odds of the fit, nats, below which a repetition of the manoeuvres decides nothing."""
@@ -63,8 +64,9 @@ def next_steps(
             lacks = " what it lacks" if _effects_of(d) else ""
             found.append(GapStep(f"Put into the simulator{lacks}: {what}.{formats}", command))
         prove = shlex.join([*read, *proved])
-        found.append(GapStep("Prove the change: the gap must fall to what is printed above.", prove))
-    if rival := _against_the_rival(d):
+        found.append(GapStep(_PROVE.format(after=short(d.gap.after)), prove))
+    rival = _against_the_rival(d) if d.verdict != "none" else ""
+    if rival:
         found.append(GapStep(rival))
     return found
 
@@ -78,12 +80,12 @@ def _improvement(
     if kind == "linear":
         linear = ["--simulator", "linear"] if simulator else []
         write = [*aircraft, *linear, "--out", better]
-        return write, ["--aircraft", better, *linear], " --export writes other formats."
+        return write, [*aircraft, *linear, "--prove"], " --export writes other formats."
     own = [*aircraft, "--simulator", str(simulator)]
     if kind != "jsbsim":
-        return [], own, ""
+        return [], [*own, "--prove"], ""
     model = str(Path(better).with_suffix(".xml"))
-    return [*own, "--export", f"jsbsim:{model}"], [*aircraft, "--simulator", f"jsbsim:{model}"], ""
+    return [*own, "--export", f"jsbsim:{model}"], [*own, "--prove"], ""
 
 
 def to_decide(answers: Answers, way: str = "", why: Sequence[Contribution] = ()) -> GapStep:

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from advisor.gap.alternative import Alternative, AlternativeEvidence, Contribution
-from advisor.gap.verdict.text import answers_of, title_of, title_of_verdict
+from advisor.gap.alternative import Alternative, AlternativeEvidence, Column, Contribution
+from advisor.gap.verdict.text import answers_of, by_flight_alone, is_turned, title_of, title_of_verdict
 from advisor.report.gap_steps import next_steps
 from advisor.words.certainty import as_sure
 from tests.gap.test_report_screen import diagnosis, printed
@@ -35,11 +35,28 @@ def box(found, columns=80):
         ("parameters", 0.7, "LIKELY WRONG NUMBERS"),
         ("unknown", 0.7, "LIKELY UNKNOWN CAUSE"),
         ("none", 0.7, "LIKELY NOTHING TO CORRECT"),
-        ("untested", 0.7, "NO SIMULATOR GIVEN"),
+        ("untested", 0.7, "NOTHING TO COMPARE WITH"),
     ],
 )
 def test_the_title_follows_the_size_of_the_largest_probability(kind, probability, said):
-    assert title_of_verdict(kind, [("a", probability), ("b", 1.0 - probability)]) == said
+    a, b = Alternative("effect", "a"), Alternative("effect", "b")
+    assert title_of_verdict(kind, evidence((a, probability), (b, 1.0 - probability))) == said
+
+
+def before(name, nats):
+    return (Column(name, nats, "nats", "how often each is right"),)
+
+
+def test_what_the_frequency_before_the_flight_turned_is_likely_and_never_found():
+    turned = (
+        AlternativeEvidence(DELAY, before("prior", 0.0), 0.95),
+        AlternativeEvidence(NOTHING, before("prior", -4.0), 0.05),
+    )
+    assert is_turned(turned)
+    assert title_of_verdict("effect", turned) == "LIKELY CAUSE"
+    assert dict(by_flight_alone(turned))["transport delay"] == pytest.approx(0.2582, abs=1e-3)
+    sure = (turned[0], replace(turned[1], columns=before("prior", 0.0)))
+    assert title_of_verdict("effect", sure) == "CAUSE FOUND"
 
 
 def test_no_gap_is_the_title_only_where_none_lies_above_the_noise():

@@ -1,8 +1,10 @@
 """The steps after a diagnosis are commands that the program takes, and that do what the step says."""
 
+import re
 import shlex
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,6 +12,7 @@ import pytest
 from advisor.cli.live import _page
 from advisor.cli.log_options import LogsAsked
 from advisor.flight.maneuvers.marks import Mark
+from advisor.report.facts.sizes import short
 from advisor.report.gap_screen import command_lines
 from advisor.report.gap_steps import next_steps
 from tests.gap.test_report_screen import diagnosis
@@ -46,25 +49,36 @@ def test_a_simulator_that_reads_none_of_our_files_is_offered_none(simulator):
     assert f"--simulator {simulator}" in prove
 
 
-def test_jsbsim_gets_its_own_format_and_is_flown_with_the_file_that_was_written():
+def test_jsbsim_gets_its_own_format():
     put, prove = (taken(line) for line in steps("jsbsim:c172p"))
-    (written,) = put["exports"]
-    assert written == prove["specification"] == "jsbsim:mine-with-transport-delay.xml"
+    assert put["exports"] == ("jsbsim:mine-with-transport-delay.xml",)
+    assert prove["specification"] == "jsbsim:c172p"
 
 
-def test_the_aircraft_file_that_is_written_is_the_one_that_is_flown():
-    put, prove = (taken(line) for line in steps(None))
-    assert put["out"] == prove["aircraft_file"] == Path("mine-with-transport-delay.yaml")
+@pytest.mark.parametrize("simulator", [None, "linear", "jsbsim:c172p"])
+def test_the_printed_proof_asks_the_same_again_and_flies_the_change(simulator):
+    put, prove = (taken(line) for line in steps(simulator))
+    assert prove["proving"] == ("",)
+    for name in ("logs", "aircraft_file", "specification"):
+        assert prove[name] == put[name]
+
+
+def test_the_proof_names_the_gap_that_stands_above_it():
+    assert f"Prove the change: {short(FOUND.gap.after)} again" in next_steps(FOUND, LOGS, "mine.yaml")[1].text
+
+
+def test_where_nothing_is_to_correct_no_step_follows():
+    assert next_steps(replace(FOUND, verdict="none"), LOGS, "mine.yaml") == []
 
 
 @pytest.mark.parametrize(
     ("simulator", "written", "flies"),
     [
-        (None, "out/better.yaml", "--aircraft out/better.yaml"),
-        ("jsbsim:c172p", "out/better.xml", "--aircraft mine.yaml --simulator jsbsim:out/better.xml"),
+        (None, "out/better.yaml", "--aircraft mine.yaml --prove"),
+        ("jsbsim:c172p", "out/better.xml", "--aircraft mine.yaml --simulator jsbsim:c172p --prove"),
     ],
 )
-def test_after_the_file_is_written_the_next_step_flies_it(simulator, written, flies):
+def test_after_the_file_is_written_the_next_step_proves_the_change(simulator, written, flies):
     first, *_ = next_steps(FOUND, LOGS, "mine.yaml", simulator, (), written)
     assert first.text.startswith("Prove the change")
     assert first.command == f"advisor gap 'my flight.tlog' second.bin {flies}"
@@ -95,7 +109,10 @@ def test_the_steps_of_the_sample_flight_run_as_printed_and_remove_the_gap(tmp_pa
     shown = run(words, tmp_path)
     put, prove = (line for line in printed_commands(shown))
     run(put, tmp_path)
-    assert "NOTHING TO CORRECT" in run(prove, tmp_path)
+    (said,) = re.findall(r"gap [\d.,]+ → ([\d.]+) times", shown)
+    again = run(prove, tmp_path)
+    assert re.findall(r"gap [\d.,]+ → ([\d.]+) times", again) == [said]
+    assert "Proof on manoeuvres" in again
 
 
 def printed_commands(shown: str) -> list[str]:

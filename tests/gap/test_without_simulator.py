@@ -26,7 +26,7 @@ def test_the_screen_says_that_no_simulator_was_given() -> None:
     console = Console(width=100, record=True, file=StringIO())
     console.print(GapScreen(without_simulator(replace(diagnosis(), verdict="none", causes=()))))
     shown = console.export_text()
-    assert "NO SIMULATOR GIVEN" in shown
+    assert "NOTHING TO COMPARE WITH" in shown
     assert "NO GAP" not in shown
 
 

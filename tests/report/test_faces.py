@@ -140,7 +140,7 @@ def of_the_box(text: str) -> Named:
 
 def of_a_probability(lines: Iterable[str]) -> Named:
     for line in lines:
-        if said := re.match(r"Probability by the evidence: \D+(\d+) %", line):
+        if said := re.match(r"Probability: \D+(\d+) %", line):
             yield "probability", said[1]
 
 
@@ -316,7 +316,8 @@ def test_an_unknown_cause_in_two_blocks_has_one_probability_on_every_face() -> N
     document, out = gap_document(found), StringIO()
     Console(file=out, width=120, color_system=None, highlight=False).print(GapScreen(found))
     said = (
-        "Probability by the evidence: something without a name in the pitching moment 92 %, actuator lag 8 %."
+        "Probability: something without a name in the pitching moment 92 % (by this flight alone 92 %), "
+        "actuator lag 8 %."
     )
     assert said in out.getvalue()
     assert said in [block.text for block in answer(document) if isinstance(block, Paragraph)]

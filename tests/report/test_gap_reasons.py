@@ -7,13 +7,18 @@ from advisor.report.facts.reasons import how_sure, in_percent, weighed
 
 def test_four_alternatives_are_named_and_the_others_mentioned():
     four = [("lag", 0.5), ("delay", 0.2), ("gusts", 0.15), ("drift", 0.1)]
-    assert how_sure(four) == "Probability by the evidence: lag 50 %, delay 20 %, gusts 15 %, drift 10 %."
+    assert how_sure(four) == "Probability: lag 50 %, delay 20 %, gusts 15 %, drift 10 %."
     assert how_sure([*four, ("play", 0.05)]) == how_sure(four)[:-1] + ", others less."
 
 
 def test_an_alternative_of_zero_per_cent_is_left_out():
-    assert how_sure([("lag", 0.996), ("delay", 0.004)]) == "Probability by the evidence: lag >99 %."
+    assert how_sure([("lag", 0.996), ("delay", 0.004)]) == "Probability: lag >99 %."
     assert how_sure([("lag", 0.004)]) == ""
+
+
+def test_the_first_alternative_is_said_with_the_probability_by_the_flight_alone():
+    said = how_sure([("lag", 0.99), ("delay", 0.01)], [("delay", 0.15), ("lag", 0.85)])
+    assert said == "Probability: lag 99 % (by this flight alone 85 %), delay 1 %."
 
 
 @pytest.mark.parametrize(

@@ -69,7 +69,7 @@ async def test_choosing_the_pane_diagnoses_the_flight_and_shows_the_worst_manoeu
         assert "! Manoeuvre 3 is used, although advisor analyze refuses it." in said
         assert "99.9 % less" in said
         assert "1. Put it there. advisor gap x" in said
-        assert "Probability by the evidence: transport delay 82 %, actuator lag 18 %." in said
+        assert "Probability: transport delay 82 % (by this flight alone 82 %), actuator lag 18 %." in said
         assert "▲ the gap is larger than before in manoeuvre 3" in said
         assert "+2.0 gain in the fit" in said
         assert "+1.5 together: 4.5 to 1 for the answer" in said

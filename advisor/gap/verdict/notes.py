@@ -19,6 +19,8 @@ _ANOTHER_SPEED = 0.005
 """Words: least relative difference between two mean air speeds that is reported."""
 _MATTERS = 0.3
 """Words: least gap of a constant-speed simulator that is reported."""
+UNEXPLAINED = "Unexplained"
+"""First word of the note on the law that describes an effect without a name."""
 _FEW = 6
 """Words: number of manoeuvres below which changes between them are hardly visible."""
 
@@ -101,7 +103,7 @@ def _without_air_speed(flights: PreparedManeuvers, is_known: bool) -> str:
 
 def _of_the_unexplained(e: Findings) -> Iterator[str]:
     if e.unexplained is not None and e.unexplained.note:
-        yield f"Unexplained {place(e.unexplained.block)}: {e.unexplained.note}"
+        yield f"{UNEXPLAINED} {place(e.unexplained.block)}: {e.unexplained.note}"
 
 
 def _of_single_witnesses(e: Findings) -> Iterator[str]:

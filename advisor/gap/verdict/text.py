@@ -1,6 +1,7 @@
 """Texts of a diagnosis: the sentence for pilots, the title, the answers and the limits."""
 
 from collections.abc import Iterator, Sequence
+from math import exp, log
 
 from advisor.gap.alternative import Alternative, AlternativeEvidence, together
 from advisor.gap.result import VISIBLE, Cause, Diagnosis, Gap, GapVerdict, Shrink, Where, spelled
@@ -9,6 +10,10 @@ from advisor.words.certainty import Answers, title
 
 _AS_LIKELY = 0.99
 """Words: block score relative to the best block above which both blocks are equally likely."""
+_MORE = 1.2
+"""Words: ratio of two gaps below which the larger one is hardly more."""
+_INDISTINCT = 2.0
+"""Contract: gap, times the noise floor's power, above which "none" has a probability of 5 % at most."""
 BLOCKS = {
     "input": "between the command and the surface",
     "force_equation": "in the lift",
@@ -74,12 +79,12 @@ def sentence_of(
 def _of_no_gap(gap: Gap) -> str:
     if gap.before < VISIBLE:
         finding = "the gap is within the noise"
-    elif gap.after < 0.5 * gap.before:
-        percent = 100.0 * (1.0 - gap.after / gap.before)
-        finding = f"its parameters are right to a few per cent; fitted ones remove {percent:.0f} % of the gap"
-        if gap.by_air > 0.5 * (gap.before - gap.after):
-            percent = 100.0 * min(gap.by_air / gap.before, 1.0)
-            finding = f"light gusts, as in every flight, make {percent:.0f} % of the gap"
+    elif gap.by_air > 0.5 * (gap.before - gap.after) and gap.after < 0.5 * gap.before:
+        finding = "light gusts, as in every flight, make most of the gap"
+    elif gap.before < _INDISTINCT:
+        finding = (
+            f"the difference is {gap.before:.2g} of the noise, and this flight cannot tell it from noise"
+        )
     else:
         finding = "the residual above the noise is too small to name a cause"
     return f"The simulator flies like the aircraft: {finding}."
@@ -124,9 +129,20 @@ def _of_effects(causes: Sequence[Cause], shrink: Shrink | None, in_simulator: fr
     if shrink is not None and shrink.by_numbers_percent is not None:
         # The share of fitted derivatives must not pass for the effect's.
         added = "adding it and refitting the eight parameters"
-        removed += f" (the parameters alone {shrink.by_numbers_percent:.1f} %)"
+        removed += _numbers_alone(shrink)
     also = f"; also {_listed(present[1:])}" if len(present) > 1 else ""
     return f"{named}; {added} removes {removed}{also}."
+
+
+def _numbers_alone(shrink: Shrink) -> str:
+    """Return a clause about the gap that fitted derivatives alone leave; empty if they leave no more."""
+    left, alone = 100.0 - shrink.percent, 100.0 - (shrink.by_numbers_percent or 0.0)
+    if left <= 0.0 or alone <= 0.0:
+        return ""
+    times = alone / left
+    if times < _MORE:
+        return ", and numbers alone leave hardly more"
+    return f", and numbers alone leave {times:.2g} times as much"
 
 
 def _removed(shrink: Shrink | None) -> str:
@@ -142,7 +158,7 @@ _TITLES = {
     "parameters": ("WRONG NUMBERS", "LIKELY WRONG NUMBERS"),
     "effect": ("CAUSE FOUND", "LIKELY CAUSE"),
     "unknown": ("UNKNOWN CAUSE", "LIKELY UNKNOWN CAUSE"),
-    "untested": ("NO SIMULATOR GIVEN", "NO SIMULATOR GIVEN"),
+    "untested": ("NOTHING TO COMPARE WITH", "NOTHING TO COMPARE WITH"),
 }
 
 
@@ -152,14 +168,40 @@ def answers_of(evidence: Sequence[AlternativeEvidence]) -> Answers:
     return [(in_words(alternative), p) for alternative, p in shares]
 
 
-def title_of_verdict(verdict: GapVerdict, answers: Answers) -> str:
-    """Return the title of a verdict."""
-    return title(*_TITLES[verdict], answers)
+_BEFORE_THE_FLIGHT = frozenset({"prior", "air"})
+"""Parts of the log weight that say how often an alternative is right before the flight."""
+
+
+def by_flight_alone(evidence: Sequence[AlternativeEvidence]) -> Answers:
+    """Return the answers with the probabilities that this flight alone gives, the likeliest first.
+
+    Every alternative is then as likely as the next one before the flight.
+    """
+    if not evidence:
+        return []
+    before = [sum(c.value for c in one.columns if c.name in _BEFORE_THE_FLIGHT) for one in evidence]
+    logs = [log(max(one.probability, 1e-300)) - nats for one, nats in zip(evidence, before, strict=True)]
+    weights = [exp(value - max(logs)) for value in logs]
+    total = sum(weights)
+    shares = ((one.alternative, w / total) for one, w in zip(evidence, weights, strict=True))
+    return [(in_words(alternative), p) for alternative, p in together(shares)]
+
+
+def is_turned(evidence: Sequence[AlternativeEvidence]) -> bool:
+    """Return whether the answer is the likeliest by its frequency before the flight alone."""
+    answers, alone = answers_of(evidence), by_flight_alone(evidence)
+    return bool(answers) and answers[0][0] != alone[0][0]
+
+
+def title_of_verdict(verdict: GapVerdict, evidence: Sequence[AlternativeEvidence]) -> str:
+    """Return the title of a verdict. An answer that the flight alone does not give is only likely."""
+    stated, likely = _TITLES[verdict]
+    return title(likely if is_turned(evidence) else stated, likely, answers_of(evidence))
 
 
 def title_of(d: Diagnosis) -> str:
     """Return the title of a diagnosis."""
-    shown = title_of_verdict(d.verdict, answers_of(d.evidence))
+    shown = title_of_verdict(d.verdict, d.evidence)
     is_free = d.verdict == "none" and d.gap.before < VISIBLE
     return shown.replace("NOTHING TO CORRECT", "NO GAP") if is_free else shown
 
@@ -168,7 +210,7 @@ def limits_of(d: Diagnosis) -> Iterator[str]:
     """Yield the limits of the answer, which the report prints next to it."""
     yield from (str(part.problem) for part in d.failed)
     if d.verdict != "untested" and not d.derivatives:
-        yield "No simulator was given: the answer is about the flight alone."
+        yield "No model to compare with: the answer is about the flight alone."
     air = "The air moved, and its course was fitted to the same samples."
     beyond_air = None if d.shrink is None else d.shrink.beyond_air_percent
     if beyond_air is not None:

@@ -9,7 +9,7 @@ from advisor.gap.axes.lateral.diagnosis import SideDiagnosis
 from advisor.gap.axes.lateral.flight import LIKELY
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.result import spelled
-from advisor.gap.verdict.text import title_of_verdict
+from advisor.gap.verdict.text import by_flight_alone, title_of_verdict
 from advisor.report.facts.gap import changes, grown_said, shrink_said, size_of_gap
 from advisor.report.facts.reasons import how_sure, in_percent
 from advisor.report.facts.sizes import WORSE, named, sizes_of, with_error
@@ -30,9 +30,10 @@ from advisor.words.plain import picked, plain
 def side_gap_lines(found: SideGap) -> Iterator[str]:
     """Yield the sentence, the causes, each stated derivative with the flight's, instruments, and the gap."""
     yield f"{_title(found)}: {found.sentence}"
+    is_none = found.verdict == "none"
     if found.diagnosis is not None and found.verdict is not None:
-        yield f"  {how_sure(found.diagnosis.answers)}"
-        yield from _diagnosis_lines(found.diagnosis)
+        yield f"  {how_sure(found.diagnosis.answers, by_flight_alone(found.diagnosis.evidence))}"
+        yield from () if is_none else _diagnosis_lines(found.diagnosis)
     yield from (f"! {part.sentence}" for part in (found.diagnosis.failed if found.diagnosis else ()))
     yield from (f"  {line}" for line in changes(found.derivatives))
     if found.instruments:
@@ -42,7 +43,7 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
         gap, shrink = found.diagnosis.gap, found.diagnosis.shrink
         size = size_of_gap(found.verdict, gap)
         yield f"{size[0].upper()}{size[1:]}"
-        if shrink is not None:
+        if shrink is not None and not is_none:
             yield f"  {shrink_said(shrink, gap)}"
         if grown := grown_said(found.verdict, gap):
             yield f"  {WORSE} {grown}"
@@ -53,7 +54,7 @@ def side_gap_lines(found: SideGap) -> Iterator[str]:
 
 def _title(found: SideGap) -> str:
     return title_of_verdict(
-        found.verdict or "untested", found.diagnosis.answers if found.diagnosis is not None else ()
+        found.verdict or "untested", found.diagnosis.evidence if found.diagnosis is not None else ()
     )
 
 

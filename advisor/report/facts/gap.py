@@ -23,7 +23,7 @@ def size_of_gap(verdict: str, gap: Gap) -> str:
     if isnan(gap.after):
         return f"gap {before} times the noise floor's power; no manoeuvre can be held out"
     if verdict == "none":
-        return f"gap {before} times the noise floor's power, {after} with fitted numbers"
+        return f"gap {before} times the noise floor's power"
     return f"gap {before_after(gap.before, gap.after)} times the noise floor's power"
 
 
@@ -33,10 +33,10 @@ def shrink_said(shrink: Shrink, gap: Gap) -> str:
     The gap after the corrections has the flight's nuisance parameters, and the shrink by an export has not.
     """
     low, high = shrink.ci95_percent
-    alone = f" ({before_after(shrink.before, shrink.after)} by the corrections alone)"
+    left = f", {short(shrink.after)} left by the corrections alone" if shrink.after != gap.after else ""
     return (
         f"{shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out "
-        f"manoeuvres: {counted(shrink.holdout)}{alone if shrink.after != gap.after else ''}"
+        f"manoeuvres: {counted(shrink.holdout)}{left}"
     )
 
 

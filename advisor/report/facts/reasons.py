@@ -23,13 +23,23 @@ def in_percent(probability: float) -> str:
     return f"{100.0 * probability:.0f} %" if is_shown(probability) else "<1 %"
 
 
-def how_sure(alternatives: Iterable[tuple[str, float]]) -> str:
-    """Return a sentence about the likeliest alternatives; empty without probabilities."""
+def how_sure(alternatives: Iterable[tuple[str, float]], alone: Iterable[tuple[str, float]] = ()) -> str:
+    """Return a sentence about the likeliest alternatives; empty without probabilities.
+
+    Parameters
+    ----------
+    alone
+        Probabilities that this flight alone gives, without the frequency of each answer before the flight.
+    """
+    by_flight = dict(alone)
     shown = [f"{words} {in_percent(p)}" for words, p in alternatives if is_shown(p)]
+    first = next(iter(alternatives), ("", 0.0))[0]
+    if shown and first in by_flight:
+        shown[0] += f" (by this flight alone {in_percent(by_flight[first])})"
     if not shown:
         return ""
     more = ", others less" if len(shown) > _MOST else ""
-    return f"Probability by the evidence: {', '.join(shown[:_MOST])}{more}."
+    return f"Probability: {', '.join(shown[:_MOST])}{more}."
 
 
 def weighed(reasons: Iterable[tuple[float, str]]) -> list[tuple[str, str]]:

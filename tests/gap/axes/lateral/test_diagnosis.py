@@ -113,7 +113,7 @@ def test_without_a_simulator_the_text_has_neither_its_probabilities_nor_a_table_
     text = "\n".join(side_gap_lines(alone))
     assert side_gap_document(alone)["how_sure"] == ""
     assert side_gap_document(FOUND)["how_sure"]
-    assert text.startswith("NO SIMULATOR GIVEN: ")
+    assert text.startswith("NOTHING TO COMPARE WITH: ")
     assert "wrong numbers" not in text
     assert "aileron actuator backlash" not in text
     assert "before" not in text
