@@ -295,4 +295,6 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
             self.exit()
             return
         self._leaving_s = monotonic()
-        self.say("The link is live. Press the key once more to stop advising.", _TWICE_WITHIN_S)
+        is_lost = self.view.health.condition == "lost"
+        link = "The link is lost and may come back" if is_lost else "The link is live"
+        self.say(f"{link}. Press the key once more to stop advising.", _TWICE_WITHIN_S)

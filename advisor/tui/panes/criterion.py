@@ -16,6 +16,10 @@ RULE_INKS: dict[str, Ink] = {"continuous": "measured", "separate": "residual", "
 _Y, _X = "[% of limit]", "manoeuvre"
 
 
+_MULTIPLE_PERCENT = 1000.0
+"""Words: criterion, per cent of its limit, that is stated as a multiple."""
+
+
 class Criterion(TextPane):
     """Criterion of each stopping rule against its limit, and each rule's decision."""
 
@@ -49,12 +53,18 @@ prediction of the newest manoeuvre are within their tolerances; the lines above 
         self.write(_rows(verdict))
 
 
+def share_of_limit(percent: float) -> str:
+    """Return a criterion relative to its limit: in per cent, and as a multiple from ten times on."""
+    if percent >= _MULTIPLE_PERCENT:
+        return f"{0.01 * percent:.0f} times its limit"
+    return f"{distinct_texts(percent, 100.0)[0]} % of its limit"
+
+
 def _rows(verdict: FlightTestVerdict) -> list[Labelled]:
     rows: list[Labelled] = []
     for rule, progress in verdict.by_rule.items():
         now = progress.now_percent_of_limit
-        share = distinct_texts(now, 100.0)[0] if now is not None else ""
-        so_far = f"{share:>6} % of its limit" if now is not None else f"{'too few manoeuvres':>21}"
+        so_far = f"{'too few manoeuvres' if now is None else share_of_limit(now):>21}"
         says = f"stop since {progress.stopped_at}" if progress.stopped_at else "continue"
         mark = "►" if rule == verdict.rule else " "
         rows.append((f"{mark} ", f"{rule:<12}{so_far}  {says}"))

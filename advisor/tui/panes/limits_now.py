@@ -3,6 +3,7 @@
 from math import degrees, isfinite
 
 from advisor.session.view import View
+from advisor.tui.advice import advise
 from advisor.tui.panes.lines import Lines, Part
 
 _APART = "    "
@@ -14,7 +15,8 @@ class LimitsNow(Part, Lines):
     def show(self, view: View) -> None:
         """Write the newest values of bank, air speed and angle of attack. A value outside its limit is marked
         by a cross."""
-        self.write(f"before it   {limits_now(view)}")
+        complete = advise(view).word == "TEST COMPLETE"
+        self.write("before it   nothing is left to fly" if complete else f"before it   {limits_now(view)}")
 
 
 def limits_now(view: View) -> str:
