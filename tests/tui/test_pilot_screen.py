@@ -10,6 +10,7 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.session.source import LinkHealth
 from advisor.session.view import View
 from advisor.tui.advice import advise
+from advisor.tui.panes.criterion import share_of_limit
 from advisor.tui.panes.last_verdict import for_the_pilot
 from advisor.tui.panes.limits_now import limits_now
 from advisor.tui.panes.pilot import BigWord, how_far
@@ -220,6 +221,16 @@ def test_a_value_outside_its_limit_has_a_cross_before_the_step():
     slow = replace(state.channels["airspeed"], newest=20.0)
     here = view(replace(state, channels={**state.channels, "bank": banked, "airspeed": slow}))
     assert "✗ bank 34 deg (≤ 30)    ✗ V 20 m/s" in limits_now(here)
+
+
+def test_a_criterion_far_above_its_limit_is_a_multiple():
+    assert share_of_limit(27725.0) == "277 times its limit"
+    assert share_of_limit(152.0) == "152 % of its limit"
+
+
+async def test_a_complete_test_holds_no_bank_against_a_limit():
+    async with stage(flights.state(7)) as here:
+        assert here.words("LimitsNow") == "before it   nothing is left to fly"
 
 
 def test_the_stick_is_drawn_step_by_step_with_seconds():
