@@ -3,9 +3,11 @@
 import shlex
 from collections.abc import Mapping
 from importlib import import_module
+from io import StringIO
 from typing import Any
 
 import click
+from rich.console import Console
 
 
 def taken(line: str) -> Mapping[str, Any]:
@@ -23,3 +25,10 @@ def taken(line: str) -> Mapping[str, Any]:
         command, words = command.commands[words[0]], words[1:]
     parameters: Mapping[str, Any] = command.make_context(name, words, resilient_parsing=False).params
     return parameters
+
+
+def printed_lines(shown: Any, columns: int = 160) -> list[str]:
+    """Return the lines that a terminal of a width shows."""
+    out = StringIO()
+    Console(file=out, width=columns, color_system=None, highlight=False).print(shown)
+    return out.getvalue().splitlines()

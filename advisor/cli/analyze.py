@@ -28,7 +28,10 @@ if TYPE_CHECKING:
 @click.command
 @log_options("rule", "marks", "no_marks")
 @click.option(
-    "--all", "every_movement", is_flag=True, help="List also the elevator movements that were no test inputs."
+    "--all",
+    "every_movement",
+    is_flag=True,
+    help="List also the elevator movements that were no test inputs, and the course of every rule.",
 )
 @click.option(
     "--axis",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
+from advisor.cli.foresee import plan_options
 from advisor.cli.gap_asked import refuse_figure
 from advisor.cli.improvement_export import export_option, orders_of
 from advisor.cli.log_options import LogsAsked, log_options
@@ -80,22 +81,8 @@ _LATERAL = (
     metavar="SHARES",
     help="How often each answer is right before the flight: none=40,parameters=20,effect=30,unknown=10.",
 )
-@click.option(
-    "--foresee", is_flag=True, help="Read no log; say what a planned flight would show. Needs --aircraft."
-)
-@click.option(
-    "--plan",
-    default="3211,rev,rev,3211,rev,3211,rev",
-    show_default=True,
-    help="With --foresee: manoeuvres to fly.",
-)
-@click.option(
-    "--rate", "rate_hz", type=float, default=50.0, show_default=True, help="With --foresee: stream rate, Hz."
-)
-@click.option(
-    "--amplitude-deg", type=float, default=2.0, show_default=True, help="With --foresee: elevator step, deg."
-)
-@click.option("--without", default="", help="With --foresee: missing channels, e.g. a_z,theta.")
+@click.option("--foresee", is_flag=True, hidden=True, help="The command advisor foresee.")
+@plan_options(hidden=True)
 @json_option
 def command(
     asked: LogsAsked,
@@ -128,7 +115,6 @@ def command(
       advisor gap flight.tlog --aircraft my-aircraft.yaml --prove
       advisor gap flight.tlog --aircraft my-aircraft.yaml --axis lateral
       advisor gap flight.tlog --axis both
-      advisor gap --foresee --aircraft my-aircraft.yaml --rate 20 --without a_z
     """
     _refuse_foreign(_OF_A_FLIGHT if foresee else _OF_A_PLAN, f"with{'out' if foresee else ''} --foresee")
     if axis == "lateral":
@@ -145,7 +131,9 @@ def command(
         return print_foresight(aircraft, plan, rate_hz, amplitude_deg, without, as_json)
     refuse_proving(proving)
     if not asked.logs:
-        raise ConfigurationError("advisor gap needs at least one log, or --foresee with an aircraft file.")
+        raise ConfigurationError(
+            "advisor gap needs at least one log; advisor foresee plans a flight without one."
+        )
     if specification is not None:
         aircraft = replace(aircraft, simulator=specification)
     if out is not None:

@@ -29,6 +29,7 @@ COMMANDS = {
     "serve": "Show the screens of live and replay in a browser, for several viewers.",
     "analyze": "Print every manoeuvre's verdict, the estimates, and stop or continue.",
     "gap": "Diagnose why the real aircraft does not fly like the simulator.",
+    "foresee": "Say what a planned flight would show of each effect, before it is flown.",
     "simulator": "Check your own simulator: signs, units, trim, and what it answers.",
     "export": "Write channels, manoeuvres, estimates and residuals for other tools.",
     "batch": "Analyze many logs: one table of flights, one of manoeuvres, changes over time.",

@@ -6,8 +6,9 @@ from itertools import groupby
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.text import Text
 
-from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft, Rule
 from advisor.campaign.state import CampaignState, JudgedManeuver
+from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.report.axes.lateral import side_quality_lines
@@ -135,11 +136,32 @@ class AnalysisText:
     def _rules(self) -> Iterator[Text]:
         """Yield the history of every rule, the information, and the warnings."""
         verdict = self.state.flight_test
+        others = [] if self.every_movement or verdict.rule != "information" else list(_PAPERS)
         for name, progress in verdict.by_rule.items() if self.state.maneuvers else ():
+            if name in others:
+                continue
             history = " ".join("–" if v is None else f"{v:.1f}" for v in progress.history_percent)
             stopped = "not yet" if progress.stopped_at is None else f"after manoeuvre {progress.stopped_at}"
             yield Text(f"rule {name:<12} stop: {stopped:<20} criterion %: {history}")
             if progress.hindsight:
                 yield Text(f"{'':<18}{progress.hindsight}", style="dim")
+        if others and self.state.maneuvers:
+            yield Text(_papers_rules(verdict), style="dim")
         yield from (Text(f"information: {line}", style="dim") for line in verdict.evidence)
         yield from (Text(f"warning: {warning}", style="yellow") for warning in verdict.warnings)
+
+
+_PAPERS: tuple[Rule, ...] = ("continuous", "separate")
+"""Rules of the paper."""
+
+
+def _papers_rules(verdict: FlightTestVerdict) -> str:
+    """Return one line on the paper's rules, which decide only where the crew chooses one of them."""
+    said = []
+    for name in _PAPERS:
+        progress = verdict.by_rule[name]
+        now = "too few manoeuvres" if progress.now_percent is None else f"{progress.now_percent:.0f} %"
+        stop = "" if progress.stopped_at is None else f", stop after manoeuvre {progress.stopped_at}"
+        said.append(f"{name} {now}{stop}")
+    limit = f"limit {verdict.by_rule[_PAPERS[0]].limit_percent:g} %"
+    return f"the paper's rules: {'; '.join(said)} ({limit}); --all has their course"

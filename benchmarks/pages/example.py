@@ -68,7 +68,7 @@ EXAMPLES: Sequence[Example] = (
             "analyze-maneuvers": [Part(until="arduplane-calm.tlog"), Part(" 1 ", "[1 to 7] angle of attack")],
             "analyze-estimate": [Part("Joint estimate", "note:")],
             "analyze-qualities": [Part("Flying qualities", "  static margin")],
-            "analyze-rules": [Part("rule continuous")],
+            "analyze-rules": [Part("rule information")],
             "analyze-short": [
                 Part(until="arduplane-calm.tlog:"),
                 Part(" 1 ", " 3 "),
@@ -99,7 +99,7 @@ EXAMPLES: Sequence[Example] = (
         "gap logs/arduplane-calm.tlog --aircraft arduplane-calm-with-actuator-lag.yaml",
         {"gap-again": [Part(until="Below 1 %")]},
     ),
-    Example("gap --foresee --aircraft uav.yaml", {"foresee": [Part()]}),
+    Example("foresee --aircraft uav.yaml", {"foresee": [Part()]}),
 )
 """In the order in which they run: a later one reads what an earlier one wrote."""
 

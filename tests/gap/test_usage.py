@@ -5,6 +5,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from click.testing import CliRunner
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
@@ -17,6 +18,7 @@ from advisor.simulators.compare import Compared
 from tests.flights import TWO, recorded
 from tests.gap.generator import Setup, fly
 from tests.gap.test_report_screen import diagnosis
+from tests.printed import taken
 
 
 def said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, *arguments: object) -> tuple:
@@ -57,6 +59,15 @@ def test_a_log_beside_foresee_is_refused_for_it_would_not_be_read(capsys, monkey
     code, error = said(capsys, monkeypatch, "flight.tlog", "--foresee")
     assert code == 2
     assert "reads no log: leave out flight.tlog" in error
+
+
+def test_a_plan_is_foreseen_by_a_command_of_its_own_out_of_the_help_of_the_gap():
+    shown = CliRunner().invoke(cli.advisor, ["gap", "--help"]).output
+    assert not any(option in shown for option in ("--foresee", "--plan", "--amplitude-deg"))
+    own = CliRunner().invoke(cli.advisor, ["foresee", "--help"]).output
+    assert all(option in own for option in ("--plan", "--rate", "--amplitude-deg", "--without", "--json"))
+    line = "advisor foresee --aircraft uav.yaml --rate 20 --without a_z"
+    assert (taken(line)["rate_hz"], taken(line)["without"]) == (20.0, "a_z")
 
 
 @pytest.mark.parametrize(("arguments", "option"), [
