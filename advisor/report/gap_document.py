@@ -18,8 +18,9 @@ from advisor.gap.result import (
     Trace,
     Where,
 )
-from advisor.gap.verdict.text import answers_of, by_flight_alone, in_words, limits_of, title_of
+from advisor.gap.verdict.text import answers_of, in_words, limits_of
 from advisor.process.parts import FailedPart
+from advisor.report.facts.answers import by_flight_alone, title_of
 from advisor.report.facts.gap import changed, grown_said, heading, shrink_said, size_of_gap, where_said
 from advisor.report.facts.reasons import how_sure
 from advisor.report.facts.sizes import sizes_of

@@ -13,8 +13,9 @@ from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.verdict.notes import UNEXPLAINED
-from advisor.gap.verdict.text import answers_of, by_flight_alone, limits_of, title_of
+from advisor.gap.verdict.text import answers_of, limits_of
 from advisor.process.installed import SIMULATOR
+from advisor.report.facts.answers import by_flight_alone, title_of
 from advisor.report.facts.gap import changes, grown_said, shrink_said, size_of_gap, where_said
 from advisor.report.facts.reasons import how_sure
 from advisor.report.facts.sizes import WORSE, short

@@ -1,17 +1,14 @@
 """Texts of a diagnosis: the sentence for pilots, the title, the answers and the limits."""
 
 from collections.abc import Iterator, Sequence
-from math import exp, log
 
 from advisor.gap.alternative import Alternative, AlternativeEvidence, together
 from advisor.gap.result import VISIBLE, Cause, Diagnosis, Gap, GapVerdict, Shrink, Where, spelled
 from advisor.gap.verdict.statements import or_else, what
-from advisor.words.certainty import Answers, title
+from advisor.words.certainty import Answers
 
 _AS_LIKELY = 0.99
 """Words: block score relative to the best block above which both blocks are equally likely."""
-_MORE = 1.2
-"""Words: ratio of two gaps below which the larger one is hardly more."""
 _INDISTINCT = 2.0
 """Contract: gap, times the noise floor's power, above which "none" has a probability of 5 % at most."""
 BLOCKS = {
@@ -135,14 +132,9 @@ def _of_effects(causes: Sequence[Cause], shrink: Shrink | None, in_simulator: fr
 
 
 def _numbers_alone(shrink: Shrink) -> str:
-    """Return a clause about the gap that fitted derivatives alone leave; empty if they leave no more."""
+    """Return a clause about the gap that fitted derivatives alone leave; empty if nothing is left."""
     left, alone = 100.0 - shrink.percent, 100.0 - (shrink.by_numbers_percent or 0.0)
-    if left <= 0.0 or alone <= 0.0:
-        return ""
-    times = alone / left
-    if times < _MORE:
-        return ", and numbers alone leave hardly more"
-    return f", and numbers alone leave {times:.2g} times as much"
+    return f", and numbers alone leave {alone / left:.2g} times as much" if left > 0.0 else ""
 
 
 def _removed(shrink: Shrink | None) -> str:
@@ -153,57 +145,10 @@ def _listed(causes: Sequence[Cause]) -> str:
     return ", ".join(spelled(cause.effect) for cause in causes)
 
 
-_TITLES = {
-    "none": ("NOTHING TO CORRECT", "LIKELY NOTHING TO CORRECT"),
-    "parameters": ("WRONG NUMBERS", "LIKELY WRONG NUMBERS"),
-    "effect": ("CAUSE FOUND", "LIKELY CAUSE"),
-    "unknown": ("UNKNOWN CAUSE", "LIKELY UNKNOWN CAUSE"),
-    "untested": ("NOTHING TO COMPARE WITH", "NOTHING TO COMPARE WITH"),
-}
-
-
 def answers_of(evidence: Sequence[AlternativeEvidence]) -> Answers:
     """Return the answers as texts with their probabilities, the likeliest first."""
     shares = together((one.alternative, one.probability) for one in evidence)
     return [(in_words(alternative), p) for alternative, p in shares]
-
-
-_BEFORE_THE_FLIGHT = frozenset({"prior", "air"})
-"""Parts of the log weight that say how often an alternative is right before the flight."""
-
-
-def by_flight_alone(evidence: Sequence[AlternativeEvidence]) -> Answers:
-    """Return the answers with the probabilities that this flight alone gives, the likeliest first.
-
-    Every alternative is then as likely as the next one before the flight.
-    """
-    if not evidence:
-        return []
-    before = [sum(c.value for c in one.columns if c.name in _BEFORE_THE_FLIGHT) for one in evidence]
-    logs = [log(max(one.probability, 1e-300)) - nats for one, nats in zip(evidence, before, strict=True)]
-    weights = [exp(value - max(logs)) for value in logs]
-    total = sum(weights)
-    shares = ((one.alternative, w / total) for one, w in zip(evidence, weights, strict=True))
-    return [(in_words(alternative), p) for alternative, p in together(shares)]
-
-
-def is_turned(evidence: Sequence[AlternativeEvidence]) -> bool:
-    """Return whether the answer is the likeliest by its frequency before the flight alone."""
-    answers, alone = answers_of(evidence), by_flight_alone(evidence)
-    return bool(answers) and answers[0][0] != alone[0][0]
-
-
-def title_of_verdict(verdict: GapVerdict, evidence: Sequence[AlternativeEvidence]) -> str:
-    """Return the title of a verdict. An answer that the flight alone does not give is only likely."""
-    stated, likely = _TITLES[verdict]
-    return title(likely if is_turned(evidence) else stated, likely, answers_of(evidence))
-
-
-def title_of(d: Diagnosis) -> str:
-    """Return the title of a diagnosis."""
-    shown = title_of_verdict(d.verdict, d.evidence)
-    is_free = d.verdict == "none" and d.gap.before < VISIBLE
-    return shown.replace("NOTHING TO CORRECT", "NO GAP") if is_free else shown
 
 
 def limits_of(d: Diagnosis) -> Iterator[str]:

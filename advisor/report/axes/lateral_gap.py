@@ -9,7 +9,7 @@ from advisor.gap.axes.lateral.diagnosis import SideDiagnosis
 from advisor.gap.axes.lateral.flight import LIKELY
 from advisor.gap.candidates.distinguish import way_to_distinguish
 from advisor.gap.result import spelled
-from advisor.gap.verdict.text import by_flight_alone, title_of_verdict
+from advisor.report.facts.answers import by_flight_alone, title_of_verdict
 from advisor.report.facts.gap import changes, grown_said, shrink_said, size_of_gap
 from advisor.report.facts.reasons import how_sure, in_percent
 from advisor.report.facts.sizes import WORSE, named, sizes_of, with_error

@@ -54,7 +54,7 @@ prediction of the newest manoeuvre are within their tolerances; the lines above 
 
 
 def share_of_limit(percent: float) -> str:
-    """Return a criterion relative to its limit: in per cent, and as a multiple from ten times on."""
+    """Return a criterion relative to its limit: in per cent, or as a multiple of at least ten."""
     if percent >= _MULTIPLE_PERCENT:
         return f"{0.01 * percent:.0f} times its limit"
     return f"{distinct_texts(percent, 100.0)[0]} % of its limit"

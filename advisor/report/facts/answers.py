@@ -1,0 +1,53 @@
+"""Titles of a diagnosis, and the probabilities that the flight alone gives."""
+
+from collections.abc import Sequence
+from math import exp, log
+
+from advisor.gap.alternative import AlternativeEvidence, together
+from advisor.gap.result import VISIBLE, Diagnosis, GapVerdict
+from advisor.gap.verdict.text import answers_of, in_words
+from advisor.words.certainty import Answers, title
+
+_TITLES = {
+    "none": ("NOTHING TO CORRECT", "LIKELY NOTHING TO CORRECT"),
+    "parameters": ("WRONG NUMBERS", "LIKELY WRONG NUMBERS"),
+    "effect": ("CAUSE FOUND", "LIKELY CAUSE"),
+    "unknown": ("UNKNOWN CAUSE", "LIKELY UNKNOWN CAUSE"),
+    "untested": ("NOTHING TO COMPARE WITH", "NOTHING TO COMPARE WITH"),
+}
+_BEFORE_THE_FLIGHT = frozenset({"prior", "air"})
+"""Parts of the log weight that say how often an alternative is right before the flight."""
+
+
+def by_flight_alone(evidence: Sequence[AlternativeEvidence]) -> Answers:
+    """Return the answers with the probabilities that this flight alone gives, the likeliest first.
+
+    Every alternative is then as likely as the next one before the flight.
+    """
+    if not evidence:
+        return []
+    before = [sum(c.value for c in one.columns if c.name in _BEFORE_THE_FLIGHT) for one in evidence]
+    logs = [log(max(one.probability, 1e-300)) - nats for one, nats in zip(evidence, before, strict=True)]
+    weights = [exp(value - max(logs)) for value in logs]
+    total = sum(weights)
+    shares = ((one.alternative, w / total) for one, w in zip(evidence, weights, strict=True))
+    return [(in_words(alternative), p) for alternative, p in together(shares)]
+
+
+def is_turned(evidence: Sequence[AlternativeEvidence]) -> bool:
+    """Return whether the answer is the likeliest by its frequency before the flight alone."""
+    answers, alone = answers_of(evidence), by_flight_alone(evidence)
+    return bool(answers) and answers[0][0] != alone[0][0]
+
+
+def title_of_verdict(verdict: GapVerdict, evidence: Sequence[AlternativeEvidence]) -> str:
+    """Return the title of a verdict. An answer that the flight alone does not give is only likely."""
+    stated, likely = _TITLES[verdict]
+    return title(likely if is_turned(evidence) else stated, likely, answers_of(evidence))
+
+
+def title_of(d: Diagnosis) -> str:
+    """Return the title of a diagnosis."""
+    shown = title_of_verdict(d.verdict, d.evidence)
+    is_free = d.verdict == "none" and d.gap.before < VISIBLE
+    return shown.replace("NOTHING TO CORRECT", "NO GAP") if is_free else shown
