@@ -21,7 +21,7 @@ from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.records.usable import usable_of
-from advisor.gap.result import Diagnosis
+from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.search.baseline import at_another_speed, fit_baseline, of_this_flight
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of, true_over_read
 from advisor.gap.uncatalogued.weight_check import weight_reading
@@ -29,7 +29,10 @@ from advisor.gap.uncatalogued.wind_shear import wind_shear
 from advisor.gap.verdict.answer import answer_of
 from advisor.gap.verdict.notes import left_out
 from advisor.gap.verdict.one_maneuver import answer_of_one
+from advisor.gap.verdict.text import answers_of
+from advisor.words.certainty import as_sure
 from advisor.words.problems import UnusableInputError
+from advisor.words.quantiles import NORMAL_95
 
 
 @dataclass(frozen=True)
@@ -195,17 +198,25 @@ def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
 
 
 _NOT_GIVEN = (
-    "No simulator was given: the aircraft file holds no complete model. The flight was compared with a model "
-    "fitted to it. That shows effects beyond eight parameters, and nothing about a simulator's parameters."
+    "The aircraft file holds no complete model to compare with. The flight was compared with a model fitted "
+    "to it, which shows effects beyond eight parameters alone."
 )
 _STATEMENT = (
-    "No simulator was given, so no gap can be stated. A model fitted to this flight leaves no effect to name."
+    "There is no model to compare with, so no gap can be stated. A model fitted to this flight leaves no "
+    "effect to name."
 )
 
 
 def without_simulator(diagnosis: Diagnosis) -> Diagnosis:
     """Return the diagnosis as a statement about the flight alone, without the claim that there is no gap."""
     notes = (_NOT_GIVEN, *diagnosis.notes)
+    first = next((c for c in diagnosis.causes if c.present), None)
+    if diagnosis.improves and first is not None:
+        sizes = ", ".join(
+            f"{name} {v.value:.3g} ± {NORMAL_95 * v.std:.2g}" for name, v in first.parameters.items()
+        )
+        said = f"This flight shows {spelled(first.effect)} ({sizes}) beyond what the aircraft file states."
+        return replace(diagnosis, sentence=as_sure(said, answers_of(diagnosis.evidence)), notes=notes)
     if diagnosis.verdict != "none":
         return replace(diagnosis, notes=notes)
     return replace(diagnosis, verdict="untested", sentence=_STATEMENT, notes=notes)

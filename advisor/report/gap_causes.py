@@ -22,18 +22,20 @@ _LIKELY = 0.01
 PRESENT = "●"
 
 
-def ranking(causes: Sequence[Cause], before: float) -> Iterator[RenderableType]:
+def ranking(causes: Sequence[Cause], before: float, what: str = "simulator") -> Iterator[RenderableType]:
     """Yield the causes as a table, the unlikely ones in one line, and sentences about similar effects.
 
     Parameters
     ----------
     before
         Gap of the simulator as given; a larger gap is marked.
+    what
+        What is improved: a simulator, or the model of the flight without one.
     """
     likely = [c for c in causes if c.present or c.probability >= _LIKELY]
     if likely:
         yield _table(likely, before)
-        kept = f"{PRESENT} part of the improved simulator; " if any(c.present for c in likely) else ""
+        kept = f"{PRESENT} part of the improved {what}; " if any(c.present for c in likely) else ""
         yield Text(f"{kept}prob.: that it is the main cause; ±: 95 %", style="dim")
     unlikely = [spelled(c.effect) for c in causes if c not in likely]
     if unlikely:

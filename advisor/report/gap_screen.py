@@ -75,7 +75,7 @@ class GapScreen:
             yield from self._course()
         if d.causes and (d.verdict != "none" or self.everything):
             yield ""
-            yield from ranking(d.causes, d.gap.before)
+            yield from ranking(d.causes, d.gap.before, _improved(d))
         if self.why:
             yield from why_of(d)
         if d.in_simulator is not None:
@@ -150,6 +150,10 @@ def _notes(d: Diagnosis) -> list[str]:
     return [note for note in (d.kinematics.sentence, floor, *d.notes) if note]
 
 
+def _improved(d: Diagnosis) -> str:
+    return "simulator" if d.derivatives else "model"
+
+
 def _numbered(steps: Sequence[GapStep], width: int) -> Iterator[Text]:
     """Yield each step with its command line; a shell would take a blank after a backslash for a word."""
     for number, step in enumerate(steps, start=1):
@@ -215,7 +219,7 @@ def _picture(d: Diagnosis) -> Iterator[RenderableType]:
         table.add_row(*cells)
     yield table
     if named:
-        yield Text(f"{PRESENT} part of the improved simulator, too", style="dim")
+        yield Text(f"{PRESENT} part of the improved {_improved(d)}, too", style="dim")
     if scores:
         yield Text(_SCORES, style="dim")
     if guilty and any(score >= _ROUNDS_TO_ALL for score in scores.values()):

@@ -62,7 +62,8 @@ def next_steps(
         if written is None:
             command = shlex.join([*read, *write]) if write else ""
             lacks = " what it lacks" if _effects_of(d) else ""
-            found.append(GapStep(f"Put into the simulator{lacks}: {what}.{formats}", command))
+            put = f"Put into the simulator{lacks}" if d.derivatives else "State in the aircraft file"
+            found.append(GapStep(f"{put}: {what}.{formats}", command))
         prove = shlex.join([*read, *proved])
         found.append(GapStep(_PROVE.format(after=short(d.gap.after)), prove))
     rival = _against_the_rival(d) if d.verdict != "none" else ""

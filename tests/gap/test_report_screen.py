@@ -221,7 +221,12 @@ def test_without_all_the_largest_answer_takes_at_most_40_lines():
     lines = printed(found, 80, steps=steps, everything=False)
     assert len(lines) <= 40
     text = " ".join(" ".join(lines).split())
-    for part in ("CAUSE FOUND", "where: between the command", "● transport delay", "Put into the simulator"):
+    for part in (
+        "CAUSE FOUND",
+        "where: between the command",
+        "● transport delay",
+        "State in the aircraft file",
+    ):
         assert part in text
     assert "--all adds the gap in time and by manoeuvre, the fidelity by channel, 2 notes and 2 eff" in text
 

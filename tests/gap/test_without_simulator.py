@@ -10,6 +10,7 @@ from advisor.gap.diagnose import without_simulator
 from advisor.gap.result import GapVerdict
 from advisor.report.gap_document import gap_document
 from advisor.report.gap_screen import GapScreen
+from advisor.report.gap_steps import next_steps
 from tests.gap.test_report_screen import diagnosis
 
 
@@ -18,8 +19,8 @@ def test_a_flight_without_a_simulator_is_not_called_free_of_a_gap() -> None:
     document = gap_document(found)
     assert document["verdict"] is None
     assert document["usable"] is True
-    assert "No simulator was given" in document["sentence"]
-    assert any("No simulator was given" in note for note in document["notes"])
+    assert "no model to compare with" in document["sentence"]
+    assert any("no complete model" in note for note in document["notes"])
 
 
 def test_the_screen_says_that_no_simulator_was_given() -> None:
@@ -34,4 +35,14 @@ def test_the_screen_says_that_no_simulator_was_given() -> None:
 def test_what_the_flight_shows_by_itself_stands_with_a_note(verdict: GapVerdict) -> None:
     found = without_simulator(replace(diagnosis(), verdict=verdict))
     assert found.verdict == verdict
-    assert found.notes[0].startswith("No simulator was given")
+    assert found.notes[0].startswith("The aircraft file holds no complete model")
+
+
+def test_without_a_simulator_no_sentence_has_the_word() -> None:
+    found = without_simulator(replace(diagnosis(), verdict="effect", derivatives=()))
+    assert found.sentence.startswith("This flight shows transport delay (delay_s 0.0303 ± ")
+    steps = next_steps(found, ["a.tlog"], "mine.yaml")
+    assert steps[0].text.startswith("State in the aircraft file: transport delay")
+    console = Console(width=100, record=True, file=StringIO())
+    console.print(GapScreen(found, steps=steps))
+    assert "simulator" not in console.export_text()

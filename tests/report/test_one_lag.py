@@ -8,6 +8,7 @@ from advisor.oem.estimate import InstrumentEstimate
 from advisor.report.facts.estimates import instrument_facts
 from advisor.report.gap_steps import next_steps
 from tests.decision.campaigns import estimate
+from tests.gap.test_report_answer import DERIVATIVES
 from tests.gap.test_report_screen import DELAY, diagnosis
 from tests.tui import flights
 
@@ -22,7 +23,8 @@ def test_the_lag_of_the_estimate_is_that_by_which_it_delays_the_command() -> Non
 
 
 def test_the_lag_of_the_gap_is_what_the_simulator_lacks() -> None:
-    said = [what(LAG), next_steps(diagnosis(causes=(LAG,)), ["flight.tlog"], "mine.yaml")[0].text]
+    found = diagnosis(causes=(LAG,), derivatives=DERIVATIVES)
+    said = [what(LAG), next_steps(found, ["flight.tlog"], "mine.yaml")[0].text]
     assert said[0].endswith("it lacks 129 ms of servo lag")
     assert said[1].startswith("Put into the simulator what it lacks: actuator lag 129 ± 15 ms.")
     assert not any("aircraft file" in one for one in said)
