@@ -31,7 +31,7 @@ def test_two_places_that_are_as_likely_are_both_said(moment, places):
     ("by_air", "said"),
     [
         (0.9, "light gusts, as in every flight, make most of the gap"),
-        (0.1, "the difference is 1.9 of the noise, and this flight cannot tell it from noise"),
+        (0.1, "the difference is 1.9 of the noise: this flight cannot tell it from noise"),
     ],
 )
 def test_where_nothing_is_named_gusts_are_not_credited_to_fitted_parameters(by_air, said):

@@ -9,8 +9,6 @@ from advisor.words.certainty import Answers
 
 _AS_LIKELY = 0.99
 """Words: block score relative to the best block above which both blocks are equally likely."""
-_INDISTINCT = 2.0
-"""Contract: gap, times the noise floor's power, above which "none" has a probability of 5 % at most."""
 BLOCKS = {
     "input": "between the command and the surface",
     "force_equation": "in the lift",
@@ -78,12 +76,8 @@ def _of_no_gap(gap: Gap) -> str:
         finding = "the gap is within the noise"
     elif gap.by_air > 0.5 * (gap.before - gap.after) and gap.after < 0.5 * gap.before:
         finding = "light gusts, as in every flight, make most of the gap"
-    elif gap.before < _INDISTINCT:
-        finding = (
-            f"the difference is {gap.before:.2g} of the noise, and this flight cannot tell it from noise"
-        )
     else:
-        finding = "the residual above the noise is too small to name a cause"
+        finding = f"the difference is {gap.before:.2g} of the noise: this flight cannot tell it from noise"
     return f"The simulator flies like the aircraft: {finding}."
 
 
