@@ -10,7 +10,7 @@ from math import degrees
 from typing import Any
 
 from advisor.decision.conditions import ALPHA_MARGIN, FULL_TRAVEL_RAD
-from advisor.scripts.inputs import CONTROLS, Control
+from advisor.scripts.inputs import CONTROLS, NAMES, Control
 from advisor.scripts.outputs import StatedOutput, factors_by_function
 from advisor.scripts.table import Entry, ScriptTable
 
@@ -122,7 +122,8 @@ def _entry(entry: Entry) -> list[str]:
     reasons = "; ".join(f"{c}: {size.why}" for c, size in entry.sizes.items())
     lines = [
         f"  {{ -- sizes in deg. {reasons}",
-        f"    name = {_text(test.name)}, moves = {{{moves}}}, held = {{{held}}},",
+        f"    name = {_text(test.name)}, which = {1 + NAMES.index(test.name)},",
+        f"    moves = {{{moves}}}, held = {{{held}}},",
         f"    sizes = {sizes}, rest_s = {test.rest_s:g},",
     ]
     if test.sines is None:

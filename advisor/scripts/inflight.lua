@@ -2,7 +2,7 @@
 -- From here on the script holds no number that depends on the aircraft.
 
 local CALL_MS = 10        -- ms between two calls; a board that is slower calls as fast as it can
-local TIMEOUT_MS = 100    -- ms after which an output goes back to the autopilot by itself: a script that dies lets go
+local TIMEOUT_MS = 150    -- ms, four frames of a 30 Hz board, after which an output of a dead script is the autopilot's
 local LATE_MS = 40        -- ms between two calls above which a text says that the steps are inexact
 local START_US = 1700     -- us above which the switch starts the next input
 local END_US = 1300       -- us below which the switch ends an input at once
@@ -353,7 +353,10 @@ local function take_order()
     return
   end
   counted = counter
-  local candidate, size, unit = INPUTS[math.floor(orders[1]:get() or 0)], orders[2]:get(), orders[3]:get()
+  local which, size, unit, candidate = orders[1]:get(), orders[2]:get(), orders[3]:get(), nil
+  for _, one in ipairs(INPUTS) do
+    if one.which == which then candidate = one end
+  end
   local control = candidate and candidate.moves[1]
   if candidate == nil or #outputs[control] == 0 then
     say(string.format("ADVISOR REFUSES %d: no such input", counter))
