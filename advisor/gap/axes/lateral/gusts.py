@@ -62,11 +62,9 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | 
     near
         Gusts of a similar fit, at which the search begins.
     """
-    sums = _sums(fit, courses)
-    prior = Integrated(*known.prior(fit.values))
+    sums, prior = _sums(fit, courses), Integrated(*known.prior(fit.values))
     air = likeliest(sums, fit.noise, prior, None if near is None else near.air)
-    empty = np.empty((len(fit.values), len(fit.values)))
-    return Gusts(air, air.angle_std(sums, prior), np.nan, empty, empty[0]).at(fit, courses)
+    return Gusts(air, air.angle_std(sums, prior), np.nan, *np.empty((2, 0, 0))).at(fit, courses)
 
 
 def coloured_likelihood(fit: Fit) -> float:

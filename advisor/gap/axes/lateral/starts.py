@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import nnls
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.effects import SideEffect
@@ -97,6 +96,8 @@ class Starts:
 
     def together(self, one: Start, other: Start) -> float:
         """Return the price of two effects together, from the output changes of their starts."""
+        from scipy.optimize import nnls  # not on the start path
+
         left = nnls(np.column_stack([one.way, other.way]), self._begin)[1] ** 2
         count = len(one.effect.places) + len(other.effect.places)
         return self._cost + left - one.saved - other.saved + 2.0 * count

@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotri
-from scipy.optimize import minimize
 from scipy.special import expit
 
 from advisor.flight.signals.messages import FloatArray
@@ -204,6 +203,8 @@ def likeliest(sums: Sequence[Sums], noise: FloatArray, prior: Integrated, near: 
     near
         Gusts of a similar fit, at which the search begins.
     """
+    from scipy.optimize import minimize  # not on the start path
+
     counts = np.sum([one.counts for one in sums], axis=0)
     there = np.flatnonzero(counts)
     own = noise[there]
@@ -239,8 +240,10 @@ def likeliest(sums: Sequence[Sums], noise: FloatArray, prior: Integrated, near: 
     return air(optimum.x)
 
 
-def in_moving_air(solution: Solution) -> Solution:
+def in_moving_air(solution: Solution, near: Air | None = None) -> tuple[Solution, Air]:
     """Return a solution whose errors contain side gusts, as far as gusts explain the residuals better.
+
+    The second result are the likeliest gusts. Their search begins at the gusts ``near``.
 
     The covariance in gusts is AᵀΓA, with the influence A of the measurements. Gusts and coloured instruments
     count by their restricted likelihoods. The colour of an output's noise leaves out what the output's own
@@ -256,7 +259,7 @@ def in_moving_air(solution: Solution) -> Solution:
     courses = list(zip(laid.blocks, courses_of(fit), strict=True))
     sums = [Sums.of(laid.channel[block], columns[block], course) for block, course in courses]
     prior = Integrated(*np.zeros((2, free.shape[1])))
-    air = likeliest(sums, noise, prior)
+    air = likeliest(sums, noise, prior, near)
     weighing = Weighing.by(solution.noise.colours, laid)
     white = weighing.forward(columns)
     left, volume, _ = prior.left(white.T @ white)
@@ -267,4 +270,4 @@ def in_moving_air(solution: Solution) -> Solution:
     for block, course in courses:
         pull = rows[block].T @ course.columns
         blown += pull @ air.angles(course.knots) @ pull.T
-    return replace(solution, covariance=share * blown + (1.0 - share) * solution.covariance)
+    return replace(solution, covariance=share * blown + (1.0 - share) * solution.covariance), air

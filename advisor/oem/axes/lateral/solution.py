@@ -13,7 +13,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
-from advisor.oem.axes.lateral.gusts import in_moving_air
+from advisor.oem.axes.lateral.gusts import Air, in_moving_air
 from advisor.oem.axes.lateral.instruments import Nuisance, begun
 from advisor.oem.axes.lateral.motion import FLOOR, LateralMotion
 from advisor.oem.axes.lateral.problem import LateralProblem
@@ -23,7 +23,7 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
-from advisor.oem.solution import NOTHING_TO_TELL, RUNS_AWAY, Solution, evaluate, refused
+from advisor.oem.solution import RUNS_AWAY, Solution, evaluate, refused
 from advisor.words.quantiles import NORMAL_95
 
 FIRST_LOOK = 8
@@ -38,11 +38,11 @@ _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
 
 
 class Searched(NamedTuple):
-    """A solution, and the first look on the way to it."""
+    """A solution with the gusts in its residuals."""
 
-    look: Solution
-    """Solution with fixed servos and clocks, whose residuals give the first colour of the noise."""
     solution: Solution
+    air: Air
+    """White noise and side gusts in the residuals."""
 
 
 class Near(NamedTuple):
@@ -72,16 +72,12 @@ def search_lateral(
     problem = begun(problem, nuisances)
     start = lateral_start(problem)
     prior = priors_of(problem, start[0])
-    resumed = None if near is None else _resumed(problem, nuisances, start, near)
-    if near is None or resumed is None:
-        fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
-        if isinstance(fit, NoEstimate) or _has_diverged(fit):
-            return RUNS_AWAY
-        look = _evaluated(fit, prior, final=False)
-    else:
-        problem, start = resumed
-        look = near.searched.look
-    solution = look
+    fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
+    if isinstance(fit, NoEstimate) or _has_diverged(fit):
+        return RUNS_AWAY
+    solution = _evaluated(fit, prior, final=False)
+    if near is not None:
+        problem, start = _resumed(problem, nuisances, start, near)
     for final in (False, True):
         if isinstance(solution, NoEstimate):
             return solution
@@ -95,9 +91,10 @@ def search_lateral(
             return why
         problem, start = fit.problem, fit.place
         solution = _evaluated(fit, prior, final)
-    if isinstance(solution, NoEstimate) or isinstance(look, NoEstimate):
-        return solution if isinstance(solution, NoEstimate) else NOTHING_TO_TELL
-    return Searched(look, _above_bound(in_moving_air(solution)))
+    if isinstance(solution, NoEstimate):
+        return solution
+    solution, air = in_moving_air(solution, None if near is None else near.searched.air)
+    return Searched(_above_bound(solution), air)
 
 
 def _resumed(
@@ -105,12 +102,15 @@ def _resumed(
     nuisances: Sequence[Nuisance],
     start: tuple[FloatArray, FloatArray],
     near: Near,
-) -> tuple[LateralProblem, tuple[FloatArray, FloatArray]] | None:
-    """Return problem and place at servos, clocks and derivatives of another solution; None without these."""
+) -> tuple[LateralProblem, tuple[FloatArray, FloatArray]]:
+    """Return problem and place at the servos, clocks and derivatives of another solution.
+
+    Without the other solution's servos and clocks, problem and place stay as they are.
+    """
     there = near.searched.solution
     values = {x.name: x.read(there.problem) for x in there.parameters}
     if values.keys() != {x.name for x in nuisances}:
-        return None
+        return problem, start
     for x in nuisances:
         problem = x.write(problem, values[x.name])
     pairs = zip(near.places, start[1], strict=True)

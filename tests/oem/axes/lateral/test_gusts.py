@@ -24,7 +24,9 @@ GUSTS_RAD = 0.0015
 def coloured(monkeypatch):
     """Return the solutions before their errors contain gusts."""
     seen, blown = [], lateral_solution.in_moving_air
-    monkeypatch.setattr(lateral_solution, "in_moving_air", lambda one: seen.append(one) or blown(one))
+    monkeypatch.setattr(
+        lateral_solution, "in_moving_air", lambda one, near: seen.append(one) or blown(one, near)
+    )
     return seen
 
 
