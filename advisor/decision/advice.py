@@ -118,7 +118,7 @@ def _mend(flown: CandidateManeuver) -> str:
 
 def _remedy(flown: CandidateManeuver) -> str:
     """Return the remedy that the first reason names; empty without a reason."""
-    return flown.reasons[0].text.partition("; ")[2] if flown.reasons else ""
+    return flown.reasons[0].remedy if flown.reasons else ""
 
 
 def best_input(

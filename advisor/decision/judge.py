@@ -10,7 +10,7 @@ from advisor.decision.history import CandidateManeuver, has_begun
 from advisor.decision.larger import Larger, larger_and_agreeing
 from advisor.decision.paper_rules import MANEUVER_RULES
 from advisor.decision.pooling import posteriors_at_one_speed
-from advisor.decision.verdict import NO_TEST, ManeuverVerdict, Reason, RuleResult
+from advisor.decision.verdict import NO_TEST, ManeuverVerdict, Reason, RuleResult, with_one_remedy
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.words.digits import distinct_texts
 
@@ -85,7 +85,7 @@ def _verdict(
     larger: Larger | None,
     begun: bool,
 ) -> ManeuverVerdict:
-    reasons = _reasons(flown, rule, rules[rule], outlier, larger)
+    reasons = with_one_remedy(_reasons(flown, rule, rules[rule], outlier, larger))
     notes = flown.estimate.notes if isinstance(flown.estimate, Estimate) else ()
     cautions = tuple(dict.fromkeys((*flown.cautions, *notes)))
     if flown.excluded_because is not None:

@@ -14,24 +14,22 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.envelope import (
     above,
     changed_speed,
-    flown,
     incomplete,
     leapt,
     moved_at_once,
     not_heard,
     short_response,
 )
+from advisor.decision.leaping_speed import leaping_speed
+from advisor.decision.response import Response, explained_share, half_range
 from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S
 from advisor.flight.signals.instrument_finding import InstrumentFinding
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
 from advisor.words.digits import distinct_texts
 from advisor.words.quantiles import NORMAL_95
@@ -40,30 +38,7 @@ WIDEST_PREDICTION_PERCENT = 25.0
 """Largest half-width of the predicted rate's 95 % band, % of its peak. A standard deviation of 12 % in M_δe
 alone gives 24 %. Real records that agree between two halves of a campaign have 9 to 21 %."""
 
-
-@dataclass(frozen=True, slots=True)
-class Response:
-    """An output that a control's input moves, and the least response for a test."""
-
-    output: str
-    said: str
-    unit: str
-    handle: str
-    """Control in the pilot's hand: the stick for the elevator, otherwise the control's name."""
-    least_signal: float = 12.0
-    """Least ratio of the response's peak to the white part of the output's noise."""
-    least_r2: float = 0.85
-    """Least share of the response that the model must explain, after removal of white noise."""
-
-    def factor(self, maneuver: Maneuver, fits: Mapping[str, ChannelFit]) -> float:
-        """Return the factor by which the response is too small, above 1 if it is."""
-        peak = half_range(maneuver, self.output)
-        channel = maneuver.channels[self.output].y
-        noise = white_part(fits[self.output].residual if self.output in fits else channel)
-        least = self.least_signal * noise
-        if self.unit == "deg/s":
-            least = max(least, math.radians(LEAST_PITCH_RATE_DEG_S))
-        return least / peak if peak > 0.0 else math.inf
+_STEADY = "steady flight before"
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,18 +102,26 @@ def objections(x: Examined) -> tuple[Reason, ...]:
         return (not_heard(maneuver),)
     if codes & UNTRUSTED:
         return tuple(reasons)
+    if leaping := leaping_speed(maneuver, x.aircraft.limits.airspeed_change_percent):
+        # The model reads the air speed, so that no other number of the record holds.
+        return tuple(leaping)
     if refused := refusals((*maneuver.findings, *x.findings)):
         return refused
     follows = [*(r for r in outside if r.code == "airspeed"), *short, *x.quick]
     if codes & NO_CURE_BY_INPUT:
         # A larger input remedies no faulty record: reasons that ask for one would mislead.
         return (*reasons, *follows)
-    gentle = _mended(maneuver, _too_gentle(x, fits))
+    # Beyond a limit of the model, noise and response are those of another motion.
+    gentle = [] if reasons else _mended(maneuver, _too_gentle(x, fits))
     if isinstance(estimate, NoEstimate):
         return (*reasons, *follows, *gentle)
     codes |= {reason.code for reason in follows}
     follows = [*(r for r in x.lacks(exceeded) if r.code not in codes), *follows]
-    lacking = _badly_explained(x, estimate) or ([] if gentle else _mended(maneuver, _poor(x, estimate)))
+    unexplained = _badly_explained(x, estimate, _STEADY if gentle else "smaller steps")
+    if unexplained and gentle:
+        # The residual of a poor fit contains motion, and as noise it would ask for too large an input.
+        gentle = _mended(maneuver, _too_gentle(x, {}, by_noise=False))
+    lacking = unexplained or ([] if gentle else _mended(maneuver, _poor(x, estimate)))
     if lacking and lacking[0].code == "turbulence":
         return (*reasons, *lacking, *follows)
     return (*reasons, *follows, *gentle, *lacking)
@@ -176,10 +159,10 @@ def _stands(x: Examined, fits: Mapping[str, ChannelFit]) -> bool:
     """Return whether an estimate explains its manoeuvre and predicts the response to its input."""
     if isinstance(x.estimate, NoEstimate) or _too_gentle(x, fits):
         return False
-    return not (_badly_explained(x, x.estimate) or _poor(x, x.estimate))
+    return not (_badly_explained(x, x.estimate, _STEADY) or _poor(x, x.estimate))
 
 
-def _too_gentle(x: Examined, fits: Mapping[str, ChannelFit]) -> list[Reason]:
+def _too_gentle(x: Examined, fits: Mapping[str, ChannelFit], by_noise: bool = True) -> list[Reason]:
     """Return a reason if the response hardly exceeds the noise, in any output and for every control.
 
     The response to several controls at once has no peak of one control. Then the precision of the estimate
@@ -190,7 +173,8 @@ def _too_gentle(x: Examined, fits: Mapping[str, ChannelFit]) -> list[Reason]:
     seen = x.responses if fits else tuple(x.rates.values())
     wanting: dict[str, tuple[float, Response]] = {}
     for response in seen:
-        factor = response.factor(x.maneuver, fits) if response.output in (fits or x.needed) else 0.0
+        measured = response.output in (fits or x.needed)
+        factor = response.factor(x.maneuver, fits, by_noise) if measured else 0.0
         if factor > wanting.get(response.handle, (0.0, response))[0]:
             wanting[response.handle] = factor, response
     factor, worst = min(wanting.values(), key=lambda pair: pair[0], default=(0.0, None))
@@ -206,21 +190,26 @@ def _too_gentle(x: Examined, fits: Mapping[str, ChannelFit]) -> list[Reason]:
     return [Reason("amplitude", text, peak, limit)]
 
 
-def _badly_explained(x: Examined, estimate: Estimate) -> list[Reason]:
-    """Return a reason if residuals are not noise, because the model is not valid for the manoeuvre."""
+def _badly_explained(x: Examined, estimate: Estimate, first: str) -> list[Reason]:
+    """Return a reason if residuals are not noise, because the model is not valid for the manoeuvre.
+
+    Parameters
+    ----------
+    first
+        First remedy: smaller steps, but not for a response that hardly exceeds its noise.
+    """
     # In moving air the angle of attack of a vane shows the air, which no model of the aircraft explains.
     reasons = []
     for one in x.responses:
         fit = estimate.fits[0].get(one.output)
         if fit is None or (one.output == "alpha" and estimate.filtered):
             continue
-        noise = white_part(fit.residual) ** 2
-        spread = float(np.var(fit.measured)) - noise
-        explained = 1.0 - max(0.0, fit.rms**2 - noise) / spread if spread > 0.0 else 1.0
+        explained = explained_share(fit)
         if explained < one.least_r2:
             shown, limit = distinct_texts(100.0 * max(0.0, explained), 100.0 * one.least_r2)
             moving = estimate.gust_rad is not None
-            cure = "fly it in calmer air" if moving else "smaller steps, steady flight before, calm air"
+            steady = "" if first == _STEADY else f", {_STEADY}"
+            cure = "fly it in calmer air" if moving else f"{first}{steady}, calm air"
             text = f"the model explains {shown} % of {one.said} (at least {limit}); {cure}"
             reasons.append(Reason("turbulence" if moving else "fit", text, explained, one.least_r2))
     return reasons
@@ -251,19 +240,6 @@ def _mended(maneuver: Maneuver, reasons: list[Reason]) -> list[Reason]:
         return reasons
     wrong = maneuver.distrusts[0]
     return [replace(r, text=f"{r.text.partition('; ')[0]}; {wrong.text}: {wrong.fix}") for r in reasons]
-
-
-def half_range(maneuver: Maneuver, name: str) -> float:
-    """Return half of a channel's range during the manoeuvre."""
-    y = flown(maneuver, name)
-    return float(np.ptp(y)) / 2.0 if len(y) else 0.0
-
-
-def white_part(values: FloatArray) -> float:
-    """Return the standard deviation of the white part of a signal, from second differences."""
-    if len(values) < 3:
-        return 0.0
-    return float(np.std(np.diff(values, 2))) / math.sqrt(6.0)
 
 
 def _times(factor: float) -> str:

@@ -1,7 +1,7 @@
 """Verdicts for the crew: decision, sentence, evidence."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
@@ -38,6 +38,25 @@ class Reason:
     limit: float
     by_instrument: bool = False
     """Whether an instrument is the cause, so that other flying is no remedy."""
+
+    @property
+    def fact(self) -> str:
+        """Number and limit without the remedy."""
+        return self.text.partition("; ")[0]
+
+    @property
+    def remedy(self) -> str:
+        """Remedy after the number and its limit; empty for a reason without one."""
+        return self.text.partition("; ")[2]
+
+
+def with_one_remedy(reasons: Sequence[Reason]) -> tuple[Reason, ...]:
+    """Return reasons of which only the first has a remedy.
+
+    The first reason is the cause. A remedy for its consequences may contradict the remedy of the cause: less
+    stick because of the bank, and more stick because the fit is poor.
+    """
+    return tuple(one if k == 0 else replace(one, text=one.fact) for k, one in enumerate(reasons))
 
 
 @dataclass(frozen=True, slots=True)

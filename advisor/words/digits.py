@@ -26,10 +26,18 @@ def distinct_texts(
         Value and limit with equal numbers of digits. Texts are equal only where both agree to `MOST_DIGITS`.
     """
     for more in (*range(digits, MOST_DIGITS), digits):
-        texts = f"{value:.{more}{style}}", f"{limit:.{more}{style}}"
+        if style == "g":
+            texts = significant(value, more), significant(limit, more)
+        else:
+            texts = f"{value:.{more}f}", f"{limit:.{more}f}"
         if texts[0] != texts[1]:
             break
     return texts
+
+
+def significant(value: float, digits: int) -> str:
+    """Return a number with so many significant digits, and without an exponent up to 15 places: ``130``."""
+    return f"{float(f'{value:.{digits}g}'):.15g}"
 
 
 def decimals_for(spread: float) -> int:

@@ -30,6 +30,19 @@ def test_a_quiet_record_with_a_tiny_cost_is_refused_and_poisons_no_limit() -> No
     assert not any(result.accepted for result in verdicts[1].rules.values())
 
 
+BANKED = Reason("bank", "bank reached 60 deg (limit 45); fly it wings level", 60.0, 45.0)
+MORE = Reason(
+    "information", "the pitch rate is predicted to 45 % only; use about 2 times the stick", 45.0, 25.0
+)
+
+
+def test_a_verdict_has_the_remedy_of_its_first_cause_alone() -> None:
+    (verdict,) = judge_campaign([CandidateManeuver(estimate(), reasons=(BANKED, MORE))], PLAN)
+    assert verdict.reasons[0] == BANKED
+    assert verdict.reasons[1].text == "the pitch rate is predicted to 45 % only"
+    assert (verdict.reasons[1].value, verdict.reasons[1].limit) == (45.0, 25.0)
+
+
 def test_every_verdict_shows_what_every_rule_says() -> None:
     verdict = judge_campaign(flown([1e-9, 1.5e-9]), PLAN)[-1]
     assert verdict.accepted

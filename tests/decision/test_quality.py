@@ -291,6 +291,33 @@ def test_the_natural_period_is_that_of_the_aircraft_flown():
     assert natural_period(maneuver, NoEstimate("x", "x")) == pytest.approx(0.75, abs=0.05)
 
 
+def poorly_fitted(estimated, share):
+    """The estimate with a pitch rate that misses this share of the measured one."""
+    fit = estimated.fits[0]["q"]
+    poor = replace(fit, fitted=(1.0 - share) * fit.measured)
+    return replace(estimated, fits=({**estimated.fits[0], "q": poor},))
+
+
+def test_a_period_is_not_read_off_a_fit_that_explains_little_or_an_uncertain_stiffness():
+    maneuver, estimated, _ = bad_flight()[0]
+    by_input = natural_period(maneuver, NoEstimate("x", "x"))
+    assert natural_period(maneuver, poorly_fitted(estimated, 0.6)) == by_input
+    covariance = estimated.covariance.copy()
+    place = PARAMETERS.index("M_alpha")
+    covariance[place, place] = (0.6 * estimated.value("M_alpha")) ** 2
+    assert natural_period(maneuver, replace(estimated, covariance=covariance)) == by_input
+
+
+def test_no_amplitude_is_judged_beyond_a_limit_of_the_model():
+    maneuver, estimated, _ = bad_flight()[1]
+    assert judge_pitch(maneuver, estimated, AIRCRAFT)[0].code == "amplitude"
+    rolled = replace(maneuver.channels["bank"], y=np.full(len(maneuver.channels["bank"].t), 3.0))
+    banked = replace(maneuver, channels={**maneuver.channels, "bank": rolled})
+    codes = [reason.code for reason in judge_pitch(banked, estimated, AIRCRAFT)]
+    assert codes[0] == "bank"
+    assert "amplitude" not in codes
+
+
 @pytest.mark.study
 @pytest.mark.timeout(1800)
 def test_good_manoeuvres_are_rejected_in_at_most_two_percent_of_cases():

@@ -25,6 +25,10 @@ def test_numbers_of_any_size_are_told_apart_by_significant_digits():
     assert distinct_texts(8e-9, 3e-9, 2, "g") == ("8e-09", "3e-09")
 
 
+def test_a_rate_beyond_a_hundred_has_no_exponent():
+    assert distinct_texts(134.0, 243.0, 2, "g") == ("130", "240")
+
+
 def test_the_texts_stand_on_the_side_of_the_limit_on_which_the_numbers_are():
     rng = np.random.default_rng(3)
     for limit in 10.0 ** rng.uniform(-2.0, 3.0, 200):

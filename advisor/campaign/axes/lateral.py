@@ -110,6 +110,7 @@ class LateralCampaign(AxisCampaign):
                 self._inputs,
                 heard,
                 find_change(self._examinations, self._plan),
+                self._controls,
             ),
             lambda _: lateral_flight_test([], None, self._aircraft),
         )
@@ -120,10 +121,16 @@ class LateralCampaign(AxisCampaign):
         return [FlownInput.of(one.maneuver, one.verdict.reasons, one.estimate) for one in self.judged]
 
     @property
+    def _controls(self) -> tuple[str, ...]:
+        """Controls that any manoeuvre has recorded; both before the first manoeuvre."""
+        recorded = {name for maneuver in self.maneuvers for name in maneuver.channels}
+        return tuple(name for name in LATERAL.inputs if name in recorded) or LATERAL.inputs
+
+    @property
     def _may_stop(self) -> bool:
         """Return whether the newest manoeuvre can decide: both controls flown, no stop announced before."""
         moved = {control for one in self._told if one is not None for control in one.flown}
-        return moved >= set(LATERAL.inputs) and not any(one.stops for one in self._still_heard)
+        return moved >= set(self._controls) and not any(one.stops for one in self._still_heard)
 
     @property
     def _told(self) -> list[LateralEstimate | None]:

@@ -23,7 +23,8 @@ from advisor.decision.envelope import (
     steep,
     throttled,
 )
-from advisor.decision.quality import WIDEST_PREDICTION_PERCENT, Examined, Response, objections
+from advisor.decision.quality import WIDEST_PREDICTION_PERCENT, Examined, objections
+from advisor.decision.response import Response
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.robust import rms

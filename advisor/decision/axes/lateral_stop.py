@@ -31,7 +31,7 @@ from advisor.decision.verdict import (
     RuleProgress,
 )
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.model.axes.lateral import LATERAL
+from advisor.model.axes.lateral import CONTROLS, LATERAL
 from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.words.quantiles import NORMAL_95
@@ -56,6 +56,8 @@ class FlownInput:
     """Remedy from the first reason against the manoeuvre; empty for an accepted one."""
     modes: LateralModes | None = None
     """Modes of the manoeuvre's estimate, accepted or not; None without an estimate."""
+    too_small: float = 1.0
+    """Factor by which the first reason asks for a larger input; 1 where it asks for something else."""
 
     @classmethod
     def of(
@@ -66,9 +68,11 @@ class FlownInput:
         control = max(moved, key=lambda name: moved[name])
         bank = maneuver.channels.get("bank")
         banked = float(np.max(np.abs(bank.y), initial=0.0)) if bank is not None else 0.0
-        remedy = reasons[0].text.partition("; ")[2] if reasons else ""
+        remedy = reasons[0].remedy if reasons else ""
         modes = estimate.modes if isinstance(estimate, LateralEstimate) else None
-        return cls(control, moved[control], banked, remedy, modes)
+        gentle = bool(reasons) and reasons[0].code == "amplitude" and reasons[0].value > 0.0
+        factor = reasons[0].limit / reasons[0].value if gentle else 1.0
+        return cls(control, moved[control], banked, remedy, modes, factor)
 
 
 def _amplitude(maneuver: Maneuver, name: str) -> float:
@@ -106,15 +110,20 @@ def next_lateral(
         control,
     ).rounded(travel)
     gently = ", to begin gently" if before is None else ""
-    # A remedy belongs to the refused input, never to another control.
-    remedy = f"; {before.remedy}" if before is not None and before is flown[-1] and before.remedy else ""
+    # A remedy belongs to the refused input, never to another control. A larger amplitude is a remedy.
+    refused = before is not None and before is flown[-1] and before.too_small <= 1.0
+    remedy = f"; {before.remedy}" if before is not None and refused and before.remedy else ""
     said = f"{wanted.spoken(travel)}{gently}, {_after(control, wanted.unit_s)}{remedy}"
     return NextInput(f"next: {said}", None, holding_back, wanted)
 
 
 def _larger(before: FlownInput, percent: float, aircraft: Aircraft) -> float:
-    """Return the amplitude that meets the tolerance with one more manoeuvre, within the bank limit."""
-    factor = min(max(percent / INFORMATION_LIMIT_PERCENT, 1.0), BOLDER) if percent < inf else 1.0
+    """Return the amplitude that meets the tolerance with one more manoeuvre, within the bank limit.
+
+    A refused input grows only if the refusal asks for a larger one.
+    """
+    wanted = percent / INFORMATION_LIMIT_PERCENT if percent < inf else 1.0
+    factor = min(max(before.too_small if before.remedy else wanted, 1.0), BOLDER)
     limit = ALPHA_MARGIN * max(BANK_DEG, aircraft.limits.bank_deg)
     if before.bank_rad > 0.0:
         factor = min(factor, limit / degrees(before.bank_rad))
@@ -144,6 +153,8 @@ JUDGED: Mapping[str, str] = {
     "N_delta_r": "rudder",
 }
 """Control whose input determines each judged derivative best, by the derivative's name."""
+Judged = Mapping[str, str]
+"""Control for each judged derivative of an aircraft, by the derivative's name."""
 CHECKED = 2
 """Least number of accepted manoeuvres for each control. A single manoeuvre shows no scatter: nine derivatives
 of one rudder doublet were wrong by many standard errors."""
@@ -152,12 +163,24 @@ NOT_FLOWN = "No test input of the aileron or the rudder has been flown."
 """Sentence about a flight without a lateral manoeuvre."""
 
 
-def shares_of(joint: LateralEstimate | None, tolerance_percent: float) -> Mapping[str, float]:
+def judged_by(controls: Sequence[str]) -> Judged:
+    """Return the judged derivatives of an aircraft with these controls. The other control shows the motion of
+    an aircraft that lacks one."""
+    absent = tuple(suffix for suffix, control in CONTROLS.items() if control not in controls)
+    return {
+        name: best if best in controls else controls[0]
+        for name, best in JUDGED.items() if not name.endswith(absent)
+    }  # fmt: skip
+
+
+def shares_of(
+    joint: LateralEstimate | None, tolerance_percent: float, judged: Judged = JUDGED
+) -> Mapping[str, float]:
     """Return each judged derivative's 95 % half-width, % of its tolerance; infinite if unknown."""
-    shares = dict.fromkeys(JUDGED, math.inf)
+    shares = dict.fromkeys(judged, math.inf)
     if joint is None:
         return shares
-    for name, control in JUDGED.items():
+    for name, control in judged.items():
         k = joint.names.index(name)
         size = 0.01 * SHARE * tolerance_percent * abs(float(joint.theta[k]))
         if control in joint.flown and name not in joint.not_identifiable and size > 0.0:
@@ -172,6 +195,7 @@ def lateral_flight_test(
     flown: Sequence[FlownInput] = (),
     heard: Sequence[Heard] = (),
     change: Change | None = None,
+    controls: Sequence[str] = LATERAL.inputs,
 ) -> FlightTestVerdict:
     """Return the verdict on the lateral test, with the next input.
 
@@ -179,11 +203,14 @@ def lateral_flight_test(
     ----------
     history
         Estimate of every manoeuvre in the order flown; None for a refused manoeuvre.
+    controls
+        Controls whose outputs are known. No input of another control is advised or needed.
     """
     accepted = [one for one in history if one is not None]
-    shares = shares_of(joint, aircraft.campaign.tolerance_percent)
+    judged = judged_by(controls)
+    shares = shares_of(joint, aircraft.campaign.tolerance_percent, judged)
     worst = max(shares.values())
-    holds = worst < INFORMATION_LIMIT_PERCENT and not _flown_fewer_than(CHECKED, accepted)
+    holds = worst < INFORMATION_LIMIT_PERCENT and not _flown_fewer_than(CHECKED, accepted, controls)
     now = worst if math.isfinite(worst) else None
     told = tuple(one.percent.get(_RULE) for one in heard)
     progress = RuleProgress(
@@ -196,30 +223,42 @@ def lateral_flight_test(
     )
 
     def following() -> NextInput:
-        advised = _next(shares, accepted, flown, aircraft)
-        return replace(advised, remaining=_remaining(shares, accepted, len(history)))
+        advised = _next(shares, accepted, flown, aircraft, judged)
+        return replace(advised, remaining=_remaining(shares, accepted, len(history), judged))
+
+    def said(stop: bool) -> str:
+        return f"{_sentence(shares, accepted, stop, controls)}{_without(controls)}" if history else NOT_FLOWN
 
     criterion = Criterion(
-        _RULE, {_RULE: progress}, lambda stop: _sentence(shares, accepted, stop) if history else NOT_FLOWN,
+        _RULE, {_RULE: progress}, said,
         following, len(history), {i for i, one in enumerate(history) if one is not None},
     )  # fmt: skip
     return concluded(criterion, heard, change, () if change is None else (change.sentence,))
 
 
-def _flown_fewer_than(n: int, accepted: Sequence[LateralEstimate]) -> list[str]:
-    return [name for name in LATERAL.inputs if sum(name in one.flown for one in accepted) < n]
+def _flown_fewer_than(n: int, accepted: Sequence[LateralEstimate], controls: Sequence[str]) -> list[str]:
+    return [name for name in controls if sum(name in one.flown for one in accepted) < n]
+
+
+def _without(controls: Sequence[str]) -> str:
+    """Return a sentence about a control that no output moves; empty for an aircraft with both."""
+    return "".join(
+        f" No output is the {name}'s: this aircraft has no {name}, or {name}.output must name the output."
+        for name in LATERAL.inputs if name not in controls
+    )  # fmt: skip
 
 
 def _remaining(
-    shares: Mapping[str, float], accepted: Sequence[LateralEstimate], flown: int
+    shares: Mapping[str, float], accepted: Sequence[LateralEstimate], flown: int, judged: Judged
 ) -> Remaining | None:
     """Return the expected number of further manoeuvres; None if that cannot be told."""
     # The variance of a derivative falls with the number of manoeuvres that move its control.
-    scale = variance_scale(len(LATERAL.inputs) * (len(accepted) - 1))
+    controls = sorted(set(judged.values()))
+    scale = variance_scale(len(controls) * (len(accepted) - 1))
     needed = np.zeros(len(scale))
-    for control in LATERAL.inputs:
+    for control in controls:
         times = sum(control in one.flown for one in accepted)
-        worst = _percent_of(control, shares)
+        worst = _percent_of(control, shares, judged)
         if not times or not math.isfinite(worst):
             return None
         within = np.ceil(times * (worst / INFORMATION_LIMIT_PERCENT) ** 2 * scale)
@@ -227,18 +266,20 @@ def _remaining(
     return until_usable(np.maximum(needed, 1.0), Share(len(accepted), flown - len(accepted)))
 
 
-def _sentence(shares: Mapping[str, float], accepted: Sequence[LateralEstimate], stop: bool) -> str:
+def _sentence(
+    shares: Mapping[str, float], accepted: Sequence[LateralEstimate], stop: bool, controls: Sequence[str]
+) -> str:
     if stop:
         return (
             f"TEST COMPLETE: roll and yaw are known within their tolerance from {len(accepted)} accepted "
             "manoeuvres."
         )
-    missing = _flown_fewer_than(1, accepted)
+    missing = _flown_fewer_than(1, accepted, controls)
     if missing:
         return f"CONTINUE: no accepted manoeuvre has moved the {' or the '.join(missing)}."
     worst = max(shares, key=lambda name: shares[name])
     if shares[worst] < INFORMATION_LIMIT_PERCENT:
-        once = _flown_fewer_than(CHECKED, accepted)
+        once = _flown_fewer_than(CHECKED, accepted, controls)
         which = " and of the ".join(once)
         return f"CONTINUE: one input of the {which} cannot show its own error; one more will."
     said = f"{shares[worst]:.0f} % of its tolerance" if math.isfinite(shares[worst]) else "unknown"
@@ -250,21 +291,23 @@ def _next(
     accepted: Sequence[LateralEstimate],
     flown: Sequence[FlownInput],
     aircraft: Aircraft,
+    judged: Judged,
 ) -> NextInput:
-    missing = _flown_fewer_than(1, accepted) or _flown_fewer_than(CHECKED, accepted)
+    controls = [name for name in LATERAL.inputs if name in judged.values()]
+    missing = _flown_fewer_than(1, accepted, controls) or _flown_fewer_than(CHECKED, accepted, controls)
     worst = max(shares, key=lambda name: shares[name])
-    control = missing[0] if missing else JUDGED[worst]
-    if flown and flown[-1].remedy and _is_open(flown[-1].control, shares, missing):
+    control = missing[0] if missing else judged[worst]
+    if flown and flown[-1].remedy and _is_open(flown[-1].control, shares, missing, judged):
         control = flown[-1].control
-    percent = _percent_of(control, shares)
+    percent = _percent_of(control, shares, judged)
     return next_lateral(control, percent, accepted, flown, aircraft, worst)
 
 
-def _percent_of(control: str, shares: Mapping[str, float]) -> float:
+def _percent_of(control: str, shares: Mapping[str, float], judged: Judged) -> float:
     """Return the error of the worst derivative of a control, % of its tolerance."""
-    return max(share for name, share in shares.items() if JUDGED[name] == control)
+    return max((share for name, share in shares.items() if judged[name] == control), default=0.0)
 
 
-def _is_open(control: str, shares: Mapping[str, float], missing: Sequence[str]) -> bool:
+def _is_open(control: str, shares: Mapping[str, float], missing: Sequence[str], judged: Judged) -> bool:
     """Return whether a further input of a control is needed."""
-    return control in missing or _percent_of(control, shares) >= INFORMATION_LIMIT_PERCENT
+    return control in missing or _percent_of(control, shares, judged) >= INFORMATION_LIMIT_PERCENT

@@ -17,11 +17,13 @@ from advisor.decision.envelope import (
     too_quick,
 )
 from advisor.decision.omitted import carries_speed, coupled, has_banking
-from advisor.decision.quality import Examined, Response, objections
+from advisor.decision.quality import Examined, objections
+from advisor.decision.response import Response, explained_share
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.findings import findings_of
+from advisor.words.quantiles import NORMAL_95
 
 _RESPONSES = (
     Response("q", "pitch rate", "deg/s", "stick"),
@@ -106,7 +108,10 @@ def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float
 
 
 def _knows_the_motion(estimate: Estimate) -> bool:
-    """Return whether an estimate predicts its own response and has a significant stiffness."""
-    stiffness = estimate.names.index("M_alpha")
-    known = abs(float(estimate.theta[stiffness])) > float(estimate.std[stiffness])
-    return known and estimate.prediction.get("q", 0.0) < 1.0
+    """Return whether an estimate explains and predicts its response, and the stiffness is significant at
+    95 %."""
+    stiffness, rate = estimate.names.index("M_alpha"), _RESPONSES[0]
+    known = abs(float(estimate.theta[stiffness])) > NORMAL_95 * float(estimate.std[stiffness])
+    fit = estimate.fits[0].get(rate.output) if estimate.fits else None
+    holds = fit is None or explained_share(fit) >= rate.least_r2
+    return known and holds and estimate.prediction.get("q", 0.0) < 1.0

@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 
 from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.mavlink.ardupilot.sensors import Said
+from advisor.mavlink.ardupilot.which_flew import families
 from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.equivalent import nearest
 
 _AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
 """Name of a record to its field with the air speed, the best record first."""
-_CLIMB = ("XKF1", "NKF1", "EKF1")
-"""Records of the estimators, whose field VD is the rate of descent. The newest estimator comes first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,12 +32,12 @@ def air(tables: Mapping[str, RecordTable], interrupted: bool) -> AirRecords:
     Parameters
     ----------
     tables
-        Records by name; ARSP holds only those of the sensor in use.
+        Records by name, each of the sensor or estimator in use.
     interrupted
         Whether no air speed sensor was healthy at some times.
     """
     speed, said = _airspeed(tables, interrupted)
-    descent = _first(tables, [(record, "VD") for record in _CLIMB])
+    descent = _first(tables, [(f"{family}1", "VD") for family in families(tables)])
     climb = _first(tables, [("BARO", "CRt")]) if descent is None else (descent[0], -descent[1])
     found = {"climb": climb, "throttle": _first(tables, [("CTUN", "ThO")])}
     others = [
@@ -83,7 +82,7 @@ def _first(
     """Return the first record that has the named field, with the field's values; None without one."""
     for name, field in places:
         if name in tables and field in tables[name].fields:
-            table = tables[name].first_instance()
+            table = tables[name]
             return table, table.fields[field].astype(np.float64)
     return None
 

@@ -14,6 +14,8 @@ from advisor.mavlink.ardupilot.ardupilot_vehicle import VEHICLE_RECORDS
 from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS
 from advisor.mavlink.ardupilot.former_records import RENAMED, SENSORS_APART, Clocked, in_todays_names
 from advisor.mavlink.ardupilot.log_health import HEALTH_RECORDS, SYSTEM_ID_RECORDS
+from advisor.mavlink.ardupilot.sensors import HEALTH_FIELDS
+from advisor.mavlink.ardupilot.which_flew import SELECTORS
 from advisor.mavlink.px4.sdlog2 import SDLOG2_RECORDS, Sdlog2Messages, is_sdlog2
 from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.stretches import Stretch, read_stretches
@@ -24,6 +26,7 @@ _RECORDS: dict[str, set[str]] = {
     **RATE_RECORDS,
     **HEALTH_RECORDS,
     **SYSTEM_ID_RECORDS,
+    **SELECTORS,
     "ACC": {"AccX", "AccY", "AccZ"},
     "AOA": {"AOA", "SSA"},
     "ARSP": {"Airspeed"},
@@ -50,7 +53,8 @@ _RECORDS: dict[str, set[str]] = {
 vehicle, an older version) counts as missing."""
 _FIELDS = frozenset[str]().union(*_RECORDS.values(), *SDLOG2_RECORDS.values()) | {
     *("TimeUS", "TimeMS", "T", "I", "C"),
-    *("As", "BU", "H", "Press", "Pri", "ThO", "U"),
+    *("As", "BU", "Press", "Pri", "ThO", "U"),
+    *HEALTH_FIELDS,
     *(former for renamed in RENAMED.values() for former in renamed),
     *(today for renamed in RENAMED.values() for today in renamed.values()),
 }

@@ -20,12 +20,11 @@ from advisor.mavlink.ardupilot.ardupilot_vehicle import (
 from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS, body_rates, calmed
 from advisor.mavlink.ardupilot.former_records import Clocked
 from advisor.mavlink.ardupilot.log_health import health, lost_texts, sweeps
-from advisor.mavlink.ardupilot.sensors import Said, Silence, flown, said, silences_in, stated_health
+from advisor.mavlink.ardupilot.sensors import Said, Silence, changes, flown, said, silences_in, stated_health
+from advisor.mavlink.ardupilot.which_flew import KINDS, families, named_primary, said_family, unused
 from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, seconds
 from advisor.mavlink.records.equivalent import air_data, message, milliseconds, nearest, side_by_side
 
-_SENSORS = {"ARSP": "Air speed", "IMU": "Angular rates and specific force"}
-"""Measured quantities of each record of which a vehicle may have several, by the record's name."""
 _NOT_LOGGED = 255
 """MAV_SEVERITY of a text of MSG, which does not keep the severity (0 to 7)."""
 
@@ -54,18 +53,23 @@ class Translation:
             self._said.append(Said(0, 0, "Stamps count from 1970: times are given since the first record"))
         healthy: dict[str, set[str]] = dict(known.health)
         silences: dict[str, list[Silence]] = {}
-        for name, quantity in _SENSORS.items():
+        for name, kind in KINDS.items():
             if name in self._tables:
                 every = self._tables[name]
                 healthy[name] = stated_health(every) | healthy.get(name, set())
-                self._tables[name] = flown(every, healthy[name])
-                silences[name] = silences_in(every, self._tables[name], known.silences.get(name, []))
-                self._said += said(every, self._tables[name], quantity, healthy[name], silences[name])
+                primary, excluded = named_primary(kind, every, read.tables), unused(kind, read.tables)
+                table = self._tables[name] = flown(every, healthy[name], primary, excluded)
+                if not kind.needs_health:
+                    self._said += changes(table, kind.quantity, kind.noun)
+                elif kind.quantity:
+                    silences[name] = silences_in(every, table, known.silences.get(name, []))
+                    self._said += said(every, table, kind.quantity, healthy[name], silences[name], kind.noun)
+        self._said += said_family(self._tables)
         self._tables = {name: table for name, table in self._tables.items() if len(table)}
         if "PARM" in self._tables:
             self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
-        self._said += [*health(self._tables), *sweeps(self._tables)]
-        first_s = float(read.epoch_s) or gps_time_base_s(self._tables.get("GPS"))
+        self._said += [*health(read.tables), *sweeps(self._tables)]
+        first_s = float(read.epoch_s) or gps_time_base_s(read.tables.get("GPS"))
         self._base_s = first_s if known.base_s is None else known.base_s
         self.known = Known(read.epoch_s, self._base_s, healthy, silences)
         """Facts of the whole log after this stretch."""
@@ -90,20 +94,21 @@ class Translation:
             if name in self._tables:
                 yield translate(self._tables.pop(name))
         if "GPS" in self._tables and "Alt" in self._tables["GPS"].fields:
-            gps = self._tables["GPS"].first_instance()
+            gps = self._tables["GPS"]
             yield self._message("GPS_RAW_INT", gps, {"alt": 1e3 * gps.fields["Alt"].astype(np.float64)})
         if "PARM" in self._tables:
             yield self._message("PARAM_VALUE", self._tables["PARM"], parameter_fields(self._tables["PARM"]))
         if "VER" in self._tables:
             yield self._message("AUTOPILOT_VERSION", self._tables["VER"], version_fields(self._tables["VER"]))
         if "BARO" in self._tables and "Press" in self._tables["BARO"].fields:
-            yield self._scaled_pressure(self._tables["BARO"].first_instance())
+            yield self._scaled_pressure(self._tables["BARO"])
         yield from self._servo_outputs()
         self._drop("RCOU", "RCO2", "RCO3")
         yield from self._vfr_hud()
-        blown = next((self._tables[name] for name in ("XKF2", "NKF2") if name in self._tables), None)
+        winds = (f"{family}2" for family in families(self._tables))
+        blown = next((self._tables[name] for name in winds if name in self._tables), None)
         if blown is not None:
-            yield self._wind(blown.first_instance())
+            yield self._wind(blown)
         yield self._statustext()
 
     def _drop(self, *names: str) -> None:

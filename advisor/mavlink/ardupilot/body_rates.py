@@ -72,8 +72,7 @@ def gyro_delay_s(parm: RecordTable | None) -> float:
 
 
 def calmed(table: RecordTable) -> RecordTable:
-    """Return the records of the first raw sensor, averaged to at most ``FASTEST_SAMPLES_HZ``."""
-    table = table.first_instance()
+    """Return the records of a raw sensor, averaged to at most ``FASTEST_SAMPLES_HZ``."""
     steps_us = np.diff(table.time_us)
     many = int(1e6 / FASTEST_SAMPLES_HZ // max(float(np.median(steps_us)), 1.0)) if len(steps_us) else 1
     if many < 2:

@@ -16,10 +16,16 @@ from advisor.mavlink.records.dataflash import RecordTable
 SENSORS_APART = {
     "IMU": ("IMU2", "IMU3"),
     "ARSP": ("ASP2",),
+    "BARO": ("BAR2", "BAR3"),
+    "GPS": ("GPS2",),
+    "XKF1": ("XKF6",),
+    "XKF2": ("XKF7",),
+    "NKF1": ("NKF6",),
+    "NKF2": ("NKF7",),
     "GYR": ("GYR1", "GYR2", "GYR3"),
     "ACC": ("ACC1", "ACC2", "ACC3"),
 }
-"""Former records of further sensors, by the present record with a sensor number in field I."""
+"""Former records of further sensors and lanes, by the present record with a sensor number in field I."""
 RENAMED = {
     "CTUN": {"ThrOut": "ThO"},
     "GPS": {"Week": "GWk", "TimeMS": "GMS"},
@@ -66,6 +72,7 @@ def _epoch_s(timed: Mapping[str, RecordTable]) -> int:
 def _renamed(name: str, table: RecordTable) -> RecordTable:
     """Return the fields under present names, with TimeUS if the record has a time since boot."""
     fields = dict(table.fields)
+    name = next((main for main, apart in SENSORS_APART.items() if name in apart), name)
     if "TimeUS" in fields:
         fields["TimeUS"] = fields["TimeUS"].astype(np.int64)
     else:

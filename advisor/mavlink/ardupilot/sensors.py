@@ -1,4 +1,4 @@
-"""Choice among several sensors of one kind in an ArduPilot log: healthy, in use, and primary."""
+"""Choice among several instances of one record in an ArduPilot log: healthy, in use, and primary."""
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
@@ -6,15 +6,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.flight.signals.messages import IntArray
+from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.equivalent import latest
 from advisor.words.vehicle_time import clock, stretch
 
 BoolArray = NDArray[np.bool_]
+_MOST_CHANGES = 5
+"""Largest number of sentences about changes of one sensor."""
 
-_HEALTH = ("H", "GH", "AH")
-"""Fields of health (air speed, gyro and accelerometer), 1 for healthy."""
+_HEALTH = {"H": 1.0, "Health": 1.0, "GH": 1.0, "AH": 1.0, "Status": 3.0}
+"""Least value of a healthy sensor in each field of health: of air speed and barometer, of gyro and
+accelerometer, and a GPS fix in three dimensions (AP_GPS, GPS_OK_FIX_3D)."""
+HEALTH_FIELDS = frozenset(_HEALTH)
+"""Names of the fields of health."""
 _IN_USE = "U"
 """Name of the field that is 1 if the autopilot uses the sensor."""
 _MOVING = ("GyrX", "GyrY", "GyrZ", "AccX", "AccY", "AccZ")
@@ -28,23 +33,34 @@ states. A sound sensor repeats a value at most once, if records are faster than 
 def stated_health(table: RecordTable) -> set[str]:
     """Return the health fields that state a healthy sensor at least once. A field that never states a healthy
     sensor is not informative."""
-    return {name for name in _stated(table) if np.any(table.fields[name] != 0)}
+    return {name for name in _stated(table) if np.any(table.fields[name] >= _HEALTH[name])}
 
 
-def flown(table: RecordTable, health: Collection[str]) -> RecordTable:
+def flown(
+    table: RecordTable,
+    health: Collection[str],
+    primary: FloatArray | None = None,
+    unused: Collection[int] = (),
+) -> RecordTable:
     """Return the records of the sensor in use at each time; none while no sensor was healthy.
 
-    Only the fields in ``health`` state a sensor's health (:func:`stated_health`).
+    If the primary sensor is not healthy or not in use, the lowest-numbered usable sensor is taken. Without a
+    stated primary sensor, the healthy sensor with the lowest number is taken. The rules are ArduPilot's.
 
-    ARSP.Pri names the primary sensor. If the primary sensor is not healthy or not in use, the lowest-numbered
-    usable sensor is taken. Without a stated primary sensor, the healthy sensor with the lowest number is
-    taken. The rules are those of ArduPilot's ARSP and IMU.
+    Parameters
+    ----------
+    health
+        Fields that state a sensor's health (:func:`stated_health`).
+    primary
+        Shape (n,): number of the primary sensor at each record, NaN where unknown.
+    unused
+        Numbers of sensors that the parameters exclude.
     """
     if len(table) == 0:
         return table
     instance = _numbers(table)
     numbers = np.unique(instance)
-    used = np.asarray(table.fields.get(_IN_USE, np.ones(len(table))) != 0)
+    used = np.asarray(table.fields.get(_IN_USE, np.ones(len(table))) != 0) & ~np.isin(instance, list(unused))
     worth = _healthy(table, instance, health).astype(np.int64) * (1 + used)
     state = np.zeros((len(numbers), len(table)), dtype=np.int64)
     for row, number in enumerate(numbers):
@@ -52,10 +68,10 @@ def flown(table: RecordTable, health: Collection[str]) -> RecordTable:
         known = latest(table.order, table.order[own], worth[own])
         state[row] = np.where(np.isnan(known), worth[own][0], known)
     place = np.argmax(state, axis=0)
-    if "Pri" in table.fields:
-        primary = np.searchsorted(numbers, table.fields["Pri"].astype(np.int64)).clip(0, len(numbers) - 1)
-        named = numbers[primary] == table.fields["Pri"]
-        place = np.where(named & (state[primary, np.arange(len(table))] == 2), primary, place)
+    if primary is not None:
+        at = np.searchsorted(numbers, np.nan_to_num(primary, nan=-1.0)).clip(0, len(numbers) - 1)
+        named = numbers[at] == primary
+        place = np.where(named & (state[at, np.arange(len(table))] == 2), at, place)
     mine = (instance == numbers[place]) & (worth > 0)
     return table if np.all(mine) else table[mine]
 
@@ -88,6 +104,7 @@ def said(
     quantity: str,
     health: Collection[str],
     silences: Iterable[Silence],
+    noun: str = "sensor",
 ) -> list[Said]:
     """Return sentences about the first sensor in use, changes of sensor, and times without a healthy one.
 
@@ -95,7 +112,7 @@ def said(
     """
     return [
         *_doubts(every, quantity, health),
-        *_changes(table, quantity),
+        *changes(table, quantity, noun),
         *(_silence(one, quantity) for one in silences),
     ]
 
@@ -124,15 +141,18 @@ def _doubts(every: RecordTable, quantity: str, health: Collection[str]) -> list[
     return [Said(int(every.order[0]), int(every.time_us[0]), text)]
 
 
-def _changes(table: RecordTable, quantity: str) -> list[Said]:
+def changes(table: RecordTable, quantity: str, noun: str = "sensor") -> list[Said]:
+    """Return sentences about the first instance in use and its changes; none if instance 0 alone flew."""
     instance = _numbers(table)
     rows = np.flatnonzero(np.diff(instance, prepend=-1))
     if instance[rows].tolist() in ([], [0]):
         return []
     sentences = []
-    for row in rows.tolist():
+    for number, row in enumerate(rows[:_MOST_CHANGES].tolist(), start=1):
         since = f" since {clock(table.time_us[row] / 1e6)}" if row else ""
-        text = f"{quantity}: sensor {instance[row]} flew{since}"
+        text = f"{quantity}: {noun} {instance[row]} flew{since}"
+        if number == _MOST_CHANGES < len(rows):
+            text += f", and {len(rows) - _MOST_CHANGES} more changes follow"
         sentences.append(Said(int(table.order[row]), int(table.time_us[row]), text))
     return sentences
 
@@ -161,15 +181,16 @@ def _silent(every: RecordTable, table: RecordTable) -> list[tuple[int, int]]:
 
 def _numbers(table: RecordTable) -> IntArray:
     """Return the sensor number of each record, shape (n,)."""
-    if "I" not in table.fields:
-        return np.zeros(len(table), dtype=np.int64)
-    return table.fields["I"].astype(np.int64)
+    for name in ("I", "C"):
+        if name in table.fields:
+            return table.fields[name].astype(np.int64)
+    return np.zeros(len(table), dtype=np.int64)
 
 
 def _healthy(table: RecordTable, instance: IntArray, health: Collection[str]) -> BoolArray:
     good = np.ones(len(table), dtype=np.bool_)
     for name in set(_stated(table)) & set(health):
-        good &= table.fields[name] != 0
+        good &= table.fields[name] >= _HEALTH[name]
     if set(_MOVING) <= table.fields.keys():
         for number in np.unique(instance):
             own = np.flatnonzero(instance == number)

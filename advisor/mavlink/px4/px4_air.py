@@ -1,6 +1,5 @@
 """Air data of a PX4 log: air speed, climb rate and throttle, each at the stamps of its own topic."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from advisor.mavlink.px4.px4_topics import (
     Topics,
     best,
     first,
+    joined,
     published_us,
     sampled_us,
     samples_of,
@@ -54,7 +54,7 @@ def _airspeed(topics: Topics) -> tuple[Speed | None, list[str]]:
     """Return the faster one of the validated air speed and its sensor's, while a sensor is valid."""
     validated, raw = first(topics, "airspeed_validated"), topics.get("airspeed", [])
     measured = [] if validated is None else [samples_of(validated, _is_measured(validated))]
-    sensor = _joined(
+    sensor = joined(
         [samples_of(topic, _is_believed(topic, k, validated)) for k, topic in enumerate(raw, start=1)]
     )
     if sensor is not None:
@@ -88,16 +88,6 @@ def _is_believed(sensor: Topic, number: int, validated: Topic | None) -> BoolArr
     source = _source(validated)
     at = latest(published_us(sensor), published_us(validated), source)
     return np.asarray(good & (np.where(np.isnan(at), source[0], at) == number))
-
-
-def _joined(topics: Sequence[Topic]) -> Topic | None:
-    """Return samples of several sensors that were used one after the other, in the order of time."""
-    if not topics:
-        return None
-    names = set.intersection(*(set(topic) for topic in topics))
-    whole = {name: np.concatenate([topic[name] for topic in topics]) for name in names}
-    by_time = np.argsort(whole["timestamp"], kind="stable")
-    return {name: values[by_time] for name, values in whole.items()}
 
 
 def _calibrated(speed: Topic, validated: Topic | None) -> Speed:

@@ -56,11 +56,11 @@ class TimedMessages:
     fields: Mapping[str, ArrayLike]
 
 
-def topics_of(log: Any) -> dict[str, list[Topic]]:
-    """Return the instances of each topic with its necessary fields, in order of time."""
+def topics_of(log: Any, needed: Mapping[str, set[str]] = TOPICS) -> dict[str, list[Topic]]:
+    """Return the instances of each topic with its ``needed`` fields, in order of time."""
     topics: dict[str, list[Topic]] = {}
     for data in sorted(log.data_list, key=lambda data: (data.name, data.multi_id)):
-        if {"timestamp"} | TOPICS[data.name] <= data.data.keys() and len(data.data["timestamp"]):
+        if {"timestamp"} | needed[data.name] <= data.data.keys() and len(data.data["timestamp"]):
             by_time = np.argsort(data.data["timestamp"], kind="stable")
             topics.setdefault(data.name, []).append(
                 {name: _wide(v[by_time]) for name, v in data.data.items()}
@@ -100,6 +100,16 @@ def vector(topic: Topic, name: str, size: int) -> FloatArray:
 def samples_of(topic: Topic, which: NDArray[np.bool_]) -> Topic:
     """Return the samples of a topic that ``which`` selects."""
     return {name: values[which] for name, values in topic.items()}
+
+
+def joined(topics: Sequence[Topic]) -> Topic | None:
+    """Return samples of several sensors that were used one after the other, in the order of time."""
+    if not topics:
+        return None
+    names = set.intersection(*(set(topic) for topic in topics))
+    whole = {name: np.concatenate([topic[name] for topic in topics]) for name in names}
+    by_time = np.argsort(whole["timestamp"], kind="stable")
+    return {name: values[by_time] for name, values in whole.items()}
 
 
 def rate_hz(topic: Topic) -> float:

@@ -4,7 +4,7 @@ import contextlib
 import io
 import struct
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,10 +28,13 @@ from advisor.mavlink.px4.px4_topics import (
     vector,
 )
 from advisor.mavlink.px4.px4_vehicle import unix_time_base_s
+from advisor.mavlink.px4.which_flew import SELECTORS, as_flown
 from advisor.mavlink.records.equivalent import message, milliseconds, side_by_side, system_id
 from advisor.words.mends import mends_of, sentence
 from advisor.words.problems import UnusableInputError
 
+_READ = {**TOPICS, **SELECTORS}
+"""Necessary fields of each topic that is read, by the topic's name."""
 _RATES = ("rollspeed", "pitchspeed", "yawspeed")
 
 
@@ -139,7 +142,7 @@ def read_ulog(path: Path, wanted: Iterable[str] | None = None, starts_at: int = 
         # pyulog prints its warnings; standard output belongs to the result.
         raw = io.FileIO(path) if starts_at == 0 else io.BytesIO(path.read_bytes()[starts_at:])
         with WholeFile(raw) as file, contextlib.redirect_stdout(sys.stderr):
-            log = ULog(file, list(TOPICS))
+            log = ULog(file, list(_READ))
     except Exception as error:  # whatever pyulog meets in damaged bytes
         raise _nothing_in(path) from error
     with np.errstate(over="ignore", invalid="ignore"):  # damaged records hold any number
@@ -160,8 +163,8 @@ def _nothing_in(path: Path) -> UnusableInputError:
 
 
 def _columns(log: Any) -> list[Columns]:
-    topics = topics_of(log)
-    messages = translate(log, topics)
+    topics, said = as_flown(topics_of(log, _READ))
+    messages = translate(log, topics, said)
     time_us = np.concatenate([m.time_us for m in messages])
     order = np.empty(len(time_us), dtype=np.int64)
     order[np.argsort(time_us, kind="stable")] = np.arange(len(time_us))
@@ -175,8 +178,8 @@ def _columns(log: Any) -> list[Columns]:
     ]
 
 
-def translate(log: Any, topics: Topics) -> list[TimedMessages]:
-    """Return every message from a `pyulog.ULog` and its topics."""
+def translate(log: Any, topics: Topics, chosen: Sequence[str] = ()) -> list[TimedMessages]:
+    """Return every message from a `pyulog.ULog` with sentences about the ``chosen`` sensors."""
     parameters = px4_vehicle.parameters_of(log)
     breathed, said = air(topics)
     moved = outputs(topics, parameters)
@@ -194,6 +197,6 @@ def translate(log: Any, topics: Topics) -> list[TimedMessages]:
         *px4_vehicle.vtol_states(topics),
         *px4_vehicle.version(log, start_us),
         *px4_vehicle.stated(log, moved.found, start_us),
-        *px4_vehicle.remarks([*said, *moved.said, *px4_vehicle.dropouts(log)], start_us),
+        *px4_vehicle.remarks([*chosen, *said, *moved.said, *px4_vehicle.dropouts(log)], start_us),
         *messages,
     ]

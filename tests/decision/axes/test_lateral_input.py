@@ -53,6 +53,16 @@ def test_a_bank_beyond_its_limit_asks_for_less_and_repeats_the_remedy():
     assert "25 % stick, then stick still; less aileron, or shorter" in found.advice
 
 
+def test_a_refused_input_grows_only_where_it_was_too_gentle():
+    refused = advised(percent=300.0, flown=[aileron(5.0, 10.0, "leave the throttle where it is")])
+    assert refused.input.amplitude_rad == pytest.approx(radians(5.0))
+    gentle = FlownInput(
+        "aileron", radians(5.0), radians(10.0), "use about 1.4 times the aileron", too_small=1.3
+    )
+    assert advised(flown=[gentle]).input.amplitude_rad == pytest.approx(radians(6.5), rel=0.05)
+    assert "times" not in advised(flown=[gentle]).advice
+
+
 def test_the_travel_of_the_file_is_100_percent_of_the_stick():
     small = Aircraft(aileron=SideControl(calibration=((1000.0, 10.0), (2000.0, -10.0))))
     assert advised(aircraft=small).input.amplitude_rad == pytest.approx(radians(1.0))

@@ -154,3 +154,15 @@ def test_a_remedy_for_a_complete_control_does_not_stand_beside_the_advice_on_the
     advice = lateral_flight_test(history, told("aileron", "rudder"), AIRCRAFT, flown).next.advice
     assert advice.startswith("next: rudder doublet")
     assert "again" not in advice
+
+
+def test_an_aircraft_without_a_rudder_is_asked_for_no_rudder_input():
+    verdict = lateral_flight_test([told("aileron")], told("aileron"), AIRCRAFT, controls=("aileron",))
+    assert "this aircraft has no rudder" in verdict.sentence
+    assert verdict.next.advice.startswith("next: aileron doublet")
+    assert set(verdict.by_rule["information"].parameter_percent) == {"L_p", "L_delta_a", "N_beta"}
+
+
+def test_two_aileron_inputs_stop_the_test_of_an_aircraft_without_a_rudder():
+    verdict = lateral_flight_test([told("aileron")] * 2, told("aileron"), AIRCRAFT, controls=("aileron",))
+    assert verdict.decision == "stop"

@@ -10,7 +10,7 @@ from advisor.mavlink.records.dataflash import RecordTable
 
 def flown(records: RecordTable) -> RecordTable:
     """Records of the sensor in use, of a log in one stretch."""
-    return sensors.flown(records, stated_health(records))
+    return sensors.flown(records, stated_health(records), records.fields.get("Pri"))
 
 
 def said(records: RecordTable, chosen: RecordTable, quantity: str) -> list[Said]:

@@ -24,6 +24,7 @@ from advisor.oem.evaluation import share_of
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
 from advisor.oem.solution import RUNS_AWAY, Solution, evaluate, refused
+from advisor.words.digits import significant
 from advisor.words.quantiles import NORMAL_95
 
 FIRST_LOOK = 8
@@ -153,10 +154,15 @@ def lateral_not_identifiable(solution: Solution) -> dict[str, str]:
     missing = [name for name in LATERAL.inputs if not problem.flies(name)]
     for suffix, name in CONTROLS.items():
         if name in missing:
-            moved = f"moved by {np.degrees(problem.motion(name)):.1f} deg only"
-            text = f"the {name} {moved if problem.moves(name) else 'did not move'}; fly {_FLY[name]}"
+            text = f"the {name} did not move; fly {_FLY[name]}"
+            if problem.moves(name):
+                moved = f"moved by {np.degrees(problem.motion(name)):.1f} deg only"
+                text = f"the {name} {moved}; fly {_FLY[name]}"
+            elif not problem.has(name):
+                text = f"no output of the {name} is known"
             reasons |= {f"{letter}_{suffix}": text for letter in "YLN"}
-    advice = " and ".join(_FLY[name] for name in missing or LATERAL.inputs)
+    there = [name for name in LATERAL.inputs if problem.has(name)]
+    advice = " and ".join(_FLY[name] for name in [one for one in missing if one in there] or there)
     unresolved = "the record does not depend on it"
     reasons |= {
         name: f"{unresolved}; fly {advice}" for name in solution.influence.unresolved if name not in reasons
@@ -167,8 +173,8 @@ def lateral_not_identifiable(solution: Solution) -> dict[str, str]:
         error = float(std[LATERAL.names.reported.index(name)])
         if name not in reasons and not error <= _largest_error(name) * size:
             reasons[name] = (
-                f"its error ±{NORMAL_95 * error:.2g} is too large for the size of such a derivative"
-                f" here ({size:.2g}); fly {advice}"
+                f"its error ±{significant(NORMAL_95 * error, 2)} is too large for the size of such a"
+                f" derivative here ({significant(size, 2)}); fly {advice}"
             )
     return reasons
 

@@ -30,6 +30,9 @@ from tests.oem.axes.lateral.builders import (
 T = np.arange(0.0, 15.0, 0.025)
 WITHOUT_VANE = ("p", "r", "bank", "a_y")
 
+STILL = Signal(T, 0.0 * T)
+"""Record of a control that nobody moves."""
+
 
 def solved(problem):
     solution = solve_lateral(problem)
@@ -60,7 +63,7 @@ def test_everything_is_identifiable_from_aileron_and_rudder():
 
 
 def test_the_aileron_alone_leaves_the_rudder_unknown_and_says_what_to_fly():
-    record = flown(JET, aileron=aileron_doublet(T), rng=np.random.default_rng(1))
+    record = flown(JET, aileron=aileron_doublet(T), rudder=STILL, rng=np.random.default_rng(1))
     told = lateral_not_identifiable(solved(LateralProblem((record,))))
     for name in ("Y_delta_r", "L_delta_r", "N_delta_r"):
         assert told[name] == "the rudder did not move; fly a rudder doublet"
@@ -68,10 +71,18 @@ def test_the_aileron_alone_leaves_the_rudder_unknown_and_says_what_to_fly():
 
 
 def test_the_rudder_alone_leaves_the_aileron_unknown():
-    record = flown(JET, rudder=rudder_doublet(T), rng=np.random.default_rng(1))
+    record = flown(JET, rudder=rudder_doublet(T), aileron=STILL, rng=np.random.default_rng(1))
     told = lateral_not_identifiable(solved(LateralProblem((record,))))
     assert told["L_delta_a"] == "the aileron did not move; fly an aileron doublet"
     assert "N_delta_r" not in told
+
+
+def test_no_rudder_doublet_is_asked_of_an_aircraft_without_a_rudder():
+    record = flown(JET, aileron=aileron_doublet(T), rng=np.random.default_rng(1))
+    solution = solved(LateralProblem((record,)))
+    told = lateral_not_identifiable(solution)
+    assert told["N_delta_r"] == "no output of the rudder is known"
+    assert not any("rudder doublet" in text for text in told.values())
 
 
 def test_a_prior_that_the_data_do_not_sharpen_is_no_knowledge():
