@@ -66,6 +66,20 @@ def test_a_reversed_channel_is_named_by_the_motion(name):
     assert found[f"{name}_sign"].refuses
 
 
+@pytest.mark.parametrize("by_s", [1.7, -1.5])
+def test_a_sideslip_of_another_clock_is_not_accused_of_its_sign(by_s):
+    (found,) = examine_side(late("beta", by_s)(flight()[0])).findings
+    assert found.code == "beta_delay_s"
+    assert found.value == pytest.approx(by_s, abs=0.3)
+    assert ("late" if by_s > 0.0 else "early") in found.text
+
+
+def test_the_sentence_of_a_wrong_sign_holds_the_number_that_excludes_the_right_one():
+    text = findings(scaled("beta", -1.0))["beta_sign"].text
+    value, half = (float(x) for x in text.partition("with ")[2].split(" ")[:3:2])
+    assert value + half < 0.0
+
+
 def test_a_reversed_side_force_is_named_without_a_vane():
     assert list(findings(scaled("a_y", -1.0), vane=False)) == ["a_y_sign"]
 

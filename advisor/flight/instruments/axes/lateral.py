@@ -14,7 +14,7 @@ from math import exp, log
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.instruments.delayed_fit import DelayedFit, Summand, fit_delays
+from advisor.flight.instruments.delayed_fit import DRIFT, DelayedFit, Summand, fit_delays
 from advisor.flight.instruments.evidence import MOVED_RAD, Channels, usable
 from advisor.flight.instruments.examination import (
     FORCE_UNITS_M_S2,
@@ -22,10 +22,18 @@ from advisor.flight.instruments.examination import (
     hold_rate,
     stated_force_unit,
 )
-from advisor.flight.instruments.examined import PLAIN, SIGMAS, Examined, Work, hold_clocks, with_error
+from advisor.flight.instruments.examined import (
+    PLAIN,
+    SIGMAS,
+    Examined,
+    Work,
+    hold_clocks,
+    with_error,
+)
+from advisor.flight.instruments.far_clock import CLOCK_STD_S, SignOrClock, sign_or_clock
 from advisor.flight.instruments.measured import ANY, EXCLUDED, Evidence, Measured, weigh
 from advisor.flight.signals.messages import FloatArray
-from advisor.flight.signals.motion import channel_at
+from advisor.flight.signals.motion import channel_at, integrated
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
 
@@ -170,10 +178,44 @@ def _signs(work: Work, name: str, told: Evidence, sense: float) -> bool:
     assert weight is not None
     assert turn is not None
     law = "the side force opposes the sideslip" if name == "a_y" else "the sideslip follows bank and turn"
-    values = f"{with_error(weight)} and {with_error(turn)}"
     measured = turn if culprit == "r" else weight
-    _turned(work, culprit, measured, f"{law}, with {values} of the parts by bank and by turn")
+    decided = f"with {with_error(weight)} and {with_error(turn)} of the parts by bank and by turn"
+    if culprit == name:
+        seen = _sign_or_clock(work, name, sense)
+        if seen is not None and seen.is_clock:
+            _of_another_clock(work, name, seen.late_s)
+            return False
+        if seen is not None and not seen.is_sign:
+            return True
+        if both is not None and not all(wrong[:2]):
+            measured, decided = both, f"with {with_error(both)} of both parts together"
+    _turned(work, culprit, measured, f"{law}, {decided}")
     return False
+
+
+def _of_another_clock(work: Work, name: str, late_s: float) -> None:
+    late = Measured(abs(late_s), CLOCK_STD_S)
+    side = "late" if late_s > 0.0 else "early"
+    work.contradict(
+        name, "delay_s", None, late_s, late,
+        f"{PLAIN[name]} is {with_error(late)} s {side} relative to the motion",
+        f"check the stamps of {PLAIN[name]} ({work.channels[name].source})",
+    )  # fmt: skip
+
+
+def _sign_or_clock(work: Work, name: str, sense: float) -> SignOrClock | None:
+    """Compare a wrong sign of a channel with a clock error; None without a moving channel."""
+    parts = _parts(work.channels, name)
+    if parts is None:
+        return None
+    grid, weight, turn = parts
+    shape = integrated(grid, weight + turn)
+    channel = work.channels[name]
+    if name == "a_y":
+        force = channel.y / channel_at("airspeed", channel.t, work.channels)
+        return sign_or_clock(channel.t, force, grid, shape, sense, 1)
+    stamps, beta = renewed(channel.t, channel.y)
+    return sign_or_clock(stamps, beta, grid, shape, sense, DRIFT)
 
 
 def _resolved(measured: Measured) -> bool:
