@@ -53,8 +53,8 @@ class Reason:
 def with_one_remedy(reasons: Sequence[Reason]) -> tuple[Reason, ...]:
     """Return reasons of which only the first has a remedy.
 
-    The first reason is the cause. A remedy for its consequences may contradict the remedy of the cause: less
-    stick because of the bank, and more stick because the fit is poor.
+    The first reason is the cause. A remedy for its consequences may contradict the remedy of the cause. Bank
+    asks for less stick, and a poor fit for more.
     """
     return tuple(one if k == 0 else replace(one, text=one.fact) for k, one in enumerate(reasons))
 

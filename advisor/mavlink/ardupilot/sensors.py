@@ -16,8 +16,7 @@ _MOST_CHANGES = 5
 """Largest number of sentences about changes of one sensor."""
 
 _HEALTH = {"H": 1.0, "Health": 1.0, "GH": 1.0, "AH": 1.0, "Status": 3.0}
-"""Least value of a healthy sensor in each field of health. Status 3 of GPS is a fix in three dimensions (AP_GPS,
-GPS_OK_FIX_3D)."""
+"""Least value of a healthy sensor in each field of health. Status 3 of GPS is a fix in three dimensions."""
 HEALTH_FIELDS = frozenset(_HEALTH)
 """Names of the fields of health."""
 _IN_USE = "U"
