@@ -3,7 +3,8 @@
 import math
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.pitch import judge_pitch
+from advisor.decision.axes.pitch import judge_pitch, natural_period
+from advisor.decision.envelope import is_speed_carried, with_gap
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.verdict import Reason
 from advisor.flight.instruments.kinematics import check_alpha
@@ -64,6 +65,7 @@ def cautions_of(maneuver: Maneuver, estimated: Estimate | NoEstimate, aircraft: 
         )
     if not isinstance(estimated, Estimate):
         return cautions
+    cautions += _carried_speed(maneuver, estimated, aircraft)
     alpha = maneuver.channels.get("alpha")
     if alpha is not None and "alpha" in estimated.outputs:
         cautions.append(f"angle of attack: {alpha.provenance}, from {alpha.source}")
@@ -87,6 +89,15 @@ def _uncertain_alpha(maneuver: Maneuver, estimated: Estimate, aircraft: Aircraft
         maneuver, aircraft.airspeed_m_s, aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
     )
     return [] if check.finding == "consistent" else [check.sentence]
+
+
+def _carried_speed(maneuver: Maneuver, estimated: Estimate, aircraft: Aircraft) -> list[str]:
+    """Return a sentence about an air speed that the accelerometers carry across a gap of its sensor."""
+    channel = maneuver.channels.get("airspeed")
+    if channel is None or aircraft.airspeed_m_s is not None or not is_speed_carried(maneuver):
+        return []
+    gaps = with_gap([channel], maneuver, natural_period(maneuver, estimated))
+    return [f"{gap.fact}: its changes there are integrated from the accelerometers" for gap in gaps]
 
 
 def _moving_air(estimated: Estimate, gust_rad: float) -> str:

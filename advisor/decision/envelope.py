@@ -16,8 +16,10 @@ from advisor.flight.maneuvers.steady_speed import LEFT, speed_before
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import distrusted
+from advisor.oem.airspeed import LARGEST_DISAGREEMENT, airspeed
 from advisor.oem.axes.lateral.problem import LEAST_PART
 from advisor.words.digits import distinct_texts
+from advisor.words.quantiles import NORMAL_95
 
 SAMPLES_PER_PERIOD = 8.0
 """Least number of samples of elevator and pitch rate per natural period. An aircraft of 2 rad/s needs 2.6 Hz,
@@ -51,7 +53,8 @@ def incomplete(
     period_s
         Natural period of the motion, estimated or assumed, s.
     counted
-        Outputs that the estimate used. Gaps in other channels do no harm.
+        Outputs that the estimate used. The model also reads the pitch angle and the air speed. Gaps in other
+        channels do no harm.
     """
     missing = [name for name in needed if name not in maneuver.channels]
     if missing:
@@ -60,11 +63,21 @@ def incomplete(
     wrong = [d for d in distrusted(maneuver.channels) if d.stops]
     if wrong:
         return [Reason(d.code, f"{d.text}; {d.fix}", d.value, 0.0) for d in wrong]
-    used = [maneuver.channels[name] for name in {*needed, *counted} if name in maneuver.channels]
+    read = {*needed, *counted, "theta", *(() if is_speed_carried(maneuver) else ("airspeed",))}
+    used = [maneuver.channels[name] for name in read if name in maneuver.channels]
     return [
         *too_slow([maneuver.channels[name] for name in needed], period_s),
         *with_gap(used, maneuver, period_s),
     ]
+
+
+def is_speed_carried(maneuver: Maneuver) -> bool:
+    """Return whether the accelerometers carry the air speed across any gap of its sensor.
+
+    The speed is then the integral of the accelerometers, and its error is small within the whole record.
+    """
+    found = airspeed(maneuver.channels)
+    return found is not None and found.smooth and found.error <= LARGEST_DISAGREEMENT / NORMAL_95
 
 
 def not_heard(maneuver: Maneuver) -> Reason:

@@ -308,6 +308,32 @@ def test_a_period_is_not_read_off_a_fit_that_explains_little_or_an_uncertain_sti
     assert natural_period(maneuver, replace(estimated, covariance=covariance)) == by_input
 
 
+def without_late_airspeed(maneuver, after_s, *missing):
+    """The manoeuvre whose air speed ends some time after the first step, without further channels."""
+    speed = maneuver.channels["airspeed"].cut(0.0, maneuver.span.start_s + after_s)
+    kept = {name: channel for name, channel in maneuver.channels.items() if name not in missing}
+    return replace(maneuver, channels={**kept, "airspeed": speed})
+
+
+def test_an_air_speed_that_ends_is_missed_where_no_accelerometer_carries_it():
+    maneuver, estimated, _ = bad_flight()[0]
+    (reason,) = judge_pitch(without_late_airspeed(maneuver, 0.5, "a_x"), estimated, AIRCRAFT)
+    assert reason.code == "gap"
+    assert "of airspeed are missing" in reason.text
+
+
+def test_an_air_speed_that_ends_is_carried_by_the_accelerometers():
+    maneuver, estimated, _ = bad_flight()[0]
+    assert judge_pitch(without_late_airspeed(maneuver, 1.5), estimated, AIRCRAFT) == ()
+
+
+def test_a_pitch_angle_that_ends_is_missed():
+    maneuver, estimated, _ = bad_flight()[0]
+    theta = maneuver.channels["theta"].cut(0.0, maneuver.span.start_s + 0.5)
+    cut = replace(maneuver, channels={**maneuver.channels, "theta": theta})
+    assert judge_pitch(cut, estimated, AIRCRAFT)[0].code == "gap"
+
+
 def test_no_amplitude_is_judged_beyond_a_limit_of_the_model():
     maneuver, estimated, _ = bad_flight()[1]
     assert judge_pitch(maneuver, estimated, AIRCRAFT)[0].code == "amplitude"
