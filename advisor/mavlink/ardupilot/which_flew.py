@@ -41,7 +41,7 @@ KINDS: Mapping[str, Kind] = {
     "IMU": Kind("Angular rates and specific force", use_parameters=_INS_USE),
     "GYR": Kind("Angular rates", use_parameters=_INS_USE),
     "ACC": Kind("Specific force", use_parameters=_INS_USE),
-    "BARO": Kind("Static pressure", primary_parameters=("BARO_PRIMARY", "GND_PRIMARY")),
+    "BARO": Kind("Static pressure", primary_parameters=("BARO_PRIMARY", "GND_PRIMARY"), needs_health=False),
     "GPS": Kind("GPS", "receiver", needs_health=False),
     "XKF1": Kind("EKF3", "lane", selector=_LANES_3),
     "XKF2": Kind("", "lane", selector=_LANES_3),
