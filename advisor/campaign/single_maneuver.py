@@ -4,7 +4,8 @@ import math
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.axes.pitch import judge_pitch, natural_period
-from advisor.decision.envelope import is_speed_carried, with_gap
+from advisor.decision.carried_speed import is_speed_carried
+from advisor.decision.envelope import with_gap
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.verdict import Reason
 from advisor.flight.instruments.kinematics import check_alpha

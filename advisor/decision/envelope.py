@@ -9,6 +9,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.carried_speed import is_speed_carried
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.hand_flying import OTHER_CONTROLS_DEG, THROTTLE_PERCENT
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
@@ -16,10 +17,8 @@ from advisor.flight.maneuvers.steady_speed import LEFT, speed_before
 from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import distrusted
-from advisor.oem.airspeed import LARGEST_DISAGREEMENT, airspeed
 from advisor.oem.axes.lateral.problem import LEAST_PART
 from advisor.words.digits import distinct_texts
-from advisor.words.quantiles import NORMAL_95
 
 SAMPLES_PER_PERIOD = 8.0
 """Least number of samples of elevator and pitch rate per natural period. An aircraft of 2 rad/s needs 2.6 Hz,
@@ -69,15 +68,6 @@ def incomplete(
         *too_slow([maneuver.channels[name] for name in needed], period_s),
         *with_gap(used, maneuver, period_s),
     ]
-
-
-def is_speed_carried(maneuver: Maneuver) -> bool:
-    """Return whether the accelerometers carry the air speed across any gap of its sensor.
-
-    The speed is then the integral of the accelerometers, and its error is small within the whole record.
-    """
-    found = airspeed(maneuver.channels)
-    return found is not None and found.smooth and found.error <= LARGEST_DISAGREEMENT / NORMAL_95
 
 
 def not_heard(maneuver: Maneuver) -> Reason:

@@ -40,9 +40,6 @@ class Airspeed:
     """Delay of the air speed sensor, s; 0 if the delay cannot be estimated."""
     smooth: bool
     """Whether the shape comes from the accelerometers instead of the sensor."""
-    error: float = 0.0
-    """Largest standard deviation of level and drift within the record, as a share of the speed. The error
-    grows with the distance from the sensor's samples."""
 
 
 def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
@@ -68,19 +65,7 @@ def airspeed(channels: Mapping[str, Channel]) -> Airspeed | None:
     level, drift = levels[best], drifts[best]
     if np.sqrt(left[best]) > LARGEST_DISAGREEMENT * level:
         return plain
-    error = _largest_std(measured.t[inside] - lags[best], t[[0, -1]], float(left[best])) / level
-    return Airspeed(Signal(t, shape + level + drift * (t - t[0])), float(lags[best]), True, error)
-
-
-def _largest_std(sampled: FloatArray, ends: FloatArray, mean_square: float) -> float:
-    """Return the larger standard deviation of level and drift at the ends of a record, m/s.
-
-    The sensor is filtered, so that its error is renewed once in ``LONGEST_LAG_S`` and not with each sample.
-    """
-    middle, spread = float(np.mean(sampled)), float(np.var(sampled))
-    independent = max(1.0, float(np.ptp(sampled)) / LONGEST_LAG_S)
-    away = float(np.max((ends - middle) ** 2)) / max(spread, 1e-12)
-    return float(np.sqrt(mean_square / independent * (1.0 + away)))
+    return Airspeed(Signal(t, shape + level + drift * (t - t[0])), float(lags[best]), True)
 
 
 def _joined(

@@ -101,10 +101,6 @@ class LateralProblem:
         stated = self.servos.get(name, Servo())
         return Servo(stated.lag_s, stated.delay_s + self.command_delay_s)
 
-    def has(self, name: str) -> bool:
-        """Return whether any record holds an input."""
-        return any(name in r.inputs for r in self.records)
-
     def moves(self, name: str) -> bool:
         """Return whether an input moves in any record."""
         return self.motion(name) > 0.0

@@ -24,7 +24,6 @@ from advisor.oem.evaluation import share_of
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
 from advisor.oem.solution import RUNS_AWAY, Solution, evaluate, refused
-from advisor.words.digits import significant
 from advisor.words.quantiles import NORMAL_95
 
 FIRST_LOOK = 8
@@ -152,20 +151,18 @@ def lateral_not_identifiable(solution: Solution) -> dict[str, str]:
     reasons: dict[str, str] = {}
     problem = solution.problem
     missing = [name for name in LATERAL.inputs if not problem.flies(name)]
+    there = [name for name in LATERAL.inputs if any(name in r.inputs for r in problem.records)]
     for suffix, name in CONTROLS.items():
         if name in missing:
-            text = f"the {name} did not move; fly {_FLY[name]}"
-            if problem.moves(name):
-                moved = f"moved by {np.degrees(problem.motion(name)):.1f} deg only"
-                text = f"the {name} {moved}; fly {_FLY[name]}"
-            elif not problem.has(name):
-                text = f"no output of the {name} is known"
+            moved = f"moved by {np.degrees(problem.motion(name)):.1f} deg only"
+            text = f"the {name} {moved if problem.moves(name) else 'did not move'}; fly {_FLY[name]}"
+            text = text if name in there else f"no output of the {name} is known"
             reasons |= {f"{letter}_{suffix}": text for letter in "YLN"}
-    there = [name for name in LATERAL.inputs if problem.has(name)]
-    advice = " and ".join(_FLY[name] for name in [one for one in missing if one in there] or there)
-    unresolved = "the record does not depend on it"
+    advice = " and ".join(_FLY[name] for name in there if name in missing or not {*there} & {*missing})
     reasons |= {
-        name: f"{unresolved}; fly {advice}" for name in solution.influence.unresolved if name not in reasons
+        name: f"the record does not depend on it; fly {advice}"
+        for name in solution.influence.unresolved
+        if name not in reasons
     }
     # Another manoeuvre does not help against dynamics that the model lacks: they are no want of excitation.
     std = np.sqrt(np.diag(solution.scattered))
@@ -173,8 +170,8 @@ def lateral_not_identifiable(solution: Solution) -> dict[str, str]:
         error = float(std[LATERAL.names.reported.index(name)])
         if name not in reasons and not error <= _largest_error(name) * size:
             reasons[name] = (
-                f"its error ±{significant(NORMAL_95 * error, 2)} is too large for the size of such a"
-                f" derivative here ({significant(size, 2)}); fly {advice}"
+                f"its error ±{NORMAL_95 * error:.2g} is too large for the size of such a"
+                f" derivative here ({size:.2g}); fly {advice}"
             )
     return reasons
 
