@@ -7,7 +7,8 @@ values of the flight.
 from math import floor
 
 from advisor.campaign.state import LateralState
-from advisor.decision.arriving import FIRST_S, Arriving, arriving
+from advisor.decision.arriving import FIRST_S, Arriving
+from advisor.decision.arriving_errors import arriving
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.elevator.elevator_watch import SETTLE_S
 from advisor.flight.maneuvers.maneuver import Maneuver

@@ -7,7 +7,8 @@ from math import sqrt
 import pytest
 
 from advisor.campaign.arriving_information import ArrivingInformation
-from advisor.decision.arriving import Arriving, arriving
+from advisor.decision.arriving import Arriving
+from advisor.decision.arriving_errors import arriving
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress
 from advisor.tui.panes.live import arrived_in_words
 from tests.decision.test_coupling import T, flown
