@@ -16,7 +16,9 @@ from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
+    from advisor.campaign.campaign import ManeuverJudged
     from advisor.campaign.hand_decisions import ByHand
+    from advisor.mavlink.link.announce import Announcer
     from advisor.mavlink.link.kept_link import KeptLink
     from advisor.session.source import Source
 
@@ -200,8 +202,13 @@ def _tell(link: "KeptLink", announce: bool, uplink: bool, event: object) -> None
         if advised is not None and advised.input is not None:
             link.advise(*next_order(advised.input))
     if announce:
-        verdict, plan = event.flight_test, event.plan
-        axis = "roll and yaw" if event.axis == "lateral" else ""
-        stop = verdict.sentence if verdict.decision == "stop" else ""
-        stop, about = (stop, axis) if plan is None else (plan.announced, plan.announced)
-        link.judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop, axis, about)
+        _announce(link, event)
+
+
+def _announce(to: "KeptLink | Announcer", event: "ManeuverJudged") -> None:
+    """Announce the verdict on a manoeuvre, and the plan of all axes that are flown."""
+    verdict, plan = event.flight_test, event.plan
+    axis = "roll and yaw" if event.axis == "lateral" else ""
+    stop = verdict.sentence if verdict.decision == "stop" else ""
+    stop, about = (stop, axis) if plan is None else (plan.announced, plan.announced)
+    to.judged(event.judged.maneuver.number, event.judged.verdict.sentence, stop, axis, about)

@@ -111,6 +111,8 @@ def profiled(solution: Solution, x: Any, parameters: Sequence[Any], share: float
     if not std > 0.0:
         return solution
     nodes = sorted(_walk(solution, x, parameters, share, refit, std), key=lambda node: node[0])
+    if len(nodes) < 2:
+        return solution  # no neighbouring value has an optimum
     values, nats, theta = (np.array(part) for part in zip(*nodes, strict=True))
     profile = Profile(
         place - len(solution.theta),

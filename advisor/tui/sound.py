@@ -35,16 +35,23 @@ class Sound:
     def __init__(self, ring: Callable[[], object], speak: Callable[[str], object]) -> None:
         self._ring, self._speak = ring, speak
         self.on = True
-        self._last: tuple[bool, int, str] | None = None
+        self._last: tuple[bool, int, str, str] | None = None
 
     def hear(self, view: View) -> None:
         """Compare the state of a moment with the last one, and sound after a change."""
-        now = view.elevator is None, len(view.state.maneuvers), advise(view).word
+        now = view.elevator is None, len(view.state.maneuvers), advise(view).word, _hindered(view)
         last, self._last = self._last, now
         if last is None or last[0] != now[0] or last == now or not self.on or _hurries(view):
             return
         self._ring()
         self._speak(_spoken(view, more=now[1] > last[1]))
+
+
+def _hindered(view: View) -> str:
+    """Return the reason why the last word may be old; empty without one."""
+    if view.health.condition == "lost":
+        return "no link"
+    return "behind" if view.health.behind else ""
 
 
 def _hurries(view: View) -> bool:
@@ -55,7 +62,8 @@ def _hurries(view: View) -> bool:
 def _spoken(view: View, *, more: bool) -> str:
     """Return the new verdict, if there is one, and the word: ``Manoeuvre 3 good. Continue.``"""
     behind = view.health.behind.replace(" s ", " seconds ").replace(" min ", " minutes ")
-    word = f"{(behind or advise(view).word).capitalize()}."
+    lost = "no link" if view.health.condition == "lost" else ""
+    word = f"{(lost or behind or advise(view).word).capitalize()}."
     if not more:
         return word
     newest = view.state.maneuvers[-1]

@@ -19,8 +19,9 @@ from advisor.doctor.expectation import (
     expect,
 )
 from advisor.model.short_period import ShortPeriod
+from advisor.oem.extra import Prior
 from advisor.oem.instrument_fit import fit_instruments
-from advisor.oem.instruments import SERVO_LAG, USUAL_LAG, unknown_instruments
+from advisor.oem.instruments import SERVO_LAG, unknown_instruments
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve
@@ -87,13 +88,13 @@ def test_a_servo_whose_lag_the_file_leaves_open_tells_less_of_the_moment() -> No
 
 @pytest.mark.parametrize(("lag_s", "std_s"), [(None, 0.05), (0.2, 0.02)])
 def test_a_stated_lag_is_known_to_a_tenth_of_itself(lag_s: float | None, std_s: float) -> None:
-    (lag,) = _estimated([replace(SERVO_LAG, stated=lag_s, prior=USUAL_LAG)])
+    (lag,) = _estimated([replace(SERVO_LAG, stated=lag_s, prior=Prior(0.05, 0.05))])
     assert lag.prior is not None
     assert lag.prior.std == pytest.approx(std_s)
 
 
 def test_a_stated_lag_of_zero_holds() -> None:
-    assert list(_estimated([replace(SERVO_LAG, stated=0.0, prior=USUAL_LAG)])) == []
+    assert list(_estimated([replace(SERVO_LAG, stated=0.0, prior=Prior(0.05, 0.05))])) == []
 
 
 def test_the_amplitude_and_the_lag_of_flown_manoeuvres_take_the_place_of_assumed_ones() -> None:

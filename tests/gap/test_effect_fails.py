@@ -46,7 +46,8 @@ def test_an_effect_of_roll_and_yaw_whose_fit_fails_is_left_out() -> None:
     effect = SimpleNamespace(places=(), columns=None, std=(), variant=SimpleNamespace(steps=(), bounds=()))
     flight = SideFlight(case, None, [])
     start = SimpleNamespace(effect=effect, point=None, name="aileron_actuator_lag")
-    assert flight._added(start, 0.3, SimpleNamespace(free=()), 1.0) is None
+    plain = SimpleNamespace(free=())
+    assert flight._added(start, plain, 0.3, plain, 1.0) is None
     assert [one.part for one in flight.parts.failed] == ["roll and yaw, effect aileron_actuator_lag"]
 
 

@@ -1,6 +1,7 @@
 """A second peak of the posterior widens the joint errors by its probability."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -28,7 +29,11 @@ def with_rival(joint, cost, monkeypatch):
     rival = replace(
         best, theta=best.theta + OFF, optimum=optimum, problem=SERVO_LAG.write(best.problem, 0.04)
     )
-    monkeypatch.setattr(instrument_fit, "_fitted", lambda *_: rival)
+    place = rival.theta, np.zeros(0)
+    searched = SimpleNamespace(cost=optimum.log_likelihood_cost, problem=rival.problem, place=place)
+    monkeypatch.setattr(instrument_fit, "_searched", lambda *_: searched)
+    monkeypatch.setattr(instrument_fit, "_evaluated", lambda *_: rival)
+    monkeypatch.setattr(instrument_fit, "reported", lambda *_: rival.theta)
     names = [x.instrument for x in joint.identified]
     return best, rival, instrument_fit._between_modes(best, names)
 

@@ -124,4 +124,6 @@ def test_the_advisor_finds_the_inputs_that_were_flown_to_their_ends_and_no_other
     flown = [event for event in events if isinstance(event, (ManeuverFlown, SideManeuverFlown))]
     starts = [event.maneuver.span.start_s for event in flown]
     begins = [pilot.at(f"ADVISOR BEGIN {number} ") for number in (1, 2)]
-    assert starts == pytest.approx(begins, abs=0.1)
+    assert starts == pytest.approx(begins, abs=0.15), (
+        "a text is sent within a call of the script, up to 104 ms on a loaded machine"
+    )

@@ -37,7 +37,10 @@ def test_beside_an_effect_the_derivatives_of_the_diagnosis_are_handed_over(
     monkeypatch.setattr(handed_over, "flown_model", lambda *_: FlownModel(aircraft, None, side))
     monkeypatch.setattr(handed_over, "estimate_lateral", lambda *_: estimate("aileron", "rudder"))
     monkeypatch.setattr(handed_over, "accepted_of", lambda _: [])
-    gap = SimpleNamespace(verdict="effect", diagnosis=replace(FOUND, **weighed(answer)))
+    told = replace(FOUND, **weighed(answer))
+    if told.verdict != "effect":
+        told = replace(told, causes=())
+    gap = SimpleNamespace(improves=True, diagnosis=told)
     made = improved_side(SimpleNamespace(aircraft=aircraft, state=None, gap=gap))
     assert made.side.values["L_p"].value == pytest.approx(l_p)
     assert made.side.values.keys() <= set(LATERAL.names.reported)
