@@ -48,12 +48,12 @@ OF_AN_AXIS = frozenset(
 letter."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
-    "lines of code": 6965,
-    "constants": 222,
+    "lines of code": 6949,
+    "constants": 221,
     "constants that decide": 38,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 15645,
+    "lines of estimation": 15628,
     "files naming an axis": 114,
 }
 """Upper bound of each count."""

@@ -74,20 +74,12 @@ def airspeed_on(
     return rebuilt if disagreement < LARGEST_DISAGREEMENT * float(np.mean(y[inside])) else as_read
 
 
-_LATE_S = 0.12
-"""Prior: lateness of an air speed that is filtered, renewed at 5 to 10 Hz and sent without a stamp, s.
-VFR_HUD of an autopilot is 118 ms late."""
-
-
 def speed_error_factors(
     stamps: Sequence[FloatArray],
     residuals: Sequence[FloatArray],
     durations_s: Sequence[float],
-    speeds: Sequence[FloatArray],
 ) -> list[FloatArray]:
-    """Return the uncertainty of level, slope and curvature of each manoeuvre's air speed.
-
-    The sensor's noise and its lateness cause this uncertainty.
+    """Return the uncertainty of level, slope and curvature of each manoeuvre's air speed due to sensor noise.
 
     Parameters
     ----------
@@ -96,8 +88,6 @@ def speed_error_factors(
         the smoothed air speed. Size and correlation of the noise are estimated over all manoeuvres.
     durations_s
         Length of each manoeuvre's record, s.
-    speeds
-        Per manoeuvre, shape (k,): air speed at equal steps over the record, m/s.
 
     Returns
     -------
@@ -111,19 +101,10 @@ def speed_error_factors(
     memory = np.clip(sum(float(e[1:] @ e[:-1]) for e in residuals) / power, 0.0, _LONGEST_MEMORY)
     sigma = float(np.sqrt(power / spare * (1.0 + memory) / (1.0 - memory)))
     factors = []
-    for t, duration, speed in zip(stamps, durations_s, speeds, strict=True):
-        if len(t) < _LEAST_SAMPLES:
-            factors.append(np.empty((0, 0)))
-            continue
-        at = 2.0 * t / duration - 1.0
-        parabola = np.vander(at, 3, increasing=True)
-        by_noise = sigma * np.linalg.pinv(np.linalg.qr(parabola)[1])
-        rate = np.gradient(speed, duration / (len(speed) - 1))
-        late = np.linalg.lstsq(parabola, np.interp(at, np.linspace(-1.0, 1.0, len(speed)), rate), rcond=None)[
-            0
-        ]
-        both = np.column_stack([by_noise, _LATE_S * late])
-        factors.append(np.linalg.qr(both.T)[1].T)
+    for t, duration in zip(stamps, durations_s, strict=True):
+        parabola = np.vander(2.0 * t / duration - 1.0, 3, increasing=True)
+        enough = len(t) >= _LEAST_SAMPLES
+        factors.append(sigma * np.linalg.pinv(np.linalg.qr(parabola)[1]) if enough else np.empty((0, 0)))
     return factors
 
 

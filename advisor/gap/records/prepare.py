@@ -135,8 +135,7 @@ def _with_speed_errors(
         grid = (np.arange(flight.n) + 0.5) * flight.h
         stamps.append(t)
         residuals.append(read.y - np.interp(t, grid, flight.slow[SPEED]))
-    speeds = [flight.slow[SPEED] for flight in flights]
-    factors = speed_error_factors(stamps, residuals, [flight.duration_s for flight in flights], speeds)
+    factors = speed_error_factors(stamps, residuals, [flight.duration_s for flight in flights])
     return tuple(replace(f, speed_error_factor=factor) for f, factor in zip(flights, factors, strict=True))
 
 
