@@ -28,7 +28,8 @@ def without(log: Path, name: str, to: Path) -> Path:
 
 
 BAD: dict[str, tuple[Callable[[Path], object], str]] = {
-    "a file that is no tlog": (lambda p: p.write_text("time,alpha,q\n0,1,2\n" * 100), "no MAVLink"),
+    "a file that is no tlog": (lambda p: p.write_text("a note of the flight\n" * 100), "no MAVLink"),
+    "a table without a surface": (lambda p: p.write_text("time,alpha,q\n0,1,2\n" * 100), "no column"),
     "an empty file": (lambda p: p.write_bytes(b""), "empty"),
     "a log without a vehicle": (
         lambda p: without(recorded("linear", 1.0, maneuvers=TWO), "HEARTBEAT", p),

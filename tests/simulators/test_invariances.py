@@ -36,7 +36,7 @@ def test_units_and_signs_that_a_mapping_states_change_no_quantity(units, elevato
     names = {"time": "t", "elevator": "de", "q": "q", "alpha": "a", "a_z": "nz", "airspeed": "v"}
     scale = {"elevator": elevator, "q": q, "time": time, "a_z": a_z, "airspeed": speed}
     angle = np.radians(1.0) if units == "deg" else 1.0
-    true = {name: np.linspace(1.0, 2.0, 5) * (k + 1.0) for k, name in enumerate(names)}
+    true = {name: np.linspace(0.1, 0.2, 5) * (k + 1.0) for k, name in enumerate(names)}
     stated = {
         name: scale.get(name, 1.0) * (angle if name in ("elevator", "q", "alpha") else 1.0) for name in names
     }

@@ -129,7 +129,7 @@ def test_an_empty_file_is_said_to_be_empty(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "content",
     [
-        b"time,alpha,q\n0.0,0.1,0.2\n" * 500,
+        b"a note of the flight\n" * 500,
         bytes(5000),
         np.random.default_rng(0).bytes(300_000),
         b"\xfd",

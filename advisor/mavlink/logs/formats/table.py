@@ -29,7 +29,7 @@ def _begins_at(beginning: bytes) -> int | None:
         line = head.decode("utf-8-sig")
     except UnicodeDecodeError:
         return None
-    if not line.strip().isprintable() and "\t" not in line:
+    if not line.strip().replace("\t", " ").isprintable():
         return None
     names = head_of(line.strip())
     named = [name for name in names if any(map(str.isalpha, plain_name(name)))]
