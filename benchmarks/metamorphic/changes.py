@@ -58,7 +58,7 @@ class Change:
 
 
 FEWEST = 3
-"""Fewest manoeuvres of a flight from which one is removed: a search needs two."""
+"""Least number of manoeuvres before one is left out. A search needs two manoeuvres."""
 
 
 def _later(seconds: float) -> _Edit:

@@ -1,0 +1,57 @@
+"""Telemetry is no gap of the simulator: each model flies with the flight's natural numbers."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.fitting.natural import with_natural
+from advisor.gap.fitting.problem import SearchPoint
+from advisor.gap.fitting.refit import own_refitted
+from advisor.gap.records.prepare import prepare
+from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.simulator.layout import DERIVATIVES
+from tests.gap.generator import Setup, fly
+
+
+@pytest.fixture(scope="module")
+def late():
+    """Return a flight whose command is stamped 12 ms too early, its plain fit, and the right derivatives."""
+    maneuvers = fly(Setup(maneuvers=3, seed=8))
+    _, fitted = fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
+    right = fitted.point.derivatives
+    shifted = []
+    for one in maneuvers:
+        command = one.channels["elevator"]
+        command = replace(command, t=command.t - 0.012)
+        shifted.append(replace(one, channels={**one.channels, "elevator": command}))
+    file = Aircraft(model=dict(zip(DERIVATIVES, map(float, right), strict=True)))
+    return (*fit_baseline(prepare(shifted, file), file), right)
+
+
+def test_the_lateness_of_the_command_is_no_error_of_a_right_model(late):
+    problem, fitted, right = late
+    model = SearchPoint(right, fitted.point.own)
+    flown = with_natural(problem, model, fitted.point, fitted.noise)
+    points = (flown, model, replace(fitted.point, edges=None))
+    q = problem.channels.index("q")
+    natural, plain, best = (own_refitted(problem, one, fitted.noise).mean_square[q] for one in points)
+    assert natural - best < 0.1 * (plain - best)
+
+
+def test_the_given_derivatives_stay_whatever_the_flight_says(late):
+    problem, fitted, right = late
+    wrong = right * np.array([1.0, 1.0, 1.0, 1.4, 1.0, 0.7])
+    flown = with_natural(problem, SearchPoint(wrong, fitted.point.own), fitted.point, fitted.noise)
+    assert np.array_equal(flown.derivatives, wrong)
+    assert flown.effects == fitted.point.effects
+
+
+def test_the_natural_numbers_come_from_other_manoeuvres_than_those_judged(late):
+    problem, fitted, right = late
+    model = SearchPoint(right, fitted.point.own)
+    whole, without = (
+        with_natural(problem, model, fitted.point, fitted.noise, aside).shared for aside in ((), (0, 2))
+    )
+    assert not np.array_equal(whole, without)
