@@ -21,9 +21,9 @@ from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis.gap import maneuvers_of
 from advisor.analysis.refused import without_refused
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.true_airspeed import standard_density, standard_pressure
 from advisor.oem.lag import lagged
+from advisor.process.arrays import FloatArray
 from advisor.simulators.compare import Compared, compare
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, Simulator, State
 from advisor.simulators.stepped import Stepped

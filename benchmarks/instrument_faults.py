@@ -20,8 +20,9 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.flight.signals.channels import stamps
-from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns
 from advisor.mavlink.logs.logs import open_log
+from advisor.process.arrays import FloatArray
 from advisor.report.document import analysis_document
 from advisor.words.problems import UnusableInputError
 from advisor.words.quantiles import NORMAL_95

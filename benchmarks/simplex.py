@@ -7,10 +7,10 @@ search stops 1-4 % above the optimum.
 import numpy as np
 from scipy.optimize import minimize
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import N_PARAMETERS, N_SHARED
 from advisor.model.response import Grid, Index, respond
 from advisor.oem.gauss_newton import CONVERGED, EXHAUSTED, OVERFLOW, Optimum, weigh
+from advisor.process.arrays import FloatArray
 
 FIRST_STEP = 0.05
 """Relative size of the first simplex, as in ``fminsearch``: 5 % of each parameter, 0.00025 where it is

@@ -10,12 +10,13 @@ from advisor.flight.elevator.axes.lateral import SIDES, find_side_control
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.parameters import Parameters
 from advisor.flight.vehicle.surfaces import Scale, Surface
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.flight.vehicle.wiring import Wiring
+from advisor.process.arrays import FloatArray
 from advisor.words.problems import Problem, UnusableInputError
 
 FLYING_SHARE = 0.5

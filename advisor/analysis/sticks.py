@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.mavlink.logs.whole import read_whole_log
+from advisor.process.arrays import FloatArray, IntArray
 from advisor.words.problems import UnusableInputError
 
 _CHANNELS = ("chan1_raw", "chan2_raw", "chan3_raw", "chan4_raw")

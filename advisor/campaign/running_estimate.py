@@ -14,10 +14,10 @@ from scipy.special import chdtri
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import lag_is_unknown
 from advisor.oem.following import Follower
+from advisor.process.arrays import FloatArray
 
 REFRESH_S = 0.2
 """Vehicle time between two running estimates, s. Readers cannot read numbers that change faster."""

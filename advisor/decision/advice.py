@@ -18,8 +18,8 @@ from advisor.decision.judge import accepted_estimates
 from advisor.decision.paper_rules import scattered_most, window
 from advisor.decision.remaining import by_information, by_scatter, errors_as_flown, odds_of, share_after
 from advisor.decision.verdict import NO_CURE_BY_INPUT, NextInput, Remaining
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
+from advisor.process.arrays import FloatArray
 
 GENTLE = 0.1
 """Amplitude of the first input, as a share of the elevator's travel. Before the first manoeuvre no property

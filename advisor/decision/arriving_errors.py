@@ -16,9 +16,9 @@ from advisor.decision.axes.lateral_stop import JUDGED
 from advisor.decision.envelope import moved_controls
 from advisor.decision.omitted import sensitivities
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
+from advisor.process.arrays import FloatArray
 
 
 def arriving(

@@ -26,7 +26,7 @@ from advisor.decision.pooling import (
     pooled_on_both_sides,
     posteriors_at_one_speed,
 )
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.words.quantities import symbol
 
 FALSE_ALARM = 1e-5

@@ -12,10 +12,10 @@ from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import response_to, trim_of
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
+from advisor.process.arrays import FloatArray
 
 FULL_TRAVEL_RAD = float(np.radians(25.0))
 """Elevator travel on either side of trim without a calibration, rad."""

@@ -14,10 +14,10 @@ from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.hand_flying import OTHER_CONTROLS_DEG, THROTTLE_PERCENT
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.steady_speed import LEFT, speed_before
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import distrusted
 from advisor.oem.axes.lateral.problem import LEAST_PART
+from advisor.process.arrays import FloatArray
 from advisor.words.digits import distinct_texts
 
 SAMPLES_PER_PERIOD = 8.0

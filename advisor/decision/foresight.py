@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import LOCAL, N_LOCAL, N_PARAMETERS, SHARED
 from advisor.model.response import respond
 from advisor.model.short_period import ShortPeriod
@@ -14,6 +13,7 @@ from advisor.oem.extra import Extra
 from advisor.oem.problem import Assembly, OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
+from advisor.process.arrays import FloatArray
 
 UNMEASURED = 1e3
 """Noise of an unmeasured angle of attack, rad. With this noise α adds no information."""

@@ -9,9 +9,9 @@ from advisor.decision.consistency import consensus
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES, Shared, common_airspeed, posteriors_at_one_speed
 from advisor.decision.prediction import PREDICTED, Response, airspeed_in, measured, response_to
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.oem.prediction import half_widths
+from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 FEWEST = 2

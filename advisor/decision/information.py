@@ -28,7 +28,7 @@ from advisor.decision.pooling import (
 )
 from advisor.decision.prediction import Prediction, missed_percent, predict
 from advisor.decision.tolerance import tolerances
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.words.digits import distinct_texts
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol

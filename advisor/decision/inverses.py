@@ -5,7 +5,7 @@
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 
 def information_of(covariance: FloatArray) -> FloatArray:

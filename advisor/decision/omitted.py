@@ -30,8 +30,8 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.consistency import OUTLIER_BELOW
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.process.arrays import FloatArray
 from advisor.words.digits import distinct_texts
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol

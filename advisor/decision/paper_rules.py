@@ -15,8 +15,8 @@ from advisor.aircraft.aircraft import CampaignPlan, Criterion, Rule
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.pooling import values_at_one_speed
 from advisor.decision.verdict import RuleResult
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
+from advisor.process.arrays import FloatArray
 
 ALLOWED_INCREASE = 2.0
 """Factor of Eq. (10) by which the cost may rise from one accepted manoeuvre to the next."""

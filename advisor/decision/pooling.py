@@ -16,8 +16,8 @@ import numpy as np
 from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.decision.inverses import covariance_of, information_of
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
+from advisor.process.arrays import FloatArray
 
 INTERCEPTS = (PARAMETERS.index("Z_0"), PARAMETERS.index("M_0"))
 """Indices of the intercepts Z_0 and M_0 in θ. Trim and speed differ between manoeuvres, so each manoeuvre has

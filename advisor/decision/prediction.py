@@ -16,7 +16,6 @@ from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import N_LOCAL, N_PARAMETERS, SHARED
 from advisor.model.response import respond
 from advisor.oem.estimate import Estimate
@@ -24,6 +23,7 @@ from advisor.oem.prediction import half_widths
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
+from advisor.process.arrays import FloatArray
 
 PREDICTED = ("alpha", "q", "a_z")
 """Outputs whose prediction is judged, if measured. The pitch angle follows from q."""

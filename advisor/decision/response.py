@@ -9,8 +9,8 @@ import numpy as np
 from advisor.decision.envelope import flown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit
+from advisor.process.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from advisor.aircraft.aircraft import CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import Prediction
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 NEAR_ZERO = 3.0
 """Multiple of the prediction's tolerance below which a derivative's whole effect is near zero."""

@@ -15,7 +15,6 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.first_unit import matched_unit_s
 from advisor.decision.foresight import foresee, local_at_trim, response_from_trim, shared_of, unmeasured
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import OUTPUTS
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.extra import Prior
@@ -25,6 +24,7 @@ from advisor.oem.prior import precision_without_alpha
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
+from advisor.process.arrays import FloatArray
 
 UNITS_OF_TIME = (3, 2, 1, 1)
 RESPONSE_ALPHA_DEG = 4.0

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from advisor.flight.signals.attitude import Attitudes
 from advisor.flight.signals.channels import stamps
 from advisor.flight.signals.clocks import BootClock
-from advisor.flight.signals.messages import Columns, FloatArray, cut
+from advisor.flight.signals.messages import Columns, cut
 from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.process.arrays import FloatArray
 from advisor.words.vehicle_time import stretch
 
 # The field whose change shows that a message brings a new value.

@@ -7,8 +7,8 @@ from typing import Literal
 
 from advisor.flight.instruments.atmosphere import AirData
 from advisor.flight.instruments.kinematics import KinematicCheck
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Weighed
+from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 GapVerdict = Literal["none", "parameters", "effect", "unknown", "untested"]

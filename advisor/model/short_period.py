@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis import Names
 from advisor.model.outputs import LOCAL, OUTPUTS, SHARED
+from advisor.process.arrays import FloatArray
 
 NAMES = Names(OUTPUTS, SHARED, LOCAL, PARAMETERS)
 """Names of the short-period model's outputs and parameters. Z_0 and M_0 are reported as means over the

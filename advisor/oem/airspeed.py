@@ -15,10 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated, speed_rate_at
 from advisor.flight.signals.record import Channel
 from advisor.oem.rows import Signal
+from advisor.process.arrays import FloatArray
 
 LONGEST_LAG_S = 0.6
 LAG_STEP_S = 0.02

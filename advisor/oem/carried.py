@@ -15,7 +15,6 @@ import numpy as np
 from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import channel_at
 from advisor.model.outputs import LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS
 from advisor.model.response import Grid, respond
@@ -26,6 +25,7 @@ from advisor.oem.prior import precision
 from advisor.oem.rows import STAMP_S, Measurements, Piece, Signal, events_of, lay_rows, padded
 from advisor.oem.solution import Solution, noise_floor, reported
 from advisor.oem.weighted_sums import Sums
+from advisor.process.arrays import FloatArray
 
 LONGEST_PROMISE = 2.0
 """Largest change of -2 log likelihood that a Gauss-Newton step may promise. Beyond this change the model is

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 HIGH_CORRELATION = 0.9

@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import stdtrit
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import NAMES
 from advisor.oem.arrow import inverse_of
 from advisor.oem.colour import Colour, Stretch, find_colour, moved, powers, product
 from advisor.oem.extra import Extra
 from advisor.oem.rows import Laid
+from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 OPEN_SHARE = 0.01

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis import Names
 from advisor.model.response import Index
 from advisor.oem.arrow import arrow_step, normal_equations
@@ -31,6 +30,7 @@ from advisor.oem.gauss_newton import (
 from advisor.oem.prior import Priors
 from advisor.oem.rows import Laid
 from advisor.oem.solution import RUNS_AWAY
+from advisor.process.arrays import FloatArray
 
 SETTLED = 1e-3
 """Promised change of -2 log posterior density at which a search ends. A decrease of this size moves no

@@ -13,7 +13,6 @@ import numpy as np
 from scipy.special import chdtri
 
 from advisor.aircraft.reference import PARAMETERS
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.input_response import N_READING, InputChange
 from advisor.oem.extra import Extra, Prior
 from advisor.oem.gauss_newton import CONVERGED, Optimum
@@ -22,6 +21,7 @@ from advisor.oem.problem import Assembly, OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, evaluate, search
 from advisor.oem.weighing import Weighing
+from advisor.process.arrays import FloatArray
 
 LARGE = 0.25
 """Least share of the command's range that a large step covers within one interval."""

@@ -19,12 +19,12 @@ import numpy as np
 from scipy.special import chdtrc
 
 from advisor.aircraft.reference import PARAMETERS
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.colour import moved
 from advisor.oem.covariance import DIFFERENCE, Coloured, coloured, widening
 from advisor.oem.model_error import model_error
 from advisor.oem.solution import Solution
 from advisor.oem.weighing import Weighing
+from advisor.process.arrays import FloatArray
 
 N = len(PARAMETERS)
 LAGS = 20

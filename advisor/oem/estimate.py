@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.known_instruments import FoundInstruments, InstrumentName
+from advisor.process.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)

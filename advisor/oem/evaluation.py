@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.covariance import Coloured, Influence, coloured, colours_of, cramer_rao, influence, widening
 from advisor.oem.extra import Extra
 from advisor.oem.gauss_newton import Optimum
 from advisor.oem.model_error import model_error
 from advisor.oem.rows import Laid
 from advisor.oem.scatter_between import widened_by_scatter
+from advisor.process.arrays import FloatArray
 
 LEAST_SHARE = 0.01
 """Least factor on a prior's standard deviation in a white-noise fit; data without noise have no colour."""

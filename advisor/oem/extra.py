@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

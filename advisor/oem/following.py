@@ -15,7 +15,6 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.carried import UpdatableSolution
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import report
@@ -25,6 +24,7 @@ from advisor.oem.instrument_fit import colour_share, weighed
 from advisor.oem.instruments import OF_ALPHA, Instrument, extra_of, unknown_instruments
 from advisor.oem.prepare import prepare
 from advisor.oem.solution import Solution, evaluate, solve
+from advisor.process.arrays import FloatArray
 
 N = len(PARAMETERS)
 

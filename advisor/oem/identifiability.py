@@ -16,10 +16,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.solution import Solution
+from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 LARGEST_ERROR = 0.5

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import OUTPUTS
 from advisor.oem.kalman import DIFFUSE, STATES, Gains, filter_along, observed_by
+from advisor.process.arrays import FloatArray
 
 ALPHA, A_Z = OUTPUTS.index("alpha"), OUTPUTS.index("a_z")
 

@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.input_response import (
     BY_ACCELEROMETER,
     BY_ALPHA_DELAY,
@@ -20,6 +19,7 @@ from advisor.model.input_response import (
 from advisor.oem.known_instruments import InstrumentName
 from advisor.oem.problem import Assembly, OutputErrorProblem, Record, steady_share
 from advisor.oem.rows import padded
+from advisor.process.arrays import FloatArray
 
 READING = {"vane_arm_m": BY_VANE, "accelerometer_arm_m": BY_ACCELEROMETER, "alpha_delay_s": BY_ALPHA_DELAY}
 """Column index of each instrument of an output."""

@@ -22,7 +22,6 @@ from scipy.special import expit
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.instruments.lateness import CLOCKS_S
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import N_PARAMETERS
 from advisor.model.response import respond
 from advisor.model.short_period import NAMES
@@ -37,6 +36,7 @@ from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 from advisor.oem.profile import needs_profile, profiled
 from advisor.oem.solution import Solution, evaluate, reported, search, spread_of
 from advisor.oem.weighing import Weighing
+from advisor.process.arrays import FloatArray
 
 N = len(PARAMETERS)
 ROUGHLY = 1e-4

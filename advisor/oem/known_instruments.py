@@ -14,7 +14,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 InstrumentName = Literal[
     "servo_lag_s",

@@ -11,13 +11,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import N_PARAMETERS
 from advisor.model.response import Index, respond
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve
+from advisor.process.arrays import FloatArray
 
 LOST_INTERVAL = 1.5
 """Interval between two stamps, in usual intervals, above which a sample was lost."""

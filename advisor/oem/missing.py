@@ -9,13 +9,13 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import N_PARAMETERS, OUTPUTS
 from advisor.model.response import respond
 from advisor.oem.covariance import cramer_rao, influence
 from advisor.oem.problem import Assembly, assemble
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution
+from advisor.process.arrays import FloatArray
 from advisor.words.quantities import symbol
 
 WORTH_NAMING = 1.05

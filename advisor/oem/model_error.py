@@ -12,12 +12,12 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.special import chdtri
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.colour import Colour
 from advisor.oem.extra import Extra
 from advisor.oem.rows import Laid
 from advisor.oem.scatter_between import CHANCE
 from advisor.oem.weighing import Weighing
+from advisor.process.arrays import FloatArray
 
 WIDTH_S, WEIGHTS = 0.2, 8
 """Numerical: distance between the filter's weights, s, and their number. The filter is linear between its

@@ -9,11 +9,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.arrow import unabsorbed
 from advisor.oem.evaluation import Evaluated
 from advisor.oem.gauss_newton import Optimum
 from advisor.oem.rows import Laid
+from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 

@@ -22,11 +22,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
 from advisor.model.outputs import N_SHARED, SHARED
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.problem import OutputErrorProblem
+from advisor.process.arrays import FloatArray
 
 Z_Q_STD = 0.1
 """Prior standard deviation of Z_q, without unit. C_Lq of 10 gives 0.03 to 0.1 for aircraft of 3 kg to 8 t."""

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import LOCAL, N_SHARED, OUTPUTS, SHARED
 from advisor.model.response import Grid, Index
 from advisor.oem.rows import Laid, Piece, Signal, events_of, lay_rows, measured_in, padded, with_samples
 from advisor.oem.surface import Servo
+from advisor.process.arrays import FloatArray
 
 STAMP_DIGITS = 12
 """Decimals to which step lengths are distinguished, because equal steps share their matrices."""

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.extra import penalty
 from advisor.oem.solution import Solution
+from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 FARTHEST_NATS = 4.0

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 _INDIFFERENT = 1e-6
 """Relative singular value below which a direction of the common coefficients is ignored. Where the motion is

@@ -7,10 +7,10 @@ from typing import NamedTuple, TypedDict
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis import Names
 from advisor.model.response import Index
 from advisor.model.short_period import NAMES
+from advisor.process.arrays import FloatArray
 
 STAMP_S = 1e-9
 """Distance of two stamps below which they are a single event, s."""

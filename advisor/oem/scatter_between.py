@@ -10,7 +10,7 @@ difference.
 import numpy as np
 from scipy.special import chdtri
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 CHANCE = 0.05
 """Probability that a correctly stated error is widened."""

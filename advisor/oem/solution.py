@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis import Names
 from advisor.model.short_period import NAMES
 from advisor.oem.covariance import Coloured
@@ -18,6 +17,7 @@ from advisor.oem.prior import Priors, precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 from advisor.oem.rows import Laid
 from advisor.oem.start import start
+from advisor.process.arrays import FloatArray
 
 if TYPE_CHECKING:
     from advisor.oem.profile import Profile

@@ -12,12 +12,12 @@ manoeuvres; constants and initial states belong to single manoeuvres.
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 from advisor.model.outputs import N_LOCAL, N_SHARED
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.regression import Equations, regressed
 from advisor.oem.rows import Signal, finite
+from advisor.process.arrays import FloatArray
 
 
 def start(

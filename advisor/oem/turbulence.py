@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import OUTPUTS
 from advisor.oem import innovations
 from advisor.oem.innovations import A_Z, ALPHA, AirModel
 from advisor.oem.kalman import DIFFUSE
+from advisor.process.arrays import FloatArray
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import N_LOCAL, N_SHARED, OUTPUTS
 from advisor.oem.arrow import arrow_step, normal_equations
 from advisor.oem.colour import Colour
@@ -17,6 +16,7 @@ from advisor.oem.covariance import Influence, influence
 from advisor.oem.extra import Extra
 from advisor.oem.rows import Laid
 from advisor.oem.whitening import Whitening
+from advisor.process.arrays import FloatArray
 
 UNIT = np.ones(len(OUTPUTS))
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.outputs import N_PARAMETERS, SHARED
 from advisor.model.response import Index, respond
 from advisor.oem.arrow import inverse_of
@@ -19,6 +18,7 @@ from advisor.oem.instruments import Instrument, extra_of
 from advisor.oem.kalman import Gains
 from advisor.oem.prior import precision
 from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
+from advisor.process.arrays import FloatArray
 
 ASSUMED_M_S = 20.0
 """Assumed air speed if none is known, m/s. The gust angle and the weight's part of α̇ depend on the air

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import AlternativeEvidence, Weighed
 from advisor.gap.result import (
     Cause,
@@ -19,6 +18,7 @@ from advisor.gap.result import (
     Where,
 )
 from advisor.gap.verdict.text import answers_of, in_words, limits_of
+from advisor.process.arrays import FloatArray
 from advisor.process.parts import FailedPart
 from advisor.report.facts.answers import by_flight_alone, title_of
 from advisor.report.facts.gap import changed, grown_said, heading, shrink_said, size_of_gap, where_said

@@ -9,8 +9,8 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Diagnosis, Gap, Trace
+from advisor.process.arrays import FloatArray
 from advisor.report.facts.sizes import before_after, short
 from advisor.words.quantities import CHANNELS
 

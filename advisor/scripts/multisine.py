@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 _MOST_LINES = 7
 """Number of harmonics of one control. Seven on each of three controls gave 20 derivatives within 6 %."""

@@ -10,9 +10,9 @@ from scipy.linalg import expm
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.decision.conditions import ALPHA_MARGIN, FULL_TRAVEL_RAD, LINEAR_RAD
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import Trim, state_matrix
 from advisor.model.short_period import ShortPeriod
+from advisor.process.arrays import FloatArray
 from advisor.scripts.inputs import Control, ScriptInput
 
 FIRST_SHARE: Mapping[str, float] = {"elevator": 0.08, "aileron": 0.08, "rudder": 0.10}

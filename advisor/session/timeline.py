@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.campaign.state import CampaignState
-from advisor.flight.signals.messages import Columns, IntArray, cut
+from advisor.flight.signals.messages import Columns, cut
+from advisor.process.arrays import IntArray
 
 LONGEST_SILENCE_S = 2.0
 """Longest replay time of a silence in a log, or of a jump of its clock, s."""

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import EFFECT_ENTRIES, INDEX, SKEWS
 from advisor.oem.lag import lagged
+from advisor.process.arrays import FloatArray
 
 COMMAND = EFFECT_ENTRIES[: EFFECT_ENTRIES.index("M_delta2")]
 """Entries for effects between command and surface."""

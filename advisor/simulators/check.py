@@ -8,9 +8,9 @@ from math import nan
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import spelled
 from advisor.gap.simulator.layout import DERIVATIVES, natural_frequency
+from advisor.process.arrays import FloatArray
 from advisor.simulators.axes.lateral import TURNS
 from advisor.simulators.identified import identified_pitch, identified_side
 from advisor.simulators.interface import InterfaceFault, control_fault, interface_fault, side_fault

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.usable import DEPARTED_RAD
 from advisor.gap.simulator.layout import BANK, HEIGHT, INDEX, OUTPUTS
 from advisor.oem.rows import Signal
+from advisor.process.arrays import FloatArray
 from advisor.simulators.around import instruments, skewed
 from advisor.simulators.increments import SimulatorIncrements, carried
 from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid, surface_of

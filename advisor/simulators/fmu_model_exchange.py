@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 _TOLERANCE = 1e-7
 """Relative and absolute tolerance of a step, in the states' own units: a tenth of a microradian."""

@@ -15,9 +15,9 @@ import numpy as np
 from scipy.linalg import expm, logm
 from scipy.optimize import least_squares
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Value
 from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.process.arrays import FloatArray
 from advisor.simulators.protocol import Replay
 from advisor.words.problems import UnusableInputError
 

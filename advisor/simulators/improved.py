@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import whole_gap
@@ -13,6 +12,7 @@ from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.result import InSimulator
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, OUTPUTS
 from advisor.oem.rows import Signal
+from advisor.process.arrays import FloatArray
 from advisor.simulators.flying import AsGiven, Flying, added, beyond, without_servo
 from advisor.simulators.inputs import at_reference
 from advisor.simulators.qualification import qualified

@@ -10,10 +10,10 @@ from math import cos, exp
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.nuisances import PROPELLER
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, EQUATION_ENTRIES, INDEX, LAYOUT
 from advisor.gap.simulator.right_sides import right_sides
+from advisor.process.arrays import FloatArray
 from advisor.simulators.protocol import State
 
 _TRIMS = (INDEX["Z_trim"], INDEX["M_trim"])

@@ -7,7 +7,6 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import (
     A_X,
@@ -23,6 +22,7 @@ from advisor.gap.simulator.layout import (
 )  # fmt: skip
 from advisor.gap.simulator.surface import surface
 from advisor.oem.rows import Signal
+from advisor.process.arrays import FloatArray
 from advisor.simulators.protocol import CONTROLS, Condition, Inputs, Replay
 
 _RATE_S = 0.02

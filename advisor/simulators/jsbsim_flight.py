@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.simulators.jsbsim_model import AXIAL, FORCE, LOAD, LOAD_PLACE, WRITES, WRITTEN, load
 from advisor.simulators.protocol import Condition
 from advisor.words.problems import UnusableInputError

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.simulators.jsbsim_flight import FOOT_M, JsbsimFlight, SteadyState
 from advisor.simulators.protocol import Condition
 from advisor.words.problems import UnusableInputError

@@ -7,9 +7,9 @@ from math import cos, sin
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.simulator.surface import above_start
+from advisor.process.arrays import FloatArray
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
 
 _FARTHEST_RAD = 1.5

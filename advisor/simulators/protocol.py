@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 CONTROLS = ("aileron", "rudder", "throttle")
 """Inputs other than the elevator: ``aileron`` and ``rudder`` in rad (positive left), ``throttle`` from 0 to

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.result import Qualification
 from advisor.gap.verdict.numbers import BAND, yardsticks
+from advisor.process.arrays import FloatArray
 
 _WINDOW_S = 0.1
 """Length of the moving average over an error, s. Shorter errors are instrument noise."""

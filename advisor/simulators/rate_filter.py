@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.effects.pitch_rate_skew import EFFECT
 from advisor.gap.result import Cause, Diagnosis, Value
+from advisor.process.arrays import FloatArray
 from advisor.simulators.protocol import Replay
 
 

@@ -20,7 +20,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Increments, Inputs, Replay
 from advisor.simulators.steady import midway, steady
 from advisor.words.problems import UnusableInputError

@@ -7,7 +7,6 @@ from itertools import product
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.transport_delay import DELAY
 from advisor.gap.fitting.fit import EffectFit, fit
@@ -24,6 +23,7 @@ from advisor.gap.simulator.layout import (
     SPEED,
     THETA_FROM,
 )  # fmt: skip
+from advisor.process.arrays import FloatArray
 from advisor.simulators.increments import trimmed
 from advisor.simulators.inputs import on_grid, read_from
 from advisor.simulators.protocol import Replay

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.nuisances import PROPELLER
 from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.fit import EffectFit, fit
@@ -25,6 +24,7 @@ from advisor.gap.verdict.causes import parameters_of
 from advisor.gap.verdict.holdout_numbers import over_maneuvers, with_offset
 from advisor.gap.verdict.statements import in_simulator
 from advisor.gap.verdict.text import answers_of, sentence_of
+from advisor.process.arrays import FloatArray
 from advisor.words.certainty import as_sure
 
 LEAST_TRAINED = 2

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Diagnosis, Trace
 from advisor.oem.estimate import Estimate
+from advisor.process.arrays import FloatArray
 
 _WIDTH, _LEFT, _RIGHT, _TOP, _PANEL, _GAP = 720, 96, 8, 30, 84, 14
 _UNITS: Mapping[str, tuple[str, str, float]] = {

@@ -17,9 +17,10 @@ from pathlib import Path
 import numpy as np
 
 from advisor.oem.estimate import NoEstimate
+from advisor.process.arrays import FloatArray
 from benchmarks.public.advised import advised, coefficients_of, lagged
 from benchmarks.public.linear import TRIMS, simulated
-from benchmarks.public.segments import STATES, FloatArray, Segment, read_segments, upright
+from benchmarks.public.segments import STATES, Segment, read_segments, upright
 from benchmarks.public.whole import by_output_error, regressed
 
 PUBLISHED: Mapping[str, str] = {

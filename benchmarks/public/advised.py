@@ -16,8 +16,9 @@ from advisor.library import estimate
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.process.arrays import FloatArray
 from benchmarks.public.linear import FACTORS, FREE, REFERENCE_M_S, ROWS
-from benchmarks.public.segments import STROKE_RAD, FloatArray, Segment, maneuver_of
+from benchmarks.public.segments import STROKE_RAD, Segment, maneuver_of
 
 AIRCRAFT = Aircraft(alpha=Alpha("aoa_ssa", 0.0), beta=Beta("aoa_ssa", 0.0))
 """Angles of attack and sideslip are measured at the centre of gravity."""

@@ -10,7 +10,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from benchmarks.public.segments import CONTROLS, FloatArray, Segment
+from advisor.process.arrays import FloatArray
+from benchmarks.public.segments import CONTROLS, Segment
 
 ROWS = ("X", "Y", "Z", "L", "M", "N")
 """Specific forces along the body axes, m/s², and angular accelerations about them, rad/s²."""

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from advisor.process.arrays import FloatArray
 from benchmarks.public.linear import FREE, ROWS, commands_of, factors, simulated
-from benchmarks.public.segments import FloatArray, Segment, maneuver_of
+from benchmarks.public.segments import Segment, maneuver_of
 
 EDGE = 6
 """Samples at each end of a segment that the regression skips: differences and filters are one-sided there."""

@@ -24,7 +24,7 @@ from advisor.decision.advice import next_input
 from advisor.decision.history import CandidateManeuver, usable_ones
 from advisor.decision.information import knowledge
 from advisor.decision.inputs import StepInput
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 MOST = 25
 """Number of manoeuvres after which a campaign is given up."""

@@ -10,8 +10,8 @@ from advisor.bundled.study.flying import Scene, fly_named, noise_scale
 from advisor.bundled.study.readings import NOISE_PERCENT, ORDER
 from advisor.decision.change import find_change
 from advisor.decision.history import CandidateManeuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
+from advisor.process.arrays import FloatArray
 
 LOSS = 0.15
 """Share of the derivative that is lost."""

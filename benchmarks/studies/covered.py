@@ -22,10 +22,10 @@ from advisor.campaign.state import CampaignState
 from advisor.decision.prediction import Prediction
 from advisor.decision.tolerance import tolerances
 from advisor.flight.signals.instrument_finding import InstrumentFinding
-from advisor.flight.signals.messages import FloatArray
 from advisor.mavlink.logs.logs import open_log
 from advisor.oem.estimate import Estimate
 from advisor.oem.findings import findings_of
+from advisor.process.arrays import FloatArray
 from advisor.session.timeline import Timeline
 from advisor.words.quantiles import NORMAL_95
 from benchmarks.studies.forecast import Forecast

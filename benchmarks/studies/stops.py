@@ -29,11 +29,11 @@ from advisor.decision.information import knowledge
 from advisor.decision.prediction import MOMENTS, PREDICTED, response_to
 from advisor.decision.stopping import progress
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.surface import Servo
+from advisor.process.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from advisor.aircraft.aircraft import Aircraft, TableColumns
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.analysis.gap import named_simulator
 from advisor.analysis.table_log import table_maneuvers
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.simulators.protocol import Condition, Inputs
 from advisor.words.problems import ConfigurationError, UnusableInputError
 from tests.simulators.nonlinear import Nonlinear

@@ -7,8 +7,8 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.history import CandidateManeuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.process.arrays import FloatArray
 
 THETA = np.array([-0.009, -0.483, 0.104, 0.676, 0.475, -4.93, -2.01, -7.21])
 """The twin-jet research aircraft of the study, rad and s."""

@@ -14,7 +14,7 @@ from advisor.decision.heard import Heard
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import Reason
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from sim.linear import ShortPeriod
 from tests.campaign.side_builders import estimate as side_estimate
 from tests.decision.campaigns import THETA, drawn, estimate, with_change

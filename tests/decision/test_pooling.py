@@ -18,7 +18,7 @@ from advisor.decision.pooling import (
     pooled_without_each,
     posteriors_at_one_speed,
 )
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from tests.campaign.side_builders import estimate as side_estimate
 from tests.decision.campaigns import THETA, estimate
 

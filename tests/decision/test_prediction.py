@@ -9,9 +9,9 @@ from advisor.bundled.study.flying import Scene, as_maneuver, fly_named, follow
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import missed_percent, predict, response_to
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.oem.surface import Servo
+from advisor.process.arrays import FloatArray
 from tests.decision.campaigns import THETA, estimate
 
 SCENE = Scene()

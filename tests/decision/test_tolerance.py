@@ -11,7 +11,7 @@ from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import Prediction, missed_percent, predict
 from advisor.decision.tolerance import tolerances
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from tests.decision.campaigns import THETA, estimate
 
 PLAN = CampaignPlan(rule="information")

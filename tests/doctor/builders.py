@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns
+from advisor.process.arrays import FloatArray
 
 HOST_S = 1_790_000_000.0
 

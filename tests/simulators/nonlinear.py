@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
+from advisor.process.arrays import FloatArray
 from advisor.simulators.protocol import Condition, Increments, Inputs, Replay, State
 
 G = 9.80665

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.diagnose import diagnose, examine
+from advisor.process.arrays import FloatArray
 from advisor.simulators.compare import Compared, compare
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.taken_back import with_unseen_shrink

@@ -11,7 +11,7 @@ from scipy.linalg import expm
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import FmuTrim, FmuVariables
 from advisor.aircraft_file.read import parse_aircraft
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.simulators.fmu import FmuSimulator, make_fmu
 from advisor.simulators.protocol import Condition, Inputs, Replay
 from advisor.words.problems import ConfigurationError, UnusableInputError

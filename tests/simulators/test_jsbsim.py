@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.simulators.interface import side_fault
 from advisor.simulators.jsbsim import Jsbsim, make_jsbsim
 from advisor.simulators.jsbsim_model import find_model

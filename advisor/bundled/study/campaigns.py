@@ -20,11 +20,11 @@ from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import knowledge
 from advisor.decision.paper_rules import MANEUVER_RULES, scatter_percent, window
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.batch import Batch, solve_many
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
+from advisor.process.arrays import FloatArray
 
 
 def estimate_copies(

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.linalg import expm
 
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
+from advisor.process.arrays import FloatArray
 from advisor.process.installed import SIMULATOR
 
 if TYPE_CHECKING or SIMULATOR == "sim":

@@ -19,8 +19,8 @@ from advisor.decision.paper_rules import (
     separate_computation,
 )
 from advisor.decision.verdict import RuleResult
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.estimate import Estimate
+from advisor.process.arrays import FloatArray
 
 NOISE_PERCENT = (1.0, 2.5, 5.0)
 ORDER = ("3211", "rev", "rev", "3211", "rev", "3211", "rev")

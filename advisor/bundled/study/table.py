@@ -9,7 +9,7 @@ from advisor.aircraft.aircraft import Rule
 from advisor.aircraft.reference import PARAMETERS
 from advisor.bundled.study.campaigns import RuleOutcome
 from advisor.bundled.study.readings import TABLE_1, PaperRow
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,9 +17,9 @@ from advisor.decision.consistency import OUTLIER_BELOW
 from advisor.decision.omitted import Bias, beyond, bias_of, driven
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL, Trim, state_matrix
 from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.process.arrays import FloatArray
 
 JUDGED = ("L_p", "L_delta_a", "N_beta", "N_r", "N_delta_r")
 """Derivatives whose bias is examined: those that a test of aileron or rudder determines."""

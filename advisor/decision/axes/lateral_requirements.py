@@ -19,11 +19,11 @@ from typing import Literal
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.model.mil_f_8785c import CATEGORIES, WORSE, Category, LevelFound
 from advisor.oem.axes.lateral.estimate import LateralModes
 from advisor.oem.flying_qualities import Quality
+from advisor.process.arrays import FloatArray
 
 SOURCE = "MIL-F-8785C, paragraphs 3.3.1.1 to 3.3.1.3"
 Group = Literal["I, II-C, IV", "II-L, III"]

@@ -13,7 +13,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.whole_flights import WholeFlights
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver, are_one
-from advisor.flight.signals.messages import Columns, IntArray
+from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.formats.telemetry import FORMAT as TLOG
 from advisor.mavlink.logs.kinds import recognised
@@ -22,6 +22,7 @@ from advisor.mavlink.logs.unpack import beginning_of, unpacked
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.mavlink.wire.framing import CRC_EXTRA, LONGEST_FRAME, FrameCutter
 from advisor.mavlink.wire.scan import STAMP_BYTES
+from advisor.process.arrays import IntArray
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 BEFORE = {"HEARTBEAT": (), "AUTOPILOT_VERSION": (), "PARAM_VALUE": ("param_id",)}

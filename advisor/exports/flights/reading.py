@@ -11,9 +11,9 @@ from advisor.analysis.whole_flights import WholeFlights
 from advisor.exports.flights.findings import findings
 from advisor.exports.flights.table import Column, Dataset, FlightTable, Recording, counts, numbers, texts
 from advisor.flight.maneuvers.segmentation import GAP_S, MANY_INTERVALS
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import ALL_UNITS, Channel
+from advisor.process.arrays import FloatArray
 
 
 def dataset(flights: WholeFlights) -> Dataset:

@@ -20,11 +20,11 @@ from advisor.exports.models.improvement import (
     zero_said,
 )
 from advisor.flight.instruments.atmosphere import AirData, air_flown
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Diagnosis, Value
 from advisor.model.axes.lateral import LATERAL, Trim
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.solution import WITHOUT_FORCE
+from advisor.process.arrays import FloatArray
 from advisor.process.atomic_file import write_atomically
 from advisor.report.improved import file_content, improved_file, text_of
 from advisor.report.qualities import trim_of

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from advisor.flight.signals.banks import Pulses
 from advisor.flight.signals.channels import Decoded
-from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.flight.vehicle.surfaces import Surface, driven
+from advisor.process.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)

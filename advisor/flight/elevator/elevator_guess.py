@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.maneuvers.events import FlightEvent, Notice
-from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.record import Channel
+from advisor.process.arrays import FloatArray
 
 KEEP_S = 60.0
 """Length of flight from which a guess of the elevator's output is made, s: two test inputs with their

@@ -7,8 +7,8 @@ import numpy as np
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
 from advisor.flight.maneuvers.markers import MARKED
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
+from advisor.process.arrays import FloatArray
 
 _SURELY = 10.0
 """Least absolute value of M_δe, in standard errors under white noise, at which its sign is significant."""

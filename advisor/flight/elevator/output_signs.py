@@ -5,9 +5,9 @@ from itertools import product
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 from advisor.flight.signals.record import Channel
+from advisor.process.arrays import FloatArray
 
 _SURELY = 9.0
 """Least value of twice the log likelihood ratio of both signs at which an output's sign is known. The number

@@ -7,8 +7,8 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import channel_at, gravity_in_plane
+from advisor.process.arrays import FloatArray
 
 _BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
 """Length of a record's beginning, s. Largest difference between the offsets of beginning and whole record, as

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.flight.instruments.measured import Measured
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
+from advisor.process.arrays import FloatArray
 
 LONGEST_DELAY_S = 0.3
 """Longest delay in the search, s. A longer delay of telemetry shows as a gap or as a separate clock."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from advisor.flight.instruments.delayed_fit import LONGEST_DELAY_S
 from advisor.flight.instruments.measured import EXCLUDED
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 FARTHEST_S = 3.0
 """Largest clock error in the search, s: half a period of a slow Dutch roll (6 s)."""

@@ -23,9 +23,9 @@ from advisor.flight.instruments.alpha_offset import (
 from advisor.flight.instruments.delayed_fit import coloured_covariance
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.inferred_alpha import alpha_rate
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 from advisor.flight.signals.renewal import renewed
+from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 CLOCKS_S = 0.015
 """Standard deviation of a message's delay beyond its sampling interval, s: autopilot loop, transport,

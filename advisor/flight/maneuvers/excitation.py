@@ -20,8 +20,8 @@ import numpy as np
 
 from advisor.flight.maneuvers.loop import PITCH, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
+from advisor.process.arrays import FloatArray
 
 _INPUTS = 3
 """Number of the elevator's terms in the recursion."""

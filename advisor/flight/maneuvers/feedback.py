@@ -17,8 +17,8 @@ import numpy as np
 
 from advisor.flight.maneuvers.loop import PITCH, Loop
 from advisor.flight.maneuvers.maneuver import Span
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
+from advisor.process.arrays import FloatArray
 
 DELAYS_S = (0.1, 0.2, 0.3)
 """Delays between the motion and the hand's response, s. Pilots have 0.1 to 0.3 (McRuer & Krendel 1974)."""

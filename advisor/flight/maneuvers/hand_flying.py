@@ -11,7 +11,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Limits
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.steady_speed import speed_before
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.words.digits import distinct_texts
 
 OTHER_CONTROLS_DEG = 5.0

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from advisor.flight.maneuvers.maneuver import InputKind
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 SMALLEST_RAD = float(np.radians(0.15))
 """Least amplitude of a movement, rad: somewhat more than two steps of 1 us at 0.06 deg per microsecond."""

@@ -22,8 +22,8 @@ from advisor.flight.maneuvers.movement import (
     median,
     without_spikes,
 )
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.samples import Samples
+from advisor.process.arrays import FloatArray
 
 LEAD_IN_S = 1.0
 """Length of flight before the first step that belongs to the record, s."""

@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import Columns, FloatArray, cut, joined
+from advisor.flight.signals.messages import Columns, cut, joined
+from advisor.process.arrays import FloatArray
 
 _QUATERNION = ("q1", "q2", "q3", "q4")
 

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import Columns, FloatArray, IntArray, cut, joined
+from advisor.flight.signals.messages import Columns, cut, joined
+from advisor.process.arrays import FloatArray, IntArray
 
 _OUTPUTS = 16
 """Number of outputs in one SERVO_OUTPUT_RAW (MAVLink's common.xml)."""

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.clocks import place
-from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns
+from advisor.process.arrays import FloatArray
 
 ARMED = 128
 """MAV_MODE_FLAG_SAFETYARMED, MAVLink common.xml."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray, IntArray
+from advisor.process.arrays import FloatArray, IntArray
 
 _MS = 1e-3
 _WRAP_MS = 2**32

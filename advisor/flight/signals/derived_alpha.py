@@ -10,10 +10,11 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import Columns, FloatArray, IntArray
+from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.motion import gravity_in_plane
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.track import ChannelStatus, Track
+from advisor.process.arrays import FloatArray, IntArray
 
 DERIVED_ALPHA = "theta - asin(VFR_HUD.climb / airspeed)"
 SLOWEST_FLIGHT_M_S = 4.0

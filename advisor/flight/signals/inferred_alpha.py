@@ -13,9 +13,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import channel_at, integrated, path_turning
 from advisor.flight.signals.record import Channel
+from advisor.process.arrays import FloatArray
 
 NEEDED = ("q", "theta", "a_z")
 _PASSES = 2

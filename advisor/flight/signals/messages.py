@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.process.arrays import FloatArray as FloatArray
-from advisor.process.arrays import IntArray as IntArray
+from advisor.process.arrays import FloatArray, IntArray
 from advisor.words.mends import Carrier
 
 

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
+from advisor.process.arrays import FloatArray
 
 
 def channel_at(name: str, t: FloatArray, channels: Mapping[str, Channel]) -> FloatArray:

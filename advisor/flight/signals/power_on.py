@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.flight.signals.record import Channel
+from advisor.process.arrays import FloatArray, IntArray
 
 MOST = 600
 """Largest number of stretches, about the number of dots across a terminal. With more stretches, neighbours

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 # Channels that the advisor knows, with SI units. Alpha, pitch rate and pitch are positive nose up; elevator
 # is positive trailing edge down; body z points down. Sideslip is positive with wind from the right. A

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
+from advisor.process.arrays import FloatArray
 
 _MOSTLY_NEW = 0.7
 """Least share of new values above which no value counts as repeated."""

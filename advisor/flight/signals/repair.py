@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.robust import robust_std
+from advisor.process.arrays import FloatArray
 from advisor.words.vehicle_time import clock
 
 _WATCHED = {

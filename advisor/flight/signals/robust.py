@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 _MEDIAN = 0.6745
 """Median absolute value of a normal variable of unit variance."""

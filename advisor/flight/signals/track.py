@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.flight.signals.power_on import Extremes
 from advisor.flight.signals.record import Channel
+from advisor.process.arrays import FloatArray, IntArray
 
 _WINDOW_S = 10.0
 """Length of vehicle time over which samples are counted, s: longer than most manoeuvres."""

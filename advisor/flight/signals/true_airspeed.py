@@ -14,8 +14,8 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.signals.channels import GIVEN_AIRSPEED, TRUE_AIRSPEED
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
+from advisor.process.arrays import FloatArray
 
 SEA_LEVEL_DENSITY_KG_M3 = 1.225
 """Air density at sea level, kg/m³."""

@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns
+from advisor.process.arrays import FloatArray
 
 LONGEST = 250
 """Largest number of characters of a text: five chunks, and the longest message of an ArduPilot log."""

@@ -9,12 +9,13 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import READER_NOTICE, Notice
 from advisor.flight.signals.channels import Decoded, given_airspeed, named_value, of_companion, quantities
-from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import ALL_UNITS
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.pieces import Master
+from advisor.process.arrays import FloatArray
 
 _NAMED = "named_value:"
 """Beginning of a vane's ``source`` if a NAMED_VALUE_FLOAT carries its angle."""

@@ -12,8 +12,9 @@ from math import nan
 import numpy as np
 
 from advisor.flight.maneuvers.events import DataAgain, NoData
-from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.track import ChannelStatus
+from advisor.process.arrays import FloatArray
 from advisor.words.problems import Problem
 
 WINDOW_S = 3.0

@@ -16,12 +16,13 @@ from advisor.flight.signals.banks import merged
 from advisor.flight.signals.channels import COMPANIONS, Decoded, stamps
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
-from advisor.flight.signals.messages import Columns, FloatArray, IntArray, arrivals
+from advisor.flight.signals.messages import Columns, arrivals
 from advisor.flight.stream.decoding import decoded, power_on
 from advisor.flight.stream.state import StreamState
 from advisor.flight.vehicle.modes import closes_pitch_loop
 from advisor.flight.vehicle.pieces import Master, by_boot, pieces
 from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.process.arrays import FloatArray, IntArray
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock
 

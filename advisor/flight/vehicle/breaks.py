@@ -6,7 +6,8 @@ advisor was down is not blamed on radio or pilot.
 
 import numpy as np
 
-from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns
+from advisor.process.arrays import FloatArray
 
 DOWN = b"Advisor listens again"
 """Text that the advisor writes into its own stream after it was down."""

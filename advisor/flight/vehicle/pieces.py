@@ -7,8 +7,9 @@ from itertools import pairwise
 import numpy as np
 
 from advisor.flight.signals.clocks import BootClock
-from advisor.flight.signals.messages import Columns, FloatArray, IntArray, cut
+from advisor.flight.signals.messages import Columns, cut
 from advisor.flight.vehicle.parameters import names_in, tells_of_outputs
+from advisor.process.arrays import FloatArray, IntArray
 
 _EVERY = 100_000
 """Longest piece in arrival orders (bytes of a log), which bounds the memory for any batch."""

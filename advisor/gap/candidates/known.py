@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.nuisances import PROPELLER
 from advisor.gap.effects import EFFECTS
 from advisor.gap.kit.curve import as_in_file
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
+from advisor.process.arrays import FloatArray
 
 _IN_FILE = 1e-5
 """Relative precision of a number in the improved file, which has six digits."""

@@ -2,10 +2,10 @@
 
 from advisor.flight.instruments.evidence import COMPUTED_WIDTH
 from advisor.flight.instruments.lateness import lateness_std
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX, OUTPUTS, SKEWS
+from advisor.process.arrays import FloatArray
 
 _FILTERS_S = 0.01
 """Prior standard deviation of the delay of an autopilot's filters, s. ArduPlane's default, a second-order

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.effect import ANY, Effect
 from advisor.gap.kit.least import SMALL_ANGLE_RAD
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
+from advisor.process.arrays import FloatArray
 
 _TRIMS_DIFFER_RAD = 0.005
 """Least range of the trims, rad, at which a dead band about the trim differs from a fixed one."""

@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.effect import Effect, always
 from advisor.gap.kit.least import LEAST_S
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
+from advisor.process.arrays import FloatArray
 
 _DAMPING = 0.7
 """Damping ratio of the second-order servo, as in position loops that are tuned to be quick without

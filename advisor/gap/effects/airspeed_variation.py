@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.effect import ANY, Effect, Need
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import SPEED_CHANGE, PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
+from advisor.process.arrays import FloatArray
 
 _TWO_POWERS = 0.1
 """Relative change of the air speed above which moments and lift can have separate powers of the speed."""

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.effect import ANY, Effect, Need
 from advisor.gap.kit.skew import UNFILTERED, skew_of
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX, OUTPUTS, SKEWS
+from advisor.process.arrays import FloatArray
 
 _MESSAGE_S = 0.012
 """Least skew of a whole message that is named, s: a smaller one resembles too many other effects."""

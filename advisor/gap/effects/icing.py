@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.changes_between import steps_in
 from advisor.gap.kit.effect import ANY, Effect, Need
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
+from advisor.process.arrays import FloatArray
 
 _ICED = ("Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e")
 _ICE = Variant(

@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.changes_between import ONSET, divide, ramps_and_steps, steps_in
 from advisor.gap.kit.effect import ANY, Effect, Need
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.process.arrays import FloatArray
 
 _FORCES, _MOMENTS = DERIVATIVES[:3], DERIVATIVES[3:]
 _MASS_AND_INERTIA = Variant(

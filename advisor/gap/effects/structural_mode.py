@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.effect import ANY, Effect, always
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
+from advisor.process.arrays import FloatArray
 
 _MODES_HZ = (2.5, 4.0, 6.0, 8.5)
 """Frequencies of the structural mode, Hz, at which the search starts."""

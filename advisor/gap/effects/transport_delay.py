@@ -1,11 +1,11 @@
 """The surface moves a constant time after its command."""
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.effect import Effect, always
 from advisor.gap.kit.least import LEAST_S
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
+from advisor.process.arrays import FloatArray
 
 
 def _delay(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:

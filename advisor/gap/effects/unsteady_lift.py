@@ -2,11 +2,11 @@
 
 from dataclasses import replace
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.effect import ANY, Effect, always
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
+from advisor.process.arrays import FloatArray
 
 _UNSTEADY = Variant(
     "unsteady_lift", "force_equation", ("share", "lag_s"), ((0.1, 0.1), (0.3, 0.4)), (0.005, 0.01),

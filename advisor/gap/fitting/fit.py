@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.linear import Linear, are_near, linearise
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts, row_weights
 from advisor.gap.fitting.step import SearchStep, solve_blocks
+from advisor.process.arrays import FloatArray
 
 _SETTLED = 0.02
 """Numerical: relative change of the weights at which the iteration of weights and nuisance parameters

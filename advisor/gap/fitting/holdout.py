@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit, rms_of
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.step import bounds_of, own_eliminated
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import DERIVATIVES, HEIGHT, SPEED, THROTTLE
 from advisor.oem.arrow import solved_within
+from advisor.process.arrays import FloatArray
 
 _INDIFFERENT = 3e-4
 """Numerical: relative information below which a direction of the shared parameters is kept fixed. Such a

@@ -6,12 +6,12 @@ from functools import cached_property
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.prior import own_mean, own_precision
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DISTURB_INPUT, INDEX, NUISANCES, OUTPUTS, SPEED
 from advisor.gap.simulator.reading import differences, lane
+from advisor.process.arrays import FloatArray
 
 _DERIVATIVE_STEP = 1e-3
 """Numerical: finite-difference step of a derivative, relative to its size: far above rounding, far below

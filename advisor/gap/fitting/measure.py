@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.natural import with_natural
@@ -13,6 +12,7 @@ from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.refit import own_refitted
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.result import Gap, Shrink
+from advisor.process.arrays import FloatArray
 
 _BANDS_HZ = ((0.0, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0), (4.0, 10.0))
 """Words: limits of the frequency bands in Hz. The short period lies in the middle bands, drift of the trim

@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.prior import derivative_scale
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.process.arrays import FloatArray
 
 _GIVEN = 1e-4
 """Numerical: relative width within which a fit keeps a given parameter."""

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit, above_floor
 from advisor.gap.fitting.linear import shared_steps, shifted_points
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts, row_weights
@@ -19,6 +18,7 @@ from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.simulator.reading import differences
 from advisor.oem.arrow import solved, solved_within
+from advisor.process.arrays import FloatArray
 
 _INDIFFERENT = 1e-9
 """Numerical: relative information below which a direction of the shared parameters is not moved in a quick

@@ -9,11 +9,11 @@ an angle of attack no other measurement determines its initial value.
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES, REFERENCE
 from advisor.model.outputs import SHARED
 from advisor.oem.prior import precision_without_alpha
+from advisor.process.arrays import FloatArray
 
 ERROR_IF_RIGHT = 0.03
 """Prior: relative standard deviation of derivatives that are right: they are linearised, at a nearby

@@ -6,7 +6,6 @@ from itertools import accumulate, pairwise
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.prior import ERROR_IF_WRONG, prior_precision, small_without_alpha
 from advisor.gap.fitting.whitening import Filters, Whitening
 from advisor.gap.kit.variant import Values, Variant
@@ -16,6 +15,7 @@ from advisor.gap.simulator.pack import LANES
 from advisor.gap.simulator.reading import filtered, lane, packed, read_late, read_rows
 from advisor.gap.simulator.simulate import simulate
 from advisor.gap.simulator.surface import surfaces
+from advisor.process.arrays import FloatArray
 
 _NO_DISTURBANCE = np.zeros((4, 0))
 """Numerical: response of the four outputs to no disturbance."""

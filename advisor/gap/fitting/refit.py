@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.holdout import HeldOut, held_out
 from advisor.gap.fitting.linear import Linear, linearise
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES, SPEED
 from advisor.oem.arrow import solved_within
+from advisor.process.arrays import FloatArray
 
 _ROUNDS = 4
 """Numerical: number of Gauss-Newton steps from each starting value. The outputs are nearly linear in the

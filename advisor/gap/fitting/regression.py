@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
+from advisor.process.arrays import FloatArray
 
 _STEP_S = 0.02
 """Numerical: step of the regression's time grid, s."""

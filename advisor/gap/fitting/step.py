@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.linear import Linear
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.oem.arrow import factored, solved, solved_within
+from advisor.process.arrays import FloatArray
 
 _FASTEST_GROWTH = 5.0
 """Prior: largest growth rate of an unstable motion, 1/s: the amplitude doubles in 0.14 s, as on the most

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.records.floor import effective_sample_size
 from advisor.oem.arrow import inverse_of
+from advisor.process.arrays import FloatArray
 
 
 def colour_of(problem: EffectProblem, fitted: EffectFit) -> float:

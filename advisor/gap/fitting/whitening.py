@@ -11,11 +11,11 @@ from typing import Protocol
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX, SPEED, short_period
 from advisor.oem.innovations import ALPHA, AirModel, gains_of
 from advisor.oem.kalman import Gains
+from advisor.process.arrays import FloatArray
 
 
 class Whitening(Protocol):

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.distinguish import ONE_IMU, OTHERWISE, hidden_from, need_of, way_to_distinguish
 from advisor.gap.decision import LEAST_GAIN, LEAST_SIGMA
 from advisor.gap.effects import EFFECTS
@@ -19,6 +18,7 @@ from advisor.gap.kit.variant import Variant
 from advisor.gap.records.floor import floor_margins
 from advisor.gap.result import VISIBLE, Unseen, spelled
 from advisor.gap.simulator.layout import INDEX
+from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 CONFUSED_AT = 0.95

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.alpha_offset import least_offset_rad
 from advisor.gap.candidates.distinguish import need_of, way_to_distinguish
 from advisor.gap.decision import CERTAIN
@@ -27,6 +26,7 @@ from advisor.gap.noise.probes import disturbance_columns
 from advisor.gap.records.flights import SPEED_CHANGE, PreparedManeuver, PreparedManeuvers
 from advisor.gap.search.air import AIR_MANEUVERS, LEAST_GUST_ANGLE
 from advisor.gap.simulator.layout import DISTURB_AIR, REFERENCE, SPEED
+from advisor.process.arrays import FloatArray
 
 CLIMB_RATE_STD_M_S = 0.1
 """Prior: noise of an unmeasured climb rate, m/s, with one independent reading per second."""

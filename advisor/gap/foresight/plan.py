@@ -7,7 +7,6 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, with_known
@@ -24,6 +23,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import LEAST_SAMPLES
 from advisor.gap.search.baseline import base_entries, everywhere, prior_derivatives, with_telemetry
 from advisor.gap.simulator.layout import NUISANCES, OUTPUTS, natural_frequency
+from advisor.process.arrays import FloatArray
 from advisor.words.problems import ConfigurationError
 
 STEPS = {

@@ -11,10 +11,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem, row_weights
 from advisor.gap.kit.variant import Variant
+from advisor.process.arrays import FloatArray
 
 _RANK = 1e-7
 """Numerical: relative singular value below which a direction of the shared parameters is ignored."""

@@ -7,7 +7,6 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.kinematics import KinematicCheck
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, beyond_servo
 from advisor.gap.fitting.fit import EffectFit
@@ -27,6 +26,7 @@ from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.search.air import SoughtAir, moving_air
+from advisor.process.arrays import FloatArray
 
 _SET_WITHIN_RAD = {True: 0.009, False: 0.0035}
 """Prior: standard deviation of α's offset without a fault, rad, for an autopilot's estimate and for a vane.

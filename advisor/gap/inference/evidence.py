@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG, derivative_scale, small_without_alpha
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.uncertainty import colour_of
 from advisor.gap.inference.explanation import Evidence
 from advisor.gap.inference.marginal import Prior, marginal
+from advisor.process.arrays import FloatArray
 
 _UNSTATED = 1.0
 """Prior: relative standard deviation of a derivative that the aircraft file does not state."""

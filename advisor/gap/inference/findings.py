@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, field
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
@@ -11,6 +10,7 @@ from advisor.gap.search.air import MovingAir
 from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
 from advisor.gap.uncatalogued.weight_check import WeightReading
 from advisor.gap.uncatalogued.wind_shear import Shear
+from advisor.process.arrays import FloatArray
 
 
 @dataclass(frozen=True)

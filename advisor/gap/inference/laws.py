@@ -1,9 +1,9 @@
 """Laws outside the catalogue that compete with the effects; the likeliest one makes the answer "unknown"."""
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.uncatalogued.candidate_laws import laws_for, sentence_of
+from advisor.process.arrays import FloatArray
 
 AIR_SPEED = Variant(
     "air_speed_scale", "accelerometer", ("scale",), ((0.0,),), (0.002,), ((-0.7, 3.0),), 0.0,

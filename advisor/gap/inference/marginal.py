@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.inference.explanation import Evidence
+from advisor.process.arrays import FloatArray
 
 
 class Prior(NamedTuple):

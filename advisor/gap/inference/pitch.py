@@ -6,7 +6,6 @@ from functools import partial
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut, hold_out, mean_squares
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
@@ -19,6 +18,7 @@ from advisor.gap.inference.sizes import natural_nats, natural_share
 from advisor.gap.inference.stage import AT_THE_FILE, LAWS, REFINED, SAME_OPTIMUM, Pairs, Stage, likeliest
 from advisor.gap.kit.variant import Variant
 from advisor.gap.search.screen import Screen, Screened
+from advisor.process.arrays import FloatArray
 from advisor.process.parts import Parts
 
 _SYMMETRIC = float(np.log(2.0))

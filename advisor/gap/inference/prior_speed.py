@@ -8,7 +8,6 @@ the speed.
 import numpy as np
 
 from advisor.aircraft.reference import SPEED_EXPONENTS
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG, prior_precision
 from advisor.gap.fitting.problem import EffectProblem
@@ -16,6 +15,7 @@ from advisor.gap.fitting.uncertainty import colour_of, covariance_of
 from advisor.gap.inference.explanation import Evidence
 from advisor.gap.inference.marginal import Prior, marginal
 from advisor.gap.simulator.layout import DERIVATIVES, SPEED
+from advisor.process.arrays import FloatArray
 
 _POWERS = np.array([float(SPEED_EXPONENTS[name]) for name in DERIVATIVES])
 """Exponent of the air speed for each derivative."""

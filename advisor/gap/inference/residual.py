@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.probes import probe_blocks
 from advisor.gap.records.floor import tolerance_of
+from advisor.process.arrays import FloatArray
 
 _HARDLY = 1e-6
 """Numerical: probability below which a block counts as excluded."""

@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.prior import derivative_scale
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import natural_frequency
+from advisor.process.arrays import FloatArray
 
 _TIME_S, _SHARE = 0.05, 0.1
 """Prior: standard deviations of late stamps, s, and of relative errors of a reading."""

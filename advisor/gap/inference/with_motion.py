@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 BIN_S = 0.5
 """Numerical: length of a bin, s: longer than a coloured residual's memory, shorter than the motion's

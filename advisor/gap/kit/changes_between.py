@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.effect import ANY
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
+from advisor.process.arrays import FloatArray
 
 Change = Callable[[FloatArray, FloatArray], None]
 """Function that changes simulator inputs (manoeuvres, entries), given each manoeuvre's relative change."""

@@ -10,10 +10,10 @@ from functools import partial
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
+from advisor.process.arrays import FloatArray
 
 _TRIMS_DIFFER = 0.1
 """Least difference of the trims, as a share of the largest deviation from trim, that distinguishes the two

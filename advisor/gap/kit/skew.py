@@ -4,11 +4,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.least import least_delay_s
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX, OUTPUTS, SKEWS
+from advisor.process.arrays import FloatArray
 
 UNFILTERED = (
     "a filter of that channel with an equal delay",

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
+from advisor.process.arrays import FloatArray
 
 Values = Sequence[float] | FloatArray
 Apply = Callable[[FloatArray, Values, PreparedManeuvers], None]

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.linear import pulse_response
 from advisor.gap.fitting.problem import EffectProblem, row_weights
@@ -26,6 +25,7 @@ from advisor.gap.simulator.layout import (
 )
 from advisor.oem.arrow import solved
 from advisor.oem.turbulence import KNOTS_S
+from advisor.process.arrays import FloatArray
 
 MEMORY_S = 0.6
 """Numerical: correlation time of a disturbance, s. Sums of such disturbances represent faster and slower

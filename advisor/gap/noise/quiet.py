@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.decision import LEAST_GAIN
 from advisor.gap.fitting.fit import EffectFit, rms_of
 from advisor.gap.fitting.holdout import mean_squares
@@ -25,6 +24,7 @@ from advisor.gap.records.floor import stated_floor
 from advisor.gap.simulator.layout import DERIVATIVES, OUTPUTS, SPEED, short_period
 from advisor.oem.innovations import AirModel
 from advisor.oem.turbulence import Rows, Turbulence, cost_of, find_turbulence, spread_of
+from advisor.process.arrays import FloatArray
 
 _LEAST_SAMPLES = 50
 """Record: least number of a channel's samples in quiet stretches for an estimate of its noise."""

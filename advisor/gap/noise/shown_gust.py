@@ -7,11 +7,11 @@ angle w/V plus instrument errors.
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated, path_turning
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.simulator.layout import A_X, BANK, SPEED
 from advisor.oem.turbulence import LARGEST_GUST_RAD
+from advisor.process.arrays import FloatArray
 
 _NEEDED = ("alpha", "q", "a_z", "theta")
 

@@ -8,11 +8,11 @@ than the simulation's grid.
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem, counts
 from advisor.gap.records.airspeed import STEP_S
 from advisor.gap.simulator.layout import ENTRIES
+from advisor.process.arrays import FloatArray
 
 _LEAST = {"q": 0.3, "a_z": 0.45}
 """Least error from wrong stamps relative to the noise, by channel, above which stamps count as uncertain.

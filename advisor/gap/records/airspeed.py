@@ -11,9 +11,9 @@ import numpy as np
 
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated, speed_rate_at
 from advisor.oem.airspeed import LARGEST_DISAGREEMENT
+from advisor.process.arrays import FloatArray
 
 STEP_S = 0.005
 """Numerical: step of the time grid, s: a hundredth of the fastest short period, and the resolution of

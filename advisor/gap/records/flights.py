@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import ALPHA_TRIM, REFERENCE, SCALED, SPEED
 from advisor.oem.rows import Signal
+from advisor.process.arrays import FloatArray
 
 SPEED_CHANGE = 0.03
 """Relative change of air speed over all manoeuvres above which the speed's effect is examined."""

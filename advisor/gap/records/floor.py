@@ -6,8 +6,8 @@ filtered before storage. A coloured residual has a smaller effective sample size
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.flights import PreparedManeuvers
+from advisor.process.arrays import FloatArray
 
 TOLERANCE = 0.02
 """Prior: noise that is assumed in a record filtered before storage, as a share of the channel's peak."""

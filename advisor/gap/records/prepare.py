@@ -10,7 +10,6 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import Reference
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.records.airspeed import (
     STEP_S,
     airspeed_on,
@@ -27,6 +26,7 @@ from advisor.gap.records.usable import edges_of, held_from, outputs_of, recorded
 from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUST
 from advisor.oem.rows import Signal
 from advisor.oem.whitened import ASSUMED_M_S
+from advisor.process.arrays import FloatArray
 
 _CHORD_OF_1_KG_M = 0.15
 """Prior: chord of an aircraft of 1 kg, m. Chords grow with the cube root of the mass. A glider of 3.1 kg has

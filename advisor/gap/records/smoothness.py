@@ -9,8 +9,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.robust import robust_std
+from advisor.process.arrays import FloatArray
 
 _WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 """Numerical: weights of a fourth difference."""

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import channel_at, integrated, path_turning, speed_rate_at
 from advisor.gap.decision import SIGMAS
+from advisor.process.arrays import FloatArray
 
 _BLOCK_S = 1.0
 """Prior: length in s of the blocks over which motion errors are fully correlated."""

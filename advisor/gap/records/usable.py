@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.renewal import renewed
 from advisor.gap.records.unmeasured_alpha import is_known_by_motion, outputs_with
 from advisor.oem.lost_input import LOST_INTERVAL
 from advisor.oem.rows import Signal
+from advisor.process.arrays import FloatArray
 
 _STEEP, _SHORT_S = 0.15, 0.02
 """Record: least jump between two stamps that is an edge of the command, as a share of the command's range.

@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.robust import robust_std
 from advisor.gap.decision import CERTAIN
 from advisor.gap.fitting.fit import EffectFit
@@ -20,6 +19,7 @@ from advisor.gap.noise.quiet import air_in_quiet, instrument_noise, quiet_rows, 
 from advisor.gap.noise.shown_gust import largest_gust
 from advisor.model.outputs import OUTPUTS
 from advisor.oem.turbulence import KNOTS_S, Turbulence, find_turbulence
+from advisor.process.arrays import FloatArray
 
 AIR_MANEUVERS = 5
 """Numerical: number of the noisiest manoeuvres in which moving air is sought."""

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import changes_in, lasting, with_known
 from advisor.gap.candidates.nuisances import IMU, LOOP, OWN_ALPHA, PROPELLER, TRUE_AIR_SPEED, filters, latency
@@ -22,6 +21,7 @@ from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.floor import stated_floor
 from advisor.gap.search.screen import Screen
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, NUISANCES
+from advisor.process.arrays import FloatArray
 
 _SLIGHT_S = 0.005
 """Numerical: starting value of a delay or lag in its fit, s."""

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.neighbourhood import Neighbourhood, SimulatedPoint
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.kit.variant import Variant
+from advisor.process.arrays import FloatArray
 
 _STEPS = 4
 """Numerical: largest number of Gauss-Newton steps of a quick fit."""

@@ -13,11 +13,11 @@ from functools import partial
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.kit.changes_between import steps_in
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import FILTER, INDEX, OUTPUTS
+from advisor.process.arrays import FloatArray
 
 LIFT_MEMORY, FLOW_LETS_GO = "lift_memory", "flow_lets_go"
 _FORCE = "force_equation"

@@ -12,8 +12,8 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.decision import SIGMAS
+from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 _NEEDED = ("a_z", "alpha", "theta")

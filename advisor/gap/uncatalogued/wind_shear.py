@@ -14,9 +14,9 @@ from scipy.special import stdtrit
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import channel_at, gravity_in_plane, integrated, speed_rate
 from advisor.gap.decision import CHANCE
+from advisor.process.arrays import FloatArray
 
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10

@@ -8,7 +8,6 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.kinematics import KinematicCheck
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.nuisances import PROPELLER
@@ -54,6 +53,7 @@ from advisor.gap.verdict.numbers import (
 from advisor.gap.verdict.reasons import capped, weighed
 from advisor.gap.verdict.statements import in_simulator
 from advisor.gap.verdict.text import answers_of, sentence_of
+from advisor.process.arrays import FloatArray
 from advisor.words.certainty import as_sure
 
 

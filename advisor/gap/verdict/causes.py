@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.flight.instruments.kinematics import KinematicCheck
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.candidates.distinguish import imitations, way_to_distinguish
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.measure import whole_gap
@@ -19,6 +18,7 @@ from advisor.gap.inference.posterior import Posterior, stated_as
 from advisor.gap.kit.variant import Variant
 from advisor.gap.result import Cause, Gap, Value
 from advisor.gap.verdict.holdout_numbers import without_air
+from advisor.process.arrays import FloatArray
 
 MOST_CAUSES = 5
 """Words: largest number of causes that are stated."""

@@ -14,7 +14,6 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import by_band, by_phase, gap_between, shrink_between, whole_gap
@@ -24,6 +23,7 @@ from advisor.gap.inference.findings import Findings, Model
 from advisor.gap.records.floor import prefiltered
 from advisor.gap.result import Cause, ComparedDerivative, Gap, Shrink, Trace, Value, Yardsticks
 from advisor.gap.simulator.layout import DERIVATIVES
+from advisor.process.arrays import FloatArray
 
 _UNCHANGED = 0.1
 """Share of the change in flight below which a manoeuvre was flown before the change."""

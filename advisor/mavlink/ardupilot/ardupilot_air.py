@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.mavlink.ardupilot.sensors import Said
 from advisor.mavlink.ardupilot.which_flew import families
 from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.equivalent import nearest
+from advisor.process.arrays import FloatArray, IntArray
 
 _AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
 """Name of a record to its field with the air speed, the best record first."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from advisor.flight.signals.messages import Columns, IntArray
+from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.identity import READER
 from advisor.mavlink.ardupilot.ardupilot_air import air
 from advisor.mavlink.ardupilot.ardupilot_vehicle import (
@@ -24,6 +24,7 @@ from advisor.mavlink.ardupilot.sensors import Said, Silence, changes, flown, sai
 from advisor.mavlink.ardupilot.which_flew import KINDS, families, named_primary, said_family, unused
 from advisor.mavlink.records.dataflash import RecordTable, gps_time_base_s, seconds
 from advisor.mavlink.records.equivalent import air_data, message, milliseconds, nearest, side_by_side
+from advisor.process.arrays import IntArray
 
 _NOT_LOGGED = 255
 """MAV_SEVERITY of a text of MSG, which does not keep the severity (0 to 7)."""

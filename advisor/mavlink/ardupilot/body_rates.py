@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.mavlink.records.dataflash import RecordTable
+from advisor.process.arrays import FloatArray, IntArray
 
 RATE_RECORDS: dict[str, set[str]] = {
     "GYR": {"GyrX", "GyrY", "GyrZ"},

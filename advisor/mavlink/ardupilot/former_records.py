@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import IntArray
 from advisor.mavlink.records.dataflash import RecordTable
+from advisor.process.arrays import IntArray
 
 SENSORS_APART = {
     "IMU": ("IMU2", "IMU3"),

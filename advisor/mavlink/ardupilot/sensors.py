@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.equivalent import latest
+from advisor.process.arrays import FloatArray, IntArray
 from advisor.words.vehicle_time import clock, stretch
 
 BoolArray = NDArray[np.bool_]

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.mavlink.ardupilot.sensors import Said
 from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.equivalent import latest
+from advisor.process.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

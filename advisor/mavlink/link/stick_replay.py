@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.mavlink.link.outgoing import Ids, Talker
 from advisor.mavlink.wire.framing import Frame
+from advisor.process.arrays import FloatArray, IntArray
 
 CHANNELS = 4
 """Number of overridden channels: roll, pitch, throttle and yaw in the usual order."""

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.mavlink.px4.px4_topics import (
     TimedMessages,
     Topic,
@@ -18,6 +17,7 @@ from advisor.mavlink.px4.px4_topics import (
     samples_of,
 )
 from advisor.mavlink.records.equivalent import air_data, latest
+from advisor.process.arrays import FloatArray, IntArray
 
 _SOURCES = ("airspeed_source", "selected_airspeed_index")
 """Fields of AirspeedValidated.msg with the source of the air speed, since 1.15 and before. The values 1 to 3

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.flight.vehicle.px4_wiring import (
     FOLLOWS_PITCH,
     OUTPUTS,
@@ -33,6 +32,7 @@ from advisor.mavlink.px4.px4_topics import (
     rate_hz,
     vector,
 )
+from advisor.process.arrays import FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)

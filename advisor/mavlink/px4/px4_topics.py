@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from advisor.flight.signals.messages import FloatArray, IntArray
+from advisor.process.arrays import FloatArray, IntArray
 
 TOPICS: dict[str, set[str]] = {
     "actuator_controls_0": {"control[3]"},

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from advisor.flight.signals.messages import IntArray
 from advisor.flight.stream.identity import READER
 from advisor.mavlink.px4.px4_topics import TimedMessages, Topic, Topics, first, published_us
 from advisor.mavlink.records.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, milliseconds
+from advisor.process.arrays import IntArray
 
 _PX4 = 12  # MAV_AUTOPILOT
 _MAV_TYPE_QUADROTOR = 2

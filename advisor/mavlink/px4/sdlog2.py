@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns
 from advisor.mavlink.records.dataflash import RecordTable, parameters_in, seconds
 from advisor.mavlink.records.equivalent import (
     MAV_PARAM_TYPE_REAL32,
@@ -20,6 +20,7 @@ from advisor.mavlink.records.equivalent import (
     milliseconds,
     system_id,
 )
+from advisor.process.arrays import FloatArray
 
 SDLOG2_RECORDS: dict[str, set[str]] = {
     "TIME": {"StartTime"},

@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.mavlink.px4.px4_topics import Topic, Topics, first, joined, published_us, samples_of
 from advisor.mavlink.records.equivalent import latest
+from advisor.process.arrays import FloatArray, IntArray
 from advisor.words.vehicle_time import clock
 
 _ESTIMATES = {

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.flight.signals.messages import FloatArray, IntArray
 from advisor.mavlink.records.record_scan import FMT, FMT_LENGTH, HEADER
+from advisor.process.arrays import FloatArray, IntArray
 
 _DEFINITION = HEADER + bytes([FMT])
 DEFINITION_LAYOUT = np.dtype(

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from advisor.flight.signals.messages import Columns, FloatArray, IntArray
+from advisor.flight.signals.messages import Columns
 from advisor.mavlink.wire.definitions import DEFINITIONS
+from advisor.process.arrays import FloatArray, IntArray
 from advisor.words.mends import Carrier
 
 AUTOPILOT_COMPONENT = 1  # MAV_COMP_ID_AUTOPILOT1

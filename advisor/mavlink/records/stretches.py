@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.flight.signals.messages import IntArray
 from advisor.mavlink.records.dataflash import DEFINITION_LAYOUT, RecordTable, layout_of
 from advisor.mavlink.records.record_scan import FMT, FMT_LENGTH, Window, bodies, windows
+from advisor.process.arrays import IntArray
 
 STRETCH_WINDOWS = 4
 """Length of a stretch in windows, 16 MB of a file. All records of a stretch become messages together, which

@@ -17,8 +17,8 @@ import numpy as np
 
 from advisor.aircraft.reference import SIDE_PARAMETERS, SPEED_EXPONENTS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axis import CONSTANT, Axis, Term
+from advisor.process.arrays import FloatArray
 
 _FACTORS = {"beta": "beta", "p": "p", "r": "r", "delta_a": "aileron", "delta_r": "rudder"}
 _STATES = {"Y": "beta", "L": "p", "N": "r"}

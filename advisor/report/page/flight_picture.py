@@ -13,10 +13,10 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from matplotlib.transforms import Bbox
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import Channel
 from advisor.flight.vehicle.modes import stays
+from advisor.process.arrays import FloatArray
 from advisor.report.page.blocks import Block, Figure, Gallery, section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, LAYER, ORANGE, picture

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.mil_f_8785c import CATEGORIES, LIMITS, Range, ShortPeriodLimits
+from advisor.process.arrays import FloatArray
 from advisor.report.facts.estimates import fact_of
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, listing, section
 from advisor.report.page.content import Content, Document

@@ -13,7 +13,6 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import SideControl
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.transport_delay import DELAY
 from advisor.model.axes.lateral import LATERAL
@@ -26,6 +25,7 @@ from advisor.oem.extra import Prior
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution
 from advisor.oem.surface import Servo
+from advisor.process.arrays import FloatArray
 from advisor.simulators.air import refuse_unknown_air, standard_heights, winds
 from advisor.simulators.flying import Progress, without
 from advisor.simulators.interface import control_fault, side_fault

@@ -8,9 +8,9 @@ from textual.containers import VerticalScroll
 from textual.widgets import Static
 
 from advisor.aircraft.reference import PARAMETERS as NAMES
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.estimate import Estimate
+from advisor.process.arrays import FloatArray
 from advisor.session.view import View
 from advisor.tui.panes.lines import Redrawn
 from advisor.tui.panes.pane import Pane

@@ -6,7 +6,7 @@ import numpy as np
 from textual.app import ComposeResult
 
 from advisor.aircraft.reference import PARAMETERS as NAMES
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.report.facts.estimates import of_all, of_one
 from advisor.session.view import View
 from advisor.tui.panes.lines import Redrawn

@@ -4,7 +4,7 @@ import numpy as np
 from textual.app import ComposeResult
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.session.view import View
 from advisor.tui import keys
 from advisor.tui.panes.fit_charts import (

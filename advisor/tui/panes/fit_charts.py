@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.process.arrays import FloatArray
 from advisor.tui.plot.chart import Chart, Ink, Mark, Series
 from advisor.tui.table_rows import TableRows
 from advisor.words.quantities import channel

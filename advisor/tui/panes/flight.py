@@ -8,9 +8,9 @@ from textual.app import ComposeResult
 from textual.events import Resize
 from textual.message import Message
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.power_on import Course
 from advisor.flight.vehicle.modes import stays
+from advisor.process.arrays import FloatArray
 from advisor.session.view import View
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.lines import Lines

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from textual.app import ComposeResult
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.oem.correlation import autocorrelation, white_noise_bound
 from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.process.arrays import FloatArray
 from advisor.session.view import View
 from advisor.tui.panes.fit_charts import OUTPUTS, fits_of
 from advisor.tui.panes.pane import Pane

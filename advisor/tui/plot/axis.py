@@ -5,7 +5,7 @@ from math import ceil, floor, log10
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 _FINENESS = 8
 """The ends of an axis are rounded to about an eighth of the axis's length."""

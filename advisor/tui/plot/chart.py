@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 Ink = Literal["measured", "fitted", "residual", "input", "limit", "prior"]
 Mark = Literal["line", "points", "stems", "intervals"]

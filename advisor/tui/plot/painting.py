@@ -11,7 +11,7 @@ from rich.segment import Segment
 from rich.style import Style
 from textual.strip import Strip
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.tui.plot.axis import Axis, LogAxis, exact_axis, log_axis, round_axis
 from advisor.tui.plot.canvas import Canvas
 from advisor.tui.plot.chart import INKS, Chart, Series

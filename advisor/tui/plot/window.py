@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 
 _LEAST_SHARE = 0.01
 """Shortest visible part, as a fraction of the whole axis: a hundredth of 12 s holds six samples at 50 Hz."""

@@ -19,7 +19,6 @@ from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
 from advisor.exports.models.proof import NUMBERS, ImprovedAxis, Kept, Proof, parted, proved, refuse_unimproved
 from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.comparison import compare_side
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.model.axes.lateral import LATERAL
@@ -27,6 +26,7 @@ from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.axes.lateral.prediction import predicted_lateral
 from advisor.oem.estimate import NoEstimate
+from advisor.process.arrays import FloatArray
 from advisor.simulators.flying import Progress
 from advisor.words.quantiles import NORMAL_95
 

@@ -19,9 +19,9 @@ from advisor.exports.models.exported import Exported, commented, effects_beside
 from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.formats import ModelFormat
 from advisor.exports.models.improvement import Improvement, air_note
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.result import Value
 from advisor.model.axes.lateral import state_matrix
+from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import SIDE_PARAMETERS as QUANTITIES
 

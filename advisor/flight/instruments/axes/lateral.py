@@ -32,10 +32,10 @@ from advisor.flight.instruments.examined import (
 )
 from advisor.flight.instruments.far_clock import CLOCK_STD_S, SignOrClock, sign_or_clock
 from advisor.flight.instruments.measured import ANY, EXCLUDED, Evidence, Measured, weigh
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import channel_at, integrated
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
+from advisor.process.arrays import FloatArray
 
 _TURNED_RAD = 0.75 * np.pi
 """Largest bank, rad, of a record with which the roll rate is tested. Beyond half a turn the bank angle

@@ -7,7 +7,6 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative, Weighed
 from advisor.gap.axes.lateral.effects import block_of, side_effects, unseen
 from advisor.gap.axes.lateral.evidence import Gain, colour_share, information_of, posterior_at, squares_of
@@ -29,6 +28,7 @@ from advisor.gap.verdict.reasons import capped, weighed
 from advisor.gap.verdict.statements import what
 from advisor.gap.verdict.text import answers_of, place
 from advisor.model.axes.lateral import LATERAL
+from advisor.process.arrays import FloatArray
 from advisor.words.certainty import Answers
 
 PEAKS = ("p", "r")

@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.setting import PROPELLER, Flown, Place
 from advisor.gap.effects.accelerometer_offset import ARM
 from advisor.gap.effects.actuator_backlash import BACKLASH
@@ -26,6 +25,7 @@ from advisor.gap.kit.variant import Variant
 from advisor.gap.result import Unseen, spelled
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.disturbance import SENSORS
+from advisor.process.arrays import FloatArray
 
 THROTTLE_MOVES = 0.02
 """Least change of the throttle within a record that makes it informative, as for the pitching moment."""

@@ -7,11 +7,11 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.fit import Fit, Known, N
 from advisor.oem.evaluation import errors_of, share_of
 from advisor.oem.extra import Extra
 from advisor.oem.scatter_between import widened_by_scatter
+from advisor.process.arrays import FloatArray
 
 
 class Information(NamedTuple):

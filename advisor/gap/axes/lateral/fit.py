@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.setting import Flown, Place, Setting, laid_out, moved_to
 from advisor.gap.inference.marginal import Prior
 from advisor.model.axes.lateral import LATERAL
@@ -24,6 +23,7 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.extra import Prior as Width
 from advisor.oem.gauss_newton import weigh
 from advisor.oem.prior import Priors
+from advisor.process.arrays import FloatArray
 
 MOST = 40
 """Numerical: largest number of trial steps of a fit; a fit from a tabulated start takes three to six."""

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.alternative import Alternative
 from advisor.gap.axes.lateral.effects import SideEffect, block_of
 from advisor.gap.axes.lateral.evidence import Gain, colour_share, information_of, squares_of, step_of
@@ -30,6 +29,7 @@ from advisor.gap.inference.stage import (
     within_model_error,
 )
 from advisor.oem.axes.lateral.disturbance import Course, courses_of
+from advisor.process.arrays import FloatArray
 from advisor.process.parts import Parts
 
 _TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)

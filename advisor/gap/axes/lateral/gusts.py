@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.fit import Fit, Known
 from advisor.oem.arrow import solved_within
 from advisor.oem.axes.lateral.disturbance import Course
 from advisor.oem.axes.lateral.gusts import Air, Integrated, Sums, likeliest
 from advisor.oem.covariance import colours_of
 from advisor.oem.weighing import Weighing
+from advisor.process.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

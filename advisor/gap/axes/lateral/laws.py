@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.effects import SideEffect, block_of
 from advisor.gap.axes.lateral.fit import Fit
 from advisor.gap.axes.lateral.models import Case
@@ -19,6 +18,7 @@ from advisor.gap.uncatalogued.candidate_laws import RINGING, STOPS, SURFACE_STOP
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.axis_response import respond_axis
 from advisor.oem.axes.lateral.disturbance import EQUATIONS, SENSORS, STEP_S, answered
+from advisor.process.arrays import FloatArray
 
 _CURVE = Variant("curve", "", ("square", "cube"), ((0.0, 0.0),), (1.0, 1.0), ((-np.inf, np.inf),) * 2, 0.0)
 _LAG_AND_DAMPING = replace(

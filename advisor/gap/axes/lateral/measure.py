@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.fit import Fit
 from advisor.gap.fitting.measure import gap_between, shrink_between
 from advisor.gap.result import Gap, Shrink
 from advisor.model.axes.lateral import LATERAL
+from advisor.process.arrays import FloatArray
 
 _FLOOR_NOTE = "measured in the residual of the whole model"
 

@@ -10,7 +10,6 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.effects import SideEffect
 from advisor.gap.axes.lateral.fit import Fit, Free, Known, Point, fitted
 from advisor.gap.axes.lateral.setting import AIR_SPEED, COMMAND, Flown, Place
@@ -22,6 +21,7 @@ from advisor.oem.axes.lateral.problem import assemble_lateral
 from advisor.oem.axes.lateral.start import lateral_start
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.prepare import signal_of
+from advisor.process.arrays import FloatArray
 
 SMALL_SHARE = 0.1
 """Prior: least size of a derivative for its relative error, over the derivative's natural size

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.fit import Fit
 from advisor.gap.axes.lateral.setting import Flown
 from advisor.gap.inference.residual import NATURAL, Residual, shares_of
@@ -12,6 +11,7 @@ from advisor.gap.inference.with_motion import BIN_S, moving_power
 from advisor.gap.noise.probes import Probe, at_its_size, coloured_between
 from advisor.oem.axes.lateral.disturbance import AIR, Course, blocks_of, courses_of
 from advisor.oem.axes.lateral.motion import FLOOR
+from advisor.process.arrays import FloatArray
 
 
 def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:

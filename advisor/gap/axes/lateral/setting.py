@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.problem import LateralAssembly, LateralProblem, LateralRecord, assemble_lateral
 from advisor.oem.rows import Signal
 from advisor.oem.surface import LONGEST_STEP_S, Servo
+from advisor.process.arrays import FloatArray
 
 Place = tuple[str, str]
 """Control or output, with the entry that a parameter sets: ``("aileron", "lag_s")``, ``("p", "scale")``."""

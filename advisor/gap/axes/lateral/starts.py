@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.gap.axes.lateral.effects import SideEffect
 from advisor.gap.axes.lateral.fit import Fit, N, Point, outputs
 from advisor.gap.axes.lateral.models import Case, base_of
@@ -17,6 +16,7 @@ from advisor.gap.axes.lateral.setting import COMMAND, Flown, Setting, deflection
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.disturbance import STEP_S, answered
+from advisor.process.arrays import FloatArray
 
 
 def changes_by(fit: Fit, flown: Flown, of: str, settings: Sequence[Setting]) -> FloatArray:

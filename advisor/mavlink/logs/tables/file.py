@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
+from advisor.process.arrays import FloatArray
 from advisor.words.problems import UnusableInputError
 
 MAT_5 = b"MATLAB 5.0 MAT-file"

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.signals.messages import Columns, FloatArray
+from advisor.flight.signals.messages import Columns
 from advisor.mavlink.records.equivalent import MAV_TYPE_FIXED_WING, message
+from advisor.process.arrays import FloatArray
 
 _CENTRE_US, _US_PER_DEG = 1500.0, 10.0
 """Pulse width at zero deflection, and its change per degree, of an arbitrary calibration that is inverted

@@ -6,8 +6,8 @@ from dataclasses import fields
 import numpy as np
 
 from advisor.aircraft.aircraft import TableColumns
-from advisor.flight.signals.messages import FloatArray
 from advisor.mavlink.logs.tables.names import ANGLES, RATES, is_flight, recognised_columns, unit_of
+from advisor.process.arrays import FloatArray
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _HALF_TURN = ("elevator", "aileron", "rudder", "alpha", "beta", "theta")

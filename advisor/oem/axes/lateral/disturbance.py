@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import expm
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL, Trim, state_matrix
 from advisor.oem.arrow import unabsorbed
 from advisor.oem.axes.lateral.problem import LateralAssembly, LateralProblem
 from advisor.oem.turbulence import KNOTS_S
+from advisor.process.arrays import FloatArray
 
 AIR = "air"
 EQUATIONS = {"side_force": "beta", "rolling_moment": "p", "yawing_moment": "r"}

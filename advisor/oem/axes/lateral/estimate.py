@@ -7,10 +7,10 @@ from typing import ClassVar
 import numpy as np
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import CONTROLS
 from advisor.oem.estimate import Estimate
 from advisor.oem.flying_qualities import Quality
+from advisor.process.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,6 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
 from advisor.oem.axes.lateral.instruments import nuisances_of
@@ -27,6 +26,7 @@ from advisor.oem.identifiability import correlated
 from advisor.oem.prediction import prediction_band
 from advisor.oem.scatter_between import widened_by_scatter
 from advisor.oem.solution import Solution
+from advisor.process.arrays import FloatArray
 
 N = len(LATERAL.shared)
 _STATES = len(LATERAL.states)

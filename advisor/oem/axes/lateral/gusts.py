@@ -14,7 +14,6 @@ import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotri
 from scipy.special import expit
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.response import Index
 from advisor.oem.axes.lateral.disturbance import Course, Linear, courses_of
@@ -24,6 +23,7 @@ from advisor.oem.model_error import directions
 from advisor.oem.solution import Solution
 from advisor.oem.turbulence import KNOTS_S
 from advisor.oem.weighing import Weighing
+from advisor.process.arrays import FloatArray
 
 MEMORY_S = 0.5, 5.0
 """Prior: range of the gust angle's correlation time, s, uniform in its logarithm.

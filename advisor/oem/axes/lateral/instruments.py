@@ -16,11 +16,11 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.lateness import lateness_std
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.problem import CAUSES, SEEN, SPEED, LateralAssembly, LateralProblem
 from advisor.oem.extra import Prior
 from advisor.oem.instruments import KNOWN_TO, PLACE_S, USUAL_LAG
+from advisor.process.arrays import FloatArray
 
 AIR_SPEED = Prior(0.0, 0.02)
 """Prior of the relative excess of the true over the read air speed. The read speed may be an indicated one,

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.axis_response import respond_axis
 from advisor.oem.axes.lateral.instruments import Nuisance, columns_of
 from advisor.oem.axes.lateral.problem import SPEED_POWERS, LateralAssembly, LateralProblem, assemble_lateral
 from advisor.oem.descent import Response
+from advisor.process.arrays import FloatArray
 
 LEAST_NOISE = {"p": 5e-4, "r": 5e-4, "bank": 5e-4, "a_y": 0.01, "beta": 5e-4}
 """Least standard deviation of each output, SI. Gyros of 0.007 deg/s/√Hz have 5e-4 rad/s at 20 Hz, and the

@@ -8,7 +8,6 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.instruments import nuisances_of
@@ -20,6 +19,7 @@ from advisor.oem.descent import descended
 from advisor.oem.estimate import ChannelFit, NoEstimate
 from advisor.oem.estimator import channel_fits
 from advisor.oem.prior import Priors
+from advisor.process.arrays import FloatArray
 
 HELD = 1e-6
 """Numerical: standard deviation of the given derivatives in the refit, SI."""

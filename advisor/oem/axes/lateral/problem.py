@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.axis_response import AxisGrid
 from advisor.model.response import Index
 from advisor.oem.rows import Laid, Piece, Signal, events_of, lay_rows, measured_in, padded, with_samples
 from advisor.oem.surface import Servo
+from advisor.process.arrays import FloatArray
 
 _BETA, _P, _R, _BANK = range(len(LATERAL.states))
 LEAST_PART = 0.2

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.signals.messages import FloatArray
 from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
 from advisor.oem.axes.lateral.gusts import Air, in_moving_air
 from advisor.oem.axes.lateral.instruments import Nuisance, begun
@@ -24,6 +23,7 @@ from advisor.oem.evaluation import share_of
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
 from advisor.oem.solution import RUNS_AWAY, Solution, evaluate, refused
+from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 FIRST_LOOK = 8

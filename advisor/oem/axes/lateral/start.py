@@ -12,12 +12,12 @@ rates are linear in the derivatives. This is the integral form of the equation-e
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.messages import FloatArray
 from advisor.flight.signals.motion import integrated
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.problem import LateralProblem, LateralRecord
 from advisor.oem.prior import guessed_y_beta
 from advisor.oem.regression import Equations, regressed
+from advisor.process.arrays import FloatArray
 
 
 def lateral_start(problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
