@@ -89,7 +89,8 @@ bench: .venv/.developed ## every ratio of speed, each against its goal (about tw
 	$(BIN)/python -m benchmarks.tui
 
 study: .venv/.developed ## the paper's campaign, 2,000 times a noise level, with Figure 5
-	$(BIN)/advisor study --campaigns 2000 --readings --figure docs/validation/figure-5.svg
+	$(BIN)/advisor study --campaigns 2000 --figure docs/validation/figure-5.svg
+	$(BIN)/python -m benchmarks.studies paper --campaigns 2000
 
 study-advice: .venv/.developed ## what following the advice saves
 	$(BIN)/python -m benchmarks.studies advice --campaigns 100

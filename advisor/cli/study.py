@@ -48,7 +48,6 @@ def campaign_options(command: F) -> F:
 @click.option(
     "--figure", type=click.Path(path_type=Path), metavar="FILE", help="File for Figure 5, .png or .svg."
 )
-@click.option("--readings", is_flag=True, help="Compare other readings of the paper's rules as well.")
 @running_options
 @json_option
 def command(
@@ -56,7 +55,6 @@ def command(
     seed: int,
     noise_reading: "NoiseReading",
     figure: Path | None,
-    readings: bool,
     workers: int | None,
     scheduler: str | None,
     as_json: bool,
@@ -79,7 +77,7 @@ def command(
     run = runner_of(workers, scheduler, guarded=False)
     from advisor.bundled.study.run import table_1
 
-    report = fly(table_1(campaigns, seed, noise_reading, readings), run)
+    report = fly(table_1(campaigns, seed, noise_reading), run)
     if figure is not None:
         from advisor.bundled.study.figure import draw
 

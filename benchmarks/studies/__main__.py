@@ -1,6 +1,7 @@
 """Studies beside the paper's, on the aircraft of ``advisor study``.
 
 \b
+    python -m benchmarks.studies paper --campaigns 500     # other readings of the paper's rules, two flaws
     python -m benchmarks.studies stops --campaigns 150     # does the rule information stop too early
     python -m benchmarks.studies advice --campaigns 100    # what following the advice saves
     python -m benchmarks.studies change --campaigns 400    # how soon a change of the aircraft is told
@@ -19,8 +20,10 @@ from advisor.cli.options import json_option
 from advisor.cli.running import runner_of, running_options
 from advisor.cli.study import campaign_options, fly, tell
 from benchmarks.studies import reports
+from benchmarks.studies.paper import paper
 
 STUDIES: Mapping[str, Callable[[int, int], Study[Any, Any]]] = {
+    "paper": paper,
     "stops": reports.early_stops,
     "advice": reports.advice,
     "change": reports.change,

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.bundled.study.campaigns import blocks, estimate_copies
 from advisor.bundled.study.flying import Scene, fly_named, noise_scale
-from advisor.bundled.study.readings import NOISE_PERCENT, ORDER
+from advisor.bundled.study.paper import NOISE_PERCENT, ORDER
 from advisor.decision.change import find_change
 from advisor.decision.history import CandidateManeuver
 from advisor.oem.estimate import Estimate

@@ -21,7 +21,7 @@ from advisor.bundled.study.flying import (
     noise_scale,
     respond,
 )
-from advisor.bundled.study.readings import ORDER
+from advisor.bundled.study.paper import ORDER
 from advisor.decision.advice import forecast
 from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver

@@ -14,7 +14,7 @@ from advisor.bundled.study.flying import (
     fly_named,
     noise_scale,
 )
-from advisor.bundled.study.readings import ORDER, needed_by_reading
+from advisor.bundled.study.paper import ORDER
 from advisor.decision.foresight import Instruments, expect
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import knowledge
@@ -125,51 +125,28 @@ class CampaignBlock:
     campaigns: int
     seed: tuple[int, ...]
     reading: NoiseReading = "std"
-    other_readings: bool = False
-    """Whether the campaigns are also judged by other interpretations of the paper's rules."""
 
 
-@dataclass(frozen=True, slots=True)
-class CampaignResults:
-    """Results of a block of campaigns."""
-
-    outcomes: Mapping[Rule, tuple[RuleOutcome, ...]]
-    """Outcomes of all campaigns under each stopping rule, by the rule."""
-    needed: Mapping[tuple[str, Rule], tuple[int | None, ...]]
-    """Name of the reading and rule to the manoeuvres that each campaign needed; empty unless requested."""
+Outcomes = Mapping[Rule, tuple[RuleOutcome, ...]]
+"""Outcomes of all campaigns of a block under each stopping rule, by the rule."""
 
 
 def table_blocks(
-    scene: Scene,
-    noise_percent: float,
-    campaigns: int,
-    seed: int,
-    reading: NoiseReading = "std",
-    other_readings: bool = False,
+    scene: Scene, noise_percent: float, campaigns: int, seed: int, reading: NoiseReading = "std"
 ) -> list[CampaignBlock]:
     """Divide the campaigns at one noise level into blocks, each with a seed of its own."""
     return [
-        CampaignBlock(
-            scene, noise_percent, count, (seed, round(1000 * noise_percent), k), reading, other_readings
-        )
+        CampaignBlock(scene, noise_percent, count, (seed, round(1000 * noise_percent), k), reading)
         for k, count in blocks(campaigns, BLOCK)
     ]
 
 
-def judge(block: CampaignBlock) -> CampaignResults:
+def judge(block: CampaignBlock) -> Outcomes:
     """Fly the campaigns of a block, and stop each by every rule."""
     maneuvers = [as_maneuver(fly_named(block.scene, name)) for name in ORDER]
     plan = CampaignPlan()
     flown = fly_campaigns(block)
-    return CampaignResults(
-        {rule: tuple(outcome(campaign, rule, plan, maneuvers) for campaign in flown) for rule in RULES},
-        needed_by_reading(flown) if block.other_readings else {},
-    )
-
-
-def joined(judged: Sequence[CampaignResults], rule: Rule) -> list[RuleOutcome]:
-    """Return the outcomes of several blocks under one rule."""
-    return [outcome for block in judged for outcome in block.outcomes[rule]]
+    return {rule: tuple(outcome(campaign, rule, plan, maneuvers) for campaign in flown) for rule in RULES}
 
 
 def fly_campaigns(block: CampaignBlock) -> list[list[Estimate]]:

@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from itertools import product
 from typing import Generic, TypeVar
 
-from advisor.bundled.study import flaws, readings, text
-from advisor.bundled.study.campaigns import RULES, CampaignBlock, CampaignResults, joined, judge, table_blocks
+from advisor.bundled.study import text
+from advisor.bundled.study.campaigns import RULES, CampaignBlock, Outcomes, judge, table_blocks
 from advisor.bundled.study.figure import Curve, curve, in_terminal
 from advisor.bundled.study.flying import NoiseReading, Scene
-from advisor.bundled.study.readings import NOISE_PERCENT
+from advisor.bundled.study.paper import NOISE_PERCENT
 from advisor.bundled.study.table import as_document, row
 
 T = TypeVar("T")
@@ -39,31 +40,28 @@ class Study(Generic[T, R]):
     """Function that is called with the results in the order of the tasks."""
 
 
-def table_1(
-    campaigns: int, seed: int, reading: NoiseReading = "std", other_readings: bool = False
-) -> Study[CampaignBlock, CampaignResults]:
-    """Return the study of Table 1 and Figure 5, the paper's place in them, and the flaws of its rules."""
+def table_1(campaigns: int, seed: int, reading: NoiseReading = "std") -> Study[CampaignBlock, Outcomes]:
+    """Return the study of Table 1 and Figure 5, with the paper's place in them."""
     scene = Scene()
-    levels = [table_blocks(scene, noise, campaigns, seed, reading, other_readings) for noise in NOISE_PERCENT]
-    near_zero = flaws.near_zero_blocks(campaigns, seed)
+    blocks = [
+        block for noise in NOISE_PERCENT for block in table_blocks(scene, noise, campaigns, seed, reading)
+    ]
 
-    def report(results: Sequence[CampaignResults]) -> StudyReport:
-        left = iter(results)
-        judged = {
-            noise: [next(left) for _ in level] for noise, level in zip(NOISE_PERCENT, levels, strict=True)
+    def report(results: Sequence[Outcomes]) -> StudyReport:
+        outcomes = {
+            (rule, noise): [
+                outcome
+                for block, judged in zip(blocks, results, strict=True)
+                if block.noise_percent == noise
+                for outcome in judged[rule]
+            ]
+            for rule, noise in product(RULES, NOISE_PERCENT)
         }
-        found = flaws.measure(judged[NOISE_PERCENT[0]], list(left))
-        outcomes = {(rule, noise): joined(judged[noise], rule) for rule in RULES for noise in NOISE_PERCENT}
         rows = [row(rule, noise, several, scene.theta) for (rule, noise), several in outcomes.items()]
         curves = [
             curve(rule, noise, several)
             for (rule, noise), several in outcomes.items()
             if rule != "information"
-        ]
-        compared = [
-            result
-            for noise in NOISE_PERCENT
-            for result in readings.compare([block.needed for block in judged[noise]], noise)
         ]
         lines = [
             *text.heading(campaigns, scene, reading),
@@ -71,14 +69,11 @@ def table_1(
             *text.where_the_paper_lies(rows),
             *text.tolerances(rows),
             *(line for rule in RULES[:2] for line in [*in_terminal(curves, rule), ""]),
-            *text.flaws(found),
-            *(text.readings(compared) if compared else []),
         ]
         document = as_document(rows, campaigns) | {
             "noise_reading": reading,
-            "flaws": asdict(found),
             "figure_5": [asdict(c) for c in curves],
         }
         return StudyReport(lines, document, tuple(curves))
 
-    return Study([block for level in (*levels, near_zero) for block in level], judge, report)
+    return Study(blocks, judge, report)

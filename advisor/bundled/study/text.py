@@ -1,4 +1,4 @@
-"""The study in words: Table 1 with the paper's figures, the paper's place among ours, the flaws."""
+"""The study in words: Table 1 with the paper's figures, and the paper's place among ours."""
 
 from collections.abc import Iterable, Sequence
 from textwrap import wrap
@@ -7,9 +7,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
-from advisor.bundled.study.flaws import NOISE_PERCENT, Flaws
 from advisor.bundled.study.flying import NOISE_READINGS, NoiseReading, Scene
-from advisor.bundled.study.readings import ReadingResult
 from advisor.bundled.study.table import Row
 from advisor.words.quantities import symbol
 
@@ -106,37 +104,6 @@ def tolerances(rows: Sequence[Row]) -> list[str]:
                 f"{np.mean(list(outside.values())):.1f} % of the named derivatives, at most "
                 f"{outside[worst]:.1f} % ({worst})."
             )
-    return [*lines, ""]
-
-
-def flaws(found: Flaws) -> list[str]:
-    """Return lines on flaws of the paper's rules that users must know."""
-    return [
-        "Two flaws of the paper's rules:",
-        *wrapped(
-            f"  separate computation rejects {found.thrown_away_percent:.0f} % of equally good manoeuvres: "
-            "a new cost is as likely above the median of the earlier ones as below."
-        ),
-        *wrapped(
-            f"  a parameter near zero keeps Eq. (12) from falling: with Z_q = 0 and {NOISE_PERCENT:g} % "
-            f"noise, {found.near_zero_never_percent:.0f} % of {found.near_zero_campaigns} campaigns never "
-            f"end; the rule information ends them after {count(found.near_zero_information)} (median)."
-        ),
-        "",
-    ]
-
-
-def readings(results: Iterable[ReadingResult]) -> list[str]:
-    """Return lines on the results by other readings of the paper's rules."""
-    lines = wrapped(
-        "Other readings of the rules: the median number of manoeuvres that the rule needs, the share of "
-        "campaigns that never stop, and the share that stops at the paper's number"
-    )
-    lines += [
-        f"  {r.reading:<25}{r.rule:<11}{r.noise_percent:>4g} %{count(r.median):>6}  never "
-        f"{r.never_percent:3.0f} %  as paper {r.as_paper_percent:3.0f} %"
-        for r in results
-    ]
     return [*lines, ""]
 
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from advisor.bundled.study.flying import NOISE_READINGS, Scene, fly_named, noise_scale
-from advisor.bundled.study.readings import ORDER, TABLE_1
+from advisor.bundled.study.paper import ORDER, TABLE_1
 
 SCENE = Scene()
 
