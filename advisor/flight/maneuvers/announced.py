@@ -25,6 +25,8 @@ _SCRIPT = re.compile(r"SCRIPT +(.*\S) +(\S+)")
 BOUNCE_S = 0.5
 """Longest time from BEGIN to END that counts as a bouncing switch, s. The shortest step that a script flies
 lasts .2 s, and its input with two steps and their response lasts longer than this time."""
+SWITCH = "switch"
+"""Reason of a script for the early end of an input by its switch."""
 _REPEAT_S = 0.5
 """Longest time after which an equal text is the same text, received by a second path, s."""
 _BY_HAND = "mark the stretch by hand if it was flown"
@@ -73,7 +75,7 @@ class Announced:
         length_s
             Time from BEGIN to END, s.
         """
-        if length_s < BOUNCE_S:
+        if length_s < BOUNCE_S and self.aborted in (None, SWITCH):
             said = f"{self.named} ended after {length_s:.2f} s (a test lasts at least {BOUNCE_S} s)"
             return "bounce", f"{said}: its switch bounced; not a test input"
         if self.aborted is not None:
@@ -120,6 +122,8 @@ class Announcements:
     def start_boot(self) -> None:
         """Begin another power-on without an open input."""
         self._begun: tuple[float, Announcement] | None = None
+        self.alone_s: list[float] = []
+        """Times of BEGIN and END without a partner, s since boot."""
         self._last: tuple[float, Announcement | None] = (-inf, None)
 
     @property
@@ -144,6 +148,7 @@ class Announcements:
             return lost
         if self._begun is None or self._begun[1].number != said.number:
             where = f"ADVISOR END {said.number} at {clock(at_s)}"
+            self.alone_s.append(at_s)
             alone = Notice(SCRIPT_NOTICE, f"{where} has no BEGIN, so it marks nothing; {_BY_HAND}.")
             return (*self._dropped(f"before {where}"), alone)
         (start_s, begun), self._begun = self._begun, None
@@ -164,6 +169,7 @@ class Announcements:
         if self._begun is None:
             return ()
         (start_s, begun), self._begun = self._begun, None
+        self.alone_s.append(start_s)
         named = Announced(begun.number, begun.said).named
         text = f"ADVISOR BEGIN at {clock(start_s)}, {named}, has no END {until}, so it marks nothing; "
         return (Notice(SCRIPT_NOTICE, f"{text}{_BY_HAND}."),)

@@ -120,6 +120,7 @@ class Marks:
         self._switched: list[Switched] = []
         self._open: dict[Marker, float] = {}
         self._script.start_boot()
+        self._script_order: int | None = None
         self._waiting: dict[Mark, Mark | None] = {}
         self._closed: list[Mark] = []
         self._held: list[tuple[Span, int | None]] = []
@@ -143,7 +144,25 @@ class Marks:
 
     def hear(self, switched: Iterable[Switched]) -> None:
         """Take switch movements or texts of one message type, in order of arrival."""
-        self._switched = sorted([*self._switched, *switched], key=lambda one: one.order)
+        new = sorted(switched, key=lambda one: one.order)
+        if self._script_order is None:
+            self._script_order = next((one.order for one in new if one.by == "script"), None)
+        self._switched = sorted([*self._switched, *new], key=lambda one: one.order)
+
+    def script_passes_over(self, span: Span, up_to_order: int | None) -> bool:
+        """Return whether a script in the autopilot announces its inputs, but not this movement.
+
+        A text without a partner may belong to the movement.
+
+        Parameters
+        ----------
+        up_to_order
+            Arrival order of the newest message that counts. None: all messages so far.
+        """
+        first = self._script_order
+        if first is None or (up_to_order is not None and first > up_to_order):
+            return False
+        return not any(span.record_from_s <= at_s <= span.end_s for at_s in self._script.alone_s)
 
     def begin_by_hand(self, at_s: float) -> None:
         """Begin a mark. A mark that is already open is dropped."""

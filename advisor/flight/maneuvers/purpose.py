@@ -91,6 +91,8 @@ def not_an_input(
     motion: Mapping[str, Channel] | None = None,
     limits: Limits | None = None,
     loop: Loop = PITCH,
+    *,
+    passed_over: bool = False,
 ) -> Because | None:
     """Return the reason why an elevator movement is no test input; None if it may be one.
 
@@ -108,6 +110,9 @@ def not_an_input(
     loop
         Control that moved, and the motion that responds. Slow movements outside the limits are sought for the
         elevator alone.
+    passed_over
+        Whether a script in the autopilot announces its inputs, but not this movement. In a mode with a closed
+        loop the movement is then the loop's.
     """
     control = loop.control
     if on_ground is not None:
@@ -117,7 +122,8 @@ def not_an_input(
     if hovers(maneuver.mode):
         return Because("hover", f"the {control} moved in {maneuver.mode}, where rotors carry the aircraft")
     because = _tells_nothing(maneuver, maneuver.channels if motion is None else motion, loop)
-    if closes_pitch_loop(maneuver.mode) and (lacks := _lacks_in_a_loop(maneuver, because, control)):
+    lacks = _lacks_in_a_loop(maneuver, because, control, passed_over)
+    if closes_pitch_loop(maneuver.mode) and lacks:
         what = "SystemID ran" if _is_swept(maneuver) else f"the {control} moved"
         return Because("autopilot", f"{what} in {maneuver.mode}{lacks}; not a test input")
     if (
@@ -129,10 +135,12 @@ def not_an_input(
     return because
 
 
-def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None, control: str) -> str:
+def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None, control: str, passed_over: bool) -> str:
     """Return in words what a movement in a closed loop lacks as a test input; empty if it lacks nothing."""
     if has_an_errand(maneuver.mode):
         return " by the autopilot's own task"
+    if passed_over and not _is_swept(maneuver):
+        return ", and the script in the autopilot announced no input"
     if not _is_swept(maneuver) and not _is_external(maneuver, control):
         return " without the sharp steps of a test"
     return f", and {because.text.partition('; ')[0]}" if because else ""

@@ -29,7 +29,7 @@ from advisor.flight.maneuvers.ground import why_on_ground
 from advisor.flight.maneuvers.loop import PITCH, ROLL, YAW
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.markers import marked_span
-from advisor.flight.maneuvers.marks import Mark
+from advisor.flight.maneuvers.marks import Mark, Marks
 from advisor.flight.maneuvers.purpose import Because, not_an_input
 from advisor.flight.maneuvers.steady_speed import at_steady_speed
 from advisor.flight.signals.motion import along_heading
@@ -50,9 +50,16 @@ class Cutting:
     """Cutter of manoeuvres from the tracks of one vehicle."""
 
     def __init__(
-        self, tracks: Tracks, who: Identity, aircraft: Aircraft, breaks: Breaks, lateral: bool = False
+        self,
+        tracks: Tracks,
+        who: Identity,
+        aircraft: Aircraft,
+        breaks: Breaks,
+        marks: Marks,
+        lateral: bool = False,
     ) -> None:
         self._tracks, self._who, self._limits, self._breaks = tracks, who, aircraft.limits, breaks
+        self._marks = marks
         self._sign = None if aircraft.elevator.is_calibrated else ElevatorSign()
         self._modes = [(-np.inf, who.mode)]
         self._released = (0, -np.inf)
@@ -184,13 +191,15 @@ class Cutting:
     def is_no_side_input(self, maneuver: Maneuver, found: SideInput, up_to_order: int | None) -> bool:
         """Return whether no movement in an input of aileron and rudder is a test input."""
         on_ground = self.why_on_ground(maneuver.span, up_to_order)
+        passed_over = self._marks.script_passes_over(maneuver.span, up_to_order)
         for one in found.movements:
             if one.loop.control not in maneuver.channels:
                 continue
             names = [name for name in (one.loop.rate, one.loop.angle) if name]
             alone = replace(one.span, record_from_s=maneuver.span.record_from_s, end_s=maneuver.span.end_s)
             motion = self.motion_before(alone, names, up_to_order)
-            if not_an_input(replace(maneuver, span=alone), on_ground, motion, None, one.loop) is None:
+            moved = replace(maneuver, span=alone)
+            if not_an_input(moved, on_ground, motion, None, one.loop, passed_over=passed_over) is None:
                 return False
         return True
 
@@ -219,7 +228,11 @@ class Cutting:
     def _not_an_input(self, maneuver: Maneuver, up_to_order: int | None) -> Because | None:
         span = maneuver.span
         return not_an_input(
-            maneuver, self.why_on_ground(span, up_to_order), self._motion(span, up_to_order), self._limits
+            maneuver,
+            self.why_on_ground(span, up_to_order),
+            self._motion(span, up_to_order),
+            self._limits,
+            passed_over=self._marks.script_passes_over(span, up_to_order),
         )
 
     def _motion(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:

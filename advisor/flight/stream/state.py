@@ -73,10 +73,10 @@ class StreamState:
         )
         """Channels of this power-on, the newest stretch of each."""
         self._breaks = Breaks()
-        self._cutting = Cutting(self.tracks, self._who, aircraft, self._breaks, lateral)
-        self._mixing = Mixing(self.tracks)
         self.marks = Marks(marks, None if aircraft.name == Aircraft.name else aircraft.name)
         """Marks by hand, by a switch, by texts and by a script."""
+        self._cutting = Cutting(self.tracks, self._who, aircraft, self._breaks, self.marks, lateral)
+        self._mixing = Mixing(self.tracks)
         self._markers = MarkerWatch(aircraft.markers)
         self._path = ElevatorPath(self.tracks, self._mixing, self.marks, self._cutting)
         self._side = SidePath(self.tracks, self.marks, self._cutting) if lateral else None

@@ -93,6 +93,41 @@ def test_a_switch_that_bounces_is_listed():
     assert "input 3 (reverse 3-2-1-1) ended after 0.20 s (a test lasts at least 0.5 s)" in activity.text
 
 
+def test_an_input_that_another_abort_ends_quickly_is_no_bounce():
+    (activity,) = listed(announced((53.0, BEGIN), (53.2, "ADVISOR END 3 aborted: stick")))
+    assert activity.reason == "aborted"
+
+
+SCRIPT = "ADVISOR SCRIPT my aircraft 1a2b3c4d"
+
+
+def test_steps_that_the_script_does_not_announce_are_the_loops():
+    wire = announced((50.5, SCRIPT), mode=5)
+    _, events = flown(wire)
+    assert maneuvers(events) == []
+    (activity,) = listed(wire)
+    assert (activity.reason, activity.text) == (
+        "autopilot",
+        "the elevator moved in FBWA, and the script in the autopilot announced no input; not a test input",
+    )
+
+
+def test_steps_by_hand_in_manual_count_beside_a_script():
+    _, events = flown(announced((50.5, SCRIPT), mode=0))
+    assert [m.span.closed_by for m in maneuvers(events)] == ["quiet"]
+
+
+@pytest.mark.parametrize("alone", [(53.5, BEGIN), (57.0, END)])
+def test_steps_in_a_loop_whose_begin_or_end_is_lost_are_judged_by_their_shape(alone: tuple[float, str]):
+    _, events = flown(announced((50.5, SCRIPT), alone, mode=5))
+    assert [m.span.closed_by for m in maneuvers(events)] == ["quiet"]
+
+
+def test_a_script_heard_after_the_movement_changes_nothing():
+    _, events = flown(announced((63.5, SCRIPT), mode=5))
+    assert [m.span.closed_by for m in maneuvers(events)] == ["quiet"]
+
+
 def test_a_begin_without_an_end_is_told_and_hides_nothing():
     wire = announced((53.0, BEGIN))
     (sentence,) = told(wire)
@@ -166,8 +201,10 @@ def test_without_an_aircraft_file_any_script_is_taken():
     assert told(announced((51.0, "ADVISOR SCRIPT big wing 1a2b3c4d"))) == []
 
 
-def test_announced_inputs_in_flight_are_those_of_a_replay():
-    wire = announced((53.0, BEGIN), (57.0, END), (58.5, BEGIN), (60.0, "ADVISOR END 3 aborted: mode"))
+@pytest.mark.parametrize("begun", [((53.0, BEGIN),), ()], ids=["announced", "not announced"])
+def test_announced_inputs_in_flight_are_those_of_a_replay(begun: tuple[tuple[float, str], ...]):
+    further = (57.0, END), (58.5, BEGIN), (60.0, "ADVISOR END 3 aborted: mode")
+    wire = announced((50.5, SCRIPT), *begun, *further, mode=5)
     stream, live = FlightStream(Aircraft()), []
     for i in range(0, len(wire), PIECE):
         live += stream.feed(wire.columns(range(i, min(i + PIECE, len(wire)))))
