@@ -333,7 +333,9 @@ local function fly(late_ms)
   if t >= test.length_s + test.test.rest_s then
     finish("done")
   else
-    send(mixed(function(control) return asked(control, t) end))
+    -- A pulse holds until the next call: it gets the value of the middle of this time.
+    local middle = t + 0.0005 * math.min(late_ms, LATE_MS)
+    send(mixed(function(control) return asked(control, middle) end))
   end
 end
 

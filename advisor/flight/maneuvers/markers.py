@@ -9,6 +9,7 @@ from advisor.flight.maneuvers.announced import read_announcement
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.marks import Mark, Marker, Switched
 from advisor.flight.maneuvers.movement import (
+    RETURNED,
     SMALLEST_RAD,
     Movement,
     describe,
@@ -130,13 +131,25 @@ def marked_span(mark: Mark, elevator: Channel | None) -> Span:
 
 def _input(mark: Mark, elevator: Channel) -> Movement | None:
     """Return the movement of the elevator within the mark; None for a constant elevator."""
-    # The return to trim at the end of a script's input is a part of the input.
-    within = elevator.cut(mark.start_s, min(mark.end_s + 2.0 * _RESTING_S, mark.reach[1]))
+    within = elevator.cut(mark.start_s, mark.end_s)
     if len(within) < 3:
         return None
     before = elevator.cut(mark.start_s - _BEFORE_S, mark.start_s).y
     level = median(before) if len(before) else float(within.y[0])
-    rest = within.cut(float(within.t[-1]) - _RESTING_S, float(within.t[-1])).y
-    moved = float(abs(without_spikes(within.y) - level).max())
+    moved, rest = _moved(within, level), _last(within)
+    if not (is_still(rest, moved) and abs(median(rest) - level) <= RETURNED * moved):
+        # The return to trim may follow the mark. After a return within the mark, an autopilot's loop follows.
+        within = elevator.cut(mark.start_s, min(mark.end_s + 2.0 * _RESTING_S, mark.reach[1]))
+        moved, rest = _moved(within, level), _last(within)
     found = describe(within.t, within.y, level, rest if is_still(rest, moved) else None)
     return found if found is not None and found.amplitude >= SMALLEST_RAD else None
+
+
+def _moved(within: Channel, level_rad: float) -> float:
+    """Return the largest deviation from a level without single spikes, rad."""
+    return float(abs(without_spikes(within.y) - level_rad).max())
+
+
+def _last(within: Channel) -> FloatArray:
+    """Return the values of the last rest, rad."""
+    return within.cut(float(within.t[-1]) - _RESTING_S, float(within.t[-1])).y

@@ -66,7 +66,7 @@ def without_spikes(u: FloatArray) -> FloatArray:
 
 BAND = 0.3
 """Distance from trim, as a share of the amplitude, within which the elevator counts as at trim."""
-_RETURNED = 0.45
+RETURNED = 0.45
 """Largest difference between the rests before and after, as a share of the amplitude, for a return to trim. A
 rest farther from trim is a step."""
 _LEAVING = 0.1
@@ -128,7 +128,7 @@ def describe(t: FloatArray, u: FloatArray, before: float, rest: FloatArray | Non
     after = before if rest is None else median(rest)
     quiet = 0.0 if rest is None else float(np.std(rest))
     smooth = without_spikes(u)
-    returned = abs(after - before) <= _RETURNED * float(np.abs(smooth - before).max())
+    returned = abs(after - before) <= RETURNED * float(np.abs(smooth - before).max())
     d = smooth - (0.5 * (before + after) if returned else before)
     level = 0.0 if returned else after - before
     amplitude = float(np.abs(d).max())

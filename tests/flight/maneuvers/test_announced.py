@@ -242,3 +242,25 @@ def test_a_stretch_in_which_several_surfaces_move_has_one_extent_on_both_axes():
     assert pitch.span.start_s == side.span.start_s == pytest.approx(54.0, abs=0.05)
     assert pitch.span.end_s == side.span.end_s == pytest.approx(61.0, abs=0.05)
     assert pitch.span.kind == side.span.kind == "multisine"
+
+
+def test_the_loop_that_moves_a_surface_after_the_end_is_no_part_of_the_input():
+    wire = Wire()
+    heartbeat(wire, 1000.0, mode=5)
+    plane_parameters(wire, 1000.001)
+    for k in range(800):
+        since_s = k / 50.0
+        pulses = {n: 1500 + 20 * pull(since_s - 4.0) for n in (1, 2, 4)}
+        if since_s > 9.0:
+            pulses |= {1: 1650, 4: 1600}
+        attitude(wire, 1000.01 + since_s, 50.0 + since_s)
+        servo(wire, 1000.011 + since_s, 50.0 + since_s, pulses)
+    text(wire, 1003.9, "ADVISOR BEGIN 1 multisine")
+    text(wire, 1009.0, "ADVISOR END 1 done")
+    stream = FlightStream(Aircraft(), lateral=True)
+    events = stream.feed(wire.columns()) + stream.finish()
+    (pitch,) = maneuvers(events)
+    (side,) = (event.maneuver for event in events if isinstance(event, SideManeuverFlown))
+    for span in (pitch.span, side.span):
+        assert span.start_s == pytest.approx(54.0, abs=0.05)
+        assert span.last_step_s < 58.0
