@@ -46,7 +46,7 @@ def flown(seed: int, name: str, size: float, rng: np.random.Generator) -> tuple[
     assert not isinstance(found, NoEstimate)
     alone = dict(zip(SIDE_PARAMETERS, estimate.theta.tolist(), strict=True))
     over = alone | {one.name: one.found.value for one in found.derivatives}
-    told = said_of(found.diagnosis) if found.diagnosis is not None and found.verdict == "effect" else ""
+    told = said_of(found) if found.verdict == "effect" else ""
     hold = sum(abs(UAV[d.name] - d.found.value) <= d.half for d in found.derivatives if d.name in WRONG)
     return told or str(found.verdict), [error_of(one) for one in (given, alone, over)], hold
 

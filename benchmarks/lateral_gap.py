@@ -22,8 +22,9 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.gap.axes.lateral.comparison import compare_side
-from advisor.gap.axes.lateral.diagnosis import SideDiagnosis, diagnose_side
+from advisor.gap.axes.lateral.diagnosis import diagnose_side
 from advisor.gap.axes.lateral.models import case_of
+from advisor.gap.result import Diagnosis
 from advisor.oem.estimate import NoEstimate
 from advisor.simulators.axes.lateral import side_without_difference
 from advisor.simulators.specification import simulator_of
@@ -82,7 +83,7 @@ READ = {
 
 
 Effects = Mapping[str, Mapping[str, float]]
-Fly = Callable[[int, Effects], SideDiagnosis | None]
+Fly = Callable[[int, Effects], Diagnosis | None]
 FULL = {"aileron": FULL_RAD, "rudder": FULL_RAD}
 
 
@@ -100,19 +101,19 @@ def scenario_of(seed: int, effects: Effects) -> Scenario:
     )
 
 
-def diagnosed(seed: int, effects: Effects) -> SideDiagnosis | None:
+def diagnosed(seed: int, effects: Effects) -> Diagnosis | None:
     """Fly effects, and return the diagnosis."""
     return diagnosis_of(recordings(lateral_flight(scenario_of(seed, effects))))
 
 
-def diagnosis_of(flight: Sequence[Maneuver]) -> SideDiagnosis | None:
+def diagnosis_of(flight: Sequence[Maneuver]) -> Diagnosis | None:
     """Return the diagnosis of manoeuvres with the aircraft's true derivatives."""
     case = case_of(flight, AIRCRAFT, np.array([UAV[name] for name in SIDE_PARAMETERS]))
     assert not isinstance(case, NoEstimate)
     return diagnose_side(case)
 
 
-def diagnosed_in_jsbsim(seed: int, effects: Effects) -> SideDiagnosis | None:
+def diagnosed_in_jsbsim(seed: int, effects: Effects) -> Diagnosis | None:
     """Fly effects with JSBSim's c172p, and return the diagnosis against c172p without them."""
     scenario = replace(
         scenario_of(seed, effects), engine="jsbsim", aircraft="c172p", height_m=1200.0, step_s=0.005
@@ -127,7 +128,7 @@ def diagnosed_in_jsbsim(seed: int, effects: Effects) -> SideDiagnosis | None:
         simulator.close()
     found = compare_side(beside, as_file)
     assert not isinstance(found, NoEstimate)
-    return found.diagnosis
+    return found if found.evidence else None
 
 
 SLOWER = 1.6
@@ -223,7 +224,7 @@ def rows(seed: int, study: Study, fly: Fly) -> Iterator[str]:
 NOTHING = Withheld("", "", (0.0, 0.0), is_named=False)
 
 
-def judged(found: SideDiagnosis | None, case: Withheld, size: float) -> tuple[str, bool, bool]:
+def judged(found: Diagnosis | None, case: Withheld, size: float) -> tuple[str, bool, bool]:
     """Return the answer in words, whether it is right, and whether its size is."""
     if found is None:
         return "no answer", False, False
@@ -232,30 +233,30 @@ def judged(found: SideDiagnosis | None, case: Withheld, size: float) -> tuple[st
         assert shares is not None
         said = f"{found.verdict} ({shares.none:.2f}, {shares.parameters:.2f})"
         return said, not case.is_named and found.verdict == "none", False
-    present = [one for one in found.causes if one.cause.present]
-    first = present[0].cause.parameters
+    present = [one for one in found.causes if one.present]
+    first = present[0].parameters
     told = first[next(iter(first))]
     near = abs(told.value - size) <= max(NORMAL_95 * told.std, 0.15 * abs(size))
     holds = [one.name for one in present] == [case.name]
     return said_of(found), holds, holds and near
 
 
-def pair_judged(found: SideDiagnosis | None, names: Sequence[str]) -> tuple[str, int]:
+def pair_judged(found: Diagnosis | None, names: Sequence[str]) -> tuple[str, int]:
     """Return the answer in words, and how many of the effects it names; one that is not there costs all."""
     if found is None or found.verdict != "effect":
         return "none" if found is None else found.verdict, 0
-    told = {one.name for one in found.causes if one.cause.present}
+    told = {one.name for one in found.causes if one.present}
     right = {CASES[name].name for name in names}
     return said_of(found), 0 if told - right else len(told)
 
 
-def said_of(found: SideDiagnosis) -> str:
+def said_of(found: Diagnosis) -> str:
     """Return the effects of the model with their first size and probability."""
     return "; ".join(
-        f"{one.name} {value.value:.3g} ± {NORMAL_95 * value.std:.2g} ({one.cause.probability:.2f})"
+        f"{one.name} {value.value:.3g} ± {NORMAL_95 * value.std:.2g} ({one.probability:.2f})"
         for one in found.causes
-        if one.cause.present
-        for value in list(one.cause.parameters.values())[:1]
+        if one.present
+        for value in list(one.parameters.values())[:1]
     )
 
 

@@ -16,7 +16,6 @@ from advisor.campaign.late_limits import recount
 from advisor.campaign.running_estimate import Settled, Settling
 from advisor.campaign.state import (
     OF_ELEVATOR,
-    AxisName,
     CampaignState,
     JudgedManeuver,
     LateralState,
@@ -45,6 +44,7 @@ from advisor.flight.stream.stream import FlightStream
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
 from advisor.process.parts import Parts
+from advisor.words.axes import AxisName
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock
 

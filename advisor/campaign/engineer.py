@@ -7,9 +7,9 @@ from dataclasses import replace
 from advisor.campaign.axis_campaign import AxisCampaign
 from advisor.campaign.hand_decisions import ByHand, HandDecision, Remark
 from advisor.campaign.journal import Journal
-from advisor.campaign.state import AxisName
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.stream.flights import Flights
+from advisor.words.axes import AxisName
 from advisor.words.vehicle_time import clock
 
 OF: Mapping[AxisName, str] = {"pitch": "", "lateral": "roll and yaw, "}

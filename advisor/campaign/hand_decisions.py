@@ -7,10 +7,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from advisor.campaign.state import AxisName, CampaignState
+from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
+from advisor.words.axes import AxisName
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 from statistics import median
-from typing import Literal
 
 from advisor.decision.arriving import Arriving
 from advisor.decision.crew_plan import CrewPlan, crew_plan
@@ -22,9 +21,6 @@ from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.process.parts import FailedPart
 from advisor.words.problems import Problem
-
-AxisName = Literal["pitch", "lateral"]
-"""Axis of a manoeuvre; the manoeuvres of each axis are numbered from 1."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,7 +19,6 @@ from advisor.cli.log_options import LogsAsked
 from advisor.doctor.document import doctor_document
 from advisor.exports.flights.reading import sha256
 from advisor.gap.inference.engine import Progress
-from advisor.report.axes.lateral_gap import whole_document
 from advisor.report.document import analysis_document
 from advisor.report.gap_document import gap_document
 from advisor.report.page.content import Content, Document, Origin
@@ -95,7 +94,7 @@ def _gap(flights: WholeFlights, aircraft: Aircraft, asked: LogsAsked, tell: Prog
             compared = compare_side_flown(flights.state, aircraft, progress=tell)
         except UnusableInputError as error:
             return gap_document(None, error.problems)
-        return whole_document(compared.gap)
+        return gap_document(compared.gap)
     usable = [flight for flight in range(len(flights.logs)) if flight not in flights.left_out]
     logs = [flights.logs[flight] for flight in usable]
     decided = [flights.by_hand.on_flight(flight) for flight in usable]

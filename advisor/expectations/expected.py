@@ -6,8 +6,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
 
-from advisor.campaign.state import AxisName
 from advisor.model.mil_f_8785c import Category
+from advisor.words.axes import AxisName
 
 Origin = Literal["number", "model", "log"]
 """Where an expected value comes from: the expectations file, the aircraft file's model, or another log."""

@@ -9,7 +9,7 @@ from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
 from advisor.analysis.axes.lateral import compare_side_flown
 from advisor.analysis.gap import compare_logs, named_simulator
 from advisor.analysis.whole_flights import WholeFlights
-from advisor.campaign.state import AxisName, CampaignState, LateralState
+from advisor.campaign.state import CampaignState, LateralState
 from advisor.decision.axes.lateral_requirements import GROUPS
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.expectations.expected import MODES
@@ -20,6 +20,7 @@ from advisor.oem.estimate import Estimate
 from advisor.oem.flying_qualities import Quality
 from advisor.report.qualities import levels_of, qualities_of, trim_of
 from advisor.simulators.flying import Progress
+from advisor.words.axes import AxisName
 from advisor.words.problems import UnusableInputError
 
 _SHORT_PERIOD = {"short_period_omega": "natural_frequency", "short_period_zeta": "damping"}
@@ -148,13 +149,12 @@ def gap_of(
     """
     try:
         if axis == "lateral":
-            side = compare_side_flown(flights.state, aircraft, progress=progress).gap.diagnosis
-            gap = None if side is None else side.gap
+            gap = compare_side_flown(flights.state, aircraft, progress=progress).gap.gap
         else:
             gap = _pitch_gap(flights, aircraft, target_system, progress)
     except UnusableInputError as error:
         return Measured(reason=str(error))
-    return Measured(reason="the manoeuvres show no gap") if gap is None else Measured(gap.before)
+    return Measured(gap.before) if gap.by_channel else Measured(reason="the manoeuvres show no gap")
 
 
 def _pitch_gap(

@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import hypot
+from math import hypot, nan
 from typing import Literal
 
 from advisor.flight.instruments.atmosphere import AirData
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.alternative import Weighed
 from advisor.process.arrays import FloatArray
+from advisor.words.axes import AXES, AxisName
 from advisor.words.quantiles import NORMAL_95
 
 GapVerdict = Literal["none", "parameters", "effect", "unknown", "untested"]
@@ -64,17 +65,18 @@ class ComparedDerivative:
 class Gap:
     """Gap of the simulator on held-out manoeuvres: mean square error over the floor's square, minus 1."""
 
-    before: float
+    before: float = nan
     """Gap of the simulator as given, as the mean over the channels."""
-    after: float
+    after: float = nan
     """Gap of the final model, as the mean over the channels; NaN with a single manoeuvre."""
-    floor: Mapping[str, float]
+    floor: Mapping[str, float] = field(default_factory=dict)
     """Standard deviation of the residual where nothing was flown, by channel, in the channel's SI unit."""
-    floor_note: str
+    floor_note: str = ""
     """Source of the floor: measured, or stated because the record was filtered before storage."""
-    by_channel: Mapping[str, float]
-    by_channel_after: Mapping[str, float]
-    by_maneuver: tuple[tuple[int, float, float], ...]
+    by_channel: Mapping[str, float] = field(default_factory=dict)
+    """Gap of each channel; empty for a flight that no model fits."""
+    by_channel_after: Mapping[str, float] = field(default_factory=dict)
+    by_maneuver: tuple[tuple[int, float, float], ...] = ()
     """Number of each manoeuvre, with its gap before and after."""
     by_phase: Mapping[str, float] = field(default_factory=dict)
     """Gap of the simulator as given, for ``step edge``, ``plateau`` and ``free response``."""
@@ -98,15 +100,31 @@ class Cause:
     gap_after: float
     present: bool = False
     """Whether the effect is part of the final model; if not, it is an alternative."""
+    of: str = ""
+    """Control or output at which the effect acts, on an axis with several of them; ``air`` for gusts."""
+    named: str = ""
+    """Name of the effect with its control or output, as the report prints it; empty without these."""
+    sentence: str = ""
+    """Sentence of the report about this effect at its control or output."""
+    gain: Value | None = None
+    """Log likelihood gained on unseen manoeuvres over fitted derivatives alone, nats."""
+    peaks: Mapping[str, float] = field(default_factory=dict)
+    """Largest error of each judged rate with the effect in the simulator, rad/s."""
+
+    @property
+    def name(self) -> str:
+        """Name of the effect in documents."""
+        return (self.named or self.effect).replace(" ", "_")
 
 
 @dataclass(frozen=True, slots=True)
 class Where:
     """The block of the simulator in which the gap arises."""
 
-    block: str
-    share: float
-    ranking: tuple[tuple[str, float], ...]
+    block: str = ""
+    """Name of the block; empty for a diagnosis that names none."""
+    share: float = 0.0
+    ranking: tuple[tuple[str, float], ...] = ()
     """Blocks with their scores relative to the best block, which scores 1."""
 
 
@@ -241,31 +259,41 @@ class Trace:
     """Values of the final model."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Diagnosis(Weighed):
-    """The complete result of a diagnosis."""
+    """The complete result of a diagnosis of one axis."""
 
+    axis: AxisName = AXES[0]
     verdict: GapVerdict
     sentence: str
     """One sentence for the crew."""
     gap: Gap
-    where: Where
-    causes: tuple[Cause, ...]
-    shrink: Shrink | None
+    where: Where = Where()
+    causes: tuple[Cause, ...] = ()
+    """Effects of the model in the order in which they were found, then alternatives, likeliest first."""
+    shrink: Shrink | None = None
     """Shrink of the gap; None if no manoeuvre could be held out, or without a gap."""
-    waterfall: tuple[tuple[str, float], ...]
+    waterfall: tuple[tuple[str, float], ...] = ()
     """Gap after the addition of each effect, in the order of addition."""
-    cannot_see: tuple[Unseen, ...]
-    kinematics: KinematicCheck
+    cannot_see: tuple[Unseen, ...] = ()
+    kinematics: KinematicCheck | None = None
+    """Angle of attack against the motion; None for roll and yaw."""
     model: Mapping[str, Value]
-    """The eight parameters of the final model at the reference speed."""
-    reference_airspeed_m_s: float | None
+    """Parameters of the final model at the reference speed, by name."""
+    not_identifiable: Mapping[str, str] = field(default_factory=dict)
+    """Reason for each parameter that the flight does not determine, by the parameter's name."""
+    instruments: Mapping[str, Value] = field(default_factory=dict)
+    """Nuisance parameters of the fit: lag or delay of each servo and clock."""
+    peaks: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """Largest error of each judged rate, rad/s, with the derivatives of ``simulator``, and with
+    ``fitted_derivatives`` and no effect."""
+    reference_airspeed_m_s: float | None = None
     """Air speed of the derivatives: measured, from the file, or from the motion; None if unknown."""
-    effects: Mapping[str, Mapping[str, float]]
+    effects: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     """Section ``effects`` of the improved simulator's aircraft file."""
-    yardsticks: Mapping[str, tuple[Yardsticks, Yardsticks]]
+    yardsticks: Mapping[str, tuple[Yardsticks, Yardsticks]] = field(default_factory=dict)
     """Fidelity measures of each channel, for the simulator as given and for the final model."""
-    share_irreducible: float
+    share_irreducible: float = nan
     """Share of the final model's error that is noise and moving air. The other part of the remaining gap is
     model error."""
     derivatives: tuple[ComparedDerivative, ...] = ()

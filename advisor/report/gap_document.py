@@ -24,6 +24,7 @@ from advisor.report.facts.answers import by_flight_alone, title_of
 from advisor.report.facts.gap import changed, grown_said, heading, shrink_said, size_of_gap, where_said
 from advisor.report.facts.reasons import how_sure
 from advisor.report.facts.sizes import sizes_of
+from advisor.report.gap_steps import steps_to_decide
 from advisor.words.certainty import is_decided
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
@@ -60,34 +61,58 @@ def gap_document(
     }
     if diagnosis is None:
         return {**document, **NOTHING}
-    d = diagnosis
-    document["problems"] += [part.entry for part in d.failed]
+    document["problems"] += [part.entry for part in diagnosis.failed]
+    if diagnosis.axis == "lateral":
+        return {**document, **NOTHING, "lateral": axis_document(diagnosis)}
+    return document | axis_document(diagnosis) | {"improved_model": improved_model}
+
+
+def axis_document(d: Diagnosis) -> dict[str, Any]:
+    """Return the document part about one axis; without a fit the evidence is missing."""
     tested = d.verdict != "untested"
-    document |= plain({
+    document: dict[str, Any] = NOTHING | plain({
         "verdict": d.verdict if tested else None,
         "title": title_of(d),
-        **picked(d, "sentence maneuvers model reference_airspeed_m_s cannot_see notes share_irreducible"),
-        "limits": list(limits_of(d)),
-        **numbers_document(d.verdict, d.gap, d.where, d.shrink),
+        **picked(d, "sentence maneuvers cannot_see notes reference_airspeed_m_s share_irreducible"),
         "causes": [cause_document(c) for c in d.causes],
-        **_of_the_simulator(d),
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
-        "alpha_check": {
-            **picked(d.kinematics, "finding lag_s lag_std_s scale"),
-            "text": d.kinematics.sentence, "bias_rad": d.kinematics.offset.rad,
-        },
         "parameters_changed": [changed_document(one) for one in d.derivatives if one.differs],
         "traces": traces_document(d.traces),
-        "yardsticks": {c: {"before": a, "after": b} for c, (a, b) in d.yardsticks.items()},
-        "improved_model": improved_model,
-        **weighed_document(d),
     })  # fmt: skip
+    if d.gap.by_channel:
+        document |= plain(numbers_document(d.verdict, d.gap, d.where, d.shrink)) | plain(weighed_document(d))
+    document |= plain(_of_pitch(d) if d.axis == "pitch" else _of_the_sides(d))
     if d.shrink is not None:
         document["shrink"]["in_simulator"] = plain(_in_simulator(d.in_simulator))
     return document
 
 
-def numbers_document(verdict: str, gap: Gap, where: Where | None, shrink: Shrink | None) -> dict[str, Any]:
+def _of_pitch(d: Diagnosis) -> dict[str, Any]:
+    """Return the keys about the user's simulator, the air data and the fidelity measures."""
+    return {
+        "limits": list(limits_of(d)),
+        "model": d.model,
+        **_of_the_simulator(d),
+        "alpha_check": d.kinematics and {
+            **picked(d.kinematics, "finding lag_s lag_std_s scale"),
+            "text": d.kinematics.sentence, "bias_rad": d.kinematics.offset.rad,
+        },
+        "yardsticks": {c: {"before": a, "after": b} for c, (a, b) in d.yardsticks.items()},
+    }  # fmt: skip
+
+
+def _of_the_sides(d: Diagnosis) -> dict[str, Any]:
+    """Return the keys about the nuisance parameters and the derivatives that no manoeuvre shows."""
+    tested = {} if d.verdict != "untested" else {"how_sure": ""}
+    return tested | {
+        **picked(d, "not_identifiable instruments"),
+        "next": steps_to_decide(d),
+        "parameters_compared": [changed_document(one) for one in d.derivatives],
+        "peaks": d.peaks or None,
+    }
+
+
+def numbers_document(verdict: str, gap: Gap, where: Where, shrink: Shrink | None) -> dict[str, Any]:
     """Return the document part about the size of a gap, its place and its shrink, for every axis."""
     return {
         "gap": {
@@ -97,8 +122,9 @@ def numbers_document(verdict: str, gap: Gap, where: Where | None, shrink: Shrink
             "by_maneuver": [{"number": n, "before": b, "after": a} for n, b, a in gap.by_maneuver],
             "by_band_hz": [{"from_hz": a, "to_hz": b, "share": s} for a, b, s in gap.by_band_hz],
         },
-        "where": where
-        and {
+        "where": None
+        if not where.block
+        else {
             "text": where_said(where, shrink),
             **picked(where, "block share"),
             "ranking": [{"block": b, "score": s} for b, s in where.ranking],
@@ -167,7 +193,10 @@ def _as_logged(samples: FloatArray) -> list[float]:
 def cause_document(c: Cause) -> dict[str, Any]:
     """Return the document part about one candidate cause, for every axis."""
     said = picked(c, "effect block probability parameters cannot_be_told_from tell_apart_by gap_after")
-    return {**said, "text": ", ".join(sizes_of(c.parameters)), "in_model": c.present}
+    placed = {}
+    if c.named:
+        placed = {**picked(c, "of name sentence peaks present"), "held_out_nats": plain(c.gain)}
+    return {**said, "text": ", ".join(sizes_of(c.parameters)), "in_model": c.present, **placed}
 
 
 def _evidence(one: AlternativeEvidence) -> dict[str, Any]:

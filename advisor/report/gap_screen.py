@@ -147,7 +147,7 @@ def _answer(d: Diagnosis) -> Iterator[Text]:
 
 def _notes(d: Diagnosis) -> list[str]:
     floor = d.gap.floor_note and f"Noise floor {d.gap.floor_note}."
-    return [note for note in (d.kinematics.sentence, floor, *d.notes) if note]
+    return [note for note in (d.kinematics and d.kinematics.sentence, floor, *d.notes) if note]
 
 
 def _improved(d: Diagnosis) -> str:

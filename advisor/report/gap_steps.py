@@ -9,13 +9,14 @@ from scipy.special import expit
 
 from advisor.gap.alternative import Contribution, together
 from advisor.gap.candidates.distinguish import way_to_distinguish
+from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Cause, Diagnosis, spelled
 from advisor.gap.verdict.text import answers_of
 from advisor.report.facts.gap import changed
 from advisor.report.facts.reasons import in_percent
 from advisor.report.facts.sizes import short, sizes_of
 from advisor.report.improved import improved_name
-from advisor.words.certainty import Answers, doubt_of
+from advisor.words.certainty import Answers, doubt_of, is_decided
 
 _PROVE = "Prove the change: {after} again, then on manoeuvres that no fit has used."
 _FLY = "fly as many manoeuvres again, with another time unit and another amplitude"
@@ -106,11 +107,18 @@ def to_decide(answers: Answers, way: str = "", why: Sequence[Contribution] = ())
     )
 
 
+def steps_to_decide(d: Diagnosis) -> list[GapStep]:
+    """Return the flight that separates the two likeliest answers; empty for a decided answer."""
+    answers = answers_of(d.evidence)
+    return [to_decide(answers, _way_of(d))] if answers and not is_decided(answers) else []
+
+
 def _way_of(d: Diagnosis) -> str:
     """Return the measurement that distinguishes the two likeliest effects; empty if none is known."""
     shares = ((one.alternative, one.probability) for one in d.evidence)
-    answer, rival = (alternative for alternative, _ in together(shares)[:2])
-    return way_to_distinguish(answer.name, rival.name) if answer.is_effect and rival.is_effect else ""
+    effects = {cause.name: cause.effect for cause in d.causes}
+    ours, other = (effects.get(alternative.name, alternative.name) for alternative, _ in together(shares)[:2])
+    return way_to_distinguish(ours, other) if {ours, other} <= EFFECTS.keys() else ""
 
 
 def _to_put(d: Diagnosis) -> str:

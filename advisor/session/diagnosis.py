@@ -87,7 +87,6 @@ def diagnosed(
 def _diagnosed_sideways(logs: Sequence[Path], aircraft: Aircraft) -> Document:
     from advisor.analysis.axes.lateral import compare_side_logs
     from advisor.process.parts import FailedPart, attempt
-    from advisor.report.axes.lateral_gap import whole_document
     from advisor.report.gap_document import gap_document
     from advisor.words.problems import UnusableInputError
 
@@ -95,7 +94,7 @@ def _diagnosed_sideways(logs: Sequence[Path], aircraft: Aircraft) -> Document:
         found = attempt("lateral, diagnosis", lambda: compare_side_logs(logs, aircraft))
     except UnusableInputError as error:
         return gap_document(None, error.problems)
-    return gap_document(None, failed=(found,)) if isinstance(found, FailedPart) else whole_document(found.gap)
+    return gap_document(None, failed=(found,)) if isinstance(found, FailedPart) else gap_document(found.gap)
 
 
 def diagnose_elsewhere(task: GapTask) -> Document:

@@ -26,8 +26,7 @@ def answer(case: Path, axis: str = "pitch") -> tuple[dict[str, Any], float]:
     from advisor.analysis.axes.lateral import compare_side_logs
     from advisor.analysis.gap import compare_logs, named_simulator
     from advisor.cli.options import read_aircraft
-    from advisor.report.axes.lateral_gap import side_gap_document
-    from advisor.report.gap_document import gap_document
+    from advisor.report.gap_document import axis_document, gap_document
     from advisor.words.problems import UnusableInputError
     from sim.sealed.cases import AIRCRAFT, LOG
 
@@ -38,7 +37,7 @@ def answer(case: Path, axis: str = "pitch") -> tuple[dict[str, Any], float]:
         if axis == "pitch":
             document = gap_document(compare_logs([case / LOG], aircraft, simulator).diagnosis)
         else:
-            document = side_gap_document(compare_side_logs([case / LOG], aircraft).gap)
+            document = axis_document(compare_side_logs([case / LOG], aircraft).gap)
     except UnusableInputError as error:
         print(f"{case.name}: {error.problem}", file=sys.stderr)
         document = {}

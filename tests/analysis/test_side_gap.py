@@ -11,7 +11,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.axes import lateral as side_gap
 from advisor.cli.axes import lateral_gap as side_gap_command
 from advisor.cli.group import advisor
-from advisor.gap.axes.lateral.comparison import SideGap
+from advisor.gap.result import Diagnosis, Gap
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 
@@ -30,7 +30,7 @@ def compared(monkeypatch):
     def compare(maneuvers, aircraft, prior, logged, as_logged):
         seen.maneuvers, seen.aircraft, seen.logged = maneuvers, aircraft, logged
         seen.as_logged = as_logged
-        return SideGap(None, "", (), {}, {}, (), None)
+        return Diagnosis(axis="lateral", verdict="untested", sentence="", gap=Gap(), model={})
 
     monkeypatch.setattr(
         side_gap,

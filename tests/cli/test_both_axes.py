@@ -1,6 +1,7 @@
 """``advisor gap --axis both``: one answer of both axes."""
 
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,9 +14,9 @@ from advisor.analysis.axes.lateral import SideCompared
 from advisor.cli import group as cli
 from advisor.cli.axes import lateral_gap
 from advisor.cli.group import advisor
-from advisor.gap.axes.lateral.comparison import SideGap
 from advisor.simulators.compare import Compared
 from advisor.words.problems import UnusableInputError
+from tests.gap.axes.lateral.test_diagnosis import FOUND
 from tests.gap.test_report_screen import diagnosis
 
 
@@ -27,7 +28,7 @@ def refuse(*_: object, **__: object) -> Any:
 def axes(monkeypatch: pytest.MonkeyPatch) -> None:
     """Replace the diagnoses of both axes by hand-made ones."""
     pitch = Compared(diagnosis(verdict="effect"), Aircraft())
-    side = SideGap("parameters", "L_p is too small.", (), {}, {}, (1, 2), None)
+    side = replace(FOUND, verdict="parameters", sentence="L_p is too small.")
     compared = SideCompared(side, SimpleNamespace(), Aircraft())  # type: ignore[arg-type]
     monkeypatch.setattr(reading, "compare_logs", lambda *_: pitch)
     monkeypatch.setattr(lateral_gap, "compare_side_logs", lambda *_, **__: compared)

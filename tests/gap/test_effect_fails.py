@@ -10,7 +10,7 @@ from advisor.gap.axes.lateral.flight import SideFlight
 from advisor.gap.inference import pitch
 from advisor.gap.inference.pitch import PitchFlight
 from advisor.process.parts import FailedPart
-from advisor.report.axes.lateral_gap import side_gap_lines, whole_document
+from advisor.report.axes.lateral_gap import side_gap_lines
 from advisor.report.gap_document import gap_document
 from tests.gap.axes.lateral.test_diagnosis import FOUND
 from tests.gap.test_report_screen import diagnosis, printed
@@ -30,8 +30,8 @@ def test_the_document_and_the_screen_name_the_effect_that_failed_and_keep_the_an
 
 
 def test_roll_and_yaw_name_the_effect_that_failed_and_keep_the_answer() -> None:
-    found = replace(FOUND, diagnosis=replace(FOUND.diagnosis, failed=(PLAY,)))
-    document = whole_document(found)
+    found = replace(FOUND, failed=(PLAY,))
+    document = gap_document(found)
     assert [one["part"] for one in document["problems"]] == [PLAY.part]
     assert document["usable"] is True
     assert document["lateral"]["verdict"] == "effect"

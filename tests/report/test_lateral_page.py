@@ -8,7 +8,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli import page_content
 from advisor.report.axes.lateral import lateral_document, side_quality_lines
-from advisor.report.axes.lateral_gap import side_gap_document
+from advisor.report.gap_document import axis_document
 from advisor.report.page.axes.lateral import lateral
 from advisor.report.page.blocks import Gallery, Listing, Paragraph
 from advisor.report.page.gap import gap
@@ -123,7 +123,7 @@ def test_the_first_page_of_a_lateral_flight_has_the_lateral_verdict_and_table_an
     assert not any("3-2-1-1" in one for one in said)
 
 
-SIDE = side_gap_document(FOUND) | {
+SIDE = axis_document(FOUND) | {
     "title": "LIKELY", "sentence": "The aileron is weak.", "how_sure": "Weak 90 %.",
     "parameters_changed": [{"text": "L_p: more"}],
 }  # fmt: skip
@@ -172,6 +172,6 @@ def test_the_gap_of_a_page_is_of_roll_and_yaw_where_they_alone_are_accepted(monk
     flights = SimpleNamespace(state=flown, logs=[], left_out={})
     asked = SimpleNamespace(aircraft_file=None, reading=[], target_system=None)
     monkeypatch.setattr(page_content, "compare_side_flown", lambda *_, **__: SimpleNamespace(gap=None))
-    monkeypatch.setattr(page_content, "whole_document", lambda _: {"lateral": {"of": "lateral"}})
+    monkeypatch.setattr(page_content, "gap_document", lambda _: {"lateral": {"of": "lateral"}})
     monkeypatch.setattr(page_content, "diagnosed", lambda *_: {"lateral": {"of": "pitch"}})
     assert page_content._gap(flights, Aircraft(), asked, print)["lateral"]["of"] == axis

@@ -8,11 +8,12 @@ import numpy as np
 
 from advisor.campaign.engineer import Engineer
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
-from advisor.campaign.state import AxisName, CampaignState, JudgedManeuver
+from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.messages import Columns
 from advisor.session.source import LinkHealth, LinkRequest
+from advisor.words.axes import AxisName
 from advisor.words.problems import Problem
 from tests.tui import flights
 

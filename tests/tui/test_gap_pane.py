@@ -7,16 +7,14 @@ from types import SimpleNamespace
 
 import pytest
 
-from advisor.analysis.axes.lateral import side_traces
 from advisor.gap.alternative import Contribution
 from advisor.process.parts import FailedPart
-from advisor.report.axes.lateral_gap import whole_document
 from advisor.report.gap_document import gap_document
 from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
 from advisor.tui.panes import gap as pane
 from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
-from tests.analysis.test_side_traces import ANSWERED, flown
+from tests.analysis.test_side_traces import ANSWERED
 from tests.campaign.side_builders import judged as side_judged
 from tests.campaign.side_builders import state as side_state
 from tests.gap.axes.lateral.test_diagnosis import FOUND
@@ -108,7 +106,7 @@ async def test_a_numerical_fault_is_said_on_the_pane_and_the_screens_go_on(
 
 
 def test_the_pane_says_the_answer_of_roll_and_yaw_where_they_alone_were_flown() -> None:
-    rows = [said for _, said in pane.answer_rows(whole_document(FOUND))]
+    rows = [said for _, said in pane.answer_rows(gap_document(FOUND))]
     assert rows[0].startswith("Roll and yaw. LIKELY CAUSE: ")
     assert "The real aileron has play of 0.57 deg" in rows[0]
     assert any("70 %" in said for said in rows[1:])
@@ -119,8 +117,7 @@ async def test_the_axis_that_is_shown_is_diagnosed(monkeypatch: pytest.MonkeyPat
 
     def answer(task: GapTask) -> Document:
         asked.append(task)
-        flights = [flown(3), flown(5)]
-        return whole_document(replace(ANSWERED, traces=side_traces(ANSWERED, flights, flights)))
+        return gap_document(ANSWERED)
 
     monkeypatch.setattr(pane, "diagnose_elsewhere", answer)
     alone = replace(flights.state(), maneuvers=(), lateral=side_state(side_judged(1, "aileron")))

@@ -18,9 +18,9 @@ from advisor.flight.maneuvers.events import SideManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.stream.stream import FlightStream
-from advisor.gap.axes.lateral.comparison import SideGap, compare_side
+from advisor.gap.axes.lateral.comparison import compare_side
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.result import Trace
+from advisor.gap.result import Diagnosis, Trace
 from advisor.mavlink.logs.whole import read_whole_log
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate, NoEstimate
@@ -34,7 +34,7 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 class SideCompared:
     """Gap of roll and yaw, with the flight from which it was found."""
 
-    gap: SideGap
+    gap: Diagnosis
     state: CampaignState
     """State of the campaign at the end of the logs, with both axes."""
     aircraft: Aircraft
@@ -75,31 +75,35 @@ def compare_side_flown(
     assert state.lateral is not None
     as_logged = compared is accepted and against is aircraft
     found = answered(compare_side(compared, against, prior, state.lateral.model, as_logged))
-    found = replace(found, traces=side_traces(found, accepted, compared))
+    found = replace(found, traces=side_traces(found.traces, accepted, compared))
     return SideCompared(found, state, aircraft, accepted)
 
 
-def side_traces(found: SideGap, flown: Sequence[Maneuver], compared: Sequence[Maneuver]) -> tuple[Trace, ...]:
-    """Return the curves of every output and manoeuvre; empty without a diagnosis.
+def side_traces(
+    traces: Sequence[Trace], flown: Sequence[Maneuver], compared: Sequence[Maneuver]
+) -> tuple[Trace, ...]:
+    """Return the curves of every output and manoeuvre with what a user's simulator does beyond its surrogate.
 
     Parameters
     ----------
+    traces
+        Curves of the compared manoeuvres.
     flown
         Manoeuvres as logged.
     compared
-        The same manoeuvres as the diagnosis has them: less what a user's simulator does beyond its surrogate.
+        The same manoeuvres as the diagnosis has them, without that part.
     """
-    if found.diagnosis is None or not found.diagnosis.fits:
-        return ()
-    given, answer = found.diagnosis.fits
-    laid, traces = given.assembly, []
-    for logged, without, named in zip(flown, compared, laid.rows, strict=True):
-        for name, rows in named.items():
-            lost = logged.channels[name].y - without.channels[name].y
-            by = np.interp(laid.t[rows], logged.channels[name].t, lost)
-            curves = (x[rows] + by for x in (laid.z, given.fitted, answer.fitted))
-            traces.append(Trace(logged.number, name, laid.t[rows], *curves))
-    return tuple(traces)
+
+    def whole(trace: Trace) -> Trace:
+        logged, without = (
+            next(m.channels[trace.channel] for m in maneuvers if m.number == trace.number)
+            for maneuvers in (flown, compared)
+        )
+        lost = np.interp(trace.t, logged.t, logged.y - without.y)
+        curves = {name: getattr(trace, name) + lost for name in ("measured", "before", "after")}
+        return replace(trace, **curves)
+
+    return tuple(map(whole, traces))
 
 
 class AxisFlown(NamedTuple):

@@ -19,8 +19,9 @@ from advisor.cli.stages import Stages
 from advisor.exports.models.axes.handed_over import improved_side
 from advisor.exports.models.axes.lateral import prove_side, stays_of_side
 from advisor.exports.models.proof import Proof
-from advisor.report.axes.lateral_gap import side_gap_document, side_gap_lines, whole_document
+from advisor.report.axes.lateral_gap import side_gap_lines
 from advisor.report.gap_causes import why_of
+from advisor.report.gap_document import axis_document, gap_document
 from advisor.report.table import PlainConsole
 from advisor.words.printable import printable
 
@@ -83,15 +84,15 @@ def lateral_answer(
         written = asked.improved(found.improves, lambda: replace(improved_side(compared), pitch=None))
         outcomes = write_exports(asked.orders, partial(improved_side, compared))
     if found.traces:
-        write_figure(asked.figure, lambda: side_gap_document(found))
-    document = whole_document(found) | {"exports": listed(outcomes)}
+        write_figure(asked.figure, lambda: axis_document(found))
+    document = gap_document(found) | {"exports": listed(outcomes)}
     named = {"improved_model": None if written is None else str(written)}
     document["lateral"] |= named | proof_document(proof)
 
     def show() -> None:
         click.echo("\n".join(side_gap_lines(found)))
-        if asked.why and found.diagnosis is not None:
-            PlainConsole().print(*why_of(found.diagnosis))
+        if asked.why and found.evidence:
+            PlainConsole().print(*why_of(found))
         print_proof(proof)
         if written is not None:
             click.echo(f"The improved simulator is in {printable(str(written))}.")

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import exp, log
 
 from advisor.gap.alternative import AlternativeEvidence, together
-from advisor.gap.result import VISIBLE, Diagnosis, GapVerdict
+from advisor.gap.result import VISIBLE, Diagnosis
 from advisor.gap.verdict.text import answers_of, in_words
 from advisor.words.certainty import Answers, title
 
@@ -40,14 +40,10 @@ def is_turned(evidence: Sequence[AlternativeEvidence]) -> bool:
     return bool(answers) and answers[0][0] != alone[0][0]
 
 
-def title_of_verdict(verdict: GapVerdict, evidence: Sequence[AlternativeEvidence]) -> str:
-    """Return the title of a verdict. An answer that the flight alone does not give is only likely."""
-    stated, likely = _TITLES[verdict]
-    return title(likely if is_turned(evidence) else stated, likely, answers_of(evidence))
-
-
 def title_of(d: Diagnosis) -> str:
-    """Return the title of a diagnosis."""
-    shown = title_of_verdict(d.verdict, d.evidence)
-    is_free = d.verdict == "none" and d.gap.before < VISIBLE
+    """Return the title of a diagnosis. An answer that the flight alone does not give is only likely."""
+    stated, likely = _TITLES[d.verdict]
+    shown = title(likely if is_turned(d.evidence) else stated, likely, answers_of(d.evidence))
+    # Only pitch says in its title that a gap is not visible.
+    is_free = d.axis == "pitch" and d.verdict == "none" and d.gap.before < VISIBLE
     return shown.replace("NOTHING TO CORRECT", "NO GAP") if is_free else shown

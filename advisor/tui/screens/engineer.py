@@ -8,7 +8,6 @@ from textual.events import Resize
 from textual.geometry import Size
 
 from advisor.campaign.hand_decisions import HandDecision, Verb
-from advisor.campaign.state import AxisName
 from advisor.session.view import View
 from advisor.tui import keys
 from advisor.tui.panes.alarm import Alarm
@@ -32,6 +31,7 @@ from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.residuals import Residuals
 from advisor.tui.panes.status_line import KeysLine, StatusLine
 from advisor.tui.screens.pane_actions import PaneActions
+from advisor.words.axes import AxisName
 
 # In the order of their numbers.
 PANES: tuple[type[Pane], ...] = (

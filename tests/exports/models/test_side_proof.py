@@ -12,7 +12,7 @@ from advisor.analysis.axes.lateral import SideCompared
 from advisor.exports.models.axes import lateral as side_proof
 from advisor.exports.models.axes.lateral import _ahead, prove_side, stays_of_side
 from advisor.exports.models.proof import NUMBERS, Proof
-from advisor.gap.axes.lateral.comparison import SideGap
+from advisor.gap.result import Diagnosis, Gap
 from tests.gap.axes.lateral.test_comparison import AIRCRAFT, TRUE, maneuvers
 from tests.gap.axes.lateral.test_diagnosis import FOUND
 from tests.oem.axes.lateral.builders import JET
@@ -28,7 +28,7 @@ PROOF = Proof(
 )  # fmt: skip
 
 
-def stays(*taken: str) -> SideGap:
+def stays(*taken: str) -> Diagnosis:
     compared = SideCompared(FOUND, None, AIRCRAFT)  # type: ignore[arg-type]
     return stays_of_side(compared, replace(PROOF, taken_back=taken)).gap
 
@@ -36,8 +36,8 @@ def stays(*taken: str) -> SideGap:
 def test_an_effect_that_raises_the_gap_of_the_proof_leaves_the_file_and_keeps_its_probability():
     found = stays("aileron_actuator_backlash")
     assert found.verdict == "effect"
-    assert found.diagnosis.probabilities == FOUND.diagnosis.probabilities
-    assert not any(one.cause.present for one in found.diagnosis.causes)
+    assert found.probabilities == FOUND.probabilities
+    assert not any(cause.present for cause in found.causes)
     assert found.improves
     assert found.sentence.endswith(
         "Taken back: aileron actuator backlash, with which the gap is 3 instead of 1 on manoeuvres 2, 3, "
@@ -56,7 +56,7 @@ def test_where_the_numbers_raise_it_as_well_no_improved_simulator_is_offered():
 def test_numbers_with_which_the_gap_grows_on_the_proof_are_taken_back(monkeypatch, after, taken):
     """Manoeuvres of an estimate that says nothing: the gap before is 2."""
     model = SimpleNamespace(theta=np.ones(15), fits=({},), airspeed_m_s=None)
-    plain = SideGap("parameters", "", (), {}, {}, (1, 2), None)
+    plain = Diagnosis(axis="lateral", verdict="parameters", sentence="", gap=Gap(), model={})
     asked = []
     monkeypatch.setattr(side_proof, "estimate_lateral", lambda *_: model)
     monkeypatch.setattr(side_proof, "compare_side", lambda _, one, __: asked.append(one) or plain)

@@ -11,8 +11,8 @@ from advisor.analysis.whole_flights import read_whole
 from advisor.exports.models.flown import FlownModel, SideModel, flown_model, side_flown, side_of
 from advisor.exports.models.improvement import ExportedServo, servo_of
 from advisor.flight.maneuvers.marks import Mark
-from advisor.gap.axes.lateral.diagnosis import SideDiagnosis
 from advisor.gap.effects import EFFECTS
+from advisor.gap.result import Diagnosis
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import NoEstimate
@@ -45,14 +45,14 @@ def improved_side(compared: SideCompared) -> FlownModel:
     With an effect the derivatives are those of the diagnosis' own model. The diagnosis next to a user's
     simulator lacks what that simulator adds. The derivatives are then estimated again with the servos found.
     """
-    aircraft, state, diagnosis = compared.aircraft, compared.state, compared.gap.diagnosis
+    aircraft, state, diagnosis = compared.aircraft, compared.state, compared.gap
     model = flown_model(state, aircraft)
-    unchanged = not compared.gap.improves
-    if model.side is None or diagnosis is None or not any(one.cause.present for one in diagnosis.causes):
+    unchanged = not diagnosis.improves
+    if model.side is None or not any(cause.present for cause in diagnosis.causes):
         return replace(model, unchanged=unchanged)
     side, found = model.side, _servos_found(diagnosis, aircraft)
     if aircraft.simulator in (None, "linear"):
-        side = replace(side, values={name: diagnosis.derivatives[name] for name in side.values})
+        side = replace(side, values={name: diagnosis.model[name] for name in side.values})
     elif found:
         behind = _behind(found, aircraft)
         again = estimate_lateral(accepted_of(state), behind)
@@ -60,7 +60,7 @@ def improved_side(compared: SideCompared) -> FlownModel:
     return replace(model, side=replace(side, servos={**side.servos, **found}), unchanged=unchanged)
 
 
-def behind_found(diagnosis: SideDiagnosis | None, aircraft: Aircraft) -> Aircraft:
+def behind_found(diagnosis: Diagnosis, aircraft: Aircraft) -> Aircraft:
     """Return the aircraft with the lag and delay of each servo that a diagnosis found."""
     return _behind(_servos_found(diagnosis, aircraft), aircraft)
 
@@ -73,11 +73,11 @@ def _behind(found: Mapping[str, ExportedServo], aircraft: Aircraft) -> Aircraft:
     return replace(aircraft, **changed)
 
 
-def _servos_found(diagnosis: SideDiagnosis | None, aircraft: Aircraft) -> Mapping[str, ExportedServo]:
+def _servos_found(diagnosis: Diagnosis, aircraft: Aircraft) -> Mapping[str, ExportedServo]:
     """Return the servo of each control at which the diagnosis found an effect."""
     effects: dict[str, dict[str, Mapping[str, float]]] = {}
-    for one in diagnosis.causes if diagnosis is not None else ():
-        if one.cause.present and one.of in LATERAL.inputs and EFFECTS[one.cause.effect].servo:
-            sizes = {name: value.value for name, value in one.cause.parameters.items()}
-            effects.setdefault(one.of, {})[one.cause.effect] = sizes
+    for cause in diagnosis.causes:
+        if cause.present and cause.of in LATERAL.inputs and EFFECTS[cause.effect].servo:
+            sizes = {name: value.value for name, value in cause.parameters.items()}
+            effects.setdefault(cause.of, {})[cause.effect] = sizes
     return {name: servo_of(getattr(aircraft, name), by_effect) for name, by_effect in effects.items()}

@@ -55,10 +55,9 @@ def prove_side(
     fitted, against = beside_simulator(fitted, compared.aircraft, progress)
     told = _flown(compare_side(fitted, against, prior))
     refuse_unimproved(told.improves, told.sentence, len(fitted))
-    behind = behind_found(told.diagnosis, against)
+    behind = behind_found(told, against)
     plain, found = (_flown(estimate_lateral(fitted, one)) for one in (against, behind))
-    causes = told.diagnosis.causes if told.diagnosis else ()
-    present = tuple(one.name for one in causes if one.cause.present)
+    present = tuple(cause.name for cause in told.causes if cause.present)
     parts = (*present, NUMBERS)
 
     def flown_without(gone: tuple[str, ...]) -> Kept:
@@ -75,11 +74,11 @@ def prove_side(
 
         def answer() -> tuple[str | None, str]:
             again = _flown(compare_side(seen, there, prior))
-            return again.verdict, again.sentence
+            return None if again.verdict == "untested" else again.verdict, again.sentence
 
         return Kept(float(np.mean([*gaps.values()])), gaps, floor, answer, left)
 
-    first = " + ".join(present) or str(told.verdict)
+    first = " + ".join(present) or told.verdict
     return proved(ImprovedAxis(first, parts, [present] if present else [], flown_without))
 
 
@@ -132,14 +131,13 @@ def stays_of_side(compared: SideCompared, proof: Proof | None) -> SideCompared:
 
     The posterior stays: a proof moves no probability.
     """
-    gap, d = compared.gap, compared.gap.diagnosis
-    if proof is None or proof.gap_with_them is None or d is None:
+    d = compared.gap
+    if proof is None or proof.gap_with_them is None or not d.evidence:
         return compared
-    causes = tuple(replace(one, cause=replace(one.cause, present=False)) for one in d.causes)
-    sentence = f"{gap.sentence} {proof.taken_back_said}"
+    causes = tuple(replace(cause, present=False) for cause in d.causes)
+    sentence = f"{d.sentence} {proof.taken_back_said}"
     corrects = NUMBERS not in proof.taken_back
-    found = replace(gap, sentence=sentence, diagnosis=replace(d, causes=causes), corrects=corrects)
-    return replace(compared, gap=found)
+    return replace(compared, gap=replace(d, sentence=sentence, causes=causes, corrects=corrects))
 
 
 def _gap(maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: FloatArray) -> float:

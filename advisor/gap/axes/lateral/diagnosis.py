@@ -1,15 +1,15 @@
 """Explanations of a lateral flight: no gap, wrong derivatives, side gusts, one effect, or two effects."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from typing import Literal, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.gap.alternative import Alternative, Weighed
+from advisor.gap.alternative import Alternative, AlternativeEvidence, Weighed
 from advisor.gap.axes.lateral.effects import block_of, side_effects, unseen
-from advisor.gap.axes.lateral.evidence import Gain, colour_share, information_of, posterior_at, squares_of
+from advisor.gap.axes.lateral.evidence import colour_share, information_of, posterior_at, squares_of
 from advisor.gap.axes.lateral.fit import Fit, N
 from advisor.gap.axes.lateral.flight import SideFlight, SideModel
 from advisor.gap.axes.lateral.gusts import coloured_likelihood
@@ -21,106 +21,22 @@ from advisor.gap.inference.engine import Decided, decided, first_stage
 from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, relabelled
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.result import Cause, Gap, Shrink, Unseen, Value, Where, ranked
+from advisor.gap.result import Cause, Diagnosis, GapVerdict, Trace, Value, Where, ranked
 from advisor.gap.search.air import NATURAL_GUST_ANGLE
 from advisor.gap.verdict.causes import MOST_CAUSES
 from advisor.gap.verdict.reasons import capped, weighed
 from advisor.gap.verdict.statements import what
-from advisor.gap.verdict.text import answers_of, place
+from advisor.gap.verdict.text import place
 from advisor.model.axes.lateral import LATERAL
 from advisor.process.arrays import FloatArray
-from advisor.words.certainty import Answers
 
 PEAKS = ("p", "r")
 """Outputs whose largest errors are reported."""
 AIR = "side gusts"
 SIDE_GUSTS = Alternative("air", "side_gusts", "air")
-Kind = Literal["none", "parameters", "effect", "unknown"]
 
 
-@dataclass(frozen=True, slots=True)
-class SideCause:
-    """One effect that explains the gap in roll and yaw."""
-
-    of: str
-    """Control or output at which the effect acts; ``air`` for side gusts."""
-    named: str
-    """Name of the effect as the report prints it."""
-    cause: Cause
-    """Effect under its name in the pitch axis, with sizes and probability."""
-    sentence: str
-    gain: Gain
-    """Log likelihood gained on unseen manoeuvres over fitted derivatives alone, nats."""
-    peaks: Mapping[str, float]
-    """Largest errors of roll rate and yaw rate with the effect in the simulator, rad/s."""
-
-    @property
-    def name(self) -> str:
-        """Name of the effect in documents."""
-        return self.named.replace(" ", "_")
-
-    @property
-    def block(self) -> str:
-        """Block of the simulator in which the effect acts."""
-        return block_of(self.of)
-
-
-@dataclass(frozen=True)
-class SideDiagnosis(Weighed):
-    """All explanations of a lateral flight with their evidence, and the likeliest effects."""
-
-    causes: tuple[SideCause, ...]
-    """Effects of the model in the order in which they were found, then alternatives, likeliest first."""
-    peaks: Mapping[str, float]
-    """Largest errors of roll rate and yaw rate with the simulator's derivatives, rad/s."""
-    peaks_by_numbers: Mapping[str, float]
-    """Largest errors of roll rate and yaw rate with the flight's derivatives and no effect, rad/s."""
-    gap: Gap
-    """Gap of the simulator and of the chosen model; every manoeuvre is predicted from all others."""
-    derivatives: Mapping[str, Value] = field(default_factory=dict)
-    """Derivatives of the chosen model, by name."""
-    cannot_see: tuple[Unseen, ...] = ()
-    shrink: Shrink | None = None
-    """Shrink of the gap; None with a single manoeuvre, or where nothing is corrected."""
-    waterfall: tuple[tuple[str, float], ...] = ()
-    """Remaining gap after each effect."""
-    fits: tuple[Fit, ...] = ()
-    """Fit with the simulator's derivatives, then the fit of the chosen model."""
-
-    @property
-    def verdict(self) -> Kind:
-        """Kind of the likeliest alternative."""
-        assert self.answer is not None
-        return "effect" if self.answer.is_effect else self.answer.kind  # type: ignore[return-value]
-
-    @property
-    def answers(self) -> Answers:
-        """Every answer as a sentence with its probability, the likeliest first."""
-        return answers_of(self.evidence)
-
-    @property
-    def where(self) -> Where | None:
-        """Block of the named effect or of the likeliest law without a name; None without both."""
-        each = {a.block: one.probability for one in self.evidence if (a := one.alternative).kind == "unknown"}
-        without = sum(each.values())
-        shares = {block: p / without for block, p in each.items() if without > 0.0}
-        if self.verdict == "effect" and self.causes:
-            first = {self.causes[0].block: 1.0}
-            shares = first | shares | first
-        if not shares:
-            return None
-        ranking = ranked(shares)
-        return Where(ranking[0][0], shares[ranking[0][0]], ranking)
-
-    @property
-    def sentence(self) -> str:
-        """Sentence about all effects of the model, or about the block of a law without a name."""
-        if self.verdict == "unknown" and self.where is not None:
-            return f"Something acts {place(self.where.block)} that no known effect explains."
-        return ". ".join(one.sentence for one in self.causes if one.cause.present)
-
-
-def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None:
+def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
     """Return the probabilities of all explanations; None where no plain fit exists.
 
     If one effect is the likeliest explanation, a second effect is sought in addition to the first.
@@ -137,22 +53,74 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> SideDiagnosis | None
     if plain is None or as_given is None:
         return None
     flight = SideFlight(case, plain, list(side_effects(case.flown)), list(side_laws(case, plain)))
-    found = decided(flight, first_stage(flight), prior, lambda rows: [_named_air(row) for row in rows])
-    found = _capped(case, found, as_given)
-    told, last = weighed(found.posteriors[0]), found.chosen[-1].fit
-    left = _held_out(case, found.chosen[-1], found.heat)
+    decision = decided(flight, first_stage(flight), prior, lambda rows: [_named_air(row) for row in rows])
+    decision = _capped(case, decision, as_given)
+    weights, whole = weighed(decision.posteriors[0]), decision.chosen[-1]
+    last, left = whole.fit, _held_out(case, whole, decision.heat)
     gap, shrink = measured(last, case.numbers, sums(last, as_given.residual**2), left)
-    whole, share = found.chosen[-1], colour_share(last)
+    share = colour_share(last)
     # The whole model leaves less colour than the model before it.
     final = _Told.of(case, whole, share, case.fit(last.point, last.free, whole.tolerance, share))
     values = map(Value, final.mean[:N].tolist(), final.std[:N].tolist())
-    causes = tuple(_causes(case, found, final, as_given))[:MOST_CAUSES]
-    return SideDiagnosis(
-        **(vars(told) | {"failed": found.failed}), causes=causes, cannot_see=tuple(unseen(case.flown)),
-        peaks=peaks_of(as_given), peaks_by_numbers=peaks_of(plain), gap=gap, fits=(as_given, last),
-        derivatives=dict(zip(SIDE_PARAMETERS, values, strict=True)), waterfall=_waterfall(case, found),
-        shrink=shrink if told.answer == PARAMETERS or len(found.chosen) > 1 else None,
+    waterfall = _waterfall(case, decision)
+    remains = dict(waterfall)
+    causes = tuple(
+        replace(cause, gap_after=remains.get(cause.name, np.nan))
+        for cause in tuple(_causes(case, decision, final, as_given))[:MOST_CAUSES]
+    )
+    verdict = verdict_of(weights)
+    where = where_of(weights.evidence, causes if verdict == "effect" else ())
+    return Diagnosis(
+        **(vars(weights) | {"failed": decision.failed}), axis="lateral", verdict=verdict,
+        sentence=_sentence(verdict, where, causes), gap=gap, where=where, causes=causes,
+        shrink=shrink if weights.answer == PARAMETERS or len(decision.chosen) > 1 else None,
+        waterfall=waterfall, cannot_see=tuple(unseen(case.flown)),
+        peaks={"simulator": peaks_of(as_given), "fitted_derivatives": peaks_of(plain)},
+        model=dict(zip(SIDE_PARAMETERS, values, strict=True)),
+        maneuvers=tuple(case.numbers), traces=tuple(_traces(case.numbers, as_given, last)),
     )  # fmt: skip
+
+
+def verdict_of(weights: Weighed) -> GapVerdict:
+    """Return the kind of the likeliest alternative; moving air is an effect."""
+    assert weights.answer is not None
+    return "effect" if weights.answer.is_effect else weights.answer.kind  # type: ignore[return-value]
+
+
+def where_of(evidence: Sequence[AlternativeEvidence], causes: Sequence[Cause]) -> Where:
+    """Return the block of the first cause, or of the likeliest law without a name; nowhere without both.
+
+    Parameters
+    ----------
+    causes
+        Effects of the answer, the first of them decisive; empty for an answer without an effect.
+    """
+    each = {a.block: one.probability for one in evidence if (a := one.alternative).kind == "unknown"}
+    without = sum(each.values())
+    shares = {block: p / without for block, p in each.items() if without > 0.0}
+    if causes:
+        first = {block_of(causes[0].of): 1.0}
+        shares = first | shares | first
+    if not shares:
+        return Where()
+    ranking = ranked(shares)
+    return Where(ranking[0][0], shares[ranking[0][0]], ranking)
+
+
+def _sentence(verdict: GapVerdict, where: Where, causes: Sequence[Cause]) -> str:
+    """Return the sentence about all effects of the model, or about the block of a law without a name."""
+    if verdict == "unknown":
+        return f"Something acts {place(where.block)} that no known effect explains."
+    return ". ".join(cause.sentence for cause in causes if cause.present)
+
+
+def _traces(numbers: Sequence[int], as_given: Fit, last: Fit) -> Iterator[Trace]:
+    """Yield the curves of every output and manoeuvre: measured, of the simulator and of the final model."""
+    laid = as_given.assembly
+    for number, named in zip(numbers, laid.rows, strict=True):
+        for name, rows in named.items():
+            curves = (values[rows] for values in (laid.z, as_given.fitted, last.fitted))
+            yield Trace(number, name, laid.t[rows], *curves)
 
 
 def _first(case: Case) -> Fit | None:
@@ -222,7 +190,7 @@ class _Told(NamedTuple):
         return cls(fit, *posterior_at(fit, case.prior_of(model.tolerance, fit.free), share))
 
 
-def _causes(case: Case, found: Decided[SideModel], final: _Told, as_given: Fit) -> Iterator[SideCause]:
+def _causes(case: Case, found: Decided[SideModel], final: _Told, as_given: Fit) -> Iterator[Cause]:
     """Yield the effects of the model, then the alternatives to the first effect."""
     posterior, together, added = found.posteriors[0], 1.0, found.chosen[1:]
     for stage, one in zip(found.posteriors, added, strict=False):
@@ -239,7 +207,7 @@ def _causes(case: Case, found: Decided[SideModel], final: _Told, as_given: Fit) 
         yield _cause(case, other, _Told.of(case, other, found.heat**-0.5), probability, present=False)
 
 
-def _cause(case: Case, tried: SideModel, told: _Told, probability: float, present: bool) -> SideCause:
+def _cause(case: Case, tried: SideModel, told: _Told, probability: float, present: bool) -> Cause:
     """Return an effect as a cause, with its sizes from a posterior that includes the effect."""
     effect = tried.effect
     assert effect is not None
@@ -251,20 +219,24 @@ def _cause(case: Case, tried: SideModel, told: _Told, probability: float, presen
         name = variant.names[0]
         inverse, error = max(parameters[name].value, variant.smallest), parameters[name].std
         parameters[name] = Value(1.0 / inverse, error / inverse**2)
-    cause = Cause(variant.effect, variant.block, probability, parameters, (), "", np.nan, present)
-    said = effect.said(what(cause))
-    return SideCause(effect.of, effect.named, cause, said, tried.gain, peaks_of(told.fit))
+    cause = Cause(
+        variant.effect, variant.block, probability, parameters, (), "", np.nan, present,
+        effect.of, effect.named, gain=tried.gain, peaks=peaks_of(told.fit),
+    )  # fmt: skip
+    return replace(cause, sentence=effect.said(what(cause)))
 
 
-def _air(case: Case, one: SideModel, probability: float, is_found: bool, as_given: Fit) -> SideCause:
+def _air(case: Case, one: SideModel, probability: float, is_found: bool, as_given: Fit) -> Cause:
     """Return side gusts as a cause of the gap."""
     assert one.gusts is not None
     speed = float(np.mean([np.mean(record.airspeed.y) for record in case.flown.problem.records]))
     size = Value(one.gusts.air.angle * speed, one.gusts.angle_std * speed)
-    cause = Cause("turbulence", "air", probability, {"sigma_v_m_s": size}, (), "", float(np.nan), is_found)
     said = f"The air was not still: side gusts of about {size.value:.2g} m/s"
-    gain = Gain(one.gusts.likelihood - coloured_likelihood(one.fit), 0.0)
-    return SideCause("air", AIR, cause, said, gain, peaks_of(as_given))
+    gain = Value(one.gusts.likelihood - coloured_likelihood(one.fit), 0.0)
+    return Cause(
+        "turbulence", "air", probability, {"sigma_v_m_s": size}, (), "", np.nan, is_found,
+        "air", AIR, said, gain, peaks_of(as_given),
+    )  # fmt: skip
 
 
 def _waterfall(case: Case, found: Decided[SideModel]) -> tuple[tuple[str, float], ...]:

@@ -3,11 +3,12 @@
 Residuals are coloured, so one nat of the white-noise likelihood counts as ``share``² nats.
 """
 
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 
 from advisor.gap.axes.lateral.fit import Fit, Known, N
+from advisor.gap.result import Value
 from advisor.oem.evaluation import errors_of, share_of
 from advisor.oem.extra import Extra
 from advisor.oem.scatter_between import widened_by_scatter
@@ -97,18 +98,18 @@ def squares_of(fit: Fit, told: Information, known: Known) -> Squares:
     return Squares(*squares)
 
 
-class Gain(NamedTuple):
-    """Log likelihood that one model gains over another model, nats."""
+def gained(before: FloatArray, after: FloatArray, counts: FloatArray, share: float) -> Value:
+    """Return the log likelihood that a second model gains over a first one, nats, with its standard error.
 
-    total: float
-    std: float
-    """Standard error of the total gain, from the scatter between manoeuvres, nats."""
+    The error follows from the scatter between manoeuvres.
 
-    @classmethod
-    def between(cls, before: FloatArray, after: FloatArray, counts: FloatArray, share: float) -> Self:
-        """Return the gain of the second model from both models' sums of squares, (m, outputs) each."""
-        told = counts > 0.0
-        sums = before[:, told].sum(axis=0), after[:, told].sum(axis=0)
-        total = 0.5 * share**2 * float(np.sum(counts[told] * np.log(sums[0] / sums[1])))
-        each = 0.5 * share**2 * np.sum((before - after)[:, told] * counts[told] / sums[1], axis=1)
-        return cls(total, float(np.sqrt(len(each)) * np.std(each, ddof=1)) if len(each) > 1 else np.inf)
+    Parameters
+    ----------
+    before, after
+        Shape (m, outputs): sums of squared errors of both models.
+    """
+    told = counts > 0.0
+    sums = before[:, told].sum(axis=0), after[:, told].sum(axis=0)
+    total = 0.5 * share**2 * float(np.sum(counts[told] * np.log(sums[0] / sums[1])))
+    each = 0.5 * share**2 * np.sum((before - after)[:, told] * counts[told] / sums[1], axis=1)
+    return Value(total, float(np.sqrt(len(each)) * np.std(each, ddof=1)) if len(each) > 1 else np.inf)

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.gap.alternative import Alternative
 from advisor.gap.axes.lateral.effects import SideEffect, block_of
-from advisor.gap.axes.lateral.evidence import Gain, colour_share, information_of, squares_of, step_of
+from advisor.gap.axes.lateral.evidence import colour_share, gained, information_of, squares_of, step_of
 from advisor.gap.axes.lateral.fit import Fit, Free, Known, moved_by
 from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
 from advisor.gap.axes.lateral.models import Case, base_of, base_setting, free_near, free_with
@@ -28,6 +28,7 @@ from advisor.gap.inference.stage import (
     likeliest,
     within_model_error,
 )
+from advisor.gap.result import Value
 from advisor.oem.axes.lateral.disturbance import Course, courses_of
 from advisor.process.arrays import FloatArray
 from advisor.process.parts import Parts
@@ -48,7 +49,7 @@ class SideModel(Explanation):
     fit: Fit
     beyond: float
     """Correction of the log evidence for choices of sign and for loss on held-out manoeuvres, nats."""
-    gain: Gain
+    gain: Value
     """Gain on held-out manoeuvres over fitted derivatives alone, nats."""
     starts: Starts | None = None
     """Linear starts of all further effects; None except in the plain model."""
@@ -260,7 +261,7 @@ class SideFlight:
         likelihood += float(gradient @ step - 0.5 * step @ matrix @ step)
         model = SideModel(
             alternative=None, effect=effect, fit=fit, evidence=evidence, natural=natural,
-            likelihood=likelihood, beyond=0.0, gain=Gain(0.0, 0.0), change=change_of(plain, fit),
+            likelihood=likelihood, beyond=0.0, gain=Value(0.0, 0.0), change=change_of(plain, fit),
         )  # fmt: skip
         if effect is None:
             return model
@@ -271,8 +272,8 @@ class SideFlight:
         was = squares_of(plain, information_of(plain, share), self._wide(plain))
         now = squares_of(fit, told, self.case.prior_of(model.tolerance, fit.free))
         counts = np.bincount(fit.assembly.channel, minlength=len(fit.noise)).astype(float)
-        gain = Gain.between(was.held_out, now.held_out, counts, share)
-        unseen = min(gain.total - Gain.between(was.in_fit, now.in_fit, counts, share).total, 0.0)
+        gain = gained(was.held_out, now.held_out, counts, share)
+        unseen = min(gain.value - gained(was.in_fit, now.in_fit, counts, share).value, 0.0)
         is_law = any(effect is law for law in self.laws)
         answer = UNKNOWN if is_law else Alternative("effect", effect.name)
         return replace(

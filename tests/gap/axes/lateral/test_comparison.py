@@ -1,7 +1,6 @@
 """The lateral derivatives of a simulator against those of a simulated flight."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,10 +12,10 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.gap.axes.lateral import comparison
 from advisor.gap.axes.lateral.comparison import compare_side
-from advisor.gap.result import Value
+from advisor.gap.result import Diagnosis, Gap, Value
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import NoEstimate
-from advisor.report.axes.lateral_gap import side_gap_document
+from advisor.report.gap_document import axis_document
 from tests.oem.axes.lateral.builders import JET, aileron_doublet, flown, rudder_doublet
 
 KNOWN = SideControl(lag_s=0.0, delay_s=0.0)
@@ -66,7 +65,7 @@ def test_the_flights_own_numbers_leave_no_gap(flight):
 def test_a_weak_aileron_in_the_simulator_is_named_and_leaves_a_gap_on_unseen_flight(flight):
     found = compare_side(flight, replace(AIRCRAFT, model=TRUE | {"L_delta_a": 0.8 * JET["L_delta_a"]}))
     assert found.verdict == "parameters"
-    document = side_gap_document(found)
+    document = axis_document(found)
     changed = {one["derivative"]: one for one in document["parameters_changed"]}
     assert (
         max(found.derivatives, key=lambda d: abs(d.given - d.found.value) / d.found.std).name == "L_delta_a"
@@ -84,9 +83,9 @@ def test_a_weak_aileron_in_the_simulator_is_named_and_leaves_a_gap_on_unseen_fli
 def test_a_file_without_lateral_numbers_has_no_verdict(flight, monkeypatch):
     monkeypatch.setattr(comparison, "diagnose_side", lambda case, prior: None)
     found = compare_side(flight[:2], AIRCRAFT)
-    assert found.verdict is None
+    assert found.verdict == "untested"
     assert "give model.L_p" in found.sentence
-    assert side_gap_document(found)["shrink"] is None
+    assert axis_document(found)["shrink"] is None
 
 
 def test_a_derivative_that_the_log_contradicts_is_not_stated_as_changed(flight, monkeypatch):
@@ -108,7 +107,7 @@ def test_beside_an_effect_the_derivatives_are_those_of_the_model_with_the_effect
     flight, monkeypatch, verdict, own
 ):
     values = {name: Value(1.0, 0.5) for name in TRUE}
-    named = SimpleNamespace(verdict=verdict, sentence="", answers=(("lag", 1.0),), derivatives=values)
+    named = Diagnosis(axis="lateral", verdict=verdict, sentence="", gap=Gap(), model=values)
     monkeypatch.setattr(comparison, "diagnose_side", lambda case, prior: named)
     found = compare_side(flight, replace(AIRCRAFT, model=TRUE))
     assert len(found.derivatives) == len(TRUE)

@@ -13,14 +13,7 @@ from advisor.aircraft.sensors import Beta
 from advisor.gap.alternative import Alternative, AlternativeEvidence, together
 from advisor.gap.axes.lateral import diagnosis
 from advisor.gap.axes.lateral import flight as flight_of_side
-from advisor.gap.axes.lateral.comparison import SideGap
-from advisor.gap.axes.lateral.diagnosis import (
-    SideCause,
-    SideDiagnosis,
-    _capped,
-    diagnose_side,
-)
-from advisor.gap.axes.lateral.evidence import Gain
+from advisor.gap.axes.lateral.diagnosis import _capped, diagnose_side, where_of
 from advisor.gap.axes.lateral.fit import Fit, Free
 from advisor.gap.axes.lateral.flight import SideFlight, SideModel
 from advisor.gap.axes.lateral.measure import measured, sums
@@ -29,27 +22,23 @@ from advisor.gap.inference.engine import Decided
 from advisor.gap.inference.explanation import Evidence, Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, posterior_of
 from advisor.gap.inference.stage import Stage
-from advisor.gap.result import Cause, Gap, Shrink, Value
+from advisor.gap.result import Cause, Diagnosis, Gap, Shrink, Value, Where
+from advisor.gap.verdict.text import answers_of
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.rows import Signal
-from advisor.report.axes.lateral_gap import side_gap_document, side_gap_lines, whole_document
-from advisor.report.gap_document import gap_document
+from advisor.report.axes.lateral_gap import side_gap_lines
+from advisor.report.gap_document import axis_document, gap_document
 from benchmarks.lateral_gap import CASES, diagnosed
 from tests.gap.axes.lateral.test_comparison import maneuvers
 from tests.oem.axes.lateral.builders import JET
 from tests.schemas import breaches
 
 PEAKS = {"p": 0.2, "r": 0.1}
-PLAY = SideCause(
-    "aileron",
-    "aileron actuator backlash",
-    Cause(
-        "actuator_backlash", "input", 0.7, {"half_width_rad": Value(0.01, 0.001)}, (), "", 0.0, present=True
-    ),
-    "The real aileron has play of 0.57 deg to either side",
-    Gain(30.0, 4.0),
-    {"p": 0.05, "r": 0.04},
-)
+PLAY = Cause(
+    "actuator_backlash", "input", 0.7, {"half_width_rad": Value(0.01, 0.001)}, (), "", 0.5, True,
+    "aileron", "aileron actuator backlash", "The real aileron has play of 0.57 deg to either side",
+    Value(30.0, 4.0), {"p": 0.05, "r": 0.04},
+)  # fmt: skip
 
 
 def weighed(shares):
@@ -64,8 +53,10 @@ def weighed(shares):
     return {"evidence": tuple(told), "answer": answer}
 
 
-DIAGNOSIS = SideDiagnosis(
-    causes=(PLAY,), peaks=PEAKS, peaks_by_numbers=PEAKS,
+FOUND = Diagnosis(
+    axis="lateral", verdict="effect", sentence=PLAY.sentence,
+    where=Where("aileron", 1.0, (("aileron", 1.0),)),
+    causes=(PLAY,), peaks={"simulator": PEAKS, "fitted_derivatives": PEAKS}, model={}, maneuvers=(1, 2, 3),
     gap=Gap(
         3.0, 0.5, {"p": 0.01}, "measured", {"p": 3.0}, {"p": 0.5},
         ((1, 3.0, 0.5), (2, 2.0, 0.4), (3, 4.0, 0.6)),
@@ -75,7 +66,6 @@ DIAGNOSIS = SideDiagnosis(
         {"aileron_actuator_backlash": 0.7, "none": 0.2, "parameters": 0.05, "aileron_actuator_lag": 0.05}
     ),
 )  # fmt: skip
-FOUND = SideGap("effect", PLAY.sentence, (), {}, {}, (1, 2, 3), DIAGNOSIS)
 
 
 def test_the_blocks_of_the_unknown_count_together_and_the_likeliest_is_the_place():
@@ -83,16 +73,15 @@ def test_the_blocks_of_the_unknown_count_together_and_the_likeliest_is_the_place
         "unknown@rolling_moment": 0.35, "actuator_lag": 0.3, "unknown@aileron": 0.2, "none": 0.1,
         "parameters": 0.05,
     }  # fmt: skip
-    told = replace(DIAGNOSIS, **weighed(shares))
-    assert told.verdict == "unknown"
-    assert (told.where.block, told.where.share) == ("rolling_moment", pytest.approx(0.35 / 0.55))
-    assert told.sentence == "Something acts in the rolling moment that no known effect explains."
+    where = where_of(weighed(shares)["evidence"], ())
+    assert (where.block, where.share) == ("rolling_moment", pytest.approx(0.35 / 0.55))
+    said = diagnosis._sentence("unknown", where, ())
+    assert said == "Something acts in the rolling moment that no known effect explains."
 
 
 def test_the_place_of_an_effect_is_that_of_its_control_or_sensor():
-    document = side_gap_document(FOUND)
-    assert document["where"]["block"] == "aileron"
-    assert replace(PLAY, of="p").block == "roll_rate_sensor"
+    places = [where_of((), [replace(PLAY, of=of)]).block for of in ("aileron", "p")]
+    assert places == ["aileron", "roll_rate_sensor"]
 
 
 def test_the_text_says_the_cause_with_its_size_and_the_errors_that_it_removes():
@@ -106,13 +95,12 @@ def test_the_text_says_the_cause_with_its_size_and_the_errors_that_it_removes():
 def test_without_a_simulator_the_text_has_neither_its_probabilities_nor_a_table_of_its_gap():
     alone = replace(
         FOUND,
-        verdict=None,
-        diagnosis=DIAGNOSIS,
+        verdict="untested",
         instruments={"rudder_lag_s": Value(0.06, 0.003), "airspeed_excess": Value(0.03, 0.01)},
     )
     text = "\n".join(side_gap_lines(alone))
-    assert side_gap_document(alone)["how_sure"] == ""
-    assert side_gap_document(FOUND)["how_sure"]
+    assert axis_document(alone)["how_sure"] == ""
+    assert axis_document(FOUND)["how_sure"]
     assert text.startswith("NOTHING TO COMPARE WITH: ")
     assert "wrong numbers" not in text
     assert "aileron actuator backlash" not in text
@@ -124,20 +112,19 @@ def test_without_a_simulator_the_text_has_neither_its_probabilities_nor_a_table_
 
 def test_an_undecided_answer_is_not_decided_in_the_document_and_has_the_flight_that_separates_the_two():
     shares = {"none": 0.5, "aileron_actuator_backlash": 0.45, "parameters": 0.05}
-    near = replace(DIAGNOSIS, **weighed(shares))
-    document = side_gap_document(replace(FOUND, verdict="none", diagnosis=near))
+    document = axis_document(replace(FOUND, verdict="none", **weighed(shares)))
     assert document["decided"] is False
     assert document["title"] == "NOT DECIDED BETWEEN NOTHING TO CORRECT AND AILERON ACTUATOR BACKLASH"
     (step,) = document["next"]
     assert step["text"].startswith(
         "To separate nothing to correct from aileron actuator backlash: fly as many"
     )
-    assert side_gap_document(FOUND)["decided"] is True
-    assert side_gap_document(FOUND)["next"] == []
+    assert axis_document(FOUND)["decided"] is True
+    assert axis_document(FOUND)["next"] == []
 
 
 def test_the_document_has_probabilities_that_sum_to_one_and_the_gain_on_unseen_manoeuvres():
-    document = side_gap_document(FOUND)
+    document = axis_document(FOUND)
     told = document["probabilities"]
     assert told["none"] + told["parameters"] + sum(told["effects"].values()) == pytest.approx(1.0)
     (cause,) = document["causes"]
@@ -164,9 +151,9 @@ def test_a_gyro_that_reads_too_much_is_named_with_its_size():
     assert found.verdict == "effect"
     first = found.causes[0]
     assert first.name == "roll_rate_scale"
-    assert first.cause.parameters["scale"].value == pytest.approx(0.08, abs=0.02)
+    assert first.parameters["scale"].value == pytest.approx(0.08, abs=0.02)
     assert first.sentence.startswith("The roll rate reads 8")
-    assert first.peaks["p"] < found.peaks["p"]
+    assert first.peaks["p"] < found.peaks["simulator"]["p"]
 
 
 @pytest.mark.study
@@ -174,7 +161,7 @@ def test_a_gyro_that_clips_is_a_law_without_a_name_in_its_channel():
     found = diagnosed_with(lambda p: np.clip(p, -0.6 * np.max(np.abs(p)), 0.6 * np.max(np.abs(p))))
     assert found.verdict == "unknown"
     assert found.where.block == "roll_rate_sensor"
-    assert found.answers[0][1] > 0.6
+    assert answers_of(found.evidence)[0][1] > 0.6
 
 
 @pytest.mark.study
@@ -192,22 +179,19 @@ def test_an_effect_is_named_in_side_gusts_too(effect, size, named):
 @pytest.mark.study
 def test_side_gusts_alone_are_no_delay_of_a_surface():
     found = diagnosed(12, {"side_turbulence": {CASES["side_turbulence"].parameter: 0.24}})
-    assert found.answers[0][0] == "side gusts"
+    assert answers_of(found.evidence)[0][0] == "side gusts"
 
 
 def test_two_effects_at_once_are_both_said_and_stand_before_the_alternatives():
     lag = replace(PLAY, of="rudder", named="rudder actuator lag", sentence="The real rudder lags by 60 ms")
-    other = replace(PLAY, named="roll rate scale", cause=replace(PLAY.cause, present=False, probability=0.1))
-    both = replace(
-        DIAGNOSIS,
-        causes=(PLAY, lag, other),
-        waterfall=(("aileron_actuator_backlash", 0.4), ("rudder_actuator_lag", 0.0)),
-    )
-    assert both.sentence == f"{PLAY.sentence}. The real rudder lags by 60 ms"
-    document = side_gap_document(replace(FOUND, diagnosis=both))
-    assert [one["present"] for one in document["causes"]] == [True, True, False]
+    other = replace(PLAY, named="roll rate scale", present=False, probability=0.1, gap_after=np.nan)
+    causes = PLAY, lag, other
+    assert diagnosis._sentence("effect", Where(), causes) == f"{PLAY.sentence}. The real rudder lags by 60 ms"
+    waterfall = ("aileron_actuator_backlash", 0.4), ("rudder_actuator_lag", 0.0)
+    document = axis_document(replace(FOUND, causes=causes, waterfall=waterfall))
+    assert [cause["present"] for cause in document["causes"]] == [True, True, False]
     assert document["waterfall"][0] == {"effect": "aileron_actuator_backlash", "after": 0.4}
-    assert [one["gap_after"] for one in document["causes"]] == [0.4, 0.0, None]
+    assert [cause["gap_after"] for cause in document["causes"]] == [0.5, 0.5, None]
 
 
 def test_effects_that_set_the_same_number_are_never_two_causes():
@@ -358,13 +342,13 @@ def test_a_manoeuvre_that_alone_moves_a_control_is_not_held_out(monkeypatch, rec
 
 
 def test_each_manoeuvre_has_its_gap_before_and_after():
-    (one, *_) = side_gap_document(FOUND)["gap"]["by_maneuver"]
+    (one, *_) = axis_document(FOUND)["gap"]["by_maneuver"]
     assert one == {"number": 1, "before": 3.0, "after": 0.5}
 
 
 def test_a_gap_of_which_nothing_is_held_out_has_no_value_after():
-    alone = replace(DIAGNOSIS.gap, after=np.nan, by_channel_after={"p": np.nan})
-    document = side_gap_document(replace(FOUND, diagnosis=replace(DIAGNOSIS, gap=alone, shrink=None)))
+    alone = replace(FOUND.gap, after=np.nan, by_channel_after={"p": np.nan})
+    document = axis_document(replace(FOUND, gap=alone, shrink=None))
     found = document["gap"]
     assert (found["before"], found["after"], found["by_channel_after"]) == (3.0, None, {"p": None})
     assert found["text"] == "gap 3 times the noise floor's power; no manoeuvre can be held out"
@@ -372,11 +356,11 @@ def test_a_gap_of_which_nothing_is_held_out_has_no_value_after():
 
 
 def test_the_schema_explains_every_key_of_roll_and_yaw():
-    assert breaches("gap", whole_document(FOUND)) == []
+    assert breaches("gap", gap_document(FOUND)) == []
 
 
 def test_roll_and_yaw_have_every_key_of_pitch():
-    assert side_gap_document(FOUND).keys() >= gap_document(None).keys() - {
+    assert axis_document(FOUND).keys() >= gap_document(None).keys() - {
         "schema",
         "usable",
         "problems",

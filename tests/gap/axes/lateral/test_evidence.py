@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.gap.axes.lateral import evidence
-from advisor.gap.axes.lateral.evidence import Gain, information_of, posterior_at, squares_of, step_of
+from advisor.gap.axes.lateral.evidence import gained, information_of, posterior_at, squares_of, step_of
 from advisor.gap.axes.lateral.fit import Known
 from advisor.gap.inference.marginal import marginal
 
@@ -112,14 +112,14 @@ def test_a_manoeuvre_that_stands_alone_is_predicted_worse_than_it_is_fitted():
 def test_a_gain_in_one_manoeuvre_alone_has_a_large_standard_error():
     counts = np.array([300.0])
     before = np.array([[2.0], [2.0], [2.0]])
-    everywhere = Gain.between(before, before / 2.0, counts, 1.0)
-    once = Gain.between(before, np.array([[0.2], [1.4], [1.4]]), counts, 1.0)
-    assert everywhere.total == pytest.approx(once.total)
+    everywhere = gained(before, before / 2.0, counts, 1.0)
+    once = gained(before, np.array([[0.2], [1.4], [1.4]]), counts, 1.0)
+    assert everywhere.value == pytest.approx(once.value)
     assert everywhere.std == pytest.approx(0.0)
-    assert once.std > 0.5 * once.total
+    assert once.std > 0.5 * once.value
 
 
 def test_coloured_noise_makes_every_nat_count_less():
     counts, before = np.array([300.0]), np.array([[2.0], [2.0], [2.0]])
-    white, coloured = (Gain.between(before, before / 2.0, counts, share).total for share in (1.0, 0.5))
+    white, coloured = (gained(before, before / 2.0, counts, share).value for share in (1.0, 0.5))
     assert coloured == pytest.approx(white / 4.0)
