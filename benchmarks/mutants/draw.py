@@ -1,4 +1,4 @@
-"""Mutants drawn by a seed: one change a line, from the rooms that decide.
+"""Mutants drawn by a seed: one change a line, from all rooms.
 
 The draw orders the lines by a hash of seed, file and text, so that a change of one file leaves the mutants of
 the other files.
@@ -11,12 +11,6 @@ from pathlib import Path
 
 from benchmarks.mutants.lines import Change, changes_of, compared_names
 
-ROOMS = ("campaign", "decision", "doctor", "exports", "flight", "gap", "mavlink", "oem", "report")
-"""Rooms of ``advisor`` that decide what is found, kept, estimated, judged or written."""
-LEFT_OUT = tuple(
-    f"gap/{room}/" for room in ("evidence", "fitting", "judge", "search", "uncatalogued", "verdict")
-)
-"""Rooms whose decisions only whole diagnoses show: ``make corpus`` guards them."""
 _COMPILED = "@kernel"
 """Mark of a module of machine code, which decides nothing and takes a minute to compile."""
 
@@ -52,7 +46,7 @@ def draw(root: Path, seed: int, count: int) -> list[Mutant]:
     compared = set[str]().union(*(compared_names(ast.parse(text)) for text in texts.values()))
     drawn: list[tuple[str, Mutant]] = []
     for file, text in texts.items():
-        if decides(file) and _COMPILED not in text:
+        if _COMPILED not in text:
             by_line: dict[int, list[Change]] = {}
             for change in changes_of(text, compared):
                 by_line.setdefault(change.line, []).append(change)
@@ -62,10 +56,4 @@ def draw(root: Path, seed: int, count: int) -> list[Mutant]:
                 change = changes[int(order, 16) % len(changes)]
                 after = change.apply(text).splitlines()[line - 1].strip()
                 drawn.append((order, Mutant(file, change, before, after)))
-    return [mutant for _, mutant in sorted(drawn, key=lambda one: one[0])[:count]]
-
-
-def decides(file: str) -> bool:
-    """Return whether a file of the tree lies in a room from which mutants are drawn."""
-    room = file.removeprefix("advisor/")
-    return room.startswith(tuple(f"{one}/" for one in ROOMS)) and not room.startswith(LEFT_OUT)
+    return [mutant for _, mutant in sorted(drawn, key=lambda each: each[0])[:count]]
