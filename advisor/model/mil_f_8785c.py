@@ -6,10 +6,10 @@ and, in Category C, of n/α are added. Paragraph 3.2.2.1.2 (Table IV) bounds the
 values in Category C are those of Classes I, II-C and IV, as MIL-STD-1797A prints them.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import astuple, dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from math import inf
-from typing import Literal
+from typing import Literal, NamedTuple
 
 SOURCE = "MIL-F-8785C, paragraph 3.2.2.1, Classes I, II-C and IV"
 MANNED = (
@@ -27,8 +27,7 @@ WORSE = 4
 Range = tuple[float, float]
 
 
-@dataclass(frozen=True, slots=True)
-class ShortPeriodLimits:
+class ShortPeriodLimits(NamedTuple):
     """Limits of one level in one category."""
 
     damping: Range
@@ -64,7 +63,7 @@ LIMITS: Mapping[Category, tuple[ShortPeriodLimits, ShortPeriodLimits, ShortPerio
 
 @dataclass(frozen=True, slots=True)
 class LevelFound:
-    """The level of a short period in one category of flight phases; 4 is worse than Level 3."""
+    """The level of a mode in one category of flight phases; 4 is worse than Level 3."""
 
     category: Category
     level: int
@@ -88,31 +87,29 @@ def _spoken(level: int) -> str:
     return "worse than Level 3" if level == WORSE else f"Level {level}"
 
 
-@dataclass(frozen=True, slots=True)
-class ShortPeriodFound:
-    """The four parameters of the requirements, each with its 95 % interval, in the units of the limits."""
-
-    values: ShortPeriodLimits
-    """The estimated values, each as a range with two equal ends."""
-    intervals: ShortPeriodLimits
+Measured = tuple[float, Range]
+"""One parameter of the requirements: its value and its 95 % interval."""
 
 
-def assess(category: Category, found: ShortPeriodFound) -> LevelFound:
-    """Return the level of a short period, and the best and the worst level within its intervals."""
+def assess(category: Category, limits: Sequence[Sequence[Range]], found: Sequence[Measured]) -> LevelFound:
+    """Return the level of a mode, and the best and the worst level within its intervals.
+
+    Parameters
+    ----------
+    limits
+        Limits of Levels 1 to 3, each with one range for every parameter. Every level includes better ones.
+    found
+        Parameters in the order and in the units of the limits.
+    """
+    values, intervals = [(value, value) for value, _ in found], [interval for _, interval in found]
+
+    def first(ranges: Sequence[Range], agrees: Callable[[Range, Range], bool]) -> int:
+        levels = (level for level, limit in enumerate(limits, start=1) if all(map(agrees, ranges, limit)))
+        return next(levels, WORSE)
+
     return LevelFound(
-        category,
-        _first(category, found.values, _lies_within),
-        _first(category, found.intervals, _overlaps),
-        _first(category, found.intervals, _lies_within),
+        category, first(values, _lies_within), first(intervals, _overlaps), first(intervals, _lies_within)
     )
-
-
-def _first(category: Category, found: ShortPeriodLimits, agrees: Callable[[Range, Range], bool]) -> int:
-    """Return the first level whose four ranges agree with those found; every level includes better ones."""
-    for level, limits in enumerate(LIMITS[category], start=1):
-        if all(map(agrees, astuple(found), astuple(limits))):
-            return level
-    return WORSE
 
 
 def _lies_within(found: Range, limit: Range) -> bool:

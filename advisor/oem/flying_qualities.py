@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from advisor.aircraft.reference import PARAMETERS, Reference
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.atmosphere import AirData
-from advisor.model.mil_f_8785c import CATEGORIES, LevelFound, ShortPeriodFound, ShortPeriodLimits, assess
+from advisor.model.mil_f_8785c import CATEGORIES, LIMITS, LevelFound, assess
 from advisor.oem.estimate import Estimate
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
@@ -115,9 +115,8 @@ def _levels(found: Mapping[str, Quality]) -> tuple[LevelFound, ...]:
     names = ("damping", "cap", "natural_frequency", "n_alpha")
     if any(name not in found for name in names):
         return ()
-    values = ShortPeriodLimits(*((found[name].value, found[name].value) for name in names))
-    intervals = ShortPeriodLimits(*(found[name].ci95 for name in names))
-    return tuple(assess(category, ShortPeriodFound(values, intervals)) for category in CATEGORIES)
+    measured = [(found[name].value, found[name].ci95) for name in names]
+    return tuple(assess(category, LIMITS[category], measured) for category in CATEGORIES)
 
 
 def _functions(speed: float | None, reference: Reference) -> dict[str, _Function | str]:

@@ -1,17 +1,16 @@
 """The boundaries of Figures 1 to 3 and of Table IV of MIL-F-8785C, each passed from one side to the other."""
 
-from dataclasses import replace
 from math import inf
 
 import pytest
 
-from advisor.model.mil_f_8785c import CATEGORIES, ShortPeriodFound, ShortPeriodLimits, assess
+from advisor.model.mil_f_8785c import CATEGORIES, LIMITS, assess
 
 
 def levels_of(*numbers: float) -> str:
     """Return damping, CAP, frequency, n/α to the levels in the categories A, B and C."""
-    one = ShortPeriodLimits(*((number, number) for number in numbers))
-    return "".join(str(assess(category, ShortPeriodFound(one, one)).level) for category in CATEGORIES)
+    measured = [(number, (number, number)) for number in numbers]
+    return "".join(str(assess(category, LIMITS[category], measured).level) for category in CATEGORIES)
 
 
 BELOW, ABOVE = 1.0 - 1e-9, 1.0 + 1e-9
@@ -53,19 +52,19 @@ def test_damping(damping: float, levels: str) -> None:
 
 
 def test_the_levels_that_the_intervals_reach_on_either_side_are_said() -> None:
-    cap = 3.64
-    values = ShortPeriodLimits((0.7, 0.7), (cap, cap), (9.0, 9.0), (23.0, 23.0))
-    sure = replace(values, cap=(3.62, 3.66))
-    unsure = replace(values, cap=(3.4, 10.5))
-    assert assess("A", ShortPeriodFound(values, sure)).sentence == "Category A: Level 2"
-    assert assess("A", ShortPeriodFound(values, unsure)).sentence == (
+    sure, unsure = (
+        [(0.7, (0.7, 0.7)), (3.64, cap), (9.0, (9.0, 9.0)), (23.0, (23.0, 23.0))]
+        for cap in ((3.62, 3.66), (3.4, 10.5))
+    )
+    assert assess("A", LIMITS["A"], sure).sentence == "Category A: Level 2"
+    assert assess("A", LIMITS["A"], unsure).sentence == (
         "Category A: Level 2; the 95 % intervals reach Level 1 and Level 3"
     )
 
 
 def test_what_no_level_allows_is_worse_than_the_third() -> None:
-    one = ShortPeriodLimits((0.1, 0.1), (1.0, 1.0), (2.0, 2.0), (10.0, 10.0))
-    assert assess("B", ShortPeriodFound(one, one)).sentence == "Category B: worse than Level 3"
+    measured = [(number, (number, number)) for number in (0.1, 1.0, 2.0, 10.0)]
+    assert assess("B", LIMITS["B"], measured).sentence == "Category B: worse than Level 3"
 
 
 _OPEN = (0.0, inf)
@@ -88,8 +87,8 @@ PRINTED: dict[str, tuple[dict[str, tuple[float, float]], ...]] = {
 }
 """Limits of Levels 1 to 3 as the specification prints them, read anew and not from the module."""
 INSIDE = {"damping": 0.7, "cap": 1.0, "frequency": 5.0, "load": 10.0}
-"""Values within Level 1 of every category."""
-LIMITS = [
+"""Values within Level 1 of every category, in the order of the limits."""
+BOUNDS = [
     (category, level, name, end)
     for category, levels in PRINTED.items()
     for level in range(1, len(levels) + 1)
@@ -100,11 +99,11 @@ LIMITS = [
 
 def level_of(category: str, **changed: float) -> int:
     """Return the level of values that are within Level 1 but for those changed."""
-    one = ShortPeriodLimits(**{name: (value, value) for name, value in (INSIDE | changed).items()})
-    return assess(category, ShortPeriodFound(one, one)).level  # type: ignore[arg-type]
+    measured = [(value, (value, value)) for value in (INSIDE | changed).values()]
+    return assess(category, LIMITS[category], measured).level  # type: ignore[index, arg-type]
 
 
-@pytest.mark.parametrize(("category", "level", "name", "end"), LIMITS)
+@pytest.mark.parametrize(("category", "level", "name", "end"), BOUNDS)
 def test_every_printed_limit_holds_to_the_last_digit(category: str, level: int, name: str, end: int) -> None:
     """A value at the limit has the level or a better one. A value beyond the limit has a worse one."""
     bound = PRINTED[category][level - 1].get(name, _OPEN)[end]

@@ -12,7 +12,7 @@ alternative of 0.5 s for the period is a quarter of a small aircraft's period. T
 between peaks of bank and sideslip are not applied.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import degrees, inf, isfinite, log, pi
 from typing import Literal
@@ -20,9 +20,8 @@ from typing import Literal
 import numpy as np
 
 from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
-from advisor.model.mil_f_8785c import CATEGORIES, WORSE, Category, LevelFound
+from advisor.model.mil_f_8785c import CATEGORIES, Category, LevelFound, Measured, Range, assess
 from advisor.oem.axes.lateral.estimate import LateralModes
-from advisor.oem.flying_qualities import Quality
 from advisor.process.arrays import FloatArray
 
 SOURCE = "MIL-F-8785C, paragraphs 3.3.1.1 to 3.3.1.3"
@@ -33,22 +32,21 @@ GROUPS: Mapping[Group, str] = {
 }
 """Aircraft of each group of classes with equal requirements. Category A treats all of Class II as II-L."""
 Mode = Literal["dutch_roll", "roll", "spiral"]
-Least = tuple[float, ...]
-"""Least values of the qualities for one level. Larger values of the quality are better."""
-
-_DUTCH: Mapping[Group, Mapping[Category, Least]] = {
+_DUTCH: Mapping[Group, Mapping[Category, tuple[float, ...]]] = {
     "I, II-C, IV": {"A": (0.19, 0.35, 1.0), "B": (0.08, 0.15, 0.4), "C": (0.08, 0.15, 1.0)},
     "II-L, III": {"A": (0.19, 0.35, 0.4), "B": (0.08, 0.15, 0.4), "C": (0.08, 0.10, 0.4)},
 }
 """Level 1 of the Dutch roll: least ζ, ζ·ω in rad/s, and ω in rad/s."""
-_DUTCH_BELOW: tuple[Least, Least] = ((0.02, 0.05, 0.4), (0.0, -inf, 0.4))
+_DUTCH_BELOW = ((0.02, 0.05, 0.4), (0.0, -inf, 0.4))
 """Levels 2 and 3 of the Dutch roll, equal for every class and category."""
-_ROLL: Mapping[Group, Mapping[Category, Least]] = {
+_ROLL: Mapping[Group, Mapping[Category, tuple[float, ...]]] = {
     "I, II-C, IV": {"A": (1.0, 1.4, 10.0), "B": (1.4, 3.0, 10.0), "C": (1.0, 1.4, 10.0)},
     "II-L, III": dict.fromkeys(CATEGORIES, (1.4, 3.0, 10.0)),
 }
 """Largest time constant of the roll mode in levels 1 to 3, s."""
-_SPIRAL: Mapping[Category, Least] = {"A": (12.0, 8.0, 4.0), "B": (20.0, 8.0, 4.0), "C": (12.0, 8.0, 4.0)}
+_SPIRAL: Mapping[Category, tuple[float, ...]] = {
+    "A": (12.0, 8.0, 4.0), "B": (20.0, 8.0, 4.0), "C": (12.0, 8.0, 4.0),
+}  # fmt: skip
 """Least time to double the bank in levels 1 to 3, s."""
 
 
@@ -85,51 +83,35 @@ def lateral_levels(modes: LateralModes) -> tuple[LateralLevels, ...]:
         LateralLevels(
             group,
             category,
-            {mode: _found(category, _limits(mode, group, category), *values[mode]) for mode in values},
+            {mode: assess(category, _limits(mode, group, category), values[mode]) for mode in values},
         )
         for group in GROUPS
         for category in CATEGORIES
     )
 
 
-def _values(modes: LateralModes) -> dict[Mode, tuple[Least, Least, Least]]:
-    """Return each mode's value and 95 % interval; larger is better, so time constant and pole are negated."""
-    found: dict[Mode, tuple[Least, Least, Least]] = {}
+def _values(modes: LateralModes) -> dict[Mode, list[Measured]]:
+    """Return the parameters of each mode in the order of its limits."""
+    found: dict[Mode, list[Measured]] = {}
     zeta, omega = modes.dutch_roll_zeta, modes.dutch_roll_omega
     if zeta is not None and omega is not None:
-        pairs = ((zeta.value, omega.value), *zip(zeta.ci95, omega.ci95, strict=True))
-        at, low, high = ((z, z * w, w) for z, w in pairs)
-        found["dutch_roll"] = at, low, high
-    if modes.roll_time_constant is not None:
-        found["roll"] = _negative(modes.roll_time_constant)
-    if modes.spiral_pole is not None:
-        found["spiral"] = _negative(modes.spiral_pole)
+        (low, high), (slow, fast) = zeta.ci95, omega.ci95
+        product = zeta.value * omega.value, (low * slow, high * fast)
+        found["dutch_roll"] = [(zeta.value, zeta.ci95), product, (omega.value, omega.ci95)]
+    if (roll := modes.roll_time_constant) is not None:
+        found["roll"] = [(roll.value, roll.ci95)]
+    if (spiral := modes.spiral_pole) is not None:
+        found["spiral"] = [(spiral.value, spiral.ci95)]
     return found
 
 
-def _negative(quality: Quality) -> tuple[Least, Least, Least]:
-    low, high = quality.ci95
-    return (-quality.value,), (-high,), (-low,)
-
-
-def _limits(mode: Mode, group: Group, category: Category) -> Sequence[Least]:
+def _limits(mode: Mode, group: Group, category: Category) -> list[list[Range]]:
     if mode == "dutch_roll":
-        return _DUTCH[group][category], *_DUTCH_BELOW
+        levels = _DUTCH[group][category], *_DUTCH_BELOW
+        return [[(least, inf) for least in level] for level in levels]
     if mode == "roll":
-        return [(-longest,) for longest in _ROLL[group][category]]
-    return [(-log(2.0) / doubled,) for doubled in _SPIRAL[category]]
-
-
-def _found(category: Category, limits: Sequence[Least], at: Least, low: Least, high: Least) -> LevelFound:
-    return LevelFound(category, *(_first(limits, values) for values in (at, high, low)))
-
-
-def _first(limits: Sequence[Least], values: Least) -> int:
-    """Return the first level whose least values are reached."""
-    for level, least in enumerate(limits, start=1):
-        if all(value >= limit for value, limit in zip(values, least, strict=True)):
-            return level
-    return WORSE
+        return [[(-inf, longest)] for longest in _ROLL[group][category]]
+    return [[(-inf, log(2.0) / doubled)] for doubled in _SPIRAL[category]]
 
 
 SHARE = 0.10
