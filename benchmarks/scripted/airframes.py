@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 
 from .pilot import Airframe, light
 
-_HEAVY = {
-    "c_lift_0": 0.42, "c_lift_a": 5.8, "c_drag_p": 0.07, "c_m_0": 0.06, "c_m_a": -1.6, "c_m_q": -14.0,
-    "c_m_deltae": 1.3, "c_l_p": -0.8, "c_l_r": 0.1, "c_l_deltaa": 0.21, "c_l_b": -0.07, "c_n_b": 0.09,
+_STIFF = {
+    "c_lift_0": 0.42, "c_lift_a": 5.8, "c_drag_p": 0.07, "c_m_0": 0.05, "c_m_a": -1.3, "c_m_q": -15.0,
+    "c_m_deltae": 1.0, "c_l_p": -0.8, "c_l_r": 0.1, "c_l_deltaa": 0.21, "c_l_b": -0.07, "c_n_b": 0.09,
     "c_n_r": -0.35, "c_n_p": -0.03, "c_n_deltar": 0.06, "c_n_deltaa": -0.01, "c_y_b": -0.8,
     "CGOffset_x": 0.0, "CGOffset_z": 0.0,
 }  # fmt: skip
@@ -14,10 +14,11 @@ _HEAVY = {
 
 
 def stiff() -> Airframe:
-    """Return a stiff plane with narrow servos whose middle is off 1500 us, and another linkage each."""
+    """Return a stiff plane with narrow servos whose middle is off 1500 us, and softer gains in pitch."""
     return Airframe(
-        _HEAVY,
+        _STIFF,
         {
+            "PTCH_RATE_FF": 0.35, "PTCH_RATE_P": 0.08, "PTCH_RATE_D": 0.003, "PTCH_RATE_I": 0.08,
             "SERVO1_MIN": 1050, "SERVO1_TRIM": 1490, "SERVO1_MAX": 1950,
             "SERVO2_MIN": 1150, "SERVO2_TRIM": 1520, "SERVO2_MAX": 1870,
             "SERVO4_MIN": 1080, "SERVO4_TRIM": 1480, "SERVO4_MAX": 1900,

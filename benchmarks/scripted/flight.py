@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from advisor.scripts.ardupilot import ardupilot_script
 from advisor.scripts.table import ScriptTable
 
@@ -78,8 +80,12 @@ def _by_mode(flight: ScriptFlight, number: int) -> float:
 
 
 def _by_height(flight: ScriptFlight, number: int) -> float:
-    lowest_m = flight.table.limits.lowest_m
-    return _first(flight.pilot.heights, flight, number, lambda m: m < lowest_m)
+    flight.over(number)
+    flight.pilot.fly(0.3)
+    t, height_m = np.array(flight.pilot.heights[-8:]).T
+    below = int(np.argmax(height_m < flight.table.limits.lowest_m))
+    two = slice(below - 1, below + 1)
+    return float(np.interp(-flight.table.limits.lowest_m, -height_m[two], t[two]))
 
 
 def _first(

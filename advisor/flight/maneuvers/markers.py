@@ -97,7 +97,7 @@ MARKED = {
     "script": "marked by a script",
 }
 """Reason of the end of a marked stretch, by the kind of marker."""
-_RESTING_S = 0.5
+RESTING_S = 0.5
 """Length before the end of a mark that is taken as rest, s."""
 _BEFORE_S = 0.3
 """Length before a mark that gives the level before the input, s."""
@@ -137,9 +137,11 @@ def _input(mark: Mark, elevator: Channel) -> Movement | None:
     before = elevator.cut(mark.start_s - _BEFORE_S, mark.start_s).y
     level = median(before) if len(before) else float(within.y[0])
     moved, rest = _moved(within, level), _last(within)
-    if not (is_still(rest, moved) and abs(median(rest) - level) <= RETURNED * moved):
-        # The return to trim may follow the mark. After a return within the mark, an autopilot's loop follows.
-        within = elevator.cut(mark.start_s, min(mark.end_s + 2.0 * _RESTING_S, mark.reach[1]))
+    has_returned = is_still(rest, moved) and abs(median(rest) - level) <= RETURNED * moved
+    if not has_returned and not is_still(within.y, moved):
+        # The return to trim may follow the mark. After a return within the mark, and after a mark in which
+        # the control was held, an autopilot's loop follows.
+        within = elevator.cut(mark.start_s, min(mark.end_s + 2.0 * RESTING_S, mark.reach[1]))
         moved, rest = _moved(within, level), _last(within)
     found = describe(within.t, within.y, level, rest if is_still(rest, moved) else None)
     return found if found is not None and found.amplitude >= SMALLEST_RAD else None
@@ -152,4 +154,4 @@ def _moved(within: Channel, level_rad: float) -> float:
 
 def _last(within: Channel) -> FloatArray:
     """Return the values of the last rest, rad."""
-    return within.cut(float(within.t[-1]) - _RESTING_S, float(within.t[-1])).y
+    return within.cut(float(within.t[-1]) - RESTING_S, float(within.t[-1])).y

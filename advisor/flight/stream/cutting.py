@@ -167,6 +167,12 @@ class Cutting:
             for loop in (PITCH, ROLL, YAW)
         }
         moved = part_of_input([SideMovement(loop, span) for loop, span in spans.items()])
+        rest = all(one.rests_by(mark.end_s) for one in moved)
+        if said is not None and len(moved) > 1 and rest and not self.pilot_flies(mark.end_s):
+            # After the mark the autopilot's loop moves the surfaces. An input at once does not need this
+            # motion. A doublet does: the loop is the second input that separates the derivatives.
+            spans = {loop: replace(span, end_s=mark.end_s) for loop, span in spans.items()}
+            moved = tuple(SideMovement(one.loop, spans[one.loop]) for one in moved)
         sides = tuple(one for one in moved if one.loop is not PITCH) if self._lateral else ()
         swept = mark.by == "system id"
         pitching = spans[PITCH]

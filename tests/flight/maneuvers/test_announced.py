@@ -244,13 +244,16 @@ def test_a_stretch_in_which_several_surfaces_move_has_one_extent_on_both_axes():
     assert pitch.span.kind == side.span.kind == "multisine"
 
 
-def test_the_loop_that_moves_a_surface_after_the_end_is_no_part_of_the_input():
+def _in_a_loop(moved: tuple[int, ...]) -> tuple[Span, list[Span]]:
+    """Spans of an announced input in FBWA, after whose END the loop moves aileron and rudder."""
     wire = Wire()
     heartbeat(wire, 1000.0, mode=5)
     plane_parameters(wire, 1000.001)
     for k in range(800):
         since_s = k / 50.0
-        pulses = {n: 1500 + 20 * pull(since_s - 4.0) for n in (1, 2, 4)}
+        pulses = {n: 1500 + (20 * pull(since_s - 4.0) if n in moved else 0) for n in (1, 2, 4)}
+        if since_s < 3.9 and 4 not in moved:
+            pulses[4] = 1503
         if since_s > 9.0:
             pulses |= {1: 1650, 4: 1600}
         attitude(wire, 1000.01 + since_s, 50.0 + since_s)
@@ -260,7 +263,18 @@ def test_the_loop_that_moves_a_surface_after_the_end_is_no_part_of_the_input():
     stream = FlightStream(Aircraft(), lateral=True)
     events = stream.feed(wire.columns()) + stream.finish()
     (pitch,) = maneuvers(events)
-    (side,) = (event.maneuver for event in events if isinstance(event, SideManeuverFlown))
-    for span in (pitch.span, side.span):
+    return pitch.span, [e.maneuver.span for e in events if isinstance(e, SideManeuverFlown)]
+
+
+def test_the_loop_that_moves_a_surface_after_the_end_is_no_part_of_the_input():
+    pitch, (side,) = _in_a_loop((1, 2, 4))
+    for span in (pitch, side):
         assert span.start_s == pytest.approx(54.0, abs=0.05)
         assert span.last_step_s < 58.0
+        assert span.end_s == pytest.approx(59.0, abs=0.05)
+
+
+def test_a_surface_that_the_script_holds_is_no_part_of_the_input():
+    pitch, sides = _in_a_loop((2,))
+    assert (pitch.start_s, pitch.end_s) == pytest.approx((54.0, 62.0), abs=0.05)
+    assert sides == []

@@ -8,6 +8,7 @@ import numpy as np
 
 from advisor.flight.maneuvers.loop import ROLL, YAW, Loop
 from advisor.flight.maneuvers.maneuver import InputKind, Span
+from advisor.flight.maneuvers.markers import RESTING_S
 from advisor.flight.signals.record import Channel
 
 TOGETHER_S = 1.5
@@ -47,6 +48,10 @@ class SideMovement:
     def amplitude(self) -> float:
         """Largest level of the movement, rad from trim."""
         return max((abs(level) for _, level in self.span.steps), default=0.0)
+
+    def rests_by(self, at_s: float) -> bool:
+        """Return whether the control has rested at trim for the least time of a rest at a time, s."""
+        return self.span.last_step_s + RESTING_S <= at_s
 
 
 @dataclass(frozen=True, slots=True)
