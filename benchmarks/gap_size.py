@@ -48,12 +48,12 @@ OF_AN_AXIS = frozenset(
 letter."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
-    "lines of code": 6936,
+    "lines of code": 6965,
     "constants": 221,
     "constants that decide": 38,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 15615,
+    "lines of estimation": 15965,
     "files naming an axis": 114,
 }
 """Upper bound of each count."""

@@ -4,10 +4,11 @@ The classes hold data and compute nothing. ``advisor.aircraft_file.read`` reads 
 every mistake at once. The core takes them as arguments and never opens a file.
 """
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
+from advisor.aircraft.added_term import AddedTerm, parse_term
 from advisor.aircraft.controls import Elevator, SideControl
 from advisor.aircraft.key import Key
 from advisor.aircraft.reference import FmuVariables, Reference
@@ -100,6 +101,27 @@ class CampaignPlan:
 
 
 @dataclass(frozen=True)
+class Estimation:
+    """Structure of the estimated model, where it differs from the program's."""
+
+    fixed: Annotated[Mapping[str, float], Key(
+        "Parameter name to the value at which it is held; a held parameter is not estimated.",
+    )] = field(default_factory=dict)  # fmt: skip
+    terms: Annotated[tuple[str, ...], Key(
+        "More terms, each EQUATION:EXPRESSION with a coefficient that is estimated: ``M:q*abs(q)``.",
+    )] = ()  # fmt: skip
+
+    def held(self, names: Container[str]) -> dict[str, float]:
+        """Return the value of each held parameter of an axis, whose parameters are ``names``."""
+        return {name: value for name, value in self.fixed.items() if name in names}
+
+    @property
+    def added(self) -> tuple[AddedTerm, ...]:
+        """The terms, read."""
+        return tuple(map(parse_term, self.terms))
+
+
+@dataclass(frozen=True)
 class Limits:
     """Limits that a test manoeuvre may not exceed."""
 
@@ -178,6 +200,7 @@ class Aircraft:
         "Effects added to the simulator's model: effect name of the gap diagnosis to its parameters.",
     )] = field(default_factory=dict)  # fmt: skip
     campaign: CampaignPlan = field(default_factory=CampaignPlan)
+    estimation: Estimation = field(default_factory=Estimation)
     limits: Limits = field(default_factory=Limits)
     markers: Markers = field(default_factory=Markers)
     fmu: FmuVariables | None = None

@@ -17,6 +17,7 @@ from advisor.aircraft.controls import Elevator, Pairs, SideControl
 from advisor.aircraft.key import keys_of, sections_of
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS, FmuVariables
 from advisor.aircraft_file.effects import effects_schema, mistakes_in
+from advisor.aircraft_file.estimation import mistakes_in_estimation
 from advisor.process.yaml_file import read_yaml
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
@@ -185,6 +186,7 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
             yield f"campaign.tolerance.{name}: unknown key, the parameters are {' '.join(PARAMETERS)}"
         elif value <= 0.0:
             yield f"campaign.tolerance.{name}: must be above 0, is {value}"
+    yield from mistakes_in_estimation(aircraft.estimation)
     yield from _mistakes_in_markers(aircraft.markers)
     if aircraft.fmu is not None:
         yield from _mistakes_in_fmu(aircraft.fmu)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft, Estimation
 from advisor.analysis.refused import without_refused
 from advisor.analysis.table_log import SUFFIXES, table_maneuvers
 from advisor.campaign.hand_decisions import ByHand
@@ -19,6 +19,7 @@ from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
 from advisor.mavlink.logs.whole import read_whole_log
+from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate_jointly
 from advisor.simulators.agreed import agreeing
 from advisor.simulators.by_log import IdentifiedSimulator
@@ -36,6 +37,9 @@ from advisor.words.problems import Problem, UnusableInputError
 _PAUSE_S = 60.0
 """Assumed time between the last manoeuvre of one log and the first of the next, s. No clock measured the
 pause between two logs."""
+
+
+_WITHOUT_STRUCTURE = "Leave out --fix and --term, or log the signal."
 
 
 @dataclass(frozen=True)
@@ -212,10 +216,26 @@ def compare_flown(
         every = len(flown.maneuvers) + flown.again
         twice = f"{flown.again} of {every} manoeuvres came twice, as from the same log or a copy"
         notes.insert(0, f"{twice}: they count once.")
+    progress("estimating what is held and added", 0.98)
+    structured = _structured(chosen.maneuvers, aircraft)
     every_note = (*notes, *compared.diagnosis.notes)
     air = replace(air, excess=compared.diagnosis.airspeed_excess)
-    found = replace(compared.diagnosis, notes=every_note, air=air, although_refused=chosen.although_refused)
+    found = replace(
+        compared.diagnosis, notes=every_note, air=air, structured=structured,
+        although_refused=chosen.although_refused,
+    )  # fmt: skip
     return replace(compared, diagnosis=found)
+
+
+def _structured(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estimate | None:
+    """Return the estimate with the parameters that the user holds and the terms that the user adds; None
+    without both."""
+    if aircraft.estimation == Estimation():
+        return None
+    fitted = estimate_jointly(maneuvers, aircraft)
+    if isinstance(fitted, NoEstimate):
+        raise UnusableInputError(fitted.code, fitted.text, _WITHOUT_STRUCTURE)
+    return fitted.structured
 
 
 def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Simulator | None:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @click.command
-@log_options("rule", "marks", "no_marks")
+@log_options("rule", "marks", "no_marks", "fixes", "terms")
 @click.option(
     "--all",
     "every_movement",
@@ -58,6 +58,7 @@ def command(
       advisor analyze battery-1.tlog battery-2.bin --aircraft my-aircraft.yaml
       advisor analyze flight.tlog --maneuver +12:+24 --maneuver 312.5:320
       advisor analyze flight.tlog --json | python -m json.tool
+      advisor analyze flight.tlog --fix Z_q=0 --term "M:q*abs(q)"
       advisor analyze flight.tlog --axis lateral --export matlab:roll-and-yaw.m
     """
     aircraft = asked.read_aircraft()

@@ -27,7 +27,7 @@ _OF_A_FLIGHT = {
     "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
     "no_marks": "--no-marks", "why": "--why", "everything": "--all", "prior": "--prior",
     "exports": "--export", "proving": "--prove", "specification": "--simulator", "figure": "--figure",
-    "axis": "--axis",
+    "axis": "--axis", "fixes": "--fix", "terms": "--term",
 }  # fmt: skip
 _OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "everything")}
 _OF_A_PLAN = {
@@ -40,7 +40,7 @@ _LATERAL = (
 
 
 @click.command
-@log_options("marks", "no_marks", required=False)
+@log_options("marks", "no_marks", "fixes", "terms", required=False)
 @click.option(
     "--holdout",
     type=click.IntRange(1),
@@ -115,6 +115,7 @@ def command(
       advisor gap flight.tlog --aircraft my-aircraft.yaml --prove
       advisor gap flight.tlog --aircraft my-aircraft.yaml --axis lateral
       advisor gap flight.tlog --axis both
+      advisor gap flight.tlog --aircraft my-aircraft.yaml --term "M:q*abs(q)"
     """
     _refuse_foreign(_OF_A_FLIGHT if foresee else _OF_A_PLAN, f"with{'out' if foresee else ''} --foresee")
     if axis == "lateral":

@@ -1,7 +1,7 @@
 """The logs of a command and the options that say how to read them, once for every command."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,18 +11,23 @@ import click
 from advisor.aircraft.aircraft import Aircraft, Rule
 from advisor.cli.options import (
     aircraft_option,
+    fix_option,
     maneuver_option,
     no_marks_option,
     read_aircraft,
     refuse_marks_on_several,
     rule_option,
     target_system_option,
+    term_option,
 )
 
 if TYPE_CHECKING:
     from advisor.flight.maneuvers.marks import Mark
 
-_OPTIONS = {"rule": rule_option, "marks": maneuver_option, "no_marks": no_marks_option}
+_OPTIONS = {
+    "rule": rule_option, "marks": maneuver_option, "no_marks": no_marks_option, "fixes": fix_option,
+    "terms": term_option,
+}  # fmt: skip
 """Name of an option that not every command has, to what adds it."""
 
 
@@ -38,6 +43,10 @@ class LogsAsked:
     marks: "tuple[Mark, ...]" = ()
     no_marks: bool = False
     """Whether earlier decisions by hand are ignored."""
+    fixes: tuple[str, ...] = ()
+    """Parameters to hold, each ``NAME[=VALUE]``."""
+    terms: tuple[str, ...] = ()
+    """Terms to add, each ``EQUATION:EXPRESSION``."""
 
     @property
     def aircraft_text(self) -> str | None:
@@ -57,6 +66,8 @@ class LogsAsked:
         for mark in self.marks:
             sign = "+" if mark.from_log_start else ""
             words += ["--maneuver", f"{sign}{mark.start_s:.10g}:{sign}{mark.end_s:.10g}"]
+        words += [word for text in self.fixes for word in ("--fix", text)]
+        words += [word for text in self.terms for word in ("--term", text)]
         return words
 
     def read_aircraft(self) -> Aircraft:
@@ -68,6 +79,11 @@ class LogsAsked:
             As :func:`advisor.cli.options.read_aircraft`.
         """
         aircraft = read_aircraft(self.aircraft_file, self.rule)
+        if self.fixes or self.terms:
+            from advisor.aircraft_file.estimation import structure_of
+
+            structure = structure_of(self.fixes, self.terms, aircraft.estimation, aircraft.model)
+            aircraft = replace(aircraft, estimation=structure)
         if not self.logs:
             return aircraft
         from advisor.analysis.table_log import as_in_tables
@@ -83,7 +99,7 @@ def log_options(
     Parameters
     ----------
     names
-        Further options: ``rule``, ``marks``, ``no_marks``.
+        Further options: ``rule``, ``marks``, ``no_marks``, ``fixes``, ``terms``.
     logs, required
         Whether the command has the argument LOG..., and whether at least one log is needed.
     """
@@ -97,10 +113,12 @@ def log_options(
             rule: Rule | None = None,
             marks: "tuple[Mark, ...]" = (),
             no_marks: bool = False,
+            fixes: tuple[str, ...] = (),
+            terms: tuple[str, ...] = (),
             **options: Any,
         ) -> Any:
             refuse_marks_on_several(marks, logs)
-            asked = LogsAsked(tuple(logs), aircraft_file, target_system, rule, marks, no_marks)
+            asked = LogsAsked(tuple(logs), aircraft_file, target_system, rule, marks, no_marks, fixes, terms)
             return command(asked, **options)
 
         for name in reversed(names):

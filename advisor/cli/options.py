@@ -64,6 +64,25 @@ no_marks_option = click.option(
 )
 """Adds the option ``--no-marks``, which the command receives as ``no_marks``."""
 
+fix_option = click.option(
+    "--fix",
+    "fixes",
+    multiple=True,
+    metavar="NAME[=VALUE]",
+    help="Hold a parameter, such as M_q=-2.0, instead of estimating it. Without a value: at the aircraft "
+    "file's model. Repeatable.",
+)
+"""Adds the option ``--fix NAME[=VALUE]``, which the command receives as ``fixes``."""
+term_option = click.option(
+    "--term",
+    "terms",
+    multiple=True,
+    metavar="EQUATION:EXPRESSION",
+    help="Estimate one more term, such as M:q*abs(q), Z:alpha**2 or L:beta**3, and tell what it gains. "
+    "Angles of attack and pitch, controls and thrust count from their mean. Repeatable.",
+)
+"""Adds the option ``--term EQUATION:EXPRESSION``, which the command receives as ``terms``."""
+
 
 def parse_marks(texts: Sequence[str]) -> "tuple[Mark, ...]":
     """Read several stretches ``START:END`` that do not overlap.

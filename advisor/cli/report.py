@@ -16,7 +16,7 @@ _NEEDED = ("jinja2", "matplotlib")
 
 
 @click.command
-@log_options("rule", "no_marks")
+@log_options("rule", "no_marks", "fixes", "terms")
 @click.option("-o", "--out", required=True, type=click.Path(path_type=Path), help="File for the page.")
 @click.option(
     "--format",
@@ -35,6 +35,7 @@ def command(asked: LogsAsked, out: Path, form: str | None, with_gap: bool) -> in
       advisor report flight.tlog --aircraft my-aircraft.yaml -o report.html
       advisor report battery-1.tlog battery-2.bin --gap -o report.html
       advisor report flight.tlog --format md -o report.md
+      advisor report flight.tlog --term "M:q*abs(q)" -o report.html
     """
     _refuse(asked.inputs, out)
     aircraft = asked.read_aircraft()

@@ -17,6 +17,7 @@ from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.decision.inverses import covariance_of, information_of
 from advisor.oem.estimate import Estimate
+from advisor.oem.prior import HELD
 from advisor.process.arrays import FloatArray
 
 INTERCEPTS = (PARAMETERS.index("Z_0"), PARAMETERS.index("M_0"))
@@ -102,12 +103,17 @@ def posteriors_at_one_speed(estimates: Sequence[Estimate]) -> list[Posterior]:
 
 
 def _of_data(estimate: Estimate, covariance: FloatArray) -> FloatArray:
-    """Return a covariance (p, p) in which parameters that only a prior tells are unknown."""
+    """Return a covariance (p, p) in which parameters that only a prior tells are unknown, and those that the
+    user holds are known."""
     unknown = [estimate.names.index(name) for name in estimate.of_prior]
     if unknown:
         covariance = covariance.copy()
         covariance[unknown, :] = covariance[:, unknown] = 0.0
         covariance[unknown, unknown] = np.inf
+    held = [estimate.names.index(name) for name in estimate.fixed]
+    if held:
+        covariance = covariance.copy()
+        covariance[held, held] = (HELD * np.maximum(np.abs(estimate.theta[held]), 1.0)) ** 2
     return covariance
 
 
@@ -131,7 +137,10 @@ def _at_one_speed(estimates: Sequence[Estimate]) -> tuple[FloatArray, FloatArray
     speeds = np.array([e.airspeed_m_s for e in estimates])[:, None]
     gravity = np.array([GRAVITY_M_S2 if name == "Z_0" else 0.0 for name in names])
     scale = (reference / speeds) ** np.array([SPEED_EXPONENTS[name] for name in names], dtype=float)
-    return scale, (theta - gravity / speeds) * scale + gravity / reference
+    values = (theta - gravity / speeds) * scale + gravity / reference
+    held = [names.index(name) for name in estimates[0].fixed]
+    scale[:, held], values[:, held] = 1.0, theta[:, held]
+    return scale, values
 
 
 def common_airspeed(estimates: Sequence[Estimate]) -> float | None:

@@ -8,6 +8,7 @@ from typing import Literal
 from advisor.flight.instruments.atmosphere import AirData
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.alternative import Weighed
+from advisor.oem.estimate import Estimate
 from advisor.process.arrays import FloatArray
 from advisor.words.axes import AXES, AxisName
 from advisor.words.quantiles import NORMAL_95
@@ -316,6 +317,9 @@ class Diagnosis(Weighed):
     """Air of the manoeuvres: kind of the air speed, and density; None unless requested."""
     airspeed_excess: float = 0.0
     """Relative excess of the true air speed over the used air speed, from the final model."""
+    structured: Estimate | None = None
+    """Joint estimate with the parameters that the user holds and the terms that the user adds; None without
+    both."""
     although_refused: tuple[int, ...] = ()
     """Numbers of used manoeuvres that ``advisor analyze`` refuses because of their data."""
 

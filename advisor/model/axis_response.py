@@ -45,6 +45,8 @@ class AxisGrid(NamedTuple):
     """(E, k, u) derivatives of ``slope``."""
     known: FloatArray
     """(E, f) known factors, on the step or at the event; the first is 1."""
+    forced: FloatArray
+    """(E, n) further known part of the rates on the step, which the outputs see too; (0, n) for none."""
     turning: Index
     """(a, 3) row, column and known factor of each known term of the rates."""
     seen: Index
@@ -112,8 +114,9 @@ def _respond_in(
         z[0, i] = theta[initial[i]]
         by[i, initial[i]] = 1.0
     for e in range(begin, end):
-        if e == begin or ratio[e] != ratio[e - 1]:
+        if e == begin or _changes(ratio, grid.forced, e):
             _fill(place, ratio[e], theta, powers, matrix)
+            _force(grid.forced, e, matrix)
         for j in range(u):
             z[0, n + j] = inputs[e, j]
         _begin(row, bias, e, theta, y, g)
@@ -156,6 +159,21 @@ def _fill(place: Index, ratio: float, theta: FloatArray, powers: FloatArray, mat
         for _ in range(place[k, 2]):
             powers[k] *= ratio
         matrix[place[k, 0], place[k, 1]] += theta[k] * powers[k]
+
+
+@kernel()
+def _changes(ratio: FloatArray, forced: FloatArray, e: int) -> bool:
+    """Return whether the matrix of the parameters differs from that of the event before."""
+    differs: bool = ratio[e] != ratio[e - 1] or len(forced) > 0
+    return differs
+
+
+@kernel()
+def _force(forced: FloatArray, e: int, matrix: FloatArray) -> None:
+    """Add the further known part of the rates (E, n) to the constants of the matrix."""
+    if len(forced) > 0:
+        for i in range(len(matrix)):
+            matrix[i, -1] += forced[e, i]
 
 
 @kernel()

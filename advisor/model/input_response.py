@@ -79,10 +79,10 @@ def _respond_in(
     begin, end = grid.first[m], grid.first[m + 1]
     before = (np.nan, np.nan)
     for e in range(begin, end):
-        i, known = grid.kind[e], grid.known[e]
+        i, known, turned = grid.kind[e], grid.known[e], grid.turned[e]
         s = grid.ratio[i]
         vane = grid.vane[e]
-        after = rates(s, grid.start[e], known, shared, local, alpha, q)
+        after = rates(s, grid.start[e], known, turned, shared, local, alpha, q)
         if e == begin:
             before = after
         elif e + 1 == end:
@@ -101,7 +101,7 @@ def _respond_in(
                     columns[row, N_READING + j] = moved[state, j]
         row = grid.row[2, e]
         if row >= 0:
-            alpha_dot, q_dot = rates(s, grid.elevator[e], known, shared, local, alpha, q)
+            alpha_dot, q_dot = rates(s, grid.elevator[e], known, turned, shared, local, alpha, q)
             by_alpha, by_q, by_delta = force_slopes(
                 s, grid.airspeed[e], grid.acceleration[e], grid.arm, shared, alpha, alpha_dot - q
             )
@@ -127,7 +127,8 @@ def _respond_in(
             delta, rate = grid.start[e] + part * h * grid.slope[e], grid.slope[e]
             alpha, q, _ = advanced(
                 table[i], alpha, q, 0.0,
-                s * (local[0] + z_delta * delta) + known, s * s * (local[1] + m_delta * delta),
+                s * (local[0] + z_delta * delta) + known, s * s * (local[1] + m_delta * delta) + turned,
                 s * z_delta * rate, s * s * m_delta * rate,
             )  # fmt: skip
-        before = rates(s, grid.start[e] + grid.step_s[i] * grid.slope[e], known, shared, local, alpha, q)
+        arrived = grid.start[e] + grid.step_s[i] * grid.slope[e]
+        before = rates(s, arrived, known, turned, shared, local, alpha, q)

@@ -8,7 +8,7 @@ Parameters of one manoeuvre, in this order: what all share, ``SHARED``, then its
 ``LOCAL``. With the air speed ratio s = V/V_ref of a step, the model is
 
     α̇ = s·(Z_0 + Z_α·α + Z_δe·δe) + (1 + Z_q)·q + g(t)
-    q̇ = s²·(M_0 + M_α·α + M_δe·δe) + s·M_q·q
+    q̇ = s²·(M_0 + M_α·α + M_δe·δe) + s·M_q·q + m(t)
     θ̇ = q
 
 and the outputs are, with the vane x_α and the accelerometer x_a ahead of the centre of gravity,
@@ -56,6 +56,8 @@ class Grid(NamedTuple):
     """(E,) rate of δe on the step, rad/s."""
     known: FloatArray
     """(E,) g(t), the known contribution to α̇ beyond the model, rad/s, constant over the step."""
+    turned: FloatArray
+    """(E,) m(t), the known contribution to q̇ beyond the model, rad/s², constant over the step."""
     row: Index
     """(4, E) row of the measurement of each output of ``OUTPUTS`` at the event, -1 for none."""
     vane: FloatArray
@@ -155,7 +157,7 @@ def _respond_in(
     z_delta, m_delta = shared[2], shared[5]
     nothing = np.empty(0)
     rows, kind, start, slope = grid.row, grid.kind, grid.start, grid.slope
-    vane, known = grid.vane, grid.known
+    vane, known, turned = grid.vane, grid.known, grid.turned
     begin, end = grid.first[m], grid.first[m + 1]
     z_0, m_0 = local[0], local[1]
     alpha, q, theta = local[2], local[3], local[4]
@@ -186,6 +188,7 @@ def _respond_in(
                 grid.ratio[kind[e]],
                 grid.elevator[e],
                 known[e],
+                turned[e],
                 grid.airspeed[e],
                 grid.acceleration[e],
                 grid.arm,
@@ -205,7 +208,7 @@ def _respond_in(
         for part in range(parts[i]):
             delta = start[e] + part * h * slope[e]
             u1 = s * (z_0 + z_delta * delta) + known[e]
-            u2 = s * s * (m_0 + m_delta * delta)
+            u2 = s * s * (m_0 + m_delta * delta) + turned[e]
             v1, v2 = s * z_delta * slope[e], s * s * m_delta * slope[e]
             if wanted:
                 carry(table[i], s, shared, alpha, q, u1, u2, v1, v2, delta, slope[e], state, attitude)

@@ -27,12 +27,13 @@ def advanced(
 
 @kernel()
 def rates(
-    s: float, delta: float, known: float, shared: FloatArray, local: FloatArray, alpha: float, q: float
-) -> tuple[float, float]:
-    """Return α̇ and q̇ of the model."""
+    s: float, delta: float, known: float, turned: float, shared: FloatArray, local: FloatArray,
+    alpha: float, q: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Return α̇ and q̇ of the model; ``known`` and ``turned`` are their known parts."""
     return (
         s * shared[0] * alpha + (1.0 + shared[1]) * q + s * (shared[2] * delta + local[0]) + known,
-        s * s * shared[3] * alpha + s * shared[4] * q + s * s * (shared[5] * delta + local[1]),
+        s * s * shared[3] * alpha + s * shared[4] * q + s * s * (shared[5] * delta + local[1]) + turned,
     )
 
 
@@ -129,6 +130,7 @@ def specific_force(
     s: float,
     delta: float,
     known: float,
+    turned: float,
     airspeed: float,
     acceleration: float,
     arm: float,
@@ -141,7 +143,7 @@ def specific_force(
 ) -> float:
     """Return a_z without gravity and bias, from α̇ and q̇ of the model; derivatives into ``row`` (14,) or
     (0,)."""
-    alpha_dot, q_dot = rates(s, delta, known, shared, local, alpha, q)
+    alpha_dot, q_dot = rates(s, delta, known, turned, shared, local, alpha, q)
     lift = (1.0 + shared[6]) * airspeed * math.cos(alpha)
     force: float = lift * (alpha_dot - q) + acceleration * math.sin(alpha) - arm * q_dot
     if len(row) == 0:

@@ -93,7 +93,9 @@ def influence(
     common, own = assembly.common, assembly.own
     shared_g = g[:, common] if extra is None else np.column_stack([g[:, common], extra.columns])
     places = [
-        (j, int(np.searchsorted(own, split + i))) for j, (shared, i) in enumerate(names.places) if not shared
+        (j, int(np.searchsorted(own, split + i)))
+        for j, (shared, i) in enumerate(names.places)
+        if not shared and split + i in own
     ]
     parts = []
     projected = np.empty_like(shared_g)

@@ -90,12 +90,13 @@ def efficient_step(solution: Solution) -> Step | None:
     systematic = model_error(
         assembly, solution.fitted, solution.residual, solution.sensitivities, solution.extra, colours, rows
     )
-    long = _chance(change, apart, np.sqrt(np.diag(after)))
+    moving = np.diag(before) > 0.0  # a fixed parameter has no error
+    long = _chance(change[moving], apart[np.ix_(moving, moving)], np.sqrt(np.diag(after)[moving]))
     return Step(
         change=change,
         covariance=covariance + 2.0 * _unsure(solution, change),
         systematic=systematic,
-        gain=float(np.max(1.0 - np.diag(after) / np.diag(before))),
+        gain=float(np.max(1.0 - np.diag(after)[moving] / np.diag(before)[moving])),
         chances=np.array([*_remembering(solution, weighing), long]),
     )
 

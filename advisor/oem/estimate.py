@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import nan
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -72,6 +72,19 @@ class InstrumentEstimate:
     """Whether the data exclude the stated value; ``value`` then comes from the data."""
 
 
+@dataclass(frozen=True, slots=True)
+class TermEstimate:
+    """Coefficient of a term that the user added."""
+
+    name: str
+    """Term as the user wrote it: ``M:q*abs(q)``."""
+    value: float
+    std: float
+    """Standard deviation of ``value``, corrected for coloured residuals."""
+    gained: float
+    """Log likelihood of the fit with the term minus that of the fit without it, nats; NaN without a fit."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Estimate:
     """Parameters of one axis from one manoeuvre or several, by default those of Eq. (3).
@@ -131,8 +144,17 @@ class Estimate:
     prediction: Mapping[str, float] = field(default_factory=dict)
     """Largest half-width of each predicted output's 95 % band, over the response's peak, by the output's
     name. The mapping is empty while a manoeuvre is being flown."""
+    terms: tuple[TermEstimate, ...] = ()
+    """Terms that the user added."""
+    fixed: tuple[str, ...] = ()
+    """Names of the parameters that the user holds at a value."""
     names: tuple[str, ...] = PARAMETERS
     """Names of the parameters."""
+
+    @property
+    def structured(self) -> Self | None:
+        """The estimate where the user holds a parameter or adds a term; None otherwise."""
+        return self if self.fixed or self.terms else None
 
     @property
     def outputs(self) -> tuple[str, ...]:

@@ -1,6 +1,6 @@
 """Estimation of parameters from manoeuvres, as called by other packages."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
 from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
 from advisor.oem.filter_error import filter_error, moving_air
+from advisor.oem.gained import told, without_term
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.identifiability import correlated, not_identifiable
 from advisor.oem.instrument_fit import Identified, InstrumentFit, fit_instruments, refreshed
@@ -89,9 +90,18 @@ class Fit:
             # The lag's ridge is a property of the input, which moving air does not change.
             filtered = replace(filtered, modes=solution.modes, profile=solution.profile)
             identified = refreshed(identified, filtered)
-        return report(
+        found = report(
             solution, self.prepared, self.aircraft, identified=identified, air=air, filtered=filtered
         )
+        terms = self.prepared.problem.terms
+        values = {x.instrument.name: (x.found.value, x.found.std) for x in identified}
+        open_terms = [name for name in terms if name in values]
+        return replace(found, terms=told(open_terms, values, self.fitted.solution, self._without))
+
+    def _without(self, term: str) -> Solution | None:
+        """Return the solution without one of the user's terms; None without such a solution."""
+        other = fit_jointly(self.maneuvers, without_term(self.aircraft, term))
+        return None if isinstance(other, NoEstimate) else other.fitted.solution
 
 
 def _begun(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> tuple[Prepared, Solution] | NoEstimate:
@@ -202,6 +212,7 @@ def report(
     filtered : solution of filter error, where moving air was allowed for.
     quick : leave out what takes milliseconds: the cost of missing channels, and the efficient estimate.
     """
+    sound = [x for x in identified if x.instrument.name not in solution.problem.terms]
     best = filtered or (solution if quick else efficient(solution))
     source = filtered or solution
     within = replace(source, covariance=best.covariance, systematic=best.systematic)
@@ -222,9 +233,13 @@ def report(
         correlated=correlated(best.covariance_cr[:N, :N]),
         condition=solution.influence.condition,
         airspeed_m_s=airspeed_m_s,
-        notes=notes(solution, prepared, aircraft, identified, best=best, priced=not quick),
+        notes=notes(solution, prepared, aircraft, sound, best=best, priced=not quick),
         theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
-        instruments=(*_given(given), *(x.reported for x in identified if x.reported is not None)),
+        instruments=(
+            *_given(given, solution.problem.terms),
+            *(x.reported for x in sound if x.reported is not None),
+        ),
+        fixed=tuple(solution.problem.fixed),
         found=FoundInstruments.of(
             tuple(x.instrument.name for x in identified),
             np.array([x.found.value for x in identified]),
@@ -241,10 +256,10 @@ def report(
     )
 
 
-def _given(found: FoundInstruments | None) -> Iterator[InstrumentEstimate]:
-    """Yield the instruments that other manoeuvres have determined."""
+def _given(found: FoundInstruments | None, terms: Container[str]) -> Iterator[InstrumentEstimate]:
+    """Yield the instruments that other manoeuvres have determined, without the user's terms."""
     for name, value, std in zip(found.names, found.values, found.std, strict=True) if found else ():
-        if name != "steady_moment_rad":
+        if name != "steady_moment_rad" and name not in terms:
             yield InstrumentEstimate(name, float(value), float(std))
 
 

@@ -88,7 +88,7 @@ def value_in_words(name: InstrumentName, value: float, std: float) -> str:
             return f"alpha is {1e3 * value:+.0f} ± {1e3 * half:.0f} ms late relative to the motion"
         case "accelerometer_arm_m":
             return f"the accelerometer reads as if {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
-        case "steady_moment_rad":
+        case _:
             return (
                 "the moment that does not change with air speed, such as the thrust's, equals"
                 f" {np.degrees(value):+.1f} ± {np.degrees(half):.1f} deg of elevator"

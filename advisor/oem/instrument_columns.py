@@ -5,6 +5,7 @@ the motion of a fit gives all derivatives (``model.input_response``).
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,13 +17,17 @@ from advisor.model.input_response import (
     InputChange,
     respond_to_change,
 )
+from advisor.model.outputs import N_PARAMETERS
+from advisor.model.response import respond
 from advisor.oem.known_instruments import InstrumentName
-from advisor.oem.problem import Assembly, OutputErrorProblem, Record, steady_share
+from advisor.oem.problem import Assembly, OutputErrorProblem, Record, assemble, steady_share
 from advisor.oem.rows import padded
 from advisor.process.arrays import FloatArray
 
 READING = {"vane_arm_m": BY_VANE, "accelerometer_arm_m": BY_ACCELEROMETER, "alpha_delay_s": BY_ALPHA_DELAY}
 """Column index of each instrument of an output."""
+STEP = 1e-4
+"""Numerical: change of the rates, rad/s and rad/s², for the derivative by a term, which is nearly linear."""
 OF_COMMAND = ("command_delay_s", "servo_lag_s", "steady_moment_rad")
 """Instruments that change the motion of the surface, or have the effect of such a change."""
 
@@ -50,7 +55,31 @@ def instrument_columns(
 
     columns = input_columns(problem, assembly, shared, local, of_command)
     places = {**READING, **{name: N_READING + i for i, name in enumerate(OF_COMMAND)}}
-    return columns[:, [places[name] for name in names]]
+    parts = [
+        _by_term(problem, assembly, shared, local, name)
+        if name in problem.terms
+        else columns[:, places[name]]
+        for name in names
+    ]
+    return np.column_stack(parts)
+
+
+def _by_term(
+    problem: OutputErrorProblem, assembly: Assembly, shared: FloatArray, local: FloatArray, term: str
+) -> FloatArray:
+    """Return the derivative of the outputs by a term's coefficient, shape (N,)."""
+    alone = assemble(replace(problem, terms={**dict.fromkeys(problem.terms, 0.0), term: 1.0})).grid
+    none = assemble(replace(problem, terms={})).grid
+    known, turned = alone.known - none.known, alone.turned
+    step = STEP / max(float(np.max(np.abs(known))), float(np.max(np.abs(turned))), 1e-300)
+    ends = []
+    for share in (step, -step):
+        ends.append(np.empty(len(assembly.z)))
+        grid = assembly.grid._replace(
+            known=assembly.grid.known + share * known, turned=assembly.grid.turned + share * turned
+        )
+        respond(grid, shared, local, ends[-1], np.empty((0, N_PARAMETERS)))
+    return (ends[0] - ends[1]) / (2.0 * step)
 
 
 def input_columns(

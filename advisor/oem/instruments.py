@@ -44,6 +44,10 @@ PLACE_S = 0.1
 to 0.11 s; the longest is a nose boom of 13 m at 130 m/s."""
 
 
+FLAT = Prior(0.0, np.inf)
+"""Prior of a coefficient that nothing is known of."""
+
+
 @dataclass(frozen=True, slots=True)
 class Instrument:
     """One instrument parameter of a problem."""
@@ -71,6 +75,8 @@ class Instrument:
                 return problem.servo.lag_s
             case "command_delay_s":
                 return problem.servo.delay_s + _held_for(problem)
+            case name if name in problem.terms:
+                return problem.terms[name]
             case name:
                 return float(getattr(problem, name))
 
@@ -81,6 +87,8 @@ class Instrument:
             changed = {"servo": replace(problem.servo, lag_s=value)}
         elif self.name == "command_delay_s":
             changed = {"servo": replace(problem.servo, delay_s=value - _held_for(problem))}
+        elif self.name in problem.terms:
+            changed = {"terms": {**problem.terms, self.name: value}}
         return replace(problem, **changed)
 
     def moved(self, problem: OutputErrorProblem, change: float) -> OutputErrorProblem:
@@ -143,6 +151,11 @@ BY_NAME: Mapping[InstrumentName, Instrument] = {
 }
 
 
+def coefficient(term: str) -> Instrument:
+    """Return the coefficient of a term that the user added, as one more parameter."""
+    return Instrument(term, 0.0, -np.inf, np.inf, lambda _: FLAT, prior=FLAT)
+
+
 def knows_the_lag(lag: InstrumentEstimate | None) -> bool:
     """Return whether a servo's lag is estimated accurately enough for the aircraft."""
     return lag is not None and lag.name == SERVO_LAG.name and lag.std < KNOWN_TO * lag.value
@@ -172,8 +185,10 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
     found = found_of(aircraft)
     command = COMMAND_DELAY.open(problem)
     if found is not None:
-        return () if command.name in found.names else (command,)
-    unknown = [_stated_or_open(SERVO_LAG, aircraft.elevator.lag_s, problem), command]
+        wanted = (command, *map(coefficient, problem.terms))
+        return tuple(x for x in wanted if x.name not in found.names)
+    unknown = [*map(coefficient, problem.terms)]
+    unknown += [_stated_or_open(SERVO_LAG, aircraft.elevator.lag_s, problem), command]
     if problem.reference_airspeed_m_s is not None:
         unknown.append(STEADY_MOMENT.open(problem))
     measured = {name for record in problem.records for name in record.outputs}
@@ -198,5 +213,6 @@ def _stated_or_open(x: Instrument, stated: float | None, problem: OutputErrorPro
 def as_found(problem: OutputErrorProblem, found: FoundInstruments | None) -> OutputErrorProblem:
     """Return the problem with the instruments that several manoeuvres determined together."""
     for name, value in zip(found.names, found.values, strict=True) if found is not None else ():
-        problem = BY_NAME[name].write(problem, float(value))
+        if name in BY_NAME or name in problem.terms:
+            problem = (BY_NAME.get(name) or coefficient(name)).write(problem, float(value))
     return problem

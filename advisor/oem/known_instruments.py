@@ -8,7 +8,6 @@ to all manoeuvres. More manoeuvres average out the first part only.
 """
 
 from dataclasses import dataclass, fields
-from typing import Literal
 
 import numpy as np
 
@@ -16,14 +15,8 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
 from advisor.process.arrays import FloatArray
 
-InstrumentName = Literal[
-    "servo_lag_s",
-    "command_delay_s",
-    "vane_arm_m",
-    "alpha_delay_s",
-    "accelerometer_arm_m",
-    "steady_moment_rad",
-]
+InstrumentName = str
+"""Name of an instrument parameter, or the text of a term that the user added."""
 _SPEED_POWER = np.array([SPEED_EXPONENTS[name] for name in PARAMETERS], dtype=float)
 
 

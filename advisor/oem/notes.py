@@ -75,7 +75,10 @@ def _ridge(solution: Solution) -> str:
     profile = solution.profile
     if profile is None:
         return ""
-    derivatives = [PARAMETERS.index(name) for name in ("M_alpha", "M_q", "M_delta_e")]
+    fixed = solution.problem.fixed
+    derivatives = [PARAMETERS.index(name) for name in ("M_alpha", "M_q", "M_delta_e") if name not in fixed]
+    if not derivatives:
+        return ""
     std = np.sqrt(np.diag(solution.scattered))[derivatives]
     alike = profile.alike
     apart = np.abs(alike[:, 1:][:, derivatives] - profile.best[derivatives]) / std

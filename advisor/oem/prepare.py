@@ -1,11 +1,12 @@
 """Preparation of manoeuvres for the estimation, with the aircraft file."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.atmosphere import AirData
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -25,6 +26,7 @@ from advisor.oem.prior import COEFFICIENT_STD
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
+from advisor.oem.terms import means_of, recorded
 
 OUTPUTS = ("alpha", "q", "a_z")
 """Outputs that the fit compares with the measurement. The attitude is the integral of the pitch rate, so its
@@ -98,7 +100,7 @@ def prepare(
     )
 
 
-def _without_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> Prepared:
+def _without_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> Prepared | NoEstimate:
     """Return a problem with the angle of attack as an unmeasured state, and q and a_z as outputs."""
     inferred = [infer(m, aircraft) for m in maneuvers]
     known = [{**m.channels, "alpha": alpha} for m, alpha in zip(maneuvers, inferred, strict=True)]
@@ -123,7 +125,7 @@ def _prepared(
     alpha_held: bool = False,
     alpha_left_out: str = "",
     missing: tuple[str, ...] = (),
-) -> Prepared:
+) -> Prepared | NoEstimate:
     measured = [speed for speed in speeds if speed is not None]
     together = len(measured) == len(maneuvers)
     signals = [
@@ -148,8 +150,11 @@ def _prepared(
         per_coefficient=_per_coefficient(aircraft, flown_m_s),
         alpha_is_computed="alpha" in usable and all(_is_computed(m.channels["alpha"]) for m in maneuvers),
     )
+    structured = _structured(problem, aircraft, maneuvers)
+    if isinstance(structured, NoEstimate):
+        return structured
     return Prepared(
-        problem=restored(as_found(problem, found_of(aircraft))),
+        problem=restored(as_found(structured, found_of(aircraft))),
         renewed_hz=renewed_hz,
         alpha_held=alpha_held,
         alpha_left_out=alpha_left_out,
@@ -157,6 +162,25 @@ def _prepared(
         airspeed_lag_s=float(np.mean([speed.lag_s for speed in measured])) if measured else 0.0,
         airspeed_m_s=flown_m_s,
     )
+
+
+def _structured(
+    problem: OutputErrorProblem, aircraft: Aircraft, maneuvers: Sequence[Maneuver]
+) -> OutputErrorProblem | NoEstimate:
+    """Return the problem with the parameters that the user holds and the terms that the user adds."""
+    fixed = aircraft.estimation.held(PARAMETERS)
+    terms = [term for term in aircraft.estimation.added if term.is_of_pitch]
+    if not terms:
+        return replace(problem, fixed=fixed) if fixed else problem
+    own = {"alpha", "q", "delta_e", *(["V"] if problem.records[0].airspeed is not None else [])}
+    signals = recorded(maneuvers, terms, own)
+    if isinstance(signals, NoEstimate):
+        return signals
+    records = tuple(replace(r, signals=s) for r, s in zip(problem.records, signals, strict=True))
+    known = {name: [one[name].y for one in signals] for name in signals[0]}
+    known |= {"alpha": [r.alpha.y for r in records], "delta_e": [r.elevator.y for r in records]}
+    terms_at_zero = {term.name: 0.0 for term in terms}
+    return replace(problem, records=records, fixed=fixed, terms=terms_at_zero, means=means_of(known))
 
 
 def _per_coefficient(aircraft: Aircraft, airspeed_m_s: float | None) -> Mapping[str, float]:

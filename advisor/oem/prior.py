@@ -28,6 +28,8 @@ from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.problem import OutputErrorProblem
 from advisor.process.arrays import FloatArray
 
+HELD = 1e-6
+"""Numerical: standard deviation of a parameter that the user holds, over the larger of the value and 1."""
 Z_Q_STD = 0.1
 """Prior standard deviation of Z_q, without unit. C_Lq of 10 gives 0.03 to 0.1 for aircraft of 3 kg to 8 t."""
 LIFT_OVER_MOMENT_S = 0.02

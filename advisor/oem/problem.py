@@ -5,11 +5,23 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from advisor.aircraft.added_term import OF_PITCH
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.model.outputs import LOCAL, N_SHARED, OUTPUTS, SHARED
+from advisor.model.outputs import LOCAL, OUTPUTS, SHARED
 from advisor.model.response import Grid, Index
-from advisor.oem.rows import Laid, Piece, Signal, events_of, lay_rows, measured_in, padded, with_samples
+from advisor.oem.rows import (
+    Laid,
+    Piece,
+    Signal,
+    events_of,
+    finite,
+    lay_rows,
+    measured_in,
+    padded,
+    with_samples,
+)
 from advisor.oem.surface import Servo
+from advisor.oem.terms import forcing
 from advisor.process.arrays import FloatArray
 
 STAMP_DIGITS = 12
@@ -32,6 +44,8 @@ class Record:
     """Component g·cos θ·cos φ of gravity, m/s², in the equation of a_z; None for 9.80665."""
     held: bool = False
     """Whether the input is held between its stamps instead of linear."""
+    signals: Mapping[str, Signal] = field(default_factory=dict)
+    """Further signals that added terms need, by their names in expressions."""
     inferred_alpha: Signal | None = None
     """Angle of attack from the motion, rad, if α is not measured. The search starts from the inferred α, but
     no residual uses it."""
@@ -72,6 +86,22 @@ class OutputErrorProblem:
     airspeed_may_be_off: bool = True
     """Whether a scale error of the air speed in a_z is estimated. Equivalent, ratiometric or derived speeds
     are off by some per cent, which would bias Z_alpha and M_alpha."""
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    """Parameters held at a value, by name."""
+    terms: Mapping[str, float] = field(default_factory=dict)
+    """Coefficient of each term that the user added, by its text."""
+    means: Mapping[str, float] = field(default_factory=dict)
+    """Value from which a signal counts in the terms, by the signal's name."""
+
+    def holding(self, shared: FloatArray, local: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return shared (7,) and local (m, 7) parameters with the fixed ones at their values."""
+        shared, local = shared.copy(), local.copy()
+        for name, value in self.fixed.items():
+            if name in SHARED:
+                shared[SHARED.index(name)] = value
+            else:
+                local[:, LOCAL.index(name)] = value
+        return shared, local
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -109,7 +139,7 @@ def assemble(problem: OutputErrorProblem) -> Assembly:
         grid=grid,
         events=np.concatenate([piece.t for piece in pieces]),
         **laid.measurements,
-        free=_free(measured, problem.airspeed_may_be_off and {"alpha", "a_z"} <= measured),
+        free=_free(measured, problem.airspeed_may_be_off and {"alpha", "a_z"} <= measured, problem.fixed),
     )
 
 
@@ -125,7 +155,7 @@ def _kinds(steps: FloatArray) -> tuple[FloatArray, Index]:
     return np.column_stack([lengths, np.ones(len(lengths))]), kind.astype(np.int64)
 
 
-def _free(measured: set[str], scaled: bool) -> Index:
+def _free(measured: set[str], scaled: bool, fixed: Mapping[str, float]) -> Index:
     """Return the indices of the 14 parameters that the measured outputs determine.
 
     Without alpha no output determines the level of the angle of attack, which Z_0 and M_0 absorb. The initial
@@ -137,9 +167,8 @@ def _free(measured: set[str], scaled: bool) -> Index:
     if "a_z" in measured:
         local += ["a_z_bias"]
     shared = [name for name in SHARED if name != "airspeed_scale" or scaled]
-    return np.array(
-        [*(SHARED.index(name) for name in shared), *(N_SHARED + LOCAL.index(name) for name in local)]
-    )
+    free = [name for name in (*shared, *local) if name not in fixed]
+    return np.array([(*SHARED, *LOCAL).index(name) for name in free])
 
 
 def _piece(record: Record, problem: OutputErrorProblem) -> Piece:
@@ -153,6 +182,7 @@ def _piece(record: Record, problem: OutputErrorProblem) -> Piece:
     step = np.diff(t)
     middle = t[:-1] + step / 2.0
     at_event, start, arrival = problem.servo.move(record.elevator.t, record.elevator.y, t, record.held)
+    added = _added(record, problem, middle, (start[:-1] + arrival) / 2.0) if problem.terms else None
     ratio, airspeed, acceleration = np.ones(len(step)), np.ones(len(t)), np.zeros(len(t))
     known = np.zeros(len(step))
     if record.airspeed is not None:
@@ -173,13 +203,24 @@ def _piece(record: Record, problem: OutputErrorProblem) -> Piece:
         "elevator": at_event,
         "start": start,
         "slope": padded((arrival - start[:-1]) / step),
-        "known": padded(known),
+        "known": padded(known) if added is None else padded(known) + added[:, 0],
+        "turned": np.zeros(len(t)) if added is None else added[:, 1],
         "vane": -problem.vane_arm_m / airspeed if problem.vane_arm_m else np.zeros(len(t)),
         "airspeed": airspeed,
         "acceleration": acceleration,
         "gravity": gravity,
     }
     return Piece(t, outputs, columns)
+
+
+def _added(
+    record: Record, problem: OutputErrorProblem, middle: FloatArray, surface: FloatArray
+) -> FloatArray:
+    """Return what the added terms contribute to α̇ and q̇, shape (E, 2), from the steps' middles."""
+    alpha = Signal(record.alpha.t - problem.alpha_delay_s, record.alpha.y)
+    measured = {"alpha": alpha, "q": record.outputs["q"], "V": record.airspeed, **record.signals}
+    values = {name: finite(signal).at(middle) for name, signal in measured.items() if signal is not None}
+    return forcing(problem.terms, OF_PITCH, problem.means, {**values, "delta_e": surface})
 
 
 def _slope(y: FloatArray, t: FloatArray) -> FloatArray:

@@ -110,9 +110,9 @@ def search(
     def from_(shared: FloatArray, local: FloatArray) -> Optimum:
         return descend(*data, precision(problem, shared), shared, local, flat)
 
-    optimum = from_(*(start(problem) if begin is None else begin))
+    optimum = from_(*problem.holding(*(start(problem) if begin is None else begin)))
     if begin is None and (optimum.status != CONVERGED or optimum.iterations > HEALTHY_ITERATIONS):
-        other = from_(*start(problem, lift_from_alpha_only=True))
+        other = from_(*problem.holding(*start(problem, lift_from_alpha_only=True)))
         if other.log_likelihood_cost < optimum.log_likelihood_cost:
             optimum = other
     return assembly, optimum

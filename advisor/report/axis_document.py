@@ -72,13 +72,28 @@ def parameters(estimate: object) -> dict[str, Any] | None:
     }
 
 
+def terms_of(estimate: Estimate) -> dict[str, Any]:
+    """Return the coefficients of the terms that the user added, each with its 95 % interval and its gain."""
+    return {
+        term.name: {
+            **picked(term, "value std"),
+            "ci95": [term.value - NORMAL_95 * term.std, term.value + NORMAL_95 * term.std],
+            "log_likelihood_gained": plain(term.gained),
+        }
+        for term in estimate.terms
+    }
+
+
 def with_intervals(estimate: Estimate) -> dict[str, Any]:
     """Return every parameter with its 95 % interval ``ci95``, None if unknown."""
     document: dict[str, Any] = {}
     for name, entry in (parameters(estimate) or {}).items():
+        if name in estimate.fixed:
+            document[name] = {**entry, "ci95": [entry["value"], entry["value"]], "fixed": True}
+            continue
         ci95 = None
         if entry["value"] is not None and entry["std"] is not None:
             half = NORMAL_95 * entry["std"]
             ci95 = [entry["value"] - half, entry["value"] + half]
         document[name] = {**entry, "ci95": ci95}
-    return document
+    return document | terms_of(estimate)

@@ -18,8 +18,10 @@ from advisor.gap.result import (
     Where,
 )
 from advisor.gap.verdict.text import answers_of, in_words, limits_of
+from advisor.oem.estimate import Estimate
 from advisor.process.arrays import FloatArray
 from advisor.process.parts import FailedPart
+from advisor.report.axis_document import terms_of, with_intervals
 from advisor.report.facts.answers import by_flight_alone, title_of
 from advisor.report.facts.gap import changed, grown_said, heading, shrink_said, size_of_gap, where_said
 from advisor.report.facts.reasons import how_sure
@@ -82,6 +84,8 @@ def axis_document(d: Diagnosis) -> dict[str, Any]:
     if d.gap.by_channel:
         document |= plain(numbers_document(d.verdict, d.gap, d.where, d.shrink)) | plain(weighed_document(d))
     document |= plain(_of_pitch(d) if d.axis == "pitch" else _of_the_sides(d))
+    if d.structured is not None:
+        document["model"] = (document["model"] or {}) | structure_of(d.structured)
     if d.shrink is not None:
         document["shrink"]["in_simulator"] = plain(_in_simulator(d.in_simulator))
     return document
@@ -110,6 +114,12 @@ def _of_the_sides(d: Diagnosis) -> dict[str, Any]:
         "parameters_compared": [changed_document(one) for one in d.derivatives],
         "peaks": d.peaks or None,
     }
+
+
+def structure_of(estimate: Estimate) -> dict[str, Any]:
+    """Return the entries of the parameters that the user holds and of the terms that the user adds."""
+    held = {name: one for name, one in with_intervals(estimate).items() if name in estimate.fixed}
+    return held | terms_of(estimate)
 
 
 def numbers_document(verdict: str, gap: Gap, where: Where, shrink: Shrink | None) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from advisor.gap.verdict.notes import UNEXPLAINED
 from advisor.gap.verdict.text import answers_of, limits_of
 from advisor.process.installed import SIMULATOR
 from advisor.report.facts.answers import by_flight_alone, title_of
+from advisor.report.facts.estimates import structure_lines
 from advisor.report.facts.gap import changes, grown_said, shrink_said, size_of_gap, where_said
 from advisor.report.facts.reasons import how_sure
 from advisor.report.facts.sizes import WORSE, short
@@ -66,6 +67,8 @@ class GapScreen:
         d = self.diagnosis
         yield Panel(Group(*_answer(d)), title=title_of(d), title_align="left")
         yield _numbers(d)
+        if d.structured is not None:
+            yield from map(Text, structure_lines(d.structured))
         if d.verdict not in ("none", "untested"):
             where = (
                 f"where: {where_said(d.where, d.shrink)}" if d.verdict in ("effect", "unknown") else "where"

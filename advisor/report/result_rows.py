@@ -1,14 +1,18 @@
 """Rows of results for terminal, page and panes: manoeuvres, channels and messages."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.flight.signals.track import ChannelStatus
+from advisor.oem.estimate import Estimate
 from advisor.report.facts.estimates import EstimatedParameter, of_all
 from advisor.report.qualities import reference_speed
 from advisor.report.table import Table, digits
+from advisor.words.digits import signed, with_half
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
 from advisor.words.vehicle_time import clock
 
 SIDE_ROOM = 18
@@ -57,6 +61,23 @@ def joint_of(name: str, at: str, rows: Sequence[EstimatedParameter], more: str =
         ),
         frozenset({1, 2, 3}),
     )  # fmt: skip
+
+
+def structure_table(estimate: Estimate, name: str) -> Iterator[Table]:
+    """Yield the table of the parameters that the user holds and of the terms that the user adds, if any."""
+    rows = [
+        (symbol(one), f"{signed(estimate.value(one), 3)}, held", "–", "rad, m, s") for one in estimate.fixed
+    ]
+    rows += [
+        (one.name, with_half(one.value, NORMAL_95 * one.std), digits(one.gained, 1), "rad, m, s")
+        for one in estimate.terms
+    ]
+    if rows:
+        yield Table(
+            name, "Parameters that are held, and terms that are added to the equations.",
+            ("parameter or term", "value ± 95 %", "log likelihood gained", "unit"),
+            tuple(rows), frozenset({1, 2}),
+        )  # fmt: skip
 
 
 def channel_table(name: str, caption: str, channels: Mapping[str, ChannelStatus]) -> Table:

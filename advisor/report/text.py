@@ -13,7 +13,7 @@ from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.report.axes.lateral import side_quality_lines
 from advisor.report.facts.decision import INDENT, decisions
-from advisor.report.facts.estimates import untold
+from advisor.report.facts.estimates import structure_lines, untold
 from advisor.report.facts.gap import counted
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
 from advisor.report.result_rows import SIDE_ROOM, channel_table, joint_table, maneuver_line
@@ -83,7 +83,7 @@ class AnalysisText:
         joint = joint_table(self.state, self.aircraft.model)
         if self.state.model is not None and joint is not None:
             yield joint.on_console(joint.caption)
-            yield from map(Text, untold(self.state.model))
+            yield from map(Text, (*structure_lines(self.state.model), *untold(self.state.model)))
             yield from (Text(f"note: {note}") for note in self.state.model.notes)
             yield Text()
             yield from self._qualities()
@@ -101,7 +101,7 @@ class AnalysisText:
         if side.model is not None and joint is not None:
             yield Text()
             yield joint.on_console(joint.caption)
-            yield from map(Text, untold(side.model))
+            yield from map(Text, (*structure_lines(side.model), *untold(side.model)))
             yield from map(Text, side_quality_lines(side, self.aircraft))
 
     def _movements(self) -> Iterator[Text]:

@@ -6,13 +6,15 @@ explanation that keeps the file's derivatives is likelier. A record begins in ne
 an angle of attack no other measurement determines its initial value.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES, REFERENCE
 from advisor.model.outputs import SHARED
-from advisor.oem.prior import precision_without_alpha
+from advisor.oem.prior import HELD, precision_without_alpha
 from advisor.process.arrays import FloatArray
 
 ERROR_IF_RIGHT = 0.03
@@ -54,6 +56,17 @@ def small_without_alpha(derivatives: FloatArray) -> FloatArray:
     shared = dict(zip(DERIVATIVES, derivatives, strict=True))
     found = precision_without_alpha(np.array([shared.get(name, 0.0) for name in SHARED]))
     return found[[SHARED.index(name) for name in DERIVATIVES]]
+
+
+def holding(
+    inverse: FloatArray, expected: FloatArray, fixed: Mapping[str, float]
+) -> tuple[FloatArray, FloatArray]:
+    """Return inverse variances and means (6,) of the derivatives, with those that the user holds known."""
+    inverse, expected = np.array(inverse), np.array(expected)
+    for name, value in fixed.items():
+        k = DERIVATIVES.index(name)
+        inverse[k], expected[k] = 1.0 / (HELD * max(abs(value), 1.0)) ** 2, value
+    return inverse, expected
 
 
 _START_RAD = 0.035

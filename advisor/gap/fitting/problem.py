@@ -1,12 +1,12 @@
 """The estimation problem: data, simulation, and a point in the space of the parameters."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import accumulate, pairwise
 
 import numpy as np
 
-from advisor.gap.fitting.prior import ERROR_IF_WRONG, prior_precision, small_without_alpha
+from advisor.gap.fitting.prior import ERROR_IF_WRONG, holding, prior_precision, small_without_alpha
 from advisor.gap.fitting.whitening import Filters, Whitening
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
@@ -110,6 +110,8 @@ class EffectProblem:
     """Standard deviation of the time error of all stamps, s."""
     whitening: Whitening | None = None
     """Filter of moving air and coloured instruments; None where the residual is white."""
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    """Derivatives that the user holds at a value, by name."""
     changes: tuple[tuple[Variant, Values], ...] = ()
     """Changes in flight from the aircraft file, with their sizes, which scale derivatives."""
 
@@ -148,6 +150,7 @@ class EffectProblem:
             small = small_without_alpha(point.derivatives)
             expected[0] = inverse[0] * expected[0] / np.maximum(inverse[0] + small, 1e-300)
             inverse[0] = inverse[0] + small
+        inverse[0], expected[0] = holding(inverse[0], expected[0], self.fixed)
         for effect, values in zip(point.effects, point.values, strict=True):
             inverse.append(
                 1.0 / np.array(effect.prior_std) ** 2 if effect.prior_std else np.zeros(len(values))

@@ -10,7 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.gap.fitting.fit import EffectFit
-from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG, derivative_scale, small_without_alpha
+from advisor.gap.fitting.prior import (
+    ERROR_IF_RIGHT,
+    ERROR_IF_WRONG,
+    derivative_scale,
+    holding,
+    small_without_alpha,
+)
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.uncertainty import colour_of
 from advisor.gap.inference.explanation import Evidence
@@ -70,6 +76,7 @@ class FlightProblem(EffectProblem):
             small = small_without_alpha(point.derivatives)
             expected = [inverse[0] * self.mean / (inverse[0] + small)]
             inverse = [inverse[0] + small]
+        inverse[0], expected[0] = holding(inverse[0], expected[0], self.fixed)
         for effect, values in zip(point.effects, point.values, strict=True):
             inverse.append(1.0 / np.array(effect.prior_std or (_FLAT,) * len(values)) ** 2)
             expected.append(np.zeros(len(values)))

@@ -164,6 +164,7 @@ def fit_unfiltered(flights: PreparedManeuvers, aircraft: Aircraft) -> tuple[Effe
         with_known(base_entries(aircraft), aircraft.effects, flights, variants),
         changes=changes_in(aircraft.effects, variants),
         prior_derivatives=prior_derivatives(aircraft),
+        fixed=aircraft.estimation.held(DERIVATIVES),
         instruments=instruments,
         smallest_noise=0.5 * instruments,
     )

@@ -7,6 +7,7 @@ from advisor.gap.axes.lateral.flight import LIKELY
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.verdict.text import answers_of
 from advisor.report.facts.answers import by_flight_alone, title_of
+from advisor.report.facts.estimates import structure_lines
 from advisor.report.facts.gap import changes, grown_said, shrink_said, size_of_gap
 from advisor.report.facts.reasons import how_sure, in_percent
 from advisor.report.facts.sizes import WORSE, named, sizes_of, with_error
@@ -20,6 +21,7 @@ def side_gap_lines(d: Diagnosis) -> Iterator[str]:
     if tested:
         yield f"  {how_sure(answers_of(d.evidence), by_flight_alone(d.evidence))}"
         yield from () if is_none else _causes(d)
+    yield from structure_lines(d.structured) if d.structured is not None else ()
     yield from (f"! {part.sentence}" for part in d.failed)
     yield from (f"  {line}" for line in changes(d.derivatives))
     if d.instruments:

@@ -6,7 +6,7 @@ from math import isfinite, nan
 
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.estimate import Estimate
+from advisor.oem.estimate import Estimate, TermEstimate
 from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import DEG, symbol
@@ -44,12 +44,17 @@ class Fact:
     @property
     def cell(self) -> str:
         """Value with the half-width of its 95 % interval: ``−48.3 ± 2.1``."""
-        return with_half(self.value, self.half) if self.is_known else "–"
+        return cell_of(self)
 
     @property
     def sentence(self) -> str:
         """Value with the half-width of its 95 % interval and its unit: ``−48.3 ± 2.1 1/s²``."""
         return f"{self.cell} {self.unit.removesuffix('1')}".rstrip()
+
+
+def cell_of(fact: Fact) -> str:
+    """Return the value of a fact with the half-width of its 95 % interval, or a dash."""
+    return with_half(fact.value, fact.half) if fact.is_known else "–"
 
 
 def fact_of(name: str, source: str, value: float, std: float, unit: str = "", factor: float = 1.0) -> Fact:
@@ -58,6 +63,9 @@ def fact_of(name: str, source: str, value: float, std: float, unit: str = "", fa
 
 
 _QUANTITIES = {**PITCH, **SIDE}
+LEAST_GAIN = 0.5 * NORMAL_95**2
+"""Log likelihood, nats, that one needless parameter gains in one of twenty flights: half the 95 % point of
+chi-squared (Wilks, 1938)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,6 +76,13 @@ class EstimatedParameter(Fact):
     """Half-width of the 95 % interval from the Cramér-Rao bound; NaN without a value."""
     prior: float | None = None
     """Value of the aircraft file's model; None without one."""
+    held: bool = False
+    """Whether the user holds the parameter at its value."""
+
+    @property
+    def cell(self) -> str:
+        """Value with the half-width of its 95 % interval, or the value at which the user holds it."""
+        return f"{signed(self.value, 3)}, held" if self.held else cell_of(self)
 
     @property
     def prior_cell(self) -> str:
@@ -99,6 +114,7 @@ def estimated_parameter(
         value=float(estimate.theta[k]) * quantity.factor,
         half=half * float(estimate.std[k]),
         half_if_white=half * float(estimate.std_cr[k]),
+        held=name in estimate.fixed,
     )
 
 
@@ -129,6 +145,35 @@ def untold(estimate: Estimate) -> list[str]:
     told = [f"Not identifiable: {', '.join(names)}; {reason}." for reason, names in found.items()]
     left_out = estimate.modes.left_out if isinstance(estimate, LateralEstimate) else {}
     return told + [f"No {mode.replace('_', ' ')} mode: {why}." for mode, why in left_out.items()]
+
+
+def structure_lines(estimate: Estimate) -> list[str]:
+    """Return one sentence for each parameter that the user holds, and for each term that the user adds."""
+    held = [
+        f"{symbol(name)} is held at {_held(name, estimate)} and not estimated." for name in estimate.fixed
+    ]
+    return [*held, *map(_gain_line, estimate.terms)]
+
+
+def _held(name: str, estimate: Estimate) -> str:
+    """Return the value at which the user holds a parameter, in the unit for people."""
+    quantity = _QUANTITIES[name]
+    return f"{quantity.factor * estimate.value(name):.4g} {quantity.unit.removesuffix('1')}".rstrip()
+
+
+def _gain_line(term: TermEstimate) -> str:
+    """Return the sentence on a term: its coefficient with its interval, and what the record says of it."""
+    half = NORMAL_95 * term.std
+    told = f"The term {term.name} has the coefficient {with_half(term.value, half)}"
+    if not isfinite(term.gained):
+        return f"{told}; without the term there is no fit to compare with."
+    gained = f"the term gains {max(term.gained, 0.0):.1f} in log likelihood for one parameter"
+    if term.gained < LEAST_GAIN:
+        chance = f"chance alone gains {LEAST_GAIN:.1f} in one of 20 flights"
+        return f"{told}. This flight does not show the term: {gained}; {chance}."
+    if abs(term.value) < half:
+        return f"{told}. This flight does not tell the term from zero, although {gained}."
+    return f"{told}, the 95 % interval. With the term the flight is likelier: {gained}."
 
 
 def instrument_facts(state: CampaignState) -> list[tuple[Fact, str]]:

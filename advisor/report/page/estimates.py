@@ -6,10 +6,17 @@ from matplotlib.figure import Figure as Drawing
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.oem.estimate import Estimate
-from advisor.report.facts.estimates import EstimatedParameter, instrument_facts, of_all, of_one
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, section
+from advisor.report.facts.estimates import (
+    EstimatedParameter,
+    instrument_facts,
+    of_all,
+    of_one,
+    structure_lines,
+)
+from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, listing, section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, ORANGE, picture
+from advisor.report.result_rows import structure_table
 from advisor.report.table import Table
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 
@@ -28,6 +35,8 @@ def estimates(content: Content) -> Iterator[Block]:
     if model is None:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")
         return
+    yield from structure_table(model, "structure")
+    yield from listing(structure_lines(model))
     joint = {name: of_all(name, content.state, prior) for name in PARAMETERS}
     if found := instrument_facts(content.state):
         yield Table(

@@ -65,6 +65,7 @@ def compare_side(
         derivatives=stated,
         instruments={name: Value(*value) for name, value in model.nuisances.items()},
         not_identifiable=model.not_identifiable,
+        structured=seen.structured,
     )
 
 

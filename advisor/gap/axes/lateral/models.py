@@ -1,12 +1,12 @@
 """Models of a lateral flight: one without effects and one for each effect."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from operator import attrgetter
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft, Estimation
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -21,6 +21,7 @@ from advisor.oem.axes.lateral.problem import assemble_lateral
 from advisor.oem.axes.lateral.start import lateral_start
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.prepare import signal_of
+from advisor.oem.prior import HELD
 from advisor.process.arrays import FloatArray
 
 SMALL_SHARE = 0.1
@@ -49,6 +50,8 @@ class Case:
     """Start of the fit without effects."""
     numbers: tuple[int, ...] = ()
     """Numbers of the manoeuvres."""
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    """Derivatives that the user holds at a value, by name."""
 
     def prior_of(self, tolerance: float, free: Sequence[Free], share: float = 1.0) -> Known:
         """Return the prior of the derivatives, with relative error ``tolerance`` where stated, and of the
@@ -62,6 +65,9 @@ class Case:
         told = np.array([name in self.stated for name in SIDE_PARAMETERS])
         std = np.concatenate([np.where(told, tolerance * scale, size), [one.std for one in free]])
         mean = np.concatenate([self.theta, [one.mean for one in free]])
+        for name, value in self.fixed.items():
+            k = SIDE_PARAMETERS.index(name)
+            mean[k], std[k] = value, HELD * max(abs(value), 1.0) / share
         return Known(mean, 1.0 / (share * std) ** 2)
 
     def fit(
@@ -73,6 +79,8 @@ class Case:
 
 def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray) -> Case | NoEstimate:
     """Return the flight and the simulator of an aircraft file; ``theta`` (15,) is the flight's estimate."""
+    fixed = aircraft.estimation.held(SIDE_PARAMETERS)
+    aircraft = replace(aircraft, estimation=Estimation())  # the prior holds what the user holds
     problem = prepare_lateral(maneuvers, aircraft)
     if isinstance(problem, NoEstimate):
         return problem
@@ -105,7 +113,7 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
     begin = Point(theta, lateral_start(problem)[1], setting)
     flown = Flown(problem, throttle, beta_arm_m(aircraft) is not None)
     numbers = tuple(map(attrgetter("number"), maneuvers))
-    return Case(flown, given, stated, tuple(natural), begin, numbers)
+    return Case(flown, given, stated, tuple(natural), begin, numbers, fixed)
 
 
 def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:

@@ -7,7 +7,7 @@ frequency ω = |λ| and the damping ζ = -Re λ/ω, and the roll mode has the ti
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,11 +17,13 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
 from advisor.oem.axes.lateral.instruments import nuisances_of
+from advisor.oem.axes.lateral.motion import with_sideslip
 from advisor.oem.axes.lateral.prepare import prepare_lateral
 from advisor.oem.axes.lateral.solution import Near, Searched, lateral_not_identifiable, search_lateral
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import channel_fits
 from advisor.oem.flying_qualities import Quality
+from advisor.oem.gained import told, without_term, without_terms
 from advisor.oem.identifiability import correlated
 from advisor.oem.prediction import prediction_band
 from advisor.oem.scatter_between import widened_by_scatter
@@ -108,12 +110,20 @@ class LateralFit(NamedTuple):
     """Solution of manoeuvres that share their derivatives."""
 
     maneuvers: Sequence[Maneuver]
+    aircraft: Aircraft
     searched: Searched
 
     @property
     def estimate(self) -> LateralEstimate:
         """Derivatives, modes and errors as reported."""
-        return _reported(self.searched.solution)
+        solution = self.searched.solution
+        terms = told([*solution.problem.terms], solution.nuisances, solution, self._without)
+        return replace(_reported(solution), terms=terms)
+
+    def _without(self, term: str) -> Solution | None:
+        """Return the solution without one of the user's terms; None without such a solution."""
+        other = fit_lateral(self.maneuvers, without_term(self.aircraft, term))
+        return None if isinstance(other, NoEstimate) else other.searched.solution
 
     def near(self, maneuvers: Sequence[Maneuver]) -> Near:
         """Return the search as the start for other manoeuvres."""
@@ -166,8 +176,14 @@ def fit_lateral(
     if isinstance(problem, NoEstimate):
         return problem
     near = None if earlier is None else earlier.near(maneuvers)
+    if problem.needs_beta:
+        # A sideslip that no vane measures is that of the model without the terms.
+        plain = fit_lateral(maneuvers, without_terms(aircraft))
+        if isinstance(plain, NoEstimate):
+            return plain
+        problem = with_sideslip(problem, plain.searched.solution)
     searched = search_lateral(problem, nuisances_of(problem, aircraft), near)
-    return searched if isinstance(searched, NoEstimate) else LateralFit(maneuvers, searched)
+    return searched if isinstance(searched, NoEstimate) else LateralFit(maneuvers, aircraft, searched)
 
 
 def _reported(solution: Solution) -> LateralEstimate:
@@ -190,7 +206,8 @@ def _reported(solution: Solution) -> LateralEstimate:
         prediction=prediction_band(solution.assembly, solution, solution.widened),
         names=LATERAL.names.reported,
         modes=lateral_modes(solution.theta, errors, _trim(solution)),
-        nuisances=solution.nuisances,
+        nuisances={name: x for name, x in solution.nuisances.items() if name not in problem.terms},
+        fixed=tuple(problem.fixed),
         flown=tuple(name for name in LATERAL.inputs if problem.flies(name)),
         scales_with_speed=problem.reference_airspeed_m_s is not None,
     )

@@ -19,7 +19,7 @@ from advisor.flight.instruments.lateness import lateness_std
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.problem import CAUSES, SEEN, SPEED, LateralAssembly, LateralProblem
 from advisor.oem.extra import Prior
-from advisor.oem.instruments import KNOWN_TO, PLACE_S, USUAL_LAG
+from advisor.oem.instruments import FLAT, KNOWN_TO, PLACE_S, USUAL_LAG
 from advisor.process.arrays import FloatArray
 
 AIR_SPEED = Prior(0.0, 0.02)
@@ -36,11 +36,12 @@ LARGEST_MOVE_S = 0.03
 class Nuisance:
     """One nuisance parameter of a lateral fit, in s, or in m for an arm."""
 
-    kind: Literal["lag", "delay", "command", "arm", "air"]
+    kind: Literal["lag", "delay", "command", "arm", "air", "term"]
     """Kind of the parameter: servo lag, delay of one output or of all commands, or place of the sideslip
-    vane. The kind ``air`` is the relative excess of the true air speed."""
+    vane. The kind ``air`` is the relative excess of the true air speed, and ``term`` a coefficient that the
+    user added."""
     of: str
-    """Control or output that the parameter belongs to; empty for the commands."""
+    """Control, output or term that the parameter belongs to; empty for the commands."""
     prior: Prior
     per_second: float = 1.0
     """Parameter change that moves the outputs as one second does; for an arm, the air speed, m."""
@@ -50,6 +51,8 @@ class Nuisance:
         """Name of the nuisance parameter with its unit."""
         if self.kind == "air":
             return "airspeed_excess"
+        if self.kind == "term":
+            return self.of
         what = {"lag": "lag_s", "arm": "arm_m"}.get(self.kind, "delay_s")
         return f"{self.of or 'command'}_{what}"
 
@@ -61,6 +64,8 @@ class Nuisance:
             return problem.beta_arm_m
         if self.kind == "air":
             return problem.airspeed_excess
+        if self.kind == "term":
+            return problem.terms[self.of]
         return problem.delays_s.get(self.of, 0.0) if self.kind == "delay" else problem.command_delay_s
 
     def write(self, problem: LateralProblem, value: float) -> LateralProblem:
@@ -71,6 +76,8 @@ class Nuisance:
             return replace(problem, beta_arm_m=value)
         if self.kind == "air":
             return replace(problem, airspeed_excess=value)
+        if self.kind == "term":
+            return replace(problem, terms={**problem.terms, self.of: value})
         if self.kind == "delay":
             return replace(problem, delays_s={**problem.delays_s, self.of: value})
         servo = replace(problem.servos[self.of], lag_s=float(np.clip(value, 0.0, LONGEST_LAG_S)))
@@ -78,7 +85,7 @@ class Nuisance:
 
     def moved(self, problem: LateralProblem, change: float) -> LateralProblem:
         """Return the problem with the parameter changed by at most ``LARGEST_MOVE_S``."""
-        most = LARGEST_MOVE_S * self.per_second
+        most = np.inf if self.kind == "term" else LARGEST_MOVE_S * self.per_second
         return self.write(problem, self.read(problem) + float(np.clip(change, -most, most)))
 
 
@@ -102,6 +109,7 @@ def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance,
             found.append(Nuisance("lag", name, Prior(stated, KNOWN_TO * stated)))
     if moving and problem.tells_force:
         found.append(Nuisance("air", "", AIR_SPEED))
+    found += [Nuisance("term", term, FLAT) for term in problem.terms]
     return tuple(found)
 
 
@@ -131,6 +139,7 @@ def columns_of(
     motion: FloatArray,
     nuisances: Sequence[Nuisance],
     by_speed: Callable[[], FloatArray],
+    by_term: Callable[[str], FloatArray],
 ) -> FloatArray:
     """Return the derivatives of the outputs by the nuisance parameters, shape (N, k).
 
@@ -138,6 +147,8 @@ def columns_of(
     ----------
     by_speed
         Function that returns the derivative (N,) of the outputs by the relative excess of the air speed.
+    by_term
+        Function that returns the derivative (N,) of the outputs by the coefficient of one added term.
     by_cause
         Shape (N, 3): derivatives of the outputs by ``CAUSES``, which change the motion.
     motion
@@ -150,6 +161,9 @@ def columns_of(
             continue
         if x.kind == "air":
             columns[:, k] = by_speed()
+            continue
+        if x.kind == "term":
+            columns[:, k] = by_term(x.of)
             continue
         output = LATERAL.outputs.index(x.of)
         row = assembly.grid.row[output]

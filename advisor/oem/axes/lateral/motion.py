@@ -10,6 +10,9 @@ from advisor.model.axis_response import respond_axis
 from advisor.oem.axes.lateral.instruments import Nuisance, columns_of
 from advisor.oem.axes.lateral.problem import SPEED_POWERS, LateralAssembly, LateralProblem, assemble_lateral
 from advisor.oem.descent import Response
+from advisor.oem.instrument_columns import STEP
+from advisor.oem.rows import Signal
+from advisor.oem.solution import Solution
 from advisor.process.arrays import FloatArray
 
 LEAST_NOISE = {"p": 5e-4, "r": 5e-4, "bank": 5e-4, "a_y": 0.01, "beta": 5e-4}
@@ -61,8 +64,16 @@ class LateralMotion:
             grid = laid.grid._replace(known=laid.grid.known * faster**SPEED_POWERS)
             return (outputs_of(replace(laid, grid=grid), shared, local) - y) / _SPEED_STEP
 
+        def by_term(term: str) -> FloatArray:
+            alone = replace(problem, terms={**dict.fromkeys(problem.terms, 0.0), term: 1.0})
+            forced = assemble_lateral(alone, ()).grid.forced
+            step = STEP / max(float(np.max(np.abs(forced))), 1e-300)
+            ends = [laid.grid._replace(forced=laid.grid.forced + by * forced) for by in (step, -step)]
+            up, down = (outputs_of(replace(laid, grid=end), shared, local) for end in ends)
+            return (up - down) / (2.0 * step)
+
         def columns() -> FloatArray:
-            return columns_of(laid, g[:, _ALL:], motion, nuisances, by_speed)
+            return columns_of(laid, g[:, _ALL:], motion, nuisances, by_speed, by_term)
 
         return Response(y, g[:, :_ALL], columns, motion[laid.grid.first[:-1], 1])
 
@@ -82,3 +93,18 @@ def outputs_of(laid: LateralAssembly, shared: FloatArray, local: FloatArray) -> 
     y = np.empty(len(laid.z))
     respond_axis(laid.grid, shared, local, y, np.empty((0, _ALL)), np.empty((0, 2, len(LATERAL.states))))
     return y
+
+
+def with_sideslip(problem: LateralProblem, fit: Solution) -> LateralProblem:
+    """Return the problem with the sideslip of a fit's model as a signal of every record."""
+    laid = fit.assembly
+    made = simulate(laid, fit.optimum.shared, fit.optimum.local)
+    if made is None:
+        return problem
+    grid, records = laid.grid, []
+    for m, record in enumerate(problem.records):
+        events = slice(grid.first[m], grid.first[m + 1])
+        t = laid.begin[m] + np.concatenate([[0.0], np.cumsum(grid.step_s[events][:-1])])
+        sideslip = Signal(t, made[2][events, 0, LATERAL.states.index("beta")])
+        records.append(replace(record, signals={**record.signals, "beta": sideslip}))
+    return replace(problem, records=tuple(records))

@@ -1,22 +1,26 @@
 """Preparation of lateral manoeuvres for the estimation."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from advisor.aircraft.added_term import AddedTerm
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.record import Channel
-from advisor.model.axes.lateral import LATERAL
+from advisor.model.axes.lateral import CONTROLS, LATERAL
 from advisor.oem.airspeed import airspeed
 from advisor.oem.alpha_use import can_do_without, has, infer, why_left_out
 from advisor.oem.axes.lateral.instruments import beta_arm_m
-from advisor.oem.axes.lateral.problem import NEEDED, LateralProblem, LateralRecord
+from advisor.oem.axes.lateral.problem import NEEDED, LateralProblem, LateralRecord, measured_by
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.prepare import constant_speed, reference_speed, signal_of, stated_reference, too_few
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
+from advisor.oem.terms import means_of, recorded
 
 _SPOKEN = {"p": "roll rate", "r": "yaw rate", "bank": "bank angle", "theta": "pitch angle", "q": "pitch rate"}
 
@@ -45,7 +49,7 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
     )
     outputs = _outputs(maneuvers, aircraft)
     left_out = why_left_out(maneuvers, aircraft)
-    return LateralProblem(
+    problem = LateralProblem(
         records=tuple(
             LateralRecord(
                 inputs={
@@ -66,7 +70,26 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
         },
         beta_arm_m=beta_arm_m(aircraft) or 0.0,
         accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
+        fixed=aircraft.estimation.held(SIDE_PARAMETERS),
     )
+    terms = [term for term in aircraft.estimation.added if not term.is_of_pitch]
+    return _with_terms(problem, terms, maneuvers) if terms else problem
+
+
+def _with_terms(
+    problem: LateralProblem, terms: Sequence[AddedTerm], maneuvers: Sequence[Maneuver]
+) -> LateralProblem | NoEstimate:
+    """Return the problem with the terms that the user adds, and with the signals that these need."""
+    own = {*measured_by(problem.records[0]), *CONTROLS, "beta"}
+    signals = recorded(maneuvers, terms, own)
+    if isinstance(signals, NoEstimate):
+        return signals
+    records = tuple(replace(r, signals=s) for r, s in zip(problem.records, signals, strict=True))
+    known = {name: [measured_by(r)[name].y for r in records] for name in measured_by(records[0])}
+    known |= {name: [r.inputs[of].y for r in records if of in r.inputs] for name, of in CONTROLS.items()}
+    known = {name: parts for name, parts in known.items() if parts}
+    at_zero = {term.name: 0.0 for term in terms}
+    return replace(problem, records=records, terms=at_zero, means=means_of(known))
 
 
 def _plain_speed(maneuver: Maneuver) -> Signal | None:

@@ -5,12 +5,24 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from advisor.aircraft.added_term import OF_SIDE, parse_term
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.model.axes.lateral import LATERAL
+from advisor.model.axes.lateral import CONTROLS, LATERAL
 from advisor.model.axis_response import AxisGrid
 from advisor.model.response import Index
-from advisor.oem.rows import Laid, Piece, Signal, events_of, lay_rows, measured_in, padded, with_samples
+from advisor.oem.rows import (
+    Laid,
+    Piece,
+    Signal,
+    events_of,
+    finite,
+    lay_rows,
+    measured_in,
+    padded,
+    with_samples,
+)
 from advisor.oem.surface import Servo
+from advisor.oem.terms import forcing
 from advisor.process.arrays import FloatArray
 
 _BETA, _P, _R, _BANK = range(len(LATERAL.states))
@@ -69,6 +81,8 @@ class LateralRecord:
     """Pitch angle, rad."""
     q: Signal
     """Pitch rate, rad/s."""
+    signals: Mapping[str, Signal] = field(default_factory=dict)
+    """Further signals that added terms need, by their names in expressions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,11 +104,23 @@ class LateralProblem:
     """Distance of the accelerometer ahead of the centre of gravity, m."""
     airspeed_excess: float = 0.0
     """Relative excess of the true over the read air speed."""
+    fixed: Mapping[str, float] = field(default_factory=dict)
+    """Derivatives held at a value, by name."""
+    terms: Mapping[str, float] = field(default_factory=dict)
+    """Coefficient of each term that the user added, by its text."""
+    means: Mapping[str, float] = field(default_factory=dict)
+    """Value from which a signal counts in the terms, by the signal's name."""
 
     @property
     def tells_force(self) -> bool:
         """Whether any record has the lateral acceleration or the sideslip."""
         return any({"a_y", "beta"} & record.outputs.keys() for record in self.records)
+
+    @property
+    def needs_beta(self) -> bool:
+        """Whether a term needs the sideslip, and a record does not have it."""
+        wanted = any("beta" in parse_term(term).signals for term in self.terms)
+        return wanted and any("beta" not in measured_by(record) for record in self.records)
 
     def servo(self, name: str) -> Servo:
         """Return the servo of an input, with the delay of all commands added."""
@@ -139,13 +165,14 @@ def assemble_lateral(problem: LateralProblem, causes: Sequence[str] = CAUSES) ->
         turning=TURNING,
         seen=SEEN,
         scale=np.ones(len(LATERAL.outputs)),
+        forced=laid.columns["forced"] if problem.terms else np.empty((0, len(LATERAL.states))),
         row=laid.row,
         place=LATERAL.place,
         bias=LATERAL.bias,
         initial=_INITIAL,
         bank=_BANK,
         yaw=_R,
-        **laid.columns,
+        **{name: column for name, column in laid.columns.items() if name != "forced"},
     )
     return LateralAssembly(
         names=LATERAL.names,
@@ -168,6 +195,7 @@ def _free(problem: LateralProblem, measured: set[str]) -> Index:
     fixed = {f"{name}_bias" for name in LATERAL.biases if name not in measured}
     if "beta" not in measured:
         fixed.add("beta_initial")
+    shared = [k for k in shared if LATERAL.shared[k].name not in problem.fixed]
     names = LATERAL.names
     local = [len(names.shared) + j for j, name in enumerate(names.local) if name not in fixed]
     return np.array([*shared, *local], np.int64)
@@ -192,7 +220,29 @@ def _piece(record: LateralRecord, problem: LateralProblem, causes: Sequence[str]
         "known": _known(record, problem, t, middle, read),
         **_moved(record, problem, t, causes),
     }
+    columns["forced"] = _forced(record, problem, middle, columns["inputs"])
     return Piece(t, outputs, columns)
+
+
+def _forced(
+    record: LateralRecord, problem: LateralProblem, middle: FloatArray, inputs: FloatArray
+) -> FloatArray:
+    """Return what the added terms contribute to the rates of the states, shape (E, 4)."""
+    forced = np.zeros((len(inputs), len(LATERAL.states)))
+    if problem.terms:
+        surfaces = (inputs[:-1] + inputs[1:]).T / 2.0
+        values = {name: finite(signal).at(middle) for name, signal in measured_by(record).items()}
+        values |= dict(zip(CONTROLS, surfaces, strict=True))
+        forced[:, [_BETA, _P, _R]] = forcing(problem.terms, OF_SIDE, problem.means, values)
+    return forced
+
+
+def measured_by(record: LateralRecord) -> dict[str, Signal]:
+    """Return the signals of a record by their names in expressions, without the controls."""
+    given = {"phi": record.outputs["bank"], "p": record.outputs["p"], "r": record.outputs["r"]}
+    given |= {"alpha": record.alpha, "theta": record.theta, "q": record.q, "V": record.airspeed}
+    beta = {"beta": record.outputs["beta"]} if "beta" in record.outputs else {}
+    return {**given, **beta, **record.signals}
 
 
 def _moved(

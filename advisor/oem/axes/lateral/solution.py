@@ -70,7 +70,7 @@ def search_lateral(
     near : search of earlier records of one aircraft, from which the search goes on.
     """
     problem = begun(problem, nuisances)
-    start = lateral_start(problem)
+    start = _holding(problem, lateral_start(problem))
     prior = priors_of(problem, start[0])
     fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
     if isinstance(fit, NoEstimate) or _has_diverged(fit):
@@ -95,6 +95,14 @@ def search_lateral(
         return solution
     solution, air = in_moving_air(solution, None if near is None else near.searched.air)
     return Searched(_above_bound(solution), air)
+
+
+def _holding(problem: LateralProblem, place: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Return a place with the derivatives that the user holds at their values."""
+    shared = place[0].copy()
+    for name, value in problem.fixed.items():
+        shared[LATERAL.names.shared.index(name)] = value
+    return shared, place[1]
 
 
 def _resumed(
@@ -157,7 +165,8 @@ def lateral_not_identifiable(solution: Solution) -> dict[str, str]:
             moved = f"moved by {np.degrees(problem.motion(name)):.1f} deg only"
             text = f"the {name} {moved if problem.moves(name) else 'did not move'}; fly {_FLY[name]}"
             text = text if name in there else f"no output of the {name} is known"
-            reasons |= {f"{letter}_{suffix}": text for letter in "YLN"}
+            of_it = (f"{letter}_{suffix}" for letter in "YLN")
+            reasons |= {derivative: text for derivative in of_it if derivative not in problem.fixed}
     advice = " and ".join(_FLY[name] for name in there if name in missing or not {*there} & {*missing})
     reasons |= {
         name: f"the record does not depend on it; fly {advice}"

@@ -9,14 +9,14 @@ from advisor.model.mil_f_8785c import MANNED
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
 from advisor.report.facts.decision import INDENT, decisions
-from advisor.report.facts.estimates import untold
+from advisor.report.facts.estimates import structure_lines, untold
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, listing, section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import picture
 from advisor.report.page.fits import by_fit, caption_of, paint_rows
 from advisor.report.page.maneuvers import ANCHORS, HEAD, maneuver_row
 from advisor.report.qualities import MODE_NAMES, levels_of, mode_facts, tests_of
-from advisor.report.result_rows import joint_table
+from advisor.report.result_rows import joint_table, structure_table
 from advisor.report.table import Table
 from advisor.words.vehicle_time import CLOCK
 
@@ -40,7 +40,8 @@ def lateral(content: Content) -> Iterator[Block]:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")
         return
     yield joint
-    yield from listing(untold(state.model))
+    yield from structure_table(state.model, "lateral-structure")
+    yield from listing([*structure_lines(state.model), *untold(state.model)])
     yield from _modes(content, state)
     yield from lateral_fits(state)
 

@@ -1,7 +1,8 @@
 """Lateral flights for tests: an independent coding of the equations, integrated by SciPy."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import cos, sin, tan
+from types import MappingProxyType
 from typing import TypeVar
 
 import numpy as np
@@ -58,8 +59,12 @@ def flown(
     measured: tuple[str, ...] = ("p", "r", "bank", "a_y", "beta"),
     rng: np.random.Generator | None = None,
     initial: tuple[float, ...] = (0.002, 0.01, 0.0, 0.05),
+    cubes: Mapping[str, float] = MappingProxyType({}),
 ) -> LateralRecord:
-    """Return a record of the aircraft at constant speed, angle of attack 4 deg and pitch 6 deg."""
+    """Return a record of the aircraft at constant speed, angle of attack 4 deg and pitch 6 deg.
+
+    ``cubes`` holds the coefficient of β³ in each equation.
+    """
     t = np.arange(0.0, seconds, 1.0 / rate_hz)
     alpha, pitch, q = 0.07, 0.105, 0.01
     d = theta | TRIM
@@ -72,7 +77,7 @@ def flown(
         beta, p, r = x
         return (
             d["Y_beta"] * beta + d["Y_p"] * p + d["Y_r"] * r + d["Y_delta_a"] * a + d["Y_delta_r"] * rud
-            + d["Y_0"]
+            + d["Y_0"] + cubes.get("Y", 0.0) * beta**3
         )  # fmt: skip
 
     def rates(now: float, x: FloatArray) -> list[float]:
@@ -80,7 +85,7 @@ def flown(
         a, rud = float(at("aileron", now)), float(at("rudder", now))
         moments = [
             d[f"{m}_beta"] * beta + d[f"{m}_p"] * p + d[f"{m}_r"] * r + d[f"{m}_delta_a"] * a
-            + d[f"{m}_delta_r"] * rud + d[f"{m}_0"]
+            + d[f"{m}_delta_r"] * rud + d[f"{m}_0"] + cubes.get(m, 0.0) * beta**3
             for m in "LN"
         ]  # fmt: skip
         side = force((beta, p, r), a, rud) + sin(alpha) * p - cos(alpha) * r

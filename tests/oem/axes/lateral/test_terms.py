@@ -1,0 +1,70 @@
+"""Terms that the user adds to roll and yaw, and derivatives that the user holds."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.oem.axes.lateral.instruments import nuisances_of
+from advisor.oem.axes.lateral.motion import with_sideslip
+from advisor.oem.axes.lateral.problem import LateralProblem
+from advisor.oem.axes.lateral.solution import solve_lateral
+from advisor.oem.estimate import NoEstimate
+from advisor.oem.gained import log_likelihood
+from advisor.oem.solution import Solution
+from advisor.oem.surface import Servo
+from tests.oem.axes.lateral.builders import JET, aileron_doublet, flown, rudder_doublet
+
+CUBE = 600.0
+"""Coefficient of β³ in the rolling moment, 1/s²: at 4 deg of sideslip a fifth of L_β·β."""
+
+
+def problem_of(measured: tuple[str, ...], cubes: dict[str, float]) -> LateralProblem:
+    t = np.arange(0.0, 15.0, 0.025)
+    inputs = {"aileron": aileron_doublet(t)}, {"rudder": rudder_doublet(t)}
+    rng = np.random.default_rng(3)
+    records = tuple(flown(JET, measured=measured, rng=rng, cubes=cubes, **one) for one in inputs)
+    return LateralProblem(records, servos={"aileron": Servo(), "rudder": Servo()})
+
+
+def solved(problem: LateralProblem) -> Solution:
+    found = solve_lateral(problem, nuisances_of(problem, Aircraft()))
+    assert not isinstance(found, NoEstimate)
+    return found
+
+
+@pytest.fixture(scope="module")
+def cubed() -> LateralProblem:
+    return problem_of(("p", "r", "bank", "a_y", "beta"), {"L": CUBE, "Y": -20.0})
+
+
+@pytest.mark.parametrize(("term", "truth"), [("L:beta**3", CUBE), ("Y:beta**3", -20.0)])
+def test_the_coefficient_of_a_term_is_that_of_the_aircraft(cubed, term, truth):
+    # The noise of the vane is in the factor, which makes a coefficient some per cent too small.
+    both = replace(cubed, terms={"L:beta**3": 0.0, "Y:beta**3": 0.0})
+    value, std = solved(both).nuisances[term]
+    assert value == pytest.approx(truth, rel=0.1)
+    assert std < 0.2 * abs(truth)
+
+
+def test_a_term_that_acts_gains_likelihood(cubed):
+    with_it = log_likelihood(solved(replace(cubed, terms={"L:beta**3": 0.0})))
+    assert with_it > log_likelihood(solved(cubed)) + 10.0
+
+
+def test_a_sideslip_that_no_vane_measures_is_the_models():
+    blind = problem_of(("p", "r", "bank", "a_y"), {"L": CUBE})
+    blind = replace(blind, terms={"L:beta**3": 0.0})
+    assert blind.needs_beta
+    seen = with_sideslip(blind, solved(replace(blind, terms={})))
+    assert not seen.needs_beta
+    value, _ = solved(seen).nuisances["L:beta**3"]
+    assert value == pytest.approx(CUBE, rel=0.4)
+
+
+def test_a_held_derivative_keeps_its_value_and_has_no_error(cubed):
+    k = list(JET).index("L_p")
+    found = solved(replace(cubed, fixed={"L_p": -2.0}))
+    assert found.theta[k] == -2.0
+    assert found.widened[k, k] == 0.0
