@@ -1,26 +1,40 @@
 """Information of the input being flown, at each whole second: the word that it is enough, before its end.
 
 The samples up to a whole second after the begin count, once all channels have arrived. So a replay shows the
-values of the flight.
+values of the flight. An axis without a joint estimate has the estimate of the input itself so far.
 """
 
-from math import floor
+from collections.abc import Mapping
+from math import ceil, floor
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.state import LateralState
 from advisor.decision.arriving import FIRST_S, Arriving
-from advisor.decision.arriving_errors import arriving
+from advisor.decision.arriving_errors import Known, arriving, up_to
+from advisor.decision.axes.lateral_stop import JUDGED, shares_of
+from advisor.decision.history import CandidateManeuver
+from advisor.decision.information import knowledge
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.elevator.elevator_watch import SETTLE_S
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate
+from advisor.oem.estimator import estimate
+from advisor.words.axes import AxisName
+
+_LONGER = 2
+"""Factor on the length of an input's data before the input is estimated anew. All estimates of an input
+together then cost at most twice the last one."""
 
 
 class ArrivingInformation:
     """Computes the information of the input being flown once for each second."""
 
-    def __init__(self) -> None:
+    def __init__(self, aircraft: Aircraft) -> None:
+        self._aircraft = aircraft
         self._at: tuple[float, int] | None = None
         self._newest: Arriving | None = None
+        self._alone: dict[AxisName, Known] = {}
 
     def follow(
         self,
@@ -31,18 +45,74 @@ class ArrivingInformation:
     ) -> Arriving | None:
         """Return the errors with the samples so far; None before the first oscillation and between inputs."""
         if flying is None:
-            self._at, self._newest = None, None
+            self._begin(None)
             return None
         begun_s = flying.span.start_s
         seconds = floor(flying.span.end_s - SETTLE_S - begun_s)
         if seconds < FIRST_S:
             return None
-        if self._at != (begun_s, seconds):
-            self._at = begun_s, seconds
-            side = (None, {}) if lateral is None else (lateral.model, _percent(lateral.flight_test))
-            pitch = model, _percent(flight_test)
-            self._newest = arriving(flying, begun_s + seconds, pitch, side)
+        joint: dict[AxisName, Known] = {"pitch": Known(model, _percent(flight_test))}
+        if lateral is not None:
+            joint["lateral"] = Known(lateral.model, _percent(lateral.flight_test))
+        if self._at is None or self._at[0] != begun_s:
+            self._begin((begun_s, ceil(FIRST_S) - 1))
+        assert self._at is not None
+        # Estimates of the input alone follow from each other, so that no second may be left out.
+        follows = any(known.model is None for known in joint.values())
+        for second in range(self._at[1] + 1 if follows else max(self._at[1] + 1, seconds), seconds + 1):
+            self._at = begun_s, second
+            self._newest = self._after(second, flying, joint)
         return self._newest
+
+    def is_due(self, now_s: float) -> bool:
+        """Return whether another whole second of an input may have arrived at a time, s since boot."""
+        return self._at is None or now_s - SETTLE_S >= self._at[0] + self._at[1] + 1
+
+    def _begin(self, at: tuple[float, int] | None) -> None:
+        self._at, self._newest = at, None
+        self._alone.clear()
+
+    def _after(self, second: int, flying: Maneuver, joint: Mapping[AxisName, Known]) -> Arriving:
+        """Return the errors after a whole second of an input."""
+        until_s = flying.span.start_s + second
+        found = arriving(flying, until_s, *self._known(joint, second, flying, _LONGER))
+        if found.is_enough and self._alone:
+            # Added information leaves out what one input has in common, such as its servo's lag.
+            found = arriving(flying, until_s, *self._known(joint, second, flying, 1))
+        return found
+
+    def _known(
+        self, joint: Mapping[AxisName, Known], second: int, flying: Maneuver, longer: int
+    ) -> tuple[Known, Known]:
+        """Return the joint estimate of each axis, or without one the estimate of the input alone."""
+        known: dict[AxisName, Known] = dict(joint)
+        for axis in [axis for axis, one in joint.items() if one.model is None]:
+            estimated = self._alone.get(axis)
+            begun_s, until_s = flying.span.start_s, flying.span.start_s + second
+            if estimated is None or until_s - begun_s >= longer * (estimated.since_s - begun_s):
+                cut = up_to(until_s, flying)
+                alone = self._pitch(cut) if axis == "pitch" else self._side(cut)
+                self._alone[axis] = Known(*alone, until_s)
+            known[axis] = self._alone[axis]
+        return known["pitch"], known.get("lateral", Known(None, {}))
+
+    def _pitch(self, cut: Maneuver) -> tuple[Estimate | None, dict[str, float | None]]:
+        plan, found = self._aircraft.campaign, estimate(cut, self._aircraft)
+        if not isinstance(found, Estimate):
+            return None, dict.fromkeys(plan.parameters)
+        share = knowledge([CandidateManeuver(found, maneuver=cut)], plan).share
+        return found, {name: _finite(100.0 * share[name]) for name in plan.parameters}
+
+    def _side(self, cut: Maneuver) -> tuple[Estimate | None, dict[str, float | None]]:
+        found = estimate_lateral([cut], self._aircraft)
+        if not isinstance(found, Estimate):
+            return None, dict.fromkeys(JUDGED)
+        shares = shares_of(found, self._aircraft.campaign.tolerance_percent)
+        return found, {name: _finite(share) for name, share in shares.items()}
+
+
+def _finite(share: float) -> float | None:
+    return share if share < float("inf") else None
 
 
 def _percent(verdict: FlightTestVerdict) -> dict[str, float | None]:

@@ -25,6 +25,7 @@ from advisor.campaign.state import (
 from advisor.decision.arriving import Arriving
 from advisor.decision.crew_plan import CrewPlan, crew_plan
 from advisor.decision.verdict import FlightTestVerdict
+from advisor.flight.maneuvers.announced import Announced
 from advisor.flight.maneuvers.events import (
     Activity,
     ElevatorRescaled,
@@ -39,7 +40,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns
-from advisor.flight.stream.flights import Flights
+from advisor.flight.stream.flights import FlightHeard, Flights
 from advisor.flight.stream.stream import FlightStream
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
@@ -65,7 +66,15 @@ class ManeuverJudged:
     """Sentences about earlier manoeuvres whose verdict changed, each with its reason."""
 
 
-CampaignEvent = FlightEvent | ManeuverJudged
+@dataclass(frozen=True, slots=True)
+class InputEnough:
+    """The data of a multisine that a script flies are enough: the script may end it."""
+
+    number: int
+    """Number of the input in the script's texts."""
+
+
+CampaignEvent = FlightEvent | ManeuverJudged | InputEnough
 
 
 class Campaign:
@@ -117,12 +126,17 @@ class Campaign:
         self._whole_flights = WholeFlights()
         self._ended = False
         self._settling = Settling() if settle else None
-        self._information = ArrivingInformation() if settle else None
+        self._information = ArrivingInformation(aircraft) if settle or tell is not None else None
+        self._heard_enough: Announced | None = None
 
     def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
         """Process the next messages, in order of arrival. The result does not depend on how the messages are
         grouped."""
         told = self._take(self._flights.feed(columns))
+        if (enough := self._enough()) is not None:
+            told.append(enough)
+            if self._tell is not None:
+                self._tell(enough)
         self.engineer.repeat_remarks()
         return told
 
@@ -149,10 +163,7 @@ class Campaign:
         flying, channels, model = flights.so_far(), stream.channels, elevator.model
         settled = self._settled(flying, model)
         heard = flights.heard(channels, self._ended)
-        lateral = None
-        if self._lateral is not None:
-            unknown = [one.sides_unknown for one in heard]
-            lateral = self._lateral.state(unknown[-1] if all(unknown) else None)
+        lateral = self._lateral_state(heard)
         side = lateral.model if lateral is not None else None
         instruments = self._parts.make("instruments", lambda: self._contradictions(model, side), lambda _: ())
         return CampaignState(
@@ -191,6 +202,13 @@ class Campaign:
             failed=self._parts.failed,
         )
 
+    def _lateral_state(self, heard: Sequence[FlightHeard]) -> LateralState | None:
+        """Return the state of roll and yaw, with the reason if no flight names their outputs."""
+        if self._lateral is None:
+            return None
+        unknown = [one.sides_unknown for one in heard]
+        return self._lateral.state(unknown[-1] if all(unknown) else None)
+
     def _settled(self, flying: Maneuver | None, model: Estimate | None) -> Settled | None:
         """Return the estimate of the manoeuvre that is being flown, for live displays."""
         settling = self._settling
@@ -214,6 +232,21 @@ class Campaign:
             lambda: information.follow(flying, model, self._elevator.flight_test, lateral),
             lambda _: None,
         )
+
+    def _enough(self) -> InputEnough | None:
+        """Return the event of a multisine of a script whose data have become enough; None else."""
+        flown = self._stream.marks.announced_now
+        if flown is None or flown.input != "multisine" or self._information is None:
+            self._heard_enough = None
+            return None
+        if flown == self._heard_enough or not self._information.is_due(self._stream.now_s):
+            return None
+        lateral = self._lateral_state(self._flights.heard(self._stream.channels, self._ended))
+        arrived = self._arrived(self._flights.so_far(), self._elevator.model, lateral)
+        if arrived is None or not arrived.is_enough:
+            return None
+        self._heard_enough = flown
+        return InputEnough(flown.number)
 
     def _contradictions(
         self, model: Estimate | None, side: LateralEstimate | None

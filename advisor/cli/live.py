@@ -55,7 +55,8 @@ if TYPE_CHECKING:
 @click.option(
     "--uplink",
     is_flag=True,
-    help="Send each advised input to the script of advisor script, as SCR_USER1 to 4; nothing else is sent.",
+    help="Send each advised input to the script of advisor script, and the end of a multisine whose data are "
+    "enough, as SCR_USER1 to 4; nothing else is sent.",
 )
 @click.option(
     "--signing-key",
@@ -191,8 +192,12 @@ def _source(earlier: Sequence[Path], link: "KeptLink") -> "Source":
 
 def _tell(link: "KeptLink", announce: bool, uplink: bool, event: object) -> None:
     """Announce a verdict to the ground stations, and send the next input to the autopilot's script."""
-    from advisor.campaign.campaign import ManeuverJudged
+    from advisor.campaign.campaign import InputEnough, ManeuverJudged
 
+    if uplink and isinstance(event, InputEnough):
+        from advisor.scripts.next_order import end_order
+
+        link.advise(*end_order(event.number))
     if not isinstance(event, ManeuverJudged):
         return
     if uplink:

@@ -18,7 +18,10 @@ class Arriving:
     percent: Mapping[str, float]
     """Error of each judged derivative of the moved controls, % of its tolerance."""
 
+    unknown: tuple[str, ...] = ()
+    """Judged derivatives of the moved controls that the data so far do not determine."""
+
     @property
     def is_enough(self) -> bool:
-        """Whether each derivative is within its tolerance."""
-        return bool(self.percent) and max(self.percent.values()) <= WITHIN_PERCENT
+        """Whether each judged derivative is known and within its tolerance."""
+        return bool(self.percent) and not self.unknown and max(self.percent.values()) <= WITHIN_PERCENT

@@ -6,7 +6,10 @@ their share of M away. Coloured noise lowers M as it has widened the joint estim
 covariance the covariance becomes (P⁻¹ + M)⁻¹ (Kay, Estimation Theory, 1993, ch. 8).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
+from dataclasses import dataclass, replace
+from math import inf
+from typing import Any
 
 import numpy as np
 
@@ -21,33 +24,55 @@ from advisor.oem.estimate import Estimate
 from advisor.process.arrays import FloatArray
 
 
-def arriving(
-    flying: Maneuver,
-    until_s: float,
-    pitch: tuple[Estimate | None, Mapping[str, float | None]],
-    side: tuple[LateralEstimate | None, Mapping[str, float | None]],
-) -> Arriving:
-    """Return the errors with the samples of an input up to a vehicle time.
+@dataclass(frozen=True, slots=True)
+class Known:
+    """Knowledge of one axis, to which the samples of an input add."""
 
-    Parameters
-    ----------
-    pitch, side
-        Joint estimate of each axis, and the error of each derivative before, % of its tolerance.
-    """
-    channels = {name: c.cut(flying.span.record_from_s, until_s) for name, c in flying.channels.items()}
-    cut = Maneuver(flying.number, flying.boot, flying.span, {n: c for n, c in channels.items() if len(c) > 2})
-    moved = moved_controls(cut)
+    model: Estimate | None
+    percent: Mapping[str, float | None]
+    """Error of each judged derivative, % of its tolerance. None for an unknown derivative."""
+    since_s: float = -inf
+    """Vehicle time up to which the input's own samples are in the model, s since boot."""
+
+
+def arriving(flying: Maneuver, until_s: float, pitch: Known, side: Known) -> Arriving:
+    """Return the errors with the samples of an input up to a vehicle time."""
+    moved = moved_controls(up_to(until_s, flying))
     percent: dict[str, float] = {}
-    model, before = pitch
-    if model is not None and "elevator" in moved and "q" in cut.channels:
-        t, columns = sensitivities(cut, model)
-        percent |= _after(cut, model, before, t, columns, [n for n in before if n in model.names])
-    lateral, side_before = side
-    names = [name for name, control in JUDGED.items() if control in moved and name in side_before]
-    if lateral is not None and names and {"p", "airspeed"} <= cut.channels.keys():
-        t, columns = side_sensitivities(cut, lateral)
-        percent |= _after(cut, lateral, side_before, t, columns, names)
-    return Arriving(until_s, percent)
+    judged = [*pitch.percent] if "elevator" in moved else []
+    if pitch.model is not None and judged:
+        cut = up_to(until_s, flying, pitch.since_s)
+        percent |= _added(cut, pitch, sensitivities, {"q", "elevator"}, judged)
+    names = [name for name, control in JUDGED.items() if control in moved and name in side.percent]
+    if isinstance(side.model, LateralEstimate) and names:
+        cut = up_to(until_s, flying, side.since_s)
+        percent |= _added(cut, side, side_sensitivities, {"p", "airspeed"}, names)
+    return Arriving(until_s, percent, tuple(name for name in (*judged, *names) if name not in percent))
+
+
+def up_to(until_s: float, flying: Maneuver, since_s: float = -inf) -> Maneuver:
+    """Return an input with its samples between two vehicle times, s since boot."""
+    from_s = max(flying.span.record_from_s, since_s)
+    cut = {name: c.cut(from_s, until_s) for name, c in flying.channels.items()}
+    span = replace(flying.span, end_s=until_s, last_step_s=min(flying.span.last_step_s, until_s))
+    return replace(flying, span=span, channels={name: c for name, c in cut.items() if len(c) > 2})
+
+
+def _added(
+    cut: Maneuver,
+    known: Known,
+    sensitivities_of: Callable[[Maneuver, Any], tuple[FloatArray, dict[str, FloatArray]]],
+    needed: Set[str],
+    judged: Sequence[str],
+) -> dict[str, float]:
+    """Return the errors of the judged derivatives with the samples of a cut input."""
+    model = known.model
+    assert model is not None
+    names = [name for name in judged if name in model.names]
+    if not needed <= cut.channels.keys():
+        return {name: percent for name in names if (percent := known.percent[name]) is not None}
+    t, columns = sensitivities_of(cut, model)
+    return _after(cut, model, known.percent, t, columns, names)
 
 
 def _after(

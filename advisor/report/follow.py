@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from advisor.campaign.campaign import Campaign, CampaignEvent, ManeuverJudged
+from advisor.campaign.campaign import Campaign, CampaignEvent, InputEnough, ManeuverJudged
 from advisor.campaign.state import CampaignState
 from advisor.decision.crew_plan import CrewPlan
 from advisor.decision.verdict import FlightTestVerdict
@@ -61,6 +61,8 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
             better = ", and this record replaces it" if takes_place else ""
             at = clock(maneuver.span.start_s)
             say(f"{maneuver.number:2d}  {at:>7}  comes again and counts once{better}")
+        case InputEnough(number):
+            say(f"ENOUGH: each derivative is within its tolerance in input {number} of the script")
         case VehicleFound(vehicle):
             say(f"following {vehicle}; times are {CLOCK}")
         case Rebooted(boot):

@@ -322,38 +322,25 @@ local function steady()
   end
 end
 
-local function fly(late_ms)
-  local why = trouble(before, now_flown())
-  latest_ms = math.max(latest_ms, late_ms)
-  if why ~= nil then
-    finish("aborted: " .. why)
-    return
-  end
-  local t = 0.001 * since(since_ms)
-  if t >= test.length_s + test.test.rest_s then
-    finish("done")
-  else
-    -- A pulse holds until the next call: it gets the value of the middle of this time.
-    local middle = t + 0.0005 * math.min(late_ms, LATE_MS)
-    send(mixed(function(control) return asked(control, middle) end))
-  end
-end
-
-local orders = {}         -- SCR_USER1 to 4: which input, its size in deg, its unit in s, and a counter
+local orders = {}         -- SCR_USER1 to 4: which input (0: end input -size), its size in deg, its unit in s, a counter
 local counted = nil       -- counter of the newest order
 for k = 1, 4 do
   orders[k] = Parameter()
   if not orders[k]:init("SCR_USER" .. k) then orders = nil break end
 end
 
--- Take an order of the advisor, whose counter is written last.
-local function take_order()
-  if orders == nil then return end
+-- Counter of an order that is new, or nil. The advisor writes the counter last.
+local function new_order()
+  if orders == nil then return nil end
   local counter = orders[4]:get() or 0
-  if counted == nil or counter == counted then
-    counted = counter
-    return
-  end
+  if counted == nil then counted = counter end
+  return counter ~= counted and counter or nil
+end
+
+-- Take the order of the next input.
+local function take_order()
+  local counter = new_order()
+  if counter == nil then return end
   counted = counter
   local which, size, unit, candidate = orders[1]:get(), orders[2]:get(), orders[3]:get(), nil
   for _, one in ipairs(INPUTS) do
@@ -372,6 +359,37 @@ local function take_order()
       unit_s = candidate.steps and unit or candidate.unit_s,
     }
     say_next()
+  end
+end
+
+-- Take the order to end the multisine that is flown: its data are enough. Other orders wait for its end.
+local function take_enough(t)
+  local counter = new_order()
+  if counter == nil or orders[1]:get() ~= 0 then return end
+  counted = counter
+  if test.test.sines == nil or orders[2]:get() ~= -number or t >= test.length_s then
+    say(string.format("ADVISOR REFUSES %d: no multisine %.0f to end", counter, -orders[2]:get()))
+    return
+  end
+  test.length_s, test.how = t, "done: enough"
+  say(string.format("ADVISOR ENOUGH %d", counter))
+end
+
+local function fly(late_ms)
+  local why = trouble(before, now_flown())
+  latest_ms = math.max(latest_ms, late_ms)
+  if why ~= nil then
+    finish("aborted: " .. why)
+    return
+  end
+  local t = 0.001 * since(since_ms)
+  take_enough(t)
+  if t >= test.length_s + test.test.rest_s then
+    finish(test.how or "done")
+  else
+    -- A pulse holds until the next call: it gets the value of the middle of this time.
+    local middle = t + 0.0005 * math.min(late_ms, LATE_MS)
+    send(mixed(function(control) return asked(control, middle) end))
   end
 end
 

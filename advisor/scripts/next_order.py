@@ -1,4 +1,4 @@
-"""The advised input as an order to a script: its place in the table, size and time unit."""
+"""Orders to a script: the advised input by its place in the table, its size and unit, or an input's end."""
 
 from math import degrees
 
@@ -20,3 +20,8 @@ def next_order(advised: StepInput) -> tuple[int, float, float]:
     elevator = advised.control == "elevator"
     name = _NAMES[advised.control, advised.nose_up_first if elevator else True]
     return 1 + NAMES.index(name), round(degrees(advised.amplitude_rad), 2), round(advised.unit_s, 2)
+
+
+def end_order(number: int) -> tuple[int, float, float]:
+    """Return the order to end the multisine of this number, with a size that no script would fly."""
+    return 0, -float(number), 0.0

@@ -64,7 +64,7 @@ def _asked(flight: ScriptFlight, aircraft: Aircraft) -> bool:
     for number in flight.done:
         late = next((x for _, x in flight.pilot.texts if "LATE" in x and x.endswith(f" in {number}")), "")
         begin_s = flight.pilot.at(f"ADVISOR BEGIN {number} ")
-        for one in flown_of(flight.table.entries[number - 1], begin_s, t, read):
+        for one in flown_of(flight.entry(number), begin_s, t, read):
             good = one.late_ms <= LATE_MS and one.size_percent <= max(SIZE_PERCENT, one.pulse_percent)
             word = late.partition(": ")[2] or ("✓" if good else "✗")
             holds = holds and (good or bool(late))
@@ -102,7 +102,7 @@ def _found(flight: ScriptFlight, aircraft: Aircraft) -> bool:
             print(f"| {span.start_s:.1f} | {axis} | {span.kind} | {one.verdict.sentence} |")
     spans = [one.maneuver.span for one in (*state.maneuvers, *side)]
     found = sorted({(round(span.start_s), span.kind) for span in spans})
-    asked = [flight.table.entries[number - 1].test.name for number in flight.done]
+    asked = [flight.entry(number).test.name for number in flight.done]
     whole = [kind for _, kind in found] == asked
     both = all(_axes(one, state.maneuvers, side) for one in asked if one == "multisine")
     print(f"\nFound {len(found)} of {len(asked)} inputs{'' if whole else ', not those that were flown'}.")

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from advisor.scripts.ardupilot import ardupilot_script
-from advisor.scripts.table import ScriptTable
+from advisor.scripts.table import Entry, ScriptTable
 
 from .pilot import Airframe, Pilot, airborne
 
@@ -43,6 +43,11 @@ class ScriptFlight:
     done: list[int] = field(default_factory=list)
     """Numbers of the inputs that were flown to their ends, in the order of the table."""
     aborts: dict[str, Ended] = field(default_factory=dict)
+
+    def entry(self, number: int) -> Entry:
+        """Return the entry of the table that an input's BEGIN names."""
+        name = self.pilot.said(f"ADVISOR BEGIN {number} ").split(maxsplit=3)[3]
+        return next(one for one in self.table.entries if one.test.name == name)
 
     def begun(self, number: int) -> None:
         """Move the switch up until an input begins."""

@@ -46,25 +46,27 @@ def deflections(pilot: Pilot, aircraft: Aircraft) -> tuple[FloatArray, Mapping[C
     t, us = pilot.pulses()
     read: dict[Control, FloatArray] = {}
     for control in CONTROLS:
-        if control == "elevator":
-            surface = find_elevator(aircraft.elevator, wiring)
-        else:
-            surface = find_side_control(control, getattr(aircraft, control), wiring)
+        surface = (
+            find_elevator(aircraft.elevator, wiring)
+            if control == "elevator"
+            else find_side_control(control, getattr(aircraft, control), wiring)
+        )
         if isinstance(surface, Surface):
             read[control] = np.degrees(surface.deflection(us[:, [n - 1 for n in surface.outputs]]))
     return t, read
 
 
 def flown_of(entry: Entry, begin_s: float, t: FloatArray, read: Mapping[Control, FloatArray]) -> list[Flown]:
-    """Return what was flown of each control that an input moves."""
+    """Return what was flown of each control that an input moves and the aircraft has."""
     test = entry.test
-    steps = {c: np.abs(np.diff(np.unique(read[c].round(6)))).min() for c in test.moved}
-    sizes = {control: float(np.degrees(entry.sizes[control].rad)) for control in test.moved}
+    moved = [control for control in test.moved if control in read]
+    steps = {c: np.abs(np.diff(np.unique(read[c].round(6)))).min() for c in moved}
+    sizes = {control: float(np.degrees(entry.sizes[control].rad)) for control in moved}
     if test.sines is None:
-        (control,) = test.moved
+        (control,) = moved
         late, off = _steps(entry, sizes[control], begin_s, t, read[control])
         return [Flown(test.name, control, sizes[control], late, off, 100.0 * steps[control] / sizes[control])]
-    found = {c: _sines(entry, c, sizes[c], begin_s, t, read[c]) for c in test.moved}
+    found = {c: _sines(entry, c, sizes[c], begin_s, t, read[c]) for c in moved}
     first = min(shift for shift, _ in found.values())
     return [
         Flown(test.name, c, sizes[c], 1e3 * (shift - first), off, 100.0 * steps[c] / sizes[c])
@@ -83,6 +85,8 @@ def _steps(
         t < begin_s + test.length_s + test.rest_s - _CLOCK_S
     )
     moved = deg - float(np.median(deg[resting]))
+    # The loop may be away from trim before the first step.
+    levels[0] = float(np.median(moved[(t > begin_s - 0.08) & (t < begin_s - 0.02)]))
     off, late = [], []
     for k, edge in enumerate(edges):
         around = np.abs(t - begin_s - edge) < _CLOCK_S

@@ -6,13 +6,16 @@ from math import sqrt
 
 import pytest
 
+from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.campaign.arriving_information import ArrivingInformation
 from advisor.decision.arriving import Arriving
-from advisor.decision.arriving_errors import arriving
+from advisor.decision.arriving_errors import Known, arriving
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress
 from advisor.tui.panes.live import arrived_in_words
 from tests.decision.test_coupling import T, flown
 
+NOTHING = Known(None, {})
 BEFORE = dict.fromkeys(("M_alpha", "M_q", "M_delta_e", "Z_alpha"), 120.0)
 
 
@@ -24,7 +27,7 @@ def once():
 
 def errors(until_s: float):
     maneuver, estimated = once()
-    return arriving(maneuver, until_s, (estimated, BEFORE), (None, {})).percent
+    return arriving(maneuver, until_s, Known(estimated, BEFORE), NOTHING).percent
 
 
 def test_an_input_that_is_flown_again_leaves_the_root_of_half_of_each_variance():
@@ -47,13 +50,37 @@ def test_it_is_enough_when_each_derivative_is_within_its_tolerance():
 
 
 def test_before_any_estimate_nothing_is_said():
-    assert arriving(once()[0], 8.0, (None, BEFORE), (None, {})).percent == {}
+    assert arriving(once()[0], 8.0, Known(None, BEFORE), NOTHING).percent == {}
 
 
-def test_a_derivative_without_an_error_before_is_not_judged():
+def test_an_unknown_derivative_has_no_error_and_is_never_enough():
     maneuver, estimated = once()
-    before = {**BEFORE, "M_q": None}
-    assert "M_q" not in arriving(maneuver, 8.0, (estimated, before), (None, {})).percent
+    before = {**dict.fromkeys(BEFORE, 1.0), "M_q": None}
+    found = arriving(maneuver, 8.0, Known(estimated, before), NOTHING)
+    assert (max(found.percent.values()) < 1.0, found.unknown) == (True, ("M_q",))
+    assert not found.is_enough
+
+
+def followed(information, end_s: float):
+    """Follow the first input of a flight test up to a time."""
+    so_far = replace(once()[0], span=replace(once()[0].span, end_s=end_s))
+    nothing = FlightTestVerdict("information", "continue", "", None, 100.0, None, {})
+    return information.follow(so_far, None, nothing, None)
+
+
+def test_the_first_input_has_the_errors_of_its_own_data():
+    information = ArrivingInformation(Aircraft(elevator=Elevator(lag_s=0.0)))
+    courses = [found.percent for s in (5, 6, 8, 10, 13) if (found := followed(information, s)) is not None]
+    assert {*courses[-1]} == {*BEFORE}
+    assert courses[-1]["M_delta_e"] < courses[0]["M_delta_e"]
+
+
+def test_the_first_input_has_one_error_whoever_looks_how_often():
+    aircraft = Aircraft(elevator=Elevator(lag_s=0.0))
+    often = ArrivingInformation(aircraft)
+    for end_s in range(4, 13):
+        followed(often, float(end_s))
+    assert followed(often, 13.0) == followed(ArrivingInformation(aircraft), 13.0)
 
 
 def test_samples_count_up_to_whole_seconds_whenever_somebody_looks():
@@ -63,7 +90,7 @@ def test_samples_count_up_to_whole_seconds_whenever_somebody_looks():
     seen = {}
     for end_s in T[T > 4.0][::7]:
         so_far = replace(maneuver, span=replace(maneuver.span, end_s=float(end_s)))
-        found = ArrivingInformation().follow(so_far, estimated, test, None)
+        found = ArrivingInformation(Aircraft()).follow(so_far, estimated, test, None)
         if found is not None:
             assert seen.setdefault(found.until_s, found) == found
     assert {until_s - 2.0 for until_s in seen} == set(range(2, 11))

@@ -398,6 +398,45 @@ def test_an_order_counts_the_inputs_of_all_scripts_whatever_this_one_holds() -> 
     assert engine.said("ADVISOR REFUSES") == ["ADVISOR REFUSES 6: no such input"]
 
 
+def test_an_order_ends_the_multisine_after_its_hands_off_flight() -> None:
+    engine = _in_flight("multisine", seconds=8.0)
+    _order(engine, 0, -1, 0, 5)
+    assert engine.said("ADVISOR ENOUGH") == ["ADVISOR ENOUGH 5"]
+    ended_ms = engine.ms
+    trims = {n: engine.pulse(n) for n in (1, 2, 4)}
+    assert trims == {1: 1504, 2: 1490, 4: 1500}
+    engine.flown[2] = 1600
+    engine.run(3.8)
+    assert {n: engine.pulse(n) for n in (1, 2, 4)} == trims
+    engine.run(0.3)
+    assert engine.said("ADVISOR END") == ["ADVISOR END 1 done: enough"]
+    assert engine.at_ms("ADVISOR END") - ended_ms == pytest.approx(4000, abs=150)
+    assert engine.pulse(2) == 1600
+
+
+@pytest.mark.parametrize(("name", "number"), [("multisine", 2), ("3-2-1-1", 1)])
+def test_only_the_multisine_that_is_flown_can_be_ended(name: str, number: int) -> None:
+    engine = _in_flight(name)
+    _order(engine, 0, -number, 0, 5)
+    assert engine.said("ADVISOR REFUSES") == [f"ADVISOR REFUSES 5: no multisine {number} to end"]
+    engine.run(30.0)
+    assert engine.said("ADVISOR END") == ["ADVISOR END 1 done"]
+
+
+def test_an_order_to_end_that_comes_late_flies_nothing() -> None:
+    engine = _loaded(_table())
+    _order(engine, 0, -1, 0, 5)
+    assert engine.said("ADVISOR REFUSES") == ["ADVISOR REFUSES 5: no such input"]
+
+
+def test_a_next_input_that_is_ordered_within_an_input_waits_for_its_end() -> None:
+    engine = _in_flight(seconds=2.0, table=_table("multisine", "reverse 3-2-1-1"))
+    _order(engine, 2, 3.0, 0.3, 5)
+    assert len(engine.said("ADVISOR NEXT")) == 1
+    engine.run(24.0)
+    assert engine.said("ADVISOR NEXT")[-1] == "ADVISOR NEXT 5 reverse 3-2-1-1 0.30 s 3.0 deg"
+
+
 def test_an_order_of_before_the_script_was_loaded_counts_for_nothing() -> None:
     engine = _loaded(_table(), SCR_USER1=2.0, SCR_USER2=3.0, SCR_USER3=0.3, SCR_USER4=5.0)
     assert engine.said("ADVISOR NEXT")[-1].startswith("ADVISOR NEXT 0")

@@ -1,6 +1,7 @@
 """Texts with which a script in the autopilot announces its test inputs, and the stretches between them.
 
-``ADVISOR BEGIN 3 3-2-1-1`` and ``ADVISOR END 3 done`` (or ``aborted: why``) enclose one input. At its load
+``ADVISOR BEGIN 3 3-2-1-1`` and ``ADVISOR END 3 done`` (``done: enough`` before the full length, or
+``aborted: why``) enclose one input. At its load
 the script sends ``ADVISOR SCRIPT name hash``: the name of the aircraft file, and a hash of the calibration.
 """
 
@@ -20,7 +21,7 @@ TEXTS = (b"ADVISOR BEGIN", b"ADVISOR END", b"ADVISOR SCRIPT")
 SCRIPT_NOTICE = "script_mark"
 """Code of a notice about an announcement that marks nothing, or about a script of another aircraft."""
 _BEGIN = re.compile(r"BEGIN (\d{1,6})(?: +(.*))?")
-_END = re.compile(r"END (\d{1,6}) +(?:(done)|aborted(?: *: *(.*))?)")
+_END = re.compile(r"END (\d{1,6}) +(?:(done)(?: *:.*)?|aborted(?: *: *(.*))?)")
 _SCRIPT = re.compile(r"SCRIPT +(.*\S) +(\S+)")
 BOUNCE_S = 0.5
 """Longest time from BEGIN to END that counts as a bouncing switch, s. The shortest step that a script flies
@@ -130,6 +131,11 @@ class Announcements:
     def since_s(self) -> float | None:
         """Begin of the open input, s since boot. None without an open input."""
         return self._begun[0] if self._begun else None
+
+    @property
+    def open(self) -> Announced | None:
+        """Open input. None without one."""
+        return Announced(self._begun[1].number, self._begun[1].said) if self._begun else None
 
     def take(self, said: Announcement, at_s: float) -> Sequence[AnnouncedStretch | Notice]:
         """Take the next text, and return a complete stretch, or notices about texts that mark nothing."""

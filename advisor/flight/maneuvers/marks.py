@@ -183,6 +183,11 @@ class Marks:
         """Begin of the open mark by hand, s since boot. None without an open mark."""
         return self._open.get("hand")
 
+    @property
+    def announced_now(self) -> Announced | None:
+        """Input that a script has begun and not ended. None without one."""
+        return self._script.open
+
     def since_s(self, now_s: float) -> float | None:
         """Return the begin of the mark that is open at ``now_s``, s since boot; None without an open mark."""
         begun = [m.start_s for m in self._waiting if m.start_s <= now_s <= m.end_s]

@@ -1,7 +1,8 @@
 """Uplink of the next input to the autopilot's script: SCR_USER1 to 4, confirmed by the script's echo.
 
 The script ``advisor/scripts/inflight.lua`` takes an order when the counter in SCR_USER4 changes. The script
-answers by a text with the counter, the input, its time unit and its size.
+answers by a text with the counter, the input, its time unit and its size. An order with input 0 ends the
+multisine that is flown.
 """
 
 import re
@@ -18,6 +19,7 @@ ANSWER_WITHIN_S = 2.0
 MOST_TRIES = 5
 _STATUSTEXT = dialect.MAVLINK_MSG_ID_STATUSTEXT
 _ECHO = re.compile(r"ADVISOR NEXT (\d+) (.+) ([\d.]+) s ([\d.]+) deg")
+_ENDS = re.compile(r"ADVISOR ENOUGH (\d+)")
 _REFUSAL = re.compile(r"ADVISOR REFUSES (\d+): (.+)")
 _ROUNDED = 0.051
 """Largest difference between an order and its echo, in which numbers have one or two decimals."""
@@ -28,9 +30,15 @@ class NextOrder:
     """Input that the script flies next."""
 
     which: int
-    """Place of the input in the script's table, from 1."""
+    """Place of the input in the script's table, from 1. 0: the end of the multisine that is flown."""
     size_deg: float
+    """Size of the input, deg. For an end the negative number of the multisine, which is no size."""
     unit_s: float
+
+    @property
+    def what(self) -> str:
+        """The order as a noun."""
+        return "the next input" if self.which else "the end of the input"
 
 
 class Uplink(Talker):
@@ -42,6 +50,8 @@ class Uplink(Talker):
     def __init__(self) -> None:
         self._wanted: NextOrder | None = None
         self._confirmed: NextOrder | None = None
+        self._waiting: NextOrder | None = None
+        """Next input that the script had not confirmed before an order to end the present one."""
         self._counter = 0
         self._tries = 0
         self._due_s = float("-inf")
@@ -51,7 +61,17 @@ class Uplink(Talker):
         """Take the next input, to be sent unless the script has confirmed the identical one."""
         wanted = NextOrder(which, size_deg, unit_s)
         if wanted not in (self._wanted, self._confirmed):
-            self._wanted, self._tries, self._due_s = wanted, 0, float("-inf")
+            if which == 0:
+                self._waiting = self._wanted
+            self._begin(wanted)
+
+    def _begin(self, wanted: NextOrder | None) -> None:
+        self._wanted, self._tries, self._due_s = wanted, 0, float("-inf")
+
+    def _go_on(self) -> None:
+        """Forget the order, and send the one that waited behind an end."""
+        waiting, self._waiting = self._waiting, None
+        self._begin(waiting)
 
     def hear(self, frame: Frame, now_s: float) -> None:
         """Take the script's echo or its refusal."""
@@ -59,8 +79,12 @@ class Uplink(Talker):
             return
         text = frame.payload[1:51].rstrip(b"\0").decode("ascii", "replace")
         if (refused := _REFUSAL.match(text)) and int(refused[1]) == self._counter:
-            self._said.append(f"the script refuses the next input: {refused[2]}")
-            self._wanted = None
+            self._said.append(f"the script refuses {self._wanted.what}: {refused[2]}")
+            self._go_on()
+        elif (ends := _ENDS.match(text)) and int(ends[1]) == self._counter:
+            self._said.append(f"the script ends input {-self._wanted.size_deg:g}: its data are enough")
+            self._confirmed = self._wanted
+            self._go_on()
         elif (echo := _ECHO.match(text)) and int(echo[1]) == self._counter:
             size_deg, unit_s = float(echo[4]), float(echo[3])
             near = abs(size_deg - self._wanted.size_deg) < _ROUNDED
@@ -69,7 +93,8 @@ class Uplink(Talker):
                 self._said.append(
                     f"the script confirms: switch up: {echo[2]}, {unit_s:g} s, {size_deg:g} deg"
                 )
-                self._confirmed, self._wanted = self._wanted, None
+                self._confirmed = self._wanted
+                self._go_on()
             else:
                 self._due_s = now_s
 
@@ -79,11 +104,11 @@ class Uplink(Talker):
         if wanted is None or vehicle is None or now_s < self._due_s:
             return []
         if self._tries == MOST_TRIES:
-            self._wanted = None
             self._said.append(
-                f"the script has not confirmed the next input after {MOST_TRIES} tries. "
+                f"the script has not confirmed {wanted.what} after {MOST_TRIES} tries. "
                 "Set SCR_ENABLE 1, restart the vehicle, and fly what its text ADVISOR NEXT says"
             )
+            self._go_on()
             return []
         self._tries += 1
         self._due_s = now_s + ANSWER_WITHIN_S

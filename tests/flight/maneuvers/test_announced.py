@@ -77,6 +77,11 @@ def test_an_aborted_input_is_listed_with_its_reason_and_not_judged():
     assert (activity.start_s, activity.end_s) == pytest.approx((53.0, 56.0), abs=0.05)
 
 
+def test_an_input_that_ends_early_because_it_is_enough_is_judged():
+    _, events = flown(announced((53.0, BEGIN), (57.0, "ADVISOR END 3 done: enough")))
+    assert [m.span.closed_by for m in maneuvers(events)] == ["marked by a script"]
+
+
 def test_an_early_end_in_two_chunks_is_read_whole():
     wire = announced()
     why = "ADVISOR END 3 aborted: the height above the ground fell below 60 m"

@@ -6,7 +6,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 from advisor.decision.inputs import StepInput
 from advisor.mavlink.link.uplink import Uplink
 from advisor.mavlink.wire.framing import Frame
-from advisor.scripts.next_order import next_order
+from advisor.scripts.next_order import end_order, next_order
 
 VEHICLE = (1, 1)
 
@@ -77,6 +77,33 @@ def test_a_refusal_is_said_and_ends_the_sending() -> None:
     uplink.hear(_text(f"ADVISOR REFUSES {counter:.0f}: size 3.0 deg"), 10.5)
     assert uplink.report() == ["the script refuses the next input: size 3.0 deg"]
     assert _sent(uplink, 20.0) == {}
+
+
+def test_the_end_of_a_multisine_is_an_order_with_input_0_that_the_script_confirms() -> None:
+    uplink = Uplink()
+    uplink.order(*end_order(3))
+    sent = _sent(uplink, 10.0)
+    assert list(sent.values())[:3] == [0.0, -3.0, 0.0]
+    uplink.hear(_text(f"ADVISOR ENOUGH {sent['SCR_USER4']:.0f}"), 10.5)
+    assert uplink.report() == ["the script ends input 3: its data are enough"]
+    assert _sent(uplink, 20.0) == {}
+
+
+def test_a_next_input_without_an_echo_is_sent_again_after_the_end_of_the_present_one() -> None:
+    uplink = _ordered()
+    _sent(uplink, 10.0)
+    uplink.order(*end_order(3))
+    counter = _sent(uplink, 11.0)["SCR_USER4"]
+    uplink.hear(_text(f"ADVISOR ENOUGH {counter:.0f}"), 11.5)
+    assert list(_sent(uplink, 11.6).values())[:3] == [2.0, 3.0, 0.3]
+
+
+def test_a_refused_end_is_said() -> None:
+    uplink = Uplink()
+    uplink.order(*end_order(3))
+    counter = _sent(uplink, 10.0)["SCR_USER4"]
+    uplink.hear(_text(f"ADVISOR REFUSES {counter:.0f}: no multisine 3 to end"), 10.5)
+    assert uplink.report() == ["the script refuses the end of the input: no multisine 3 to end"]
 
 
 def test_a_silent_vehicle_is_sent_nothing() -> None:
