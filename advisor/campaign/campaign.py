@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.arriving_information import ArrivingInformation
@@ -16,6 +17,7 @@ from advisor.campaign.late_limits import recount
 from advisor.campaign.running_estimate import Settled, Settling
 from advisor.campaign.state import (
     OF_ELEVATOR,
+    AxisState,
     CampaignState,
     JudgedManeuver,
     LateralState,
@@ -146,12 +148,9 @@ class Campaign:
             self.engineer.end_maneuver()
         told = self._take(self._flights.finish())
         self._ended = True
-        halves: list[ElevatorCampaign | LateralCampaign] = [self._elevator]
-        if self._lateral is not None:
-            halves.append(self._lateral)
-        for half in halves:
-            half.finish()
-            told += self._revised_at_the_end(half)
+        for campaign in filter(None, (self._elevator, self._lateral)):
+            campaign.finish()
+            told += self._revised_at_the_end(campaign)
         for problem in self._stream.marks.problems():
             self._journal.write(str(problem))
         return told
@@ -163,7 +162,13 @@ class Campaign:
         flying, channels, model = flights.so_far(), stream.channels, elevator.model
         settled = self._settled(flying, model)
         heard = flights.heard(channels, self._ended)
+        numbers = tuple(judged.maneuver.number for judged in elevator.joined)
+        axes: dict[AxisName, AxisState[Any]] = {
+            "pitch": AxisState(elevator.judged, elevator.flight_test, model, numbers)
+        }
         lateral = self._lateral_state(heard)
+        if lateral is not None:
+            axes["lateral"] = lateral
         side = lateral.model if lateral is not None else None
         instruments = self._parts.make("instruments", lambda: self._contradictions(model, side), lambda _: ())
         return CampaignState(
@@ -171,16 +176,13 @@ class Campaign:
             now_s=stream.now_s,
             mode=stream.mode,
             channels=channels,
-            maneuvers=elevator.judged,
-            flight_test=elevator.flight_test,
-            model=model,
+            axes=axes,
             flying=flying,
             marking_since_s=stream.marks.by_hand_since_s,
             settling=settled.estimate if settled else None,
             readable=settled is not None and settled.readable,
             enough=settled.enough if settled and not self._tests_sideways else None,
             arriving=self._arrived(flying, model, lateral),
-            estimate_from=tuple(judged.maneuver.number for judged in elevator.joined),
             elevator_notes=flights.elevator_notes,
             reader_notes=(
                 *self._journal.reader_notes,
@@ -197,7 +199,6 @@ class Campaign:
             flight=flights.flight,
             boot=stream.boot,
             flights=heard,
-            lateral=lateral,
             activity=self._activity,
             failed=self._parts.failed,
         )

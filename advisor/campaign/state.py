@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from math import isfinite
 from statistics import median
+from typing import Any, Generic, TypeVar
 
 from advisor.decision.arriving import Arriving
 from advisor.decision.crew_plan import CrewPlan, crew_plan
@@ -20,6 +21,7 @@ from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.process.parts import FailedPart
+from advisor.words.axes import AXES, AxisName
 from advisor.words.problems import Problem
 
 
@@ -36,16 +38,33 @@ class JudgedManeuver:
     """Notes of the engineer on the manoeuvre."""
 
 
-@dataclass(frozen=True, slots=True)
-class LateralState:
-    """State of the lateral campaign."""
+E = TypeVar("E", bound=Estimate)
+
+
+@dataclass(frozen=True)
+class AxisState(Generic[E]):
+    """State of the campaign of one axis."""
 
     maneuvers: tuple[JudgedManeuver, ...]
     flight_test: FlightTestVerdict
-    model: LateralEstimate | None
+    model: E | None
     """Joint estimate of the newest accepted manoeuvres in flight, of all accepted ones after the end."""
-    estimate_from: tuple[int, ...]
+    estimate_from: tuple[int, ...] = ()
     """Numbers of the manoeuvres in the joint estimate ``model``."""
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether the test has begun: by a named or marked input, or an accepted movement."""
+        return has_begun(self.maneuvers)
+
+    @property
+    def is_accepted(self) -> bool:
+        """Whether any manoeuvre is accepted."""
+        return any(one.verdict.accepted for one in self.maneuvers)
+
+
+LateralState = AxisState[LateralEstimate]
+"""State of the campaign of roll and yaw."""
 
 
 OF_ELEVATOR = frozenset({"no_maneuver", "no_elevator", "no_alpha"})
@@ -109,10 +128,10 @@ class CampaignState:
     """Vehicle time of the newest sample, seconds since boot."""
     mode: str
     channels: Mapping[str, ChannelStatus]
-    maneuvers: tuple[JudgedManeuver, ...]
-    flight_test: FlightTestVerdict
-    model: Estimate | None
-    """Joint estimate of the newest accepted manoeuvres in flight, of all accepted ones after the end."""
+    axes: Mapping[AxisName, AxisState[Any]]
+    """State of the campaign of every requested axis."""
+    shown: AxisName = AXES[0]
+    """Axis of ``maneuvers``, ``flight_test``, ``model`` and ``estimate_from``."""
     flying: Maneuver | None = None
     """Manoeuvre that is being flown, up to the newest sample. None between manoeuvres."""
     marking_since_s: float | None = None
@@ -126,8 +145,6 @@ class CampaignState:
     """Advice to recover, given when more free response would not improve the estimate."""
     arriving: Arriving | None = None
     """Errors of the derivatives with the information of the input that is being flown, at whole seconds."""
-    estimate_from: tuple[int, ...] = ()
-    """Numbers of the manoeuvres in the joint estimate ``model``."""
     elevator_notes: tuple[str, ...] = ()
     """Assumptions about the elevator's scale and sign, as sentences."""
     reader_notes: tuple[str, ...] = ()
@@ -155,8 +172,6 @@ class CampaignState:
     """Number of the vehicle's power-on in this log or link, 0 for the first."""
     flights: tuple[FlightHeard, ...] = ()
     """Every log and link so far. The last entry is the current log or link."""
-    lateral: LateralState | None = None
-    """State of the lateral campaign. None if roll and yaw were not requested."""
     activity: tuple[Activity, ...] = ()
     """Elevator movements that were no test inputs, oldest first. Consecutive similar movements are one
     entry."""
@@ -164,28 +179,48 @@ class CampaignState:
     """Parts that were ended by a fault of the advisor."""
 
     @property
+    def maneuvers(self) -> tuple[JudgedManeuver, ...]:
+        """Manoeuvres of the shown axis, in the order flown."""
+        return self.axes[self.shown].maneuvers
+
+    @property
+    def flight_test(self) -> FlightTestVerdict:
+        """Decision of the shown axis whether the test may stop."""
+        return self.axes[self.shown].flight_test
+
+    @property
+    def model(self) -> Estimate | None:
+        """Joint estimate of the shown axis."""
+        return self.axes[self.shown].model
+
+    @property
+    def estimate_from(self) -> tuple[int, ...]:
+        """Numbers of the manoeuvres in the joint estimate of the shown axis."""
+        return self.axes[self.shown].estimate_from
+
+    @property
+    def lateral(self) -> LateralState | None:
+        """State of the campaign of roll and yaw. None if these were not requested."""
+        return self.axes.get("lateral")
+
+    @property
     def plan(self) -> CrewPlan | None:
         """Plan of both axes; None if the test of one axis has not begun."""
-        side = self.lateral
-        if side is None or not has_begun(side.maneuvers) or not has_begun(self.maneuvers):
+        if len(self.axes) < len(AXES) or not all(axis.has_begun for axis in self.axes.values()):
             return None
-        return crew_plan(self.flight_test, side.flight_test)
+        return crew_plan(*(self.axes[axis].flight_test for axis in AXES))
 
     @property
     def tested_sideways(self) -> LateralState | None:
-        """The lateral state if the test of roll and yaw has begun, and that of the elevator has not."""
+        """The lateral state if the test of roll and yaw has begun, and that of the shown axis has not."""
         side = self.lateral
-        if side is None or has_begun(self.maneuvers) or not has_begun(side.maneuvers):
-            return None
-        return side
+        return None if side is None or self.axes[self.shown].has_begun or not side.has_begun else side
 
     @property
     def lateral_alone(self) -> LateralState | None:
         """The lateral state if only the lateral axes have accepted manoeuvres; else None."""
         side = self.lateral
-        if side is None or any(one.verdict.accepted for one in self.maneuvers):
-            return None
-        return side if any(one.verdict.accepted for one in side.maneuvers) else None
+        return None if side is None or self.axes["pitch"].is_accepted or not side.is_accepted else side
 
     @property
     def progress(self) -> str:

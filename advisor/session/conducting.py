@@ -2,14 +2,15 @@
 reports."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from advisor.campaign.hand_decisions import HandDecision
-from advisor.campaign.state import CampaignState, JudgedManeuver
+from advisor.campaign.state import AxisState, CampaignState, JudgedManeuver
 from advisor.decision.verdict import ManeuverVerdict
 from advisor.session.source import LinkHealth, LinkRequest, Playback, Tempo
+from advisor.words.axes import AxisName
 from advisor.words.problems import Problem
 
 
@@ -105,6 +106,33 @@ class Again:
 
 
 @dataclass(frozen=True, slots=True)
+class AxisChanges:
+    """Fields of the state of one axis whose object differs from the earlier state's."""
+
+    fields: dict[str, Any]
+    maneuvers: tuple[JudgedManeuver | Again, ...] | None
+    """The manoeuvres with new data or verdicts. None if no manoeuvre was judged."""
+
+    @classmethod
+    def of(cls, before: AxisState[Any], now: AxisState[Any]) -> "AxisChanges | None":
+        """Return the changes that turn one state into another; None without changes."""
+        sent = None
+        if now.maneuvers is not before.maneuvers:
+            sent = tuple(_sent(before.maneuvers, k, judged) for k, judged in enumerate(now.maneuvers))
+        others = _changed(before, now, {"maneuvers"})
+        return None if sent is None and not others else cls(others, sent)
+
+    def applied_to(self, last: AxisState[Any]) -> AxisState[Any]:
+        """Return the newer state, from the earlier one and its changes."""
+        if self.maneuvers is None:
+            return replace(last, **self.fields)
+        maneuvers = tuple(
+            sent.applied_to(last.maneuvers) if isinstance(sent, Again) else sent for sent in self.maneuvers
+        )
+        return replace(last, maneuvers=maneuvers, **self.fields)
+
+
+@dataclass(frozen=True, slots=True)
 class Changes:
     """Fields of a report whose object differs from the earlier report's.
 
@@ -114,27 +142,31 @@ class Changes:
 
     report: dict[str, Any]
     state: dict[str, Any]
-    maneuvers: tuple[JudgedManeuver | Again, ...] | None = None
-    """The manoeuvres with new data or verdicts. None if no manoeuvre was judged."""
+    axes: Mapping[AxisName, AxisChanges | AxisState[Any]]
+    """Changes of each axis; the whole state of an axis that the earlier report lacks."""
 
     def applied_to(self, last: SessionReport) -> SessionReport:
         """Return the newer report, from the earlier one and its changes."""
-        state = dict(self.state)
-        if self.maneuvers is not None:
-            known = last.state.maneuvers
-            state["maneuvers"] = tuple(
-                sent.applied_to(known) if isinstance(sent, Again) else sent for sent in self.maneuvers
-            )
-        return replace(last, **self.report, state=replace(last.state, **state))
+        known = last.state.axes
+        axes = {
+            axis: sent.applied_to(known[axis]) if isinstance(sent, AxisChanges) else sent
+            for axis, sent in self.axes.items()
+        }
+        state = replace(last.state, **self.state, axes={**known, **axes} if axes else known)
+        return replace(last, **self.report, state=state)
 
 
 def changes(last: SessionReport, report: SessionReport) -> Changes:
     """Return the changes that turn ``last`` into ``report``. The state's notices are in the report's log."""
-    before, now = last.state.maneuvers, report.state.maneuvers
+    known = last.state.axes
+    made = {
+        axis: AxisChanges.of(known[axis], now) if axis in known else now
+        for axis, now in report.state.axes.items()
+    }
     return Changes(
         _changed(last, report, {"state"}),
-        _changed(last.state, report.state, {"notices", "maneuvers"}),
-        None if now is before else tuple(_sent(before, k, judged) for k, judged in enumerate(now)),
+        _changed(last.state, report.state, {"notices", "axes"}),
+        {axis: change for axis, change in made.items() if change is not None},
     )
 
 

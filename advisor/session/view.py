@@ -3,14 +3,15 @@
 from dataclasses import dataclass, replace
 from math import nan
 from pathlib import Path
-from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.state import OF_ELEVATOR, CampaignState, JudgedManeuver, LateralState
+from advisor.campaign.state import OF_ELEVATOR, AxisState, CampaignState, JudgedManeuver
 from advisor.decision.crew_plan import CrewPlan
 from advisor.decision.verdict import FlightTestVerdict, limit_percent
+from advisor.oem.estimate import Estimate
 from advisor.session.conducting import SessionReport
 from advisor.session.source import LinkHealth, Playback, Tempo
+from advisor.words.axes import AXES
 from advisor.words.problems import Problem
 
 
@@ -86,42 +87,22 @@ def report_before_first(aircraft: Aircraft, title: str) -> SessionReport:
     plan = aircraft.campaign
     limit = limit_percent(plan.rule, plan)
     verdict = FlightTestVerdict(plan.rule, "continue", "No manoeuvre has been flown yet.", None, limit, None)
-    state = CampaignState(
-        vehicle=None, now_s=nan, mode="", channels={}, maneuvers=(), flight_test=verdict, model=None
-    )
+    pitch = AxisState[Estimate]((), verdict, None)
+    state = CampaignState(vehicle=None, now_s=nan, mode="", channels={}, axes={AXES[0]: pitch})
     return SessionReport(state, LinkHealth("waiting", f"Opening {title}."), None, ())
 
 
-class SideView:
-    """Views of roll and yaw, made from those of the elevator's axis. The parts of a view remain identical
-    objects until a manoeuvre is judged."""
+def view_sideways(view: View) -> View:
+    """Return the view of roll and yaw; the same view where roll and yaw are not judged.
 
-    def __init__(self) -> None:
-        self._of: LateralState | None = None
-        self._parts: dict[str, Any] = {}
-
-    def of(self, view: View) -> View:
-        """Return the view with the manoeuvres, the verdicts and the estimate of roll and yaw; the same view
-        where roll and yaw are not judged."""
-        lateral = view.state.lateral
-        if lateral is None:
-            return view
-        if lateral is not self._of:
-            self._of, self._parts = lateral, _parts(lateral)
-        others = tuple(problem for problem in view.state.no_data if problem.code not in OF_ELEVATOR)
-        state = replace(view.state, **self._parts, **_IN_THE_AIR, no_data=others)
-        problems = tuple(problem for problem in view.problems if problem.code not in OF_ELEVATOR)
-        return replace(view, state=state, problems=problems, elevator=view)
-
-
-_IN_THE_AIR: dict[str, Any] = {"flying": None, "settling": None, "readable": False, "enough": None}
-"""Empty state of the current manoeuvre, which is estimated for the elevator only."""
-
-
-def _parts(lateral: LateralState) -> dict[str, Any]:
-    return {
-        "maneuvers": lateral.maneuvers,
-        "flight_test": lateral.flight_test,
-        "model": lateral.model,
-        "estimate_from": lateral.estimate_from,
-    }
+    The manoeuvre that is being flown is estimated for the elevator only.
+    """
+    if view.state.lateral is None:
+        return view
+    others = tuple(problem for problem in view.state.no_data if problem.code not in OF_ELEVATOR)
+    state = replace(
+        view.state,
+        shown="lateral", flying=None, settling=None, readable=False, enough=None, no_data=others,
+    )  # fmt: skip
+    problems = tuple(problem for problem in view.problems if problem.code not in OF_ELEVATOR)
+    return replace(view, state=state, problems=problems, elevator=view)

@@ -16,10 +16,9 @@ from textual.screen import Screen
 from textual.worker import Worker, WorkerState
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.state import has_begun
 from advisor.session.conducting import Conducting, SessionReport
 from advisor.session.source import Tempo
-from advisor.session.view import SideView, View, view_before_first
+from advisor.session.view import View, view_before_first, view_sideways
 from advisor.tui import keys
 from advisor.tui.actions import LINK_ACTIONS, REPLAY_ACTIONS, HandActions, LinkActions, ReplayActions
 from advisor.tui.explaining import Explain, commands, explanation
@@ -102,7 +101,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
         self._report: SessionReport | None = None
         """Newest report that is not shown yet."""
         self._garbage = Garbage()
-        self._side: SideView | None = None
+        self._sideways = False
         """Views of roll and yaw, while that axis is shown."""
         self._axis_chosen = False
         """Whether the shown axis was chosen, by a key or by the first manoeuvre."""
@@ -178,14 +177,12 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
 
     def _open_on_the_axis_flown(self, report: SessionReport) -> None:
         """Show the axis of the first manoeuvre, unless a key has chosen an axis."""
-        lateral = report.state.lateral
-        pitching = has_begun(report.state.maneuvers)
-        sideways = lateral is not None and has_begun(lateral.maneuvers)
-        if self._axis_chosen or not (pitching or sideways):
+        axes = report.state.axes.values()
+        if self._axis_chosen or not any(axis.has_begun for axis in axes):
             return
         self._axis_chosen = True
-        if not pitching:
-            self._side = SideView()
+        if report.state.tested_sideways is not None:
+            self._sideways = True
             self.refresh_bindings()
 
     def on_worker_state_changed(self, event: Worker.StateChanged) -> None:
@@ -209,7 +206,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
     def show(self, view: View) -> None:
         """Show another moment on the screens."""
         self.view = view
-        shown = self._side.of(view) if self._side is not None else view
+        shown = view_sideways(view) if self._sideways else view
         self._sound.hear(shown)
         for screen in self.screen_stack:
             if isinstance(screen, Face):
@@ -224,7 +221,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Allow the replay's actions only in a replay, and the link's actions only on a link."""
-        if self._side is not None and action in ("jump", "jump_by"):
+        if self._sideways and action in ("jump", "jump_by"):
             return False
         only_elsewhere = LINK_ACTIONS if self.view.tempo is not None else REPLAY_ACTIONS
         return action not in only_elsewhere
@@ -244,10 +241,10 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
     def action_other_axis(self) -> None:
         """Show roll and yaw instead of the elevator's axis, or the elevator's axis again."""
         self._axis_chosen = True
-        self._side = SideView() if self._side is None else None
+        self._sideways = not self._sideways
         self.show(self.view)
         self.refresh_bindings()
-        self.say("axis: elevator" if self._side is None else "axis: roll and yaw")
+        self.say("axis: roll and yaw" if self._sideways else "axis: elevator")
 
     def delay_update(self, delay: float = _AT_ONCE_S) -> None:
         """Paint the screen immediately. Textual would hide transitions for 50 ms, and mounted screens have

@@ -104,7 +104,9 @@ class SideFlight:
         # The joint estimate of the log belongs to the unchanged manoeuvres.
         lateral = replace(self.state.lateral, maneuvers=judged, model=None)
         try:
-            compared = compare_side_flown(replace(self.state, lateral=lateral), self.aircraft)
+            compared = compare_side_flown(
+                replace(self.state, axes={**self.state.axes, "lateral": lateral}), self.aircraft
+            )
         except UnusableInputError as error:
             return Answer({}, str(error))
         return (

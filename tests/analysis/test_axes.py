@@ -1,7 +1,5 @@
 """Which flights tell nothing of the axis that is asked for."""
 
-from dataclasses import replace
-
 import pytest
 
 from advisor.analysis.whole_flights import holds_no_test, left_out_of
@@ -9,6 +7,7 @@ from advisor.campaign.state import CampaignState
 from advisor.flight.stream.flights import FlightHeard
 from advisor.words.problems import Problem
 from tests.campaign.side_builders import judged, state
+from tests.campaign.states import changed
 from tests.tui import flights
 
 
@@ -17,7 +16,7 @@ def one_flight(code: str) -> CampaignState:
     heard = FlightHeard(
         0, "flight.tlog", None, 60.0, {}, problems=(Problem(code, "It lacks this.", "Add it."),)
     )
-    return replace(flights.state(0), flights=(heard,), lateral=state(judged(1, "aileron")))
+    return changed(flights.state(0), flights=(heard,), lateral=state(judged(1, "aileron")))
 
 
 @pytest.mark.parametrize("code", ["no_maneuver", "no_elevator", "no_alpha"])

@@ -13,6 +13,7 @@ import pytest
 
 from advisor.report.page.content import Content
 from advisor.report.page.render import page
+from tests.campaign.states import changed
 from tests.report.conftest import Reported
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -119,7 +120,7 @@ def repeated(content: Content, count: int) -> Content:
     analysis = {
         **content.analysis, "maneuvers": maneuvers, "flight_test": {**verdict, "by_rule": by_rule}
     }  # fmt: skip
-    return replace(content, analysis=analysis, state=replace(content.state, maneuvers=tuple(numbered)))
+    return replace(content, analysis=analysis, state=changed(content.state, maneuvers=tuple(numbered)))
 
 
 @pytest.mark.study

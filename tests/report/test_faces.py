@@ -35,6 +35,7 @@ from advisor.words.digits import with_half
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 from tests.campaign.side_builders import judged as side_judged
 from tests.campaign.side_builders import state as side_state
+from tests.campaign.states import changed
 from tests.gap.test_report_screen import EVIDENCE, diagnosis
 from tests.report.conftest import Reported, said_of
 from tests.schemas import breaches
@@ -325,7 +326,7 @@ def test_an_unknown_cause_in_two_blocks_has_one_probability_on_every_face() -> N
 
 
 def test_the_plan_of_both_axes_names_one_input_on_every_face() -> None:
-    state = replace(flights.state(7), lateral=side_state(side_judged(1, "aileron")))
+    state = changed(flights.state(7), lateral=side_state(side_judged(1, "aileron")))
     plan = state.plan
     assert plan is not None
     assert state.flight_test.decision == "stop"

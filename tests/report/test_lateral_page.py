@@ -15,6 +15,7 @@ from advisor.report.page.gap import gap
 from advisor.report.page.headline import headline
 from advisor.report.table import Table
 from tests.campaign.side_builders import AIRCRAFT, estimate, judged, state
+from tests.campaign.states import changed
 from tests.gap.axes.lateral.test_diagnosis import FOUND
 from tests.oem.axes.lateral.builders import JET
 from tests.schemas import breaches
@@ -111,7 +112,7 @@ def test_the_first_page_of_a_lateral_flight_has_the_lateral_verdict_and_table_an
         "sentence": "No test input of the elevator has been flown.", "decision": "continue", "warnings": []
     }  # fmt: skip
     content = SimpleNamespace(
-        state=replace(flights_of_pitch.state(0), lateral=FLOWN, flights=(), model=None),
+        state=changed(flights_of_pitch.state(0), lateral=FLOWN, flights=(), model=None),
         aircraft=AIRCRAFT, begun=(),
         names=("flight.tlog",), analysis={"flight_test": pitch, "maneuvers": []}, gap=None,
     )  # fmt: skip
@@ -138,7 +139,7 @@ def test_beside_refused_tests_of_the_elevator_the_first_page_has_roll_and_yaw_an
     trimming = SimpleNamespace(span=SimpleNamespace(is_test_input=False))
     refused = SimpleNamespace(verdict=SimpleNamespace(accepted=False), maneuver=trimming)
     content = SimpleNamespace(
-        state=replace(flights_of_pitch.state(1), maneuvers=(refused,), lateral=FLOWN, model=None),
+        state=changed(flights_of_pitch.state(1), maneuvers=(refused,), lateral=FLOWN, model=None),
         aircraft=AIRCRAFT, begun=(), names=("flight.tlog",), gap=GAP,
         analysis={"flight_test": pitch, "maneuvers": [{"number": 1, "verdict": "rejected"}]},
     )  # fmt: skip
@@ -168,7 +169,7 @@ def test_the_gap_of_a_page_is_of_roll_and_yaw_where_they_alone_are_accepted(monk
         return SimpleNamespace(verdict=SimpleNamespace(accepted=accepted))
 
     sides = replace(state(), maneuvers=(one(side),))
-    flown = replace(flights_of_pitch.state(), maneuvers=(one(pitch),), lateral=sides)
+    flown = changed(flights_of_pitch.state(), maneuvers=(one(pitch),), lateral=sides)
     flights = SimpleNamespace(state=flown, logs=[], left_out={})
     asked = SimpleNamespace(aircraft_file=None, reading=[], target_system=None)
     monkeypatch.setattr(page_content, "compare_side_flown", lambda *_, **__: SimpleNamespace(gap=None))

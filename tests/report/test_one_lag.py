@@ -7,6 +7,7 @@ from advisor.gap.verdict.statements import what
 from advisor.oem.estimate import InstrumentEstimate
 from advisor.report.facts.estimates import instrument_facts
 from advisor.report.gap_steps import next_steps
+from tests.campaign.states import changed
 from tests.decision.campaigns import estimate
 from tests.gap.test_report_answer import DERIVATIVES
 from tests.gap.test_report_screen import DELAY, diagnosis
@@ -17,7 +18,7 @@ LAG = replace(DELAY, effect="actuator_lag", parameters={"lag_s": Value(0.129, 0.
 
 def test_the_lag_of_the_estimate_is_that_by_which_it_delays_the_command() -> None:
     found = replace(estimate(), instruments=(InstrumentEstimate("servo_lag_s", 0.143, 0.0102, None),))
-    ((fact, stated),) = instrument_facts(replace(flights.state(), model=found))
+    ((fact, stated),) = instrument_facts(changed(flights.state(), model=found))
     assert (fact.name, stated) == ("servo lag, by which the estimate delays the command", "–")
     assert fact.sentence == "143 ± 20 ms"
 

@@ -14,6 +14,7 @@ from advisor.cli.log_options import LogsAsked
 from advisor.cli.page_content import gather
 from advisor.report.page.drawing import draw
 from advisor.report.page.render import page
+from tests.campaign.states import changed
 from tests.conftest import Advisor
 from tests.flights import SHIPPED
 from tests.report.conftest import Reported
@@ -129,6 +130,6 @@ def test_the_last_manoeuvre_is_predicted_by_those_before_it(reported: Reported) 
 
 
 def test_without_three_accepted_manoeuvres_nothing_is_predicted(reported: Reported) -> None:
-    state = replace(reported.content.state, maneuvers=reported.content.state.maneuvers[:2])
+    state = changed(reported.content.state, maneuvers=reported.content.state.maneuvers[:2])
     text = page(replace(reported.content, state=state), "md")
     assert "A prediction needs at least 3 accepted manoeuvres." in text

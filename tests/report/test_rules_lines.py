@@ -5,13 +5,14 @@ from dataclasses import replace
 import pytest
 
 from advisor.report.text import AnalysisText
+from tests.campaign.states import changed
 from tests.printed import printed_lines
 from tests.tui import flights
 
 
 def rules(rule: str, everything: bool = False) -> list[str]:
     state = flights.state(4)
-    state = replace(state, flight_test=replace(state.flight_test, rule=rule))
+    state = changed(state, flight_test=replace(state.flight_test, rule=rule))
     lines = printed_lines(AnalysisText(state, ["a.tlog"], flights.AIRCRAFT, everything))
     return [line for line in lines if line.startswith(("rule ", "the paper's rules"))]
 

@@ -15,6 +15,7 @@ from advisor.session.conducting import SessionReport
 from advisor.session.conductor import Conductor
 from advisor.session.replay import LogPlayer
 from advisor.words.problems import UnusableInputError
+from tests.campaign.states import changed
 from tests.tui import flights
 from tests.tui.stand_ins import HandFedSource, StagedCampaign, columns, staged
 
@@ -40,7 +41,7 @@ class CountingCampaign(StagedCampaign):
         count = len(self.fed)
         done = tuple(self._judged(k) for k in range(1, count // A_MANEUVER + 1))
         in_the_air = one(len(done) + 1).maneuver if count % A_MANEUVER >= 400 else None
-        return replace(super().state, maneuvers=done, flying=in_the_air, now_s=count / 50.0)
+        return changed(super().state, maneuvers=done, flying=in_the_air, now_s=count / 50.0)
 
     def _judged(self, number: int) -> JudgedManeuver:
         whole = one(number)

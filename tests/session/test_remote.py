@@ -16,6 +16,7 @@ from advisor.session.source import LinkHealth, Playback
 from advisor.tui.app import AdvisorApp
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.words.problems import UnusableInputError
+from tests.campaign.states import changed
 from tests.tui import elsewhere, flights
 
 GOOD = LinkHealth("good", "412 messages/s.")
@@ -82,7 +83,7 @@ def test_a_further_verdict_sends_the_samples_of_no_earlier_manoeuvre():
     five, six = flights.state(5), flights.state(6)
     earlier = tuple(replace(judged, notes=("seen again",)) for judged in five.maneuvers)
     before = SessionReport(five, GOOD, None, ())
-    after = SessionReport(replace(six, maneuvers=(*earlier, six.maneuvers[5])), GOOD, None, ())
+    after = SessionReport(changed(six, maneuvers=(*earlier, six.maneuvers[5])), GOOD, None, ())
     sent = pickle.dumps(changes(before, after))
     assert len(sent) < len(pickle.dumps(before)) / 2
     told = pickle.loads(sent).applied_to(before).state.maneuvers

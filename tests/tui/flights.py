@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
-from advisor.campaign.state import CampaignState, ChannelStatus, JudgedManeuver, WholeFlight
+from advisor.campaign.state import AxisState, CampaignState, ChannelStatus, JudgedManeuver, WholeFlight
 from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import (
     FlightTestVerdict,
@@ -188,14 +188,13 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
         f"{clock(clock_s):>7}  manoeuvre {k} judged"
         for k, clock_s in enumerate(np.arange(113.0, now_s, 25.0), 1)
     )
+    model = _estimate({}, np.random.default_rng(0)) if flown else None
     return CampaignState(
         vehicle=VEHICLE,
         now_s=flying.span.end_s if flying else now_s,
         mode="MANUAL",
         channels=channels,
-        maneuvers=maneuvers,
-        flight_test=verdict,
-        model=_estimate({}, np.random.default_rng(0)) if flown else None,
+        axes={"pitch": AxisState(maneuvers, verdict, model)},
         flying=flying,
         settling=judged(flown + 1).estimate if flying else None,  # type: ignore[arg-type]
         readable=flying is not None,

@@ -15,6 +15,7 @@ from advisor.flight.signals.messages import Columns
 from advisor.session.source import LinkHealth, LinkRequest
 from advisor.words.axes import AxisName
 from advisor.words.problems import Problem
+from tests.campaign.states import changed
 from tests.tui import flights
 
 
@@ -50,7 +51,7 @@ class StagedCampaign:
     def state(self) -> CampaignState:
         # As with the real campaign, what did not change stays the same object.
         now = self._states[min(self._stage, len(self._states) - 1)]
-        return replace(
+        return changed(
             now,
             maneuvers=self._maneuvers(now),
             marking_since_s=self._marking_since_s,

@@ -1,7 +1,5 @@
 """Every number behind the word, and what an engineer does by hand."""
 
-from dataclasses import replace
-
 import pytest
 from textual.containers import VerticalScroll
 from textual.widgets import DataTable, Input
@@ -12,6 +10,7 @@ from advisor.tui.panes.live import Live
 from advisor.tui.panes.parameters import ParametersPane
 from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
+from tests.campaign.states import changed
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
 from tests.tui.stand_ins import HandFedSource
@@ -179,7 +178,7 @@ async def test_the_parameter_under_the_cursor_has_its_history_drawn():
 async def test_a_manoeuvre_without_an_estimate_says_why():
     state = flights.state(2)
     failed = (*state.maneuvers, flights.without_estimate(3))
-    async with stage(replace(state, maneuvers=failed), settings=ENGINEER, size=WIDE) as here:
+    async with stage(changed(state, maneuvers=failed), settings=ENGINEER, size=WIDE) as here:
         await filled(here, 3)
         assert "no estimate: The input did not move the aircraft." in here.words("VerdictPane Lines")
         assert "The input did not move" in here.app.screen.query_one("#fit-q", Plot).chart.why_empty

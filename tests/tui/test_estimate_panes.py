@@ -17,6 +17,7 @@ from advisor.tui.panes.residuals import Residuals
 from advisor.tui.plot.widget import Plot
 from advisor.tui.screens.engineer import PANES
 from advisor.tui.settings import Settings
+from tests.campaign.states import changed
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
 from tests.tui.stand_ins import HandFedSource
@@ -67,7 +68,7 @@ async def test_the_joint_correlation_stands_above_the_diagonal_and_the_manoeuvre
     i, j = PARAMETERS.index("Z_alpha"), PARAMETERS.index("M_q")
     joint = np.diag(flights.SPREAD**2)
     joint[i, j] = joint[j, i] = 0.95 * flights.SPREAD[i] * flights.SPREAD[j]
-    correlated = replace(state, model=replace(state.model, covariance=joint))
+    correlated = changed(state, model=replace(state.model, covariance=joint))
     async with stage(correlated, settings=ENGINEER, size=(80, 24)) as here:
         await here.press("0")
         lines = matrix(here).split("\n")
@@ -107,7 +108,7 @@ async def test_correlations_are_written_again_for_a_new_estimate_alone(monkeypat
 async def test_a_parameter_without_variance_has_no_correlation_on_the_screen():
     state = flights.state(2)
     model = replace(state.model, covariance=np.diag(np.r_[0.0, flights.SPREAD[1:] ** 2]))
-    async with stage(replace(state, model=model), settings=ENGINEER, size=(80, 24)) as here:
+    async with stage(changed(state, model=model), settings=ENGINEER, size=(80, 24)) as here:
         await here.press("0")
         assert matrix(here).split("\n")[2].split()[:3] == ["Z_0", "1", "-"]
 
@@ -115,7 +116,7 @@ async def test_a_parameter_without_variance_has_no_correlation_on_the_screen():
 async def test_only_outputs_of_the_fit_have_residuals():
     state = flights.state(1)
     judged = flights.judged(1, outputs=("q", "a_z"))
-    async with stage(replace(state, maneuvers=(judged,)), settings=ENGINEER, size=(80, 24)) as here:
+    async with stage(changed(state, maneuvers=(judged,)), settings=ENGINEER, size=(80, 24)) as here:
         await here.press("9")
         pane = here.app.screen.query_one(Residuals)
         await here.until(lambda: pane.border_subtitle is not None)
@@ -124,7 +125,7 @@ async def test_only_outputs_of_the_fit_have_residuals():
 
 async def test_a_manoeuvre_without_an_estimate_has_no_residuals_and_says_why():
     state = flights.state(1)
-    without = replace(state, maneuvers=(flights.without_estimate(1),))
+    without = changed(state, maneuvers=(flights.without_estimate(1),))
     async with stage(without, settings=ENGINEER, size=(80, 24)) as here:
         await here.press("9")
         plots = [plot for plot in here.app.screen.query_one(Residuals).query(Plot) if plot.display]

@@ -17,6 +17,7 @@ from advisor.tui.settings import Settings
 from tests.analysis.test_side_traces import ANSWERED
 from tests.campaign.side_builders import judged as side_judged
 from tests.campaign.side_builders import state as side_state
+from tests.campaign.states import changed
 from tests.gap.axes.lateral.test_diagnosis import FOUND
 from tests.gap.test_report_answer import DERIVATIVES
 from tests.gap.test_report_screen import EVIDENCE, diagnosis
@@ -120,7 +121,7 @@ async def test_the_axis_that_is_shown_is_diagnosed(monkeypatch: pytest.MonkeyPat
         return gap_document(ANSWERED)
 
     monkeypatch.setattr(pane, "diagnose_elsewhere", answer)
-    alone = replace(flights.state(), maneuvers=(), lateral=side_state(side_judged(1, "aileron")))
+    alone = changed(flights.state(), maneuvers=(), lateral=side_state(side_judged(1, "aileron")))
     async with stage(alone, settings=ENGINEER, size=(140, 45), logs=[tmp_path / "a.tlog"]) as here:
         await here.press("d")
         await here.until(lambda: "Roll and yaw." in here.words("#gap-text"))

@@ -18,6 +18,7 @@ from advisor.tui.stick_drawing import stick_drawing, stick_line
 from advisor.words.problems import Problem
 from tests.campaign.side_builders import judged
 from tests.campaign.side_builders import state as lateral_state
+from tests.campaign.states import changed
 from tests.tui import flights
 from tests.tui.stage import stage
 from tests.tui.stand_ins import HandFedSource
@@ -74,7 +75,7 @@ def movement(judged, kind="other", accepted=False):
 def test_trimming_of_the_elevator_takes_no_part_in_a_test_of_roll_and_yaw():
     trimming = tuple(map(movement, flights.state(2, bad=(1, 2)).maneuvers))
     side = lateral_state(judged(1, "aileron"))
-    state = replace(flights.state(0), maneuvers=trimming, lateral=side)
+    state = changed(flights.state(0), maneuvers=trimming, lateral=side)
     assert state.plan is None
     assert state.tested_sideways is side
     assert advise(view(state)).word == "CONTINUE"
@@ -83,7 +84,7 @@ def test_trimming_of_the_elevator_takes_no_part_in_a_test_of_roll_and_yaw():
 
 
 def test_a_named_input_of_each_axis_puts_both_into_the_plan():
-    state = replace(flights.state(2), lateral=lateral_state(judged(1, "aileron")))
+    state = changed(flights.state(2), lateral=lateral_state(judged(1, "aileron")))
     assert state.plan is not None
     assert state.tested_sideways is None
 
@@ -137,7 +138,7 @@ async def test_no_data_stands_on_the_screen_after_a_manoeuvre_and_goes_when_they
 def test_a_bad_manoeuvre_taken_out_by_hand_need_not_be_repeated():
     state = flights.state(3, bad=(3,))
     taken_out = replace(state.maneuvers[-1], excluded_because="radio call")
-    assert advise(view(replace(state, maneuvers=(*state.maneuvers[:-1], taken_out)))).word == "CONTINUE"
+    assert advise(view(changed(state, maneuvers=(*state.maneuvers[:-1], taken_out)))).word == "CONTINUE"
 
 
 async def test_the_last_verdict_is_symbol_and_word_and_sentence():

@@ -1,24 +1,23 @@
 """Roll and yaw on both screens: the axis is switched by a key."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from advisor.campaign.hand_decisions import HandDecision
 from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import NextInput
-from advisor.session.view import SideView
+from advisor.session.view import view_sideways
 from advisor.tui.advice import advise
 from advisor.tui.settings import Settings
 from advisor.tui.stick_drawing import drawn
 from tests.campaign.side_builders import judged, state
+from tests.campaign.states import changed
 from tests.tui import flights
 from tests.tui.stage import stage
 from tests.tui.test_pilot_screen import view
 
 
 def both_axes(*side):
-    return replace(flights.state(3), lateral=state(*side))
+    return changed(flights.state(3), lateral=state(*side))
 
 
 async def test_the_key_shows_the_verdict_on_aileron_and_rudder_and_then_the_elevator_again():
@@ -36,8 +35,8 @@ async def test_the_key_shows_the_verdict_on_aileron_and_rudder_and_then_the_elev
 
 
 def test_the_test_is_complete_when_both_axes_are():
-    pitch_is_known = replace(flights.state(7), lateral=state(judged(1, "aileron")))
-    for shown in (view(pitch_is_known), SideView().of(view(pitch_is_known))):
+    pitch_is_known = changed(flights.state(7), lateral=state(judged(1, "aileron")))
+    for shown in (view(pitch_is_known), view_sideways(view(pitch_is_known))):
         assert advise(shown).word == "CONTINUE"
         assert shown.plan is not None
         assert "rudder" in shown.plan.advice
@@ -102,8 +101,8 @@ async def test_the_flying_qualities_are_those_of_the_axis_that_is_shown():
 
 
 def test_equal_states_give_identical_parts_so_that_nothing_is_painted_again():
-    side, now = SideView(), view(both_axes(judged(1, "aileron")))
-    first, second = side.of(now), side.of(now)
+    now = view(both_axes(judged(1, "aileron")))
+    first, second = view_sideways(now), view_sideways(now)
     assert first.state.maneuvers is second.state.maneuvers
     assert first.state.model is second.state.model
     assert first.elevator is now
@@ -121,7 +120,7 @@ def test_a_lateral_input_is_drawn_with_right_above_and_left_below():
 
 
 async def test_the_screen_opens_on_roll_and_yaw_where_only_they_are_flown_and_counts_them():
-    flown = replace(flights.state(0), lateral=state(judged(1, "aileron"), judged(2, "aileron")))
+    flown = changed(flights.state(0), lateral=state(judged(1, "aileron"), judged(2, "aileron")))
     async with stage(flown, size=(100, 35)) as here:
         await here.until(lambda: "accepted so far" in here.words("Gauge"))
         assert "2 accepted so far" in here.words("Gauge")
@@ -131,7 +130,7 @@ async def test_the_screen_opens_on_roll_and_yaw_where_only_they_are_flown_and_co
 
 
 async def test_an_axis_without_a_manoeuvre_does_not_keep_the_verdict_of_the_other():
-    async with stage(replace(flights.state(3), lateral=state()), size=(100, 35)) as here:
+    async with stage(changed(flights.state(3), lateral=state()), size=(100, 35)) as here:
         await here.until(lambda: "GOOD" in here.words("#verdict-word"))
         await here.press("r")
         assert here.words("#verdict-word") == "no manoeuvre yet"
@@ -139,7 +138,7 @@ async def test_an_axis_without_a_manoeuvre_does_not_keep_the_verdict_of_the_othe
 
 
 async def test_no_word_of_the_next_input_is_cut_at_80_by_24():
-    async with stage(replace(flights.state(3), lateral=state()), size=(80, 24)) as here:
+    async with stage(changed(flights.state(3), lateral=state()), size=(80, 24)) as here:
         await here.press("r")
         page = " ".join(here.page().split())
         assert " ".join(here.words("NextInput").split()) in page

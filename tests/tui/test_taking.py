@@ -16,6 +16,7 @@ from advisor.tui.panes.fit import Fit
 from advisor.tui.settings import Settings
 from advisor.tui.table_rows import TableRows
 from advisor.tui.taking import log_of
+from tests.campaign.states import changed
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
 
@@ -41,7 +42,7 @@ def test_what_is_not_known_stands_as_nothing_in_a_row():
 def test_files_are_named_after_the_log_of_the_manoeuvre_that_the_pane_shows():
     view = view_before_first(flights.AIRCRAFT, "udpin:127.0.0.1:0", None, (Path("a.tlog"), Path("b.tlog")))
     second = replace(flights.judged(1), maneuver=replace(flights.judged(1).maneuver, flight=1))
-    view = replace(view, state=replace(view.state, maneuvers=(second,)))
+    view = replace(view, state=changed(view.state, maneuvers=(second,)))
     assert log_of(Fit(), view) == Path("b.tlog")
     assert log_of(Courses(), view) == Path("a.tlog")
 

@@ -10,6 +10,7 @@ from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
 from tests.campaign.side_builders import judged as side_judged
 from tests.campaign.side_builders import state as side_state
+from tests.campaign.states import changed
 from tests.tui import flights
 from tests.tui.stage import stage
 from tests.tui.stand_ins import columns
@@ -52,7 +53,7 @@ async def test_a_click_goes_to_the_manoeuvre_there_of_either_axis_or_else_to_the
     turn = side_judged(1, "aileron")
     span = replace(turn.maneuver.span, start_s=second.end_s + 2.0, end_s=second.end_s + 5.0)
     side = side_state(replace(turn, maneuver=replace(turn.maneuver, span=span)))
-    state = replace(state, lateral=side)
+    state = changed(state, lateral=side)
     async with stage(state, settings=ENGINEER, size=(140, 45), source=player) as here:
         await here.press("i")
         await here.until(lambda: "2✗" in here.words("#whole-maneuvers"))
@@ -87,7 +88,7 @@ async def test_roll_and_yaw_have_their_own_channels_in_the_same_places() -> None
     state = flights.state(4)
     whole = state.whole_flight
     courses = {**whole.courses, "aileron": whole.courses["elevator"], "p": whole.courses["q"]}
-    state = replace(
+    state = changed(
         state, whole_flight=replace(whole, courses=courses), lateral=side_state(side_judged(1, "aileron"))
     )
     async with stage(state, settings=ENGINEER, size=(140, 45)) as here:
