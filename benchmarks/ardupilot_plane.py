@@ -25,7 +25,7 @@ from scipy.optimize import fsolve
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS, Reference
-from advisor.analysis.axes.lateral import accepted_of, compare_side_logs
+from advisor.analysis.axes.side_comparison import accepted_of, compare_side_logs
 from advisor.analysis.gap import compare_logs, maneuvers_of
 from advisor.cli.options import read_aircraft
 from advisor.exports.models.axes.handed_over import improved_side

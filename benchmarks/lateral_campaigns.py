@@ -16,7 +16,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import SideControl
-from advisor.campaign.axes.lateral import LateralCampaign
+from advisor.campaign.axes.lateral_campaign import LateralCampaign
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.axes.lateral.estimate import LateralEstimate

@@ -26,7 +26,7 @@ from advisor.gap.axes.lateral.diagnosis import diagnose_side
 from advisor.gap.axes.lateral.models import case_of
 from advisor.gap.result import Diagnosis
 from advisor.oem.estimate import NoEstimate
-from advisor.simulators.axes.lateral import side_without_difference
+from advisor.simulators.axes.side_difference import side_without_difference
 from advisor.simulators.specification import simulator_of
 from advisor.words.quantiles import NORMAL_95
 from benchmarks.lateral_laws import LAWS, flight_with

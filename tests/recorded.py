@@ -20,11 +20,11 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import gap, whole_flights
-from advisor.analysis.axes import lateral as side_gap
+from advisor.analysis.axes import side_comparison as side_gap
 from advisor.analysis.log_series import LogSeries
 from advisor.analysis.whole_flights import WholeFlights
 from advisor.campaign import joint_estimate, single_maneuver
-from advisor.campaign.axes import lateral
+from advisor.campaign.axes import lateral_campaign
 from advisor.cli import analyze, page_content
 from advisor.doctor import examiner
 from advisor.exports.models.jsbsim import run as jsbsim_run
@@ -84,7 +84,7 @@ def _diagnosed_once(compare_flown: Callable[..., Result]) -> Callable[..., Resul
 
 def record_estimates(patch: pytest.MonkeyPatch) -> None:
     """Let campaigns, the doctor and exports read estimates and slopes that another test of this run made."""
-    for module, name in ((single_maneuver, "estimate"), (lateral, "estimate_lateral")):
+    for module, name in ((single_maneuver, "estimate"), (lateral_campaign, "estimate_lateral")):
         patch.setattr(module, name, _estimated_once(getattr(module, name)))
     patch.setattr(examiner, "estimate_jointly", _estimated_once(examiner.estimate_jointly))
     slopes = jsbsim_run._answered

@@ -7,7 +7,7 @@ from operator import attrgetter
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.key import keys_of
 from advisor.aircraft_file.log_facts import LogFacts
-from advisor.flight.elevator.axes.lateral import SIDES
+from advisor.flight.elevator.axes.side_controls import SIDES
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.vehicle.surfaces import Surface
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.elevator.axes.lateral import SIDES, find_side_control
+from advisor.flight.elevator.axes.side_controls import SIDES, find_side_control
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver

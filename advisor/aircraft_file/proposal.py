@@ -5,7 +5,7 @@ from statistics import median
 
 from advisor.aircraft_file.log_facts import LogFacts
 from advisor.aircraft_file.text import Draft
-from advisor.flight.elevator.axes.lateral import SIDES
+from advisor.flight.elevator.axes.side_controls import SIDES
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
 from advisor.flight.signals.true_airspeed import standard_density

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.pitch import NEEDED, natural_period, outside
+from advisor.decision.axes.judge_pitch import NEEDED, natural_period, outside
 from advisor.decision.envelope import changed_speed, incomplete, short_response
 from advisor.decision.quality import refusals
 from advisor.decision.verdict import Reason

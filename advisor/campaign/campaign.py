@@ -6,8 +6,8 @@ from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.arriving_information import ArrivingInformation
-from advisor.campaign.axes.lateral import LateralCampaign
-from advisor.campaign.axes.pitch import ElevatorCampaign
+from advisor.campaign.axes.elevator_campaign import ElevatorCampaign
+from advisor.campaign.axes.lateral_campaign import LateralCampaign
 from advisor.campaign.axis_campaign import AxisCampaign
 from advisor.campaign.engineer import OF, Engineer
 from advisor.campaign.hand_decisions import NOTHING, ByHand

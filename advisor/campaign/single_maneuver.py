@@ -3,7 +3,7 @@
 import math
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.pitch import judge_pitch, natural_period
+from advisor.decision.axes.judge_pitch import judge_pitch, natural_period
 from advisor.decision.carried_speed import is_speed_carried
 from advisor.decision.envelope import with_gap
 from advisor.decision.history import CandidateManeuver

@@ -19,7 +19,7 @@ from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
     from advisor.aircraft.aircraft import Aircraft
-    from advisor.analysis.axes.lateral import AxisFlown
+    from advisor.analysis.axes.side_comparison import AxisFlown
     from advisor.campaign.hand_decisions import ByHand
     from advisor.exports.models.formats import AxisAsked
 
@@ -172,7 +172,7 @@ def command(
 
 def _axis_flown(asked: LogsAsked, aircraft: "Aircraft", by_hand: "Sequence[ByHand]") -> "AxisFlown":
     """Return the axes to diagnose, said where pitch is none, with what was read."""
-    from advisor.analysis.axes.lateral import axis_flown
+    from advisor.analysis.axes.side_comparison import axis_flown
 
     with Stages() as tell:
         tell("reading", 0.0)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from advisor import __version__
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.axes.lateral import compare_side_flown
+from advisor.analysis.axes.side_comparison import compare_side_flown
 from advisor.analysis.log_series import SINCE_1970_S, began_s
 from advisor.analysis.whole_flights import WholeFlights, holds_no_test, read_whole
 from advisor.cli.doctor import examine_log

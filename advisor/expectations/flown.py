@@ -6,7 +6,7 @@ from math import nan
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
-from advisor.analysis.axes.lateral import compare_side_flown
+from advisor.analysis.axes.side_comparison import compare_side_flown
 from advisor.analysis.gap import compare_logs, named_simulator
 from advisor.analysis.whole_flights import WholeFlights
 from advisor.campaign.state import CampaignState, LateralState

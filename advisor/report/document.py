@@ -10,7 +10,7 @@ from advisor.decision.crew_plan import CrewPlan
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.stream.flights import FlightHeard
 from advisor.oem.estimate import Estimate
-from advisor.report.axes.lateral import lateral_document
+from advisor.report.axes.lateral_document import lateral_document
 from advisor.report.axis_document import concluded, fitted, flown, parameters, with_intervals
 from advisor.report.qualities import coefficients_of, qualities_document, qualities_of
 from advisor.words.plain import picked, plain

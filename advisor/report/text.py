@@ -11,7 +11,7 @@ from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
-from advisor.report.axes.lateral import side_quality_lines
+from advisor.report.axes.lateral_document import side_quality_lines
 from advisor.report.facts.decision import INDENT, decisions
 from advisor.report.facts.estimates import structure_lines, untold
 from advisor.report.facts.gap import counted

@@ -85,7 +85,7 @@ def diagnosed(
 
 
 def _diagnosed_sideways(logs: Sequence[Path], aircraft: Aircraft) -> Document:
-    from advisor.analysis.axes.lateral import compare_side_logs
+    from advisor.analysis.axes.side_comparison import compare_side_logs
     from advisor.process.parts import FailedPart, attempt
     from advisor.report.gap_document import gap_document
     from advisor.words.problems import UnusableInputError

@@ -11,7 +11,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.result import spelled
 from advisor.gap.simulator.layout import DERIVATIVES, natural_frequency
 from advisor.process.arrays import FloatArray
-from advisor.simulators.axes.lateral import TURNS
+from advisor.simulators.axes.side_difference import TURNS
 from advisor.simulators.identified import identified_pitch, identified_side
 from advisor.simulators.interface import InterfaceFault, control_fault, interface_fault, side_fault
 from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Inputs, Replay, Simulator

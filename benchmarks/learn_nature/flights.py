@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from advisor.aircraft_file.read import load_aircraft
-from advisor.analysis.axes.lateral import compare_side_logs
+from advisor.analysis.axes.side_comparison import compare_side_logs
 from advisor.analysis.gap import compare_logs
 from advisor.words.problems import UnusableInputError
 from benchmarks.gap_draws import drawn

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.instruments.axes.lateral import examine_side
+from advisor.flight.instruments.axes.side_instruments import examine_side
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 

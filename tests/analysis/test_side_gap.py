@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.axes import lateral as side_gap
+from advisor.analysis.axes import side_comparison as side_gap
 from advisor.cli.axes import lateral_gap as side_gap_command
 from advisor.cli.group import advisor
 from advisor.gap.result import Diagnosis, Gap

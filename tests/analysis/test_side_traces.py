@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.analysis.axes.lateral import side_traces
+from advisor.analysis.axes.side_comparison import side_traces
 from advisor.gap.axes.lateral import diagnosis
 from advisor.gap.result import Trace
 from tests.gap.axes.lateral.test_diagnosis import FOUND

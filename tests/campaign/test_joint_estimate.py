@@ -9,7 +9,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.campaign import joint_estimate
-from advisor.campaign.axes import pitch as elevator
+from advisor.campaign.axes import elevator_campaign as elevator
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.joint_estimate import Together
 from advisor.campaign.learning import may_learn

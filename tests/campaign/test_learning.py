@@ -7,7 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.campaign.axes.pitch import ElevatorCampaign
+from advisor.campaign.axes.elevator_campaign import ElevatorCampaign
 from advisor.campaign.learning import lag_said, learnt, of_another_power_on
 from advisor.oem.estimate import InstrumentEstimate
 from advisor.oem.known_instruments import FoundInstruments, found_of, with_found

@@ -10,7 +10,7 @@ from click.testing import CliRunner, Result
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import gap as reading
-from advisor.analysis.axes.lateral import SideCompared
+from advisor.analysis.axes.side_comparison import SideCompared
 from advisor.cli import group as cli
 from advisor.cli.axes import lateral_gap
 from advisor.cli.group import advisor

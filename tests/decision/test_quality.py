@@ -10,7 +10,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft, Limits
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.axes.pitch import judge_pitch, natural_period, outside
+from advisor.decision.axes.judge_pitch import judge_pitch, natural_period, outside
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver as Record
 from advisor.flight.maneuvers.maneuver import Span

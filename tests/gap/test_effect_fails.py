@@ -10,7 +10,7 @@ from advisor.gap.axes.lateral.flight import SideFlight
 from advisor.gap.inference import pitch
 from advisor.gap.inference.pitch import PitchFlight
 from advisor.process.parts import FailedPart
-from advisor.report.axes.lateral_gap import side_gap_lines
+from advisor.report.axes.side_gap_text import side_gap_lines
 from advisor.report.gap_document import gap_document
 from tests.gap.axes.lateral.test_diagnosis import FOUND
 from tests.gap.test_report_screen import diagnosis, printed

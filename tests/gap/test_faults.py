@@ -11,7 +11,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import gap as pitch_logs
-from advisor.analysis.axes import lateral as lateral_logs
+from advisor.analysis.axes import side_comparison as lateral_logs
 from advisor.analysis.gap import GapFlights
 from advisor.gap import diagnose
 from advisor.gap.axes.lateral import comparison

@@ -7,9 +7,9 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli import page_content
-from advisor.report.axes.lateral import lateral_document, side_quality_lines
+from advisor.report.axes.lateral_document import lateral_document, side_quality_lines
 from advisor.report.gap_document import axis_document
-from advisor.report.page.axes.lateral import lateral
+from advisor.report.page.axes.lateral_section import lateral
 from advisor.report.page.blocks import Gallery, Listing, Paragraph
 from advisor.report.page.gap import gap
 from advisor.report.page.headline import headline

@@ -9,7 +9,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator, ElevatorOutput, SideControl
-from advisor.flight.elevator.axes.lateral import find_side_control
+from advisor.flight.elevator.axes.side_controls import find_side_control
 from advisor.flight.elevator.elevator_outputs import find_elevator
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring
 from advisor.flight.vehicle.surfaces import Surface

@@ -11,7 +11,7 @@ from advisor.aircraft.sensors import Beta
 from advisor.flight.signals.record import Channel
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
-from advisor.simulators.axes.lateral import side_without_difference
+from advisor.simulators.axes.side_difference import side_without_difference
 from advisor.simulators.fmu import FmuSimulator
 from advisor.simulators.protocol import Replay
 from advisor.words.problems import UnusableInputError

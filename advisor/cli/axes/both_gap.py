@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from advisor.analysis.axes.lateral import AxisFlown, SideCompared
+from advisor.analysis.axes.side_comparison import AxisFlown, SideCompared
 from advisor.campaign.hand_decisions import ByHand
 from advisor.cli.axes.lateral_gap import diagnosed_lateral, lateral_answer, proved_lateral
 from advisor.cli.axes.pitch_gap import diagnosed_pitch, pitch_answer

@@ -7,7 +7,12 @@ from pathlib import Path
 
 import click
 
-from advisor.analysis.axes.lateral import SideCompared, accepted_of, compare_side_flown, compare_side_logs
+from advisor.analysis.axes.side_comparison import (
+    SideCompared,
+    accepted_of,
+    compare_side_flown,
+    compare_side_logs,
+)
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
 from advisor.cli.gap_asked import AxisAnswer, GapAsked, Unanswered, write_figure
@@ -17,9 +22,9 @@ from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of
 from advisor.cli.stages import Stages
 from advisor.exports.models.axes.handed_over import improved_side
-from advisor.exports.models.axes.lateral import prove_side, stays_of_side
+from advisor.exports.models.axes.prove_side import prove_side, stays_of_side
 from advisor.exports.models.proof import Proof
-from advisor.report.axes.lateral_gap import side_gap_lines
+from advisor.report.axes.side_gap_text import side_gap_lines
 from advisor.report.gap_causes import why_of
 from advisor.report.gap_document import axis_document, gap_document
 from advisor.report.table import PlainConsole

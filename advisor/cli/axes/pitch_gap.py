@@ -14,7 +14,7 @@ from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of
 from advisor.cli.stages import Stages
 from advisor.exports.models.axes.handed_over import side_of_logs
-from advisor.exports.models.axes.pitch import prove, stays_of
+from advisor.exports.models.axes.prove_pitch import prove, stays_of
 from advisor.exports.models.flown import FlownModel, SideModel, improved_model
 from advisor.exports.models.proof import Proof
 from advisor.exports.models.write import ExportOutcome

@@ -9,12 +9,12 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
-from advisor.flight.instruments.axes.lateral import examine_side
+from advisor.flight.instruments.axes.side_instruments import examine_side
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.examined import ExaminedRecords
 from advisor.flight.instruments.measured import Evidence
 from advisor.flight.maneuvers.announced import PITCH_KINDS, SIDE_KINDS
-from advisor.flight.maneuvers.axes.lateral import (
+from advisor.flight.maneuvers.axes.side_inputs import (
     SideInput,
     SideMovement,
     SideStretch,

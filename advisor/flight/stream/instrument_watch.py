@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from advisor.flight.instruments.axes.lateral import examine_side
+from advisor.flight.instruments.axes.side_instruments import examine_side
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.examined import ExaminedRecords
 from advisor.flight.signals.record import UNITS, Channel

@@ -21,7 +21,7 @@ from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import Distrust, frozen
-from advisor.flight.stream.axes.lateral import LOOPS, SidePath
+from advisor.flight.stream.axes.side_path import LOOPS, SidePath
 from advisor.flight.stream.cutting import Cutting
 from advisor.flight.stream.decoding import AskedSources
 from advisor.flight.stream.elevator_path import ElevatorPath

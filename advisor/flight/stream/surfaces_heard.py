@@ -9,7 +9,7 @@ from math import isfinite
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.flight.elevator.axes.lateral import find_side_control
+from advisor.flight.elevator.axes.side_controls import find_side_control
 from advisor.flight.elevator.elevator_outputs import find_elevator
 from advisor.flight.maneuvers.events import READER_NOTICE, ElevatorRescaled, FlightEvent, Notice
 from advisor.flight.maneuvers.maneuver import Maneuver

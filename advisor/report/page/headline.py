@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from advisor.report.facts.estimates import untold
-from advisor.report.page.axes.lateral import decided
+from advisor.report.page.axes.lateral_section import decided
 from advisor.report.page.blocks import Block, Paragraph, listing, section
 from advisor.report.page.content import Content
 from advisor.report.page.gap import glance

@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from advisor.process.parts import FailedPart, attempt
 from advisor.report.page.appendix import assumptions, provenance, telemetry
-from advisor.report.page.axes.lateral import lateral
+from advisor.report.page.axes.lateral_section import lateral
 from advisor.report.page.blocks import Block, Paragraph, Part, Section
 from advisor.report.page.content import Content
 from advisor.report.page.criterion import criterion

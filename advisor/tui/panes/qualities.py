@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from advisor.report.axes.lateral import side_quality_lines
+from advisor.report.axes.lateral_document import side_quality_lines
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
 from advisor.session.view import View
 from advisor.tui.panes.pane import TextPane

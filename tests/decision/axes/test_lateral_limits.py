@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.lateral import judge_lateral
+from advisor.decision.axes.judge_lateral import judge_lateral
 from advisor.decision.axes.lateral_requirements import lateral_levels, lateral_qualification
 from advisor.decision.axes.lateral_stop import FlownInput, lateral_flight_test
 from advisor.decision.heard import Heard

@@ -8,9 +8,9 @@ import pytest
 
 from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.analysis.axes.lateral import SideCompared
-from advisor.exports.models.axes import lateral as side_proof
-from advisor.exports.models.axes.lateral import _ahead, prove_side, stays_of_side
+from advisor.analysis.axes.side_comparison import SideCompared
+from advisor.exports.models.axes import prove_side as side_proof
+from advisor.exports.models.axes.prove_side import _ahead, prove_side, stays_of_side
 from advisor.exports.models.proof import NUMBERS, Proof
 from advisor.gap.result import Diagnosis, Gap
 from tests.gap.axes.lateral.test_comparison import AIRCRAFT, TRUE, maneuvers

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from advisor.flight.instruments.axes.lateral import examine_side
+from advisor.flight.instruments.axes.side_instruments import examine_side
 from advisor.flight.instruments.measured import pooled
 from advisor.flight.signals.record import Channel
 from advisor.oem.rows import Signal

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.axes.lateral import SideMovement, with_elevator
+from advisor.flight.maneuvers.axes.side_inputs import SideMovement, with_elevator
 from advisor.flight.maneuvers.events import ManeuverFlown, SideManeuverFlown
 from advisor.flight.maneuvers.loop import PITCH, ROLL, YAW, Loop
 from advisor.flight.maneuvers.maneuver import Span

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.pitch import judge_pitch
+from advisor.decision.axes.judge_pitch import judge_pitch
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.markers import SWEPT
 from advisor.flight.maneuvers.purpose import not_an_input

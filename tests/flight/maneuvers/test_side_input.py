@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from advisor.flight.maneuvers.axes.lateral import SideMovement, first_input, input_span, named
+from advisor.flight.maneuvers.axes.side_inputs import SideMovement, first_input, input_span, named
 from advisor.flight.maneuvers.loop import ROLL, YAW
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.signals.record import Channel

@@ -5,7 +5,7 @@ import pytest
 
 from advisor.aircraft.controls import Elevator, ElevatorOutput, SideControl
 from advisor.flight.elevator import elevator_outputs
-from advisor.flight.elevator.axes.lateral import find_side_control
+from advisor.flight.elevator.axes.side_controls import find_side_control
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring
 from advisor.flight.vehicle.surfaces import Surface, driven
 from advisor.words.problems import Problem

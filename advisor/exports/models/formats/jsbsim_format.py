@@ -20,7 +20,7 @@ from advisor.exports.models.exported import Exported, effects_beside
 from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.formats import AxisAsked, ModelFormat
 from advisor.exports.models.improvement import SLOPES, ExportedServo, Improvement, is_told, zero_said
-from advisor.exports.models.jsbsim.axes.lateral import side_text
+from advisor.exports.models.jsbsim.axes.side_text import side_text
 from advisor.exports.models.jsbsim.knobs import Knob, knob_for, missed, settled
 from advisor.exports.models.jsbsim.run import Model, measure, model_of
 from advisor.exports.models.jsbsim.slopes import Request, Slopes

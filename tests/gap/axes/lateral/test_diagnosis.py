@@ -26,7 +26,7 @@ from advisor.gap.result import Cause, Diagnosis, Gap, Shrink, Value, Where
 from advisor.gap.verdict.text import answers_of
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.rows import Signal
-from advisor.report.axes.lateral_gap import side_gap_lines
+from advisor.report.axes.side_gap_text import side_gap_lines
 from advisor.report.gap_document import axis_document, gap_document
 from benchmarks.lateral_gap import CASES, diagnosed
 from tests.gap.axes.lateral.test_comparison import maneuvers

@@ -10,7 +10,7 @@ from itertools import groupby
 from operator import itemgetter
 
 from advisor.flight.elevator.elevator_watch import SETTLE_S, ElevatorWatch
-from advisor.flight.maneuvers.axes.lateral import (
+from advisor.flight.maneuvers.axes.side_inputs import (
     BESIDE,
     TAIL_S,
     TOGETHER_S,

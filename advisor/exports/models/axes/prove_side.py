@@ -12,7 +12,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.analysis.axes.lateral import SideCompared, answered, beside_simulator, with_derivatives
+from advisor.analysis.axes.side_comparison import SideCompared, answered, beside_simulator, with_derivatives
 from advisor.exports.models.axes.handed_over import behind_found
 from advisor.exports.models.flown import flown_model, side_of
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM

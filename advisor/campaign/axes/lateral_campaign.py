@@ -9,7 +9,7 @@ from advisor.campaign.axis_campaign import AxisCampaign
 from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.single_maneuver import failed, untold
 from advisor.campaign.state import JudgedManeuver, LateralState
-from advisor.decision.axes.lateral import RESPONSES, judge_lateral
+from advisor.decision.axes.judge_lateral import RESPONSES, judge_lateral
 from advisor.decision.axes.lateral_stop import JUDGED, FlownInput, lateral_flight_test
 from advisor.decision.change import find_change
 from advisor.decision.heard import Heard

@@ -24,7 +24,7 @@ from advisor.gap.result import Diagnosis, Trace
 from advisor.mavlink.logs.whole import read_whole_log
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.simulators.axes.lateral import side_without_difference
+from advisor.simulators.axes.side_difference import side_without_difference
 from advisor.simulators.flying import Progress
 from advisor.simulators.specification import simulator_of
 from advisor.words.problems import ConfigurationError, UnusableInputError
