@@ -6,7 +6,7 @@ import pytest
 
 from advisor.gap.alternative import Alternative, AlternativeEvidence, Column, Contribution
 from advisor.gap.verdict.text import answers_of
-from advisor.report.facts.answers import by_flight_alone, is_turned, title_of, title_of_verdict
+from advisor.report.facts.answers import by_flight_alone, is_turned, title_of
 from advisor.report.gap_steps import next_steps
 from advisor.words.certainty import as_sure
 from tests.gap.test_report_screen import diagnosis, printed
@@ -41,7 +41,9 @@ def box(found, columns=80):
 )
 def test_the_title_follows_the_size_of_the_largest_probability(kind, probability, said):
     a, b = Alternative("effect", "a"), Alternative("effect", "b")
-    assert title_of_verdict(kind, evidence((a, probability), (b, 1.0 - probability))) == said
+    assert (
+        title_of(diagnosis(verdict=kind, evidence=evidence((a, probability), (b, 1.0 - probability)))) == said
+    )
 
 
 def before(name, nats):
@@ -54,10 +56,10 @@ def test_what_the_frequency_before_the_flight_turned_is_likely_and_never_found()
         AlternativeEvidence(NOTHING, before("prior", -4.0), 0.05),
     )
     assert is_turned(turned)
-    assert title_of_verdict("effect", turned) == "LIKELY CAUSE"
+    assert title_of(diagnosis(evidence=turned)) == "LIKELY CAUSE"
     assert dict(by_flight_alone(turned))["transport delay"] == pytest.approx(0.2582, abs=1e-3)
     sure = (turned[0], replace(turned[1], columns=before("prior", 0.0)))
-    assert title_of_verdict("effect", sure) == "CAUSE FOUND"
+    assert title_of(diagnosis(evidence=sure)) == "CAUSE FOUND"
 
 
 def test_no_gap_is_the_title_only_where_none_lies_above_the_noise():
