@@ -53,7 +53,7 @@ LIMITS = {
     "constants that decide": 38,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 15965,
+    "lines of estimation": 16030,
     "files naming an axis": 114,
 }
 """Upper bound of each count."""

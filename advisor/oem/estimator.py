@@ -10,6 +10,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
+from advisor.oem.equation_error import equation_error
 from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
 from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.gained import told, without_term
@@ -96,7 +97,11 @@ class Fit:
         terms = self.prepared.problem.terms
         values = {x.instrument.name: (x.found.value, x.found.std) for x in identified}
         open_terms = [name for name in terms if name in values]
-        return replace(found, terms=told(open_terms, values, self.fitted.solution, self._without))
+        return replace(
+            found,
+            terms=told(open_terms, values, self.fitted.solution, self._without),
+            equation_error=equation_error(self.fitted.solution.problem),
+        )
 
     def _without(self, term: str) -> Solution | None:
         """Return the solution without one of the user's terms; None without such a solution."""

@@ -39,14 +39,9 @@ def start(
     shared = np.zeros(N_SHARED)
     for output, first in (("alpha", 0), ("q", 1)):
         moment = output == "q"
-        parts = []
-        for record in problem.records:
-            side = finite(record.outputs["q"] if moment else record.alpha)
-            common, constants = _regressors(record, problem, side.t, moment)
-            if lift_from_alpha_only and not moment:
-                parts.append(Equations(common[:, :1], side.y - common[:, 1], constants))
-            else:
-                parts.append(Equations(common, side.y, constants))
+        parts = equations(problem, output)
+        if lift_from_alpha_only and not moment:
+            parts = [Equations(p.common[:, :1], p.side - p.common[:, 1], p.own) for p in parts]
         found, own = regressed(parts)
         if moment:
             shared[3:6] = found
@@ -60,6 +55,16 @@ def start(
         if "theta" in record.outputs:
             local[m, 4] = finite(record.outputs["theta"]).y[0]
     return shared, local
+
+
+def equations(problem: OutputErrorProblem, output: str) -> list[Equations]:
+    """Return the integrated equation of ``alpha`` or ``q`` of each record, for a regression."""
+    moment, parts = output == "q", []
+    for record in problem.records:
+        side = finite(record.outputs["q"] if moment else record.alpha)
+        common, constants = _regressors(record, problem, side.t, moment)
+        parts.append(Equations(common, side.y, constants))
+    return parts
 
 
 def _from_force(problem: OutputErrorProblem) -> tuple[FloatArray, FloatArray]:

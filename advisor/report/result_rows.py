@@ -6,8 +6,9 @@ from typing import Any
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.flight.signals.track import ChannelStatus
+from advisor.oem.equation_error import CAVEAT
 from advisor.oem.estimate import Estimate
-from advisor.report.facts.estimates import EstimatedParameter, of_all
+from advisor.report.facts.estimates import QUANTITIES, EstimatedParameter, of_all
 from advisor.report.qualities import reference_speed
 from advisor.report.table import Table, digits
 from advisor.words.digits import signed, with_half
@@ -78,6 +79,20 @@ def structure_table(estimate: Estimate, name: str) -> Iterator[Table]:
             ("parameter or term", "value ± 95 %", "log likelihood gained", "unit"),
             tuple(rows), frozenset({1, 2}),
         )  # fmt: skip
+
+
+def regression_table(estimate: Estimate, name: str) -> Iterator[Table]:
+    """Yield the table of equation error next to output error, if there is any."""
+    rows = []
+    for one, regressed in estimate.equation_error.items():
+        quantity, known = QUANTITIES[one], one not in estimate.not_identifiable
+        std = estimate.std[estimate.names.index(one)]
+        here = with_half(estimate.value(one), NORMAL_95 * std) if known else "–"
+        there = with_half(regressed.value, NORMAL_95 * regressed.std)
+        rows.append((quantity.symbol, there, here, quantity.unit))
+    if rows:
+        head = ("parameter", "equation error ± 95 %", "output error ± 95 %", "unit")
+        yield Table(name, CAVEAT, head, tuple(rows), frozenset({1, 2}))
 
 
 def channel_table(name: str, caption: str, channels: Mapping[str, ChannelStatus]) -> Table:

@@ -11,12 +11,13 @@ from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.oem.estimate import Estimate
 from advisor.report.axes.lateral_document import side_quality_lines
 from advisor.report.facts.decision import INDENT, decisions
 from advisor.report.facts.estimates import structure_lines, untold
 from advisor.report.facts.gap import counted
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
-from advisor.report.result_rows import SIDE_ROOM, channel_table, joint_table, maneuver_line
+from advisor.report.result_rows import SIDE_ROOM, channel_table, joint_table, maneuver_line, regression_table
 from advisor.words.vehicle_time import CLOCK, clock
 
 
@@ -84,6 +85,7 @@ class AnalysisText:
         if self.state.model is not None and joint is not None:
             yield joint.on_console(joint.caption)
             yield from map(Text, (*structure_lines(self.state.model), *untold(self.state.model)))
+            yield from self._regressed(self.state.model)
             yield from (Text(f"note: {note}") for note in self.state.model.notes)
             yield Text()
             yield from self._qualities()
@@ -102,7 +104,13 @@ class AnalysisText:
             yield Text()
             yield joint.on_console(joint.caption)
             yield from map(Text, (*structure_lines(side.model), *untold(side.model)))
+            yield from self._regressed(side.model)
             yield from map(Text, side_quality_lines(side, self.aircraft))
+
+    def _regressed(self, model: Estimate) -> RenderResult:
+        """Yield equation error next to output error, on request."""
+        if self.every_movement:
+            yield from (one.on_console(one.caption) for one in regression_table(model, "equation-error"))
 
     def _movements(self) -> Iterator[Text]:
         """Yield the manoeuvres and, on request, all other elevator movements, in order of time."""

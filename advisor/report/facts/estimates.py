@@ -62,7 +62,8 @@ def fact_of(name: str, source: str, value: float, std: float, unit: str = "", fa
     return Fact(name=name, source=source, value=factor * value, half=NORMAL_95 * factor * std, unit=unit)
 
 
-_QUANTITIES = {**PITCH, **SIDE}
+QUANTITIES = {**PITCH, **SIDE}
+"""Symbol and unit of each parameter of either axis, by its name."""
 LEAST_GAIN = 0.5 * NORMAL_95**2
 """Log likelihood, nats, that one needless parameter gains in one of twenty flights: half the 95 % point of
 chi-squared (Wilks, 1938)."""
@@ -101,7 +102,7 @@ def estimated_parameter(
     name: str, source: str, estimate: object, prior: Mapping[str, float]
 ) -> EstimatedParameter:
     """Return one parameter of an estimate with the aircraft file's value, if any."""
-    quantity, stated = _QUANTITIES[name], prior.get(name)
+    quantity, stated = QUANTITIES[name], prior.get(name)
     known = None if stated is None else stated * quantity.factor
     named = EstimatedParameter(name=quantity.symbol, source=source, unit=quantity.unit, prior=known)
     if not isinstance(estimate, Estimate):
@@ -157,7 +158,7 @@ def structure_lines(estimate: Estimate) -> list[str]:
 
 def _held(name: str, estimate: Estimate) -> str:
     """Return the value at which the user holds a parameter, in the unit for people."""
-    quantity = _QUANTITIES[name]
+    quantity = QUANTITIES[name]
     return f"{quantity.factor * estimate.value(name):.4g} {quantity.unit.removesuffix('1')}".rstrip()
 
 

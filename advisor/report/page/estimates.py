@@ -16,7 +16,7 @@ from advisor.report.facts.estimates import (
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, listing, section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, ORANGE, picture
-from advisor.report.result_rows import structure_table
+from advisor.report.result_rows import regression_table, structure_table
 from advisor.report.table import Table
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 
@@ -45,6 +45,7 @@ def estimates(content: Content) -> Iterator[Block]:
             ("nuisance parameter", "estimate ± 95 %", "aircraft file", "unit"),
             tuple((one.name, one.cell, stated, one.unit) for one, stated in found), frozenset({1, 2}),
         )  # fmt: skip
+    yield from regression_table(model, "equation-error")
     alone = {
         str(one.maneuver.number): {name: of_one(name, one, prior) for name in PARAMETERS}
         for one in content.state.maneuvers

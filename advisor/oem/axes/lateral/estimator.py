@@ -20,6 +20,7 @@ from advisor.oem.axes.lateral.instruments import nuisances_of
 from advisor.oem.axes.lateral.motion import with_sideslip
 from advisor.oem.axes.lateral.prepare import prepare_lateral
 from advisor.oem.axes.lateral.solution import Near, Searched, lateral_not_identifiable, search_lateral
+from advisor.oem.equation_error import lateral_equation_error
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import channel_fits
 from advisor.oem.flying_qualities import Quality
@@ -118,7 +119,8 @@ class LateralFit(NamedTuple):
         """Derivatives, modes and errors as reported."""
         solution = self.searched.solution
         terms = told([*solution.problem.terms], solution.nuisances, solution, self._without)
-        return replace(_reported(solution), terms=terms)
+        regressed = lateral_equation_error(solution.problem)
+        return replace(_reported(solution), terms=terms, equation_error=regressed)
 
     def _without(self, term: str) -> Solution | None:
         """Return the solution without one of the user's terms; None without such a solution."""

@@ -52,6 +52,16 @@ def lateral_start(problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
     return shared, local
 
 
+def lateral_equations(problem: LateralProblem) -> dict[tuple[str, ...], list[Equations]]:
+    """Return the regression equations of all records, by the names of the equation's derivatives."""
+    prepared = [_Motion(record, problem) for record in problem.records]
+    found = {"Y": [m.force() for m in prepared if m.has_force]}
+    for letter, output in (("L", "p"), ("N", "r")):
+        found[letter] = [Equations(m.integrals(letter), m.signals[output], m.own()) for m in prepared]
+    names = LATERAL.names.shared
+    return {tuple(n for n in names if n.startswith(f"{y}_")): parts for y, parts in found.items()}
+
+
 class _Motion:
     """Signals of one lateral record at the stamps of the roll rate."""
 
