@@ -15,14 +15,13 @@ from advisor.campaign.instruments import as_known_by, side_signs, together
 from advisor.campaign.state import CampaignState
 from advisor.doctor.examination import Examination
 from advisor.doctor.examiner import Examiner
-from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns
-from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from tests.campaign import side_builders
+from tests.heard import hear
 
 CASES = Path(__file__).parents[1] / "cases"
 Fault = Callable[[Columns], Columns]
@@ -171,10 +170,8 @@ def test_an_elevator_typed_with_the_other_sign_is_refused_on_its_manoeuvre() -> 
 
 
 def test_a_specific_force_that_stands_still_is_named_and_nothing_is_computed_from_it() -> None:
-    stream, events = FlightStream(Aircraft()), []
-    for columns in open_log(CASES / "t_base.tlog"):
-        events += stream.feed([changed("RAW_IMU", "zacc", np.zeros_like)(c) for c in columns])
-    (maneuver,) = (e.maneuver for e in events + stream.finish() if isinstance(e, ManeuverFlown))
+    still = changed("RAW_IMU", "zacc", np.zeros_like)
+    (maneuver,) = hear(list(map(still, columns)) for columns in open_log(CASES / "t_base.tlog")).maneuvers
     assert "a_z" not in maneuver.channels
     assert maneuver.channels["alpha"].provenance == "unknown"
     assert told(together([maneuver], ())) == [("a_z_rate", True)]

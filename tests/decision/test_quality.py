@@ -11,18 +11,17 @@ from advisor.aircraft.aircraft import Aircraft, Limits
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.axes.judge_pitch import judge_pitch, natural_period, outside
-from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver as Record
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
-from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import estimate
 from sim.effects.fitting import flight_of
 from sim.record import write_tlog
 from sim.scenario import Air, Maneuver, Noise, Scenario
+from tests.heard import hear
 
 # The flight of bad manoeuvres is flown once.
 pytestmark = pytest.mark.xdist_group("bad manoeuvres")
@@ -42,9 +41,7 @@ def flown(scenario, aircraft=AIRCRAFT):
     """(manoeuvre, its estimate, what speaks against it) for everything found in the flight."""
     log = BytesIO()
     write_tlog(flight_of(scenario), log)
-    stream = FlightStream(aircraft)
-    events = stream.feed(FrameScanner().feed(log.getvalue())) + stream.finish()
-    found = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
+    found = hear([FrameScanner().feed(log.getvalue())], aircraft).maneuvers
     estimates = [estimate(maneuver, aircraft) for maneuver in found]
     return [(m, e, judge_pitch(m, e, aircraft)) for m, e in zip(found, estimates, strict=True)]
 

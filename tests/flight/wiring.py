@@ -12,6 +12,7 @@ from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
+from tests.heard import hear
 
 TRIM_US = 1500
 
@@ -45,13 +46,8 @@ def flown(
     batches: Iterator[list[Columns]], aircraft: Aircraft
 ) -> tuple[FlightStream, list[ManeuverFlown], list[Notice]]:
     """The stream that has read them, what was flown, and what was noticed."""
-    stream = FlightStream(aircraft)
-    events = [event for batch in batches for event in stream.feed(batch)] + stream.finish()
-    return (
-        stream,
-        [event for event in events if isinstance(event, ManeuverFlown)],
-        [event for event in events if isinstance(event, Notice)],
-    )
+    heard = hear(batches, aircraft)
+    return heard.stream, [event for event in heard.events if isinstance(event, ManeuverFlown)], heard.notices
 
 
 def _outputs(c: Columns, outputs: Mapping[int, Pulse], rng: np.random.Generator) -> Sequence[Columns]:

@@ -1,7 +1,7 @@
 """A writer of PX4 logs in any set-up, and a flight to put into them."""
 
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import ManeuverFlown, Notice
+from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.stream.stream import FlightStream
-from advisor.mavlink.logs.logs import open_log
+from tests.heard import hear_log
 
 G = 9.80665
 SECONDS = 40.0
@@ -151,11 +151,6 @@ def flown(
     path: Path, aircraft: Aircraft | None = None
 ) -> tuple[FlightStream, list[ManeuverFlown], list[str]]:
     """The stream that has read a log, what was flown in it, and what was said."""
-    stream = FlightStream(aircraft or Aircraft())
-    events: Sequence[object] = [event for batch in open_log(path) for event in stream.feed(batch)]
-    events = [*events, *stream.finish()]
-    return (
-        stream,
-        [event for event in events if isinstance(event, ManeuverFlown)],
-        [event.text for event in events if isinstance(event, Notice)],
-    )
+    heard = hear_log(path, aircraft)
+    flown = [event for event in heard.events if isinstance(event, ManeuverFlown)]
+    return heard.stream, flown, [notice.text for notice in heard.notices]

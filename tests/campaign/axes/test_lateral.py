@@ -8,15 +8,14 @@ from advisor.aircraft.controls import SideControl
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import HandDecision
-from advisor.flight.maneuvers.events import SideManeuverFlown
 from advisor.flight.maneuvers.markers import SWEPT
 from advisor.flight.maneuvers.marks import Mark
-from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.parameters import filter_delay_s
 from advisor.report.axes.lateral_document import lateral_document
 from advisor.report.facts.decision import lateral_decision
 from advisor.report.result_rows import joint_table, maneuver_line
 from tests.flight.columns import Wire, heartbeat, plane_parameters
+from tests.heard import hear
 from tests.oem.axes.lateral.builders import JET, flown, steps
 
 RATE_HZ = 25.0
@@ -172,13 +171,9 @@ def test_a_mark_without_elevator_is_no_manoeuvre_of_the_elevator(both):
 
 def kinds_swept(wire):
     """Return the kinds of lateral manoeuvres in a stretch that SystemID has marked."""
-    stream = FlightStream(AIRCRAFT, marks=[Mark(102.5, 112.0, by="system id")], lateral=True)
-    events = stream.feed(wire.columns(list(range(len(wire))))) + stream.finish()
-    return [
-        event.maneuver.span.kind
-        for event in events
-        if isinstance(event, SideManeuverFlown) and event.maneuver.span.closed_by == SWEPT
-    ]
+    marks = [Mark(102.5, 112.0, by="system id")]
+    heard = hear([wire.columns()], AIRCRAFT, marks=marks, lateral=True)
+    return [maneuver.span.kind for maneuver in heard.sideways if maneuver.span.closed_by == SWEPT]
 
 
 def test_a_sweep_of_system_id_by_the_ailerons_is_a_lateral_manoeuvre(both):

@@ -10,12 +10,12 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.analysis.gap import maneuvers_of
 from advisor.flight.elevator.elevator_sign import SAID, ElevatorSign, answers_backwards, turned
-from advisor.flight.maneuvers.events import ManeuverFlown, Notice
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.pieces import rows_between
 from advisor.mavlink.logs.logs import open_log
 from tests.flights import TWO, recorded
 from tests.gap.generator import Setup, fly
+from tests.heard import hear
 
 
 def read(reversed_is=None):
@@ -30,13 +30,8 @@ def read(reversed_is=None):
 
 def flown(aircraft, reversed_is=None):
     """The stream, its manoeuvres and the codes of its notices."""
-    stream = FlightStream(aircraft)
-    events = [event for batch in read(reversed_is) for event in stream.feed(batch)] + stream.finish()
-    return (
-        stream,
-        [e.maneuver for e in events if isinstance(e, ManeuverFlown)],
-        [e.code for e in events if isinstance(e, Notice)],
-    )
+    heard = hear(read(reversed_is), aircraft)
+    return heard.stream, heard.maneuvers, [notice.code for notice in heard.notices]
 
 
 def test_an_output_whose_sense_is_told_wrong_gives_the_same_manoeuvres_and_says_so():

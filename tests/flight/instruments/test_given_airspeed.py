@@ -1,16 +1,14 @@
 """An air speed from the aircraft file, for a log that has none."""
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import ManeuverFlown
-from advisor.flight.stream.stream import FlightStream
 from tests.flight.stream.test_suitability import flight
+from tests.heard import hear
 
 
 def flown(wire, aircraft):
-    stream = FlightStream(aircraft)
-    events = [*stream.feed(wire.columns()), *stream.finish()]
-    (maneuver,) = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
-    return stream, maneuver
+    heard = hear([wire.columns()], aircraft)
+    (maneuver,) = heard.maneuvers
+    return heard.stream, maneuver
 
 
 def test_the_air_speed_of_the_aircraft_file_stands_in_for_one_that_never_arrives():

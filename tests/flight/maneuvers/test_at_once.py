@@ -11,6 +11,7 @@ from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, heartbeat, hud, plane_parameters, servo
 from tests.flight.stream.test_stream import as_plain
+from tests.heard import hear
 
 PIECE = 36
 AMPLITUDES_US = (60.0, 50.0, 55.0)
@@ -52,12 +53,8 @@ def three_surfaces(
 
 def spans(wire: Wire) -> tuple[list[Span], list[Span]]:
     """Spans of the pitch list and of the lateral list."""
-    stream = FlightStream(Aircraft(), lateral=True)
-    events = stream.feed(wire.columns()) + stream.finish()
-    return (
-        [event.maneuver.span for event in events if isinstance(event, ManeuverFlown)],
-        [event.maneuver.span for event in events if isinstance(event, SideManeuverFlown)],
-    )
+    heard = hear([wire.columns()], lateral=True)
+    return [m.span for m in heard.maneuvers], [m.span for m in heard.sideways]
 
 
 def test_three_surfaces_at_once_are_one_manoeuvre_of_each_axis_with_one_extent():

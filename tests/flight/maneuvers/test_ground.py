@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import Activity, ManeuverFlown
+from advisor.flight.maneuvers.events import Activity
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, aoa, attitude, plane_parameters, pull, servo
+from tests.heard import hear
 
 START_S = 1000.0
 
@@ -41,12 +42,10 @@ def movement(speed=20.0, over_ground=20.0, height=80.0, armed=True, landed=None,
 
 
 def found(wire):
-    stream = FlightStream(Aircraft())
-    events = [*stream.feed(wire.columns()), *stream.finish()]
-    assert not any(isinstance(e, ManeuverFlown) for e in events) or not any(
-        isinstance(e, Activity) for e in events
-    )
-    return next((e.text for e in events if isinstance(e, Activity) and e.reason == "ground"), None)
+    heard = hear([wire.columns()])
+    moved = [event for event in heard.events if isinstance(event, Activity)]
+    assert not heard.maneuvers or not moved
+    return next((activity.text for activity in moved if activity.reason == "ground"), None)
 
 
 def test_a_movement_in_flight_is_a_manoeuvre():

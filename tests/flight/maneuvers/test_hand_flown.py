@@ -7,13 +7,11 @@ from tempfile import mkdtemp
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import Activity, ManeuverFlown
-from advisor.flight.stream.stream import FlightStream
-from advisor.mavlink.logs.logs import open_log
 from sim.flight import Flight
 from sim.record import record
 from sim.scenario import Air, Maneuver, Noise, Scenario
+from tests.heard import hear_log
 from tests.unstable import unstable_flight
 
 FOLDER = Path(mkdtemp(prefix="hand-"))
@@ -42,8 +40,7 @@ def heard(flight, name):
     """What the stream tells of a flight."""
     path = FOLDER / f"{name}.tlog"
     record(flight, path)
-    stream = FlightStream(Aircraft())
-    return [event for batch in open_log(path) for event in stream.feed(batch)] + stream.finish()
+    return hear_log(path).events
 
 
 def spans(events):

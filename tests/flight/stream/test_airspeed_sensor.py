@@ -2,11 +2,9 @@
 
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, fly, parameter
+from tests.heard import hear
 
 
 def flown(without_wind: bool = False, **parameters: float) -> Maneuver:
@@ -21,9 +19,7 @@ def flown(without_wind: bool = False, **parameters: float) -> Maneuver:
             speed = 20.0 + 0.1 * (c.order % 7)
             c.fields["airspeed"][:] = speed  # type: ignore[index]
             c.fields["groundspeed"][:] = speed if without_wind else speed + 1.0  # type: ignore[index]
-    stream = FlightStream(Aircraft())
-    events = stream.feed(columns) + stream.finish()
-    (maneuver,) = (e.maneuver for e in events if isinstance(e, ManeuverFlown))
+    (maneuver,) = hear([columns]).maneuvers
     return maneuver
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.axes.judge_pitch import judge_pitch
-from advisor.flight.maneuvers.events import ManeuverFlown, Notice
+from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
@@ -16,6 +16,7 @@ from advisor.flight.vehicle.breaks import DOWN
 from advisor.mavlink.link.conversation import Conversation
 from advisor.oem.estimate import NoEstimate
 from tests.flights import TWO, recorded
+from tests.heard import hear
 from tests.mavlink.link.air import Record, batches, records_of
 
 MISSING_S = 5.2
@@ -34,11 +35,8 @@ def first_span() -> Span:
 
 def flown(records: list[Record]) -> tuple[list[Maneuver], list[str]]:
     """The manoeuvres, and what is said of the advisor's own gaps."""
-    stream = FlightStream(Aircraft())
-    events = [event for columns in batches(records, 200) for event in stream.feed(columns)]
-    events += stream.finish()
-    said = [event.text for event in events if isinstance(event, Notice) and event.code == "advisor_down"]
-    return [event.maneuver for event in events if isinstance(event, ManeuverFlown)], said
+    heard = hear(batches(records, 200))
+    return heard.maneuvers, [notice.text for notice in heard.notices if notice.code == "advisor_down"]
 
 
 @cache

@@ -4,11 +4,10 @@ import struct
 
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import Activity, ManeuverFlown
-from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.surfaces import Surface
 from tests.flight.columns import Wire, attitude, heartbeat, hud, pull, servo
+from tests.heard import hear
 
 PX4 = 12
 VTOL = 22
@@ -56,8 +55,8 @@ def flight(parameters=PLANE, kind=1, mode=MANUAL, vtol_state=None, output=5, mes
 
 
 def flown(wire):
-    stream = FlightStream(Aircraft())
-    return stream, stream.feed(wire.columns()) + stream.finish()
+    heard = hear([wire.columns()])
+    return heard.stream, heard.events
 
 
 @pytest.mark.parametrize("message", ["SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS"])

@@ -20,6 +20,7 @@ from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.records.stretches import read_stretches
 from advisor.words.problems import UnusableInputError
+from tests.heard import hear_log
 from tests.mavlink.autopilot_logs import (
     FORMATS,
     dataflash_head,
@@ -283,12 +284,9 @@ class TestArduPilot:
         assert len(finite(read(tmp_path, content)["VFR_HUD"], "airspeed"))
 
     def test_the_manoeuvre_in_it_is_found(self, tmp_path: Path) -> None:
-        stream = FlightStream(Aircraft())
         path = tmp_path / "flight.bin"
         path.write_bytes(dataflash_flight())
-        for batch in open_log(path):
-            stream.feed(batch)
-        stream.finish()
+        stream = hear_log(path).stream
         assert stream.maneuvers == 1
         assert stream.vehicle is not None
         assert str(stream.vehicle) == "ardupilot 1/1"
@@ -356,12 +354,10 @@ class TestPx4:
         assert set(heartbeat.fields["type"].tolist()) == {kind}
 
     def test_the_manoeuvre_in_it_is_found(self, tmp_path: Path) -> None:
-        stream = FlightStream(Aircraft(elevator=Elevator(output=2, calibration=((1000, 25), (2000, -25)))))
         path = tmp_path / "flight.ulg"
         path.write_bytes(px4_flight())
-        for batch in open_log(path):
-            stream.feed(batch)
-        stream.finish()
+        elevator = Elevator(output=2, calibration=((1000, 25), (2000, -25)))
+        stream = hear_log(path, Aircraft(elevator=elevator)).stream
         assert stream.maneuvers == 1
         assert str(stream.vehicle) == "px4 1/1"
         assert stream.channels["q"].rate_hz == pytest.approx(50.0, rel=0.01)
@@ -428,8 +424,6 @@ def test_a_pilots_switch_in_the_autopilots_own_log_marks_the_manoeuvre(tmp_path:
     path = tmp_path / name
     path.write_bytes(dataflash_flight(switched=True) if name.endswith("bin") else px4_flight(switched=True))
     elevator = Elevator(output=2, calibration=((1000, 25), (2000, -25)))
-    stream = FlightStream(Aircraft(elevator=elevator, markers=Markers(rc=9)))
-    events = [event for batch in open_log(path) for event in stream.feed(batch)] + stream.finish()
-    (maneuver,) = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
+    (maneuver,) = hear_log(path, Aircraft(elevator=elevator, markers=Markers(rc=9))).maneuvers
     assert maneuver.span.closed_by == "marked by a switch"
     assert maneuver.span.end_s == pytest.approx(FIRST_STEP_S + 6.0, abs=0.11)

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.ardupilot.body_rates import gyro_delay_s
 from advisor.mavlink.logs.logs import open_log
+from tests.heard import hear_log
 from tests.mavlink.ardupilot.test_autopilot_logs import (
     FIRST_STEP_S,
     dataflash_flight,
@@ -32,13 +32,9 @@ def said(read: dict[str, Columns]) -> list[str]:
 
 
 def found(tmp_path: Path, content: bytes) -> FlightStream:
-    stream = FlightStream(Aircraft())
     path = tmp_path / "flight.bin"
     path.write_bytes(content)
-    for batch in open_log(path):
-        stream.feed(batch)
-    stream.finish()
-    return stream
+    return hear_log(path).stream
 
 
 def test_records_of_2014_read_as_todays(tmp_path: Path) -> None:

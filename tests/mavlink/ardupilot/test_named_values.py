@@ -7,9 +7,8 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.sensors import Alpha
-from advisor.flight.maneuvers.events import Notice
-from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
+from tests.heard import hear_log
 from tests.mavlink.ardupilot.test_autopilot_logs import dataflash_flight
 from tests.mavlink.dataflash_writer import rewritten
 
@@ -31,10 +30,8 @@ def with_vane(record, name=b"alpha"):
 
 def flown(path, content, source):
     path.write_bytes(content)
-    stream = FlightStream(Aircraft(alpha=Alpha(source=source)), keep_all=True)
-    events = [event for batch in open_log(path) for event in stream.feed(batch)]
-    events += stream.finish()
-    return stream, [event.text for event in events if isinstance(event, Notice)]
+    heard = hear_log(path, Aircraft(alpha=Alpha(source=source)), keep_all=True)
+    return heard.stream, [notice.text for notice in heard.notices]
 
 
 @pytest.mark.parametrize("record", VANE)

@@ -3,13 +3,11 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import ManeuverFlown, Notice, VehicleSaid
+from advisor.flight.maneuvers.events import Notice, VehicleSaid
 from advisor.flight.maneuvers.markers import SWEPT
-from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.ardupilot.log_health import lost_texts, sweeps
-from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.records.dataflash import RecordTable
+from tests.heard import hear_log
 from tests.mavlink.ardupilot.test_autopilot_logs import dataflash_flight
 
 SETTINGS = {"Ax": 21, "Mag": 5.0, "FSt": 0.5, "FSp": 5.0, "TR": 20.0}
@@ -66,11 +64,9 @@ def test_a_sweep_without_samples_has_no_end_to_mark():
 def test_a_log_whose_texts_are_lost_has_the_sweep_as_a_manoeuvre(tmp_path, mode):
     log = tmp_path / "swept.bin"
     log.write_bytes(dataflash_flight(changes={10.0: mode}, swept_axis=23))
-    stream, events = FlightStream(Aircraft()), []
-    for batch in open_log(log):
-        events += stream.feed(batch)
-    (maneuver,) = (e.maneuver for e in events + stream.finish() if isinstance(e, ManeuverFlown))
+    heard = hear_log(log)
+    (maneuver,) = heard.maneuvers
     assert maneuver.span.closed_by == SWEPT
     assert maneuver.span.end_s == pytest.approx(26.0, abs=0.05)
-    said = [e.text for e in events if isinstance(e, VehicleSaid | Notice)]
+    said = [event.text for event in heard.events if isinstance(event, VehicleSaid | Notice)]
     assert any("SystemID sweeps the elevator (SID_AXIS 23)" in text for text in said)

@@ -5,11 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.signals.record import Channel
-from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.whole import read_whole_log
+from tests.heard import hear
 
 LOG = Path(__file__).parents[2] / "cases" / "base.bin"
 """One manoeuvre; only its GPS records, of format ``QBBIHBcLLeffffB``, state a height: 100 m."""
@@ -28,10 +26,8 @@ def airspeed_at(height_m: float, folder: Path) -> Channel:
         where = log.find(gps, where + 3)
     high = folder / "high.bin"
     high.write_bytes(log)
-    stream = FlightStream(Aircraft())
-    events = [event for columns in read_whole_log(high) for event in stream.feed(columns)] + stream.finish()
-    (flown,) = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
-    return flown.channels["airspeed"]
+    (maneuver,) = hear(read_whole_log(high)).maneuvers
+    return maneuver.channels["airspeed"]
 
 
 @pytest.mark.parametrize(("height_m", "ratio"), [(100.0, 1.0048), (3000.0, 1.1607)])

@@ -9,10 +9,9 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign, ManeuverJudged
-from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.signals.messages import Columns
-from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.wire.frames import FrameScanner
+from tests.heard import hear
 
 
 @dataclass(frozen=True)
@@ -60,16 +59,7 @@ def batches(records: list[Record], size: int, key: bytes | None = None) -> Itera
 
 def flown(records: list[Record], batch: int = 500, key: bytes | None = None) -> list[tuple[float, ...]]:
     """Start and every sample of every channel of every manoeuvre."""
-    stream = FlightStream(Aircraft())
-    events = [event for columns in batches(records, batch, key) for event in stream.feed(columns)]
-    return [
-        (
-            event.maneuver.span.start_s,
-            *np.concatenate([np.r_[channel.t, channel.y] for channel in event.maneuver.channels.values()]),
-        )
-        for event in [*events, *stream.finish()]
-        if isinstance(event, ManeuverFlown)
-    ]
+    return hear(batches(records, batch, key)).samples
 
 
 def judged(records: list[Record], batch: int = 500) -> list[ManeuverJudged]:

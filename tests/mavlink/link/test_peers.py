@@ -10,17 +10,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-import numpy as np
-
-from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.signals.messages import Columns
-from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.link.announce import Announcer, SeparateConnection
 from advisor.mavlink.link.inquiry import Inquiry
 from advisor.mavlink.link.link import Link
 from advisor.mavlink.link.rates import RateRequest
 from advisor.mavlink.logs.logs import open_log
+from tests.heard import hear
 from tests.mavlink.link.builders import free_port, wait_until
 
 TOOLS = Path(sys.executable).parent
@@ -61,16 +57,7 @@ def fly_to_the_end(link: Link, process: subprocess.Popen[bytes]) -> list[list[Co
 
 def maneuvers(batches: list[list[Columns]]) -> list[tuple[float, ...]]:
     """Start and every sample of every channel of every manoeuvre flown."""
-    stream = FlightStream(Aircraft())
-    events = [event for batch in batches for event in stream.feed(batch)] + stream.finish()
-    return [
-        (
-            event.maneuver.span.start_s,
-            *np.concatenate([np.r_[channel.t, channel.y] for channel in event.maneuver.channels.values()]),
-        )
-        for event in events
-        if isinstance(event, ManeuverFlown)
-    ]
+    return hear(batches).samples
 
 
 def test_a_flight_of_the_bundled_aircraft_is_the_same_live_and_from_the_recording_and_pymavlink_reads_it(

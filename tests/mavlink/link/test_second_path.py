@@ -10,12 +10,11 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import CampaignState
-from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.wire.frames import FrameScanner
 from tests.flights import TWO, recorded
+from tests.heard import hear_log
 from tests.mavlink.builders import START_US, Sender, one_by_one, record
 from tests.mavlink.paths import Way, heard_over, records
 
@@ -48,9 +47,7 @@ def analyzed(path: Path) -> CampaignState:
 
 def flown(log: Path) -> list[Maneuver]:
     """The manoeuvres of a log; what is estimated and judged follows from their samples alone."""
-    stream = FlightStream(Aircraft())
-    events = [event for columns in open_log(log) for event in stream.feed(columns)] + stream.finish()
-    return [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
+    return hear_log(log).maneuvers
 
 
 def samples(maneuvers: list[Maneuver]) -> list[np.ndarray]:

@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import ManeuverFlown
-from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.wire.frames import FrameScanner
+from tests.heard import hear
 from tests.mavlink.builders import REPOSITORY, Sender, record
 
 STEPS_S = (82.28, 113.34)
@@ -120,10 +118,9 @@ def with_garbage_and_holes() -> bytes:
 
 @cache
 def onsets(log: Callable[[], bytes]) -> tuple[float, ...]:
-    stream = FlightStream(Aircraft(), target_system=1)
     scanner = FrameScanner()
-    events = stream.feed(scanner.feed(log()) + scanner.close()) + stream.finish()
-    return tuple(event.maneuver.span.start_s for event in events if isinstance(event, ManeuverFlown))
+    heard = hear([scanner.feed(log()) + scanner.close()], target_system=1)
+    return tuple(maneuver.span.start_s for maneuver in heard.maneuvers)
 
 
 def test_the_flight_itself_has_its_two_manoeuvres() -> None:

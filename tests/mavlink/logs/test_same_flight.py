@@ -8,13 +8,11 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
-from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.stream.stream import FlightStream
-from advisor.mavlink.logs.logs import open_log
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
 from tests.flights import FOLDER
+from tests.heard import hear_log
 from tests.mavlink.builders import REPOSITORY
 from tests.mavlink.from_telemetry import DEFAULT, FAST, dataflash_of
 
@@ -42,9 +40,7 @@ def own_log(fast: bool, tail: str) -> list[Maneuver]:
 
 
 def flown(path: Path) -> list[Maneuver]:
-    stream = FlightStream(Aircraft())
-    events = [event for batch in open_log(path) for event in stream.feed(batch)]
-    return [e.maneuver for e in [*events, *stream.finish()] if isinstance(e, ManeuverFlown)]
+    return hear_log(path).maneuvers
 
 
 def model(maneuvers: list[Maneuver]) -> Estimate:

@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.stream.stream import FlightStream
-from advisor.mavlink.logs.logs import open_log
+from tests.heard import hear_log
 from tests.mavlink.ardupilot.test_autopilot_logs import FIRST_STEP_S, dataflash_flight
 from tests.mavlink.dataflash_writer import records_of
 from tests.test_damaged_logs import sound as sound_case
@@ -90,9 +88,8 @@ def restamped(kind: str, change: Callable[[Stamps], Stamps]) -> bytes:
 
 def flown(path: Path) -> tuple[FlightStream, list[Span]]:
     """The stream that has heard a log, and its manoeuvres. The tests turn a warning into an error."""
-    stream = FlightStream(Aircraft())
-    events = [event for batch in open_log(path) for event in stream.feed(batch)] + stream.finish()
-    return stream, [event.maneuver.span for event in events if isinstance(event, ManeuverFlown)]
+    heard = hear_log(path)
+    return heard.stream, [maneuver.span for maneuver in heard.maneuvers]
 
 
 @pytest.mark.parametrize("change", CHANGES)

@@ -7,10 +7,10 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.px4_wiring import allocation
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.mavlink.logs.logs import open_log
+from tests.heard import hear_log
 from tests.mavlink.px4_logs import PX4Log, every, flight, flown, pulses, stick
 
 PLANE = {
@@ -248,7 +248,4 @@ def test_an_infinite_output_counts_as_no_pulse_and_breaks_no_guess(tmp_path: Pat
     path = with_outputs(flight(), {2: infinite, 3: up}).write(tmp_path)
     (outputs,) = (c for batch in open_log(path) for c in batch if c.name == "SERVO_OUTPUT_RAW")
     assert not np.isinf(outputs.fields["servo2_raw"]).any()
-    stream = FlightStream(Aircraft())
-    for batch in open_log(path):
-        stream.feed(batch)
-    stream.finish()
+    hear_log(path)

@@ -11,6 +11,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
+from tests.heard import hear_log
 from tests.mavlink.ardupilot.test_autopilot_logs import G, elevator_us, motion
 
 FORMATS = {
@@ -54,11 +55,7 @@ def flight(seconds: float = 30.0, without: str = "") -> bytes:
 def heard(tmp_path: Path, content: bytes) -> FlightStream:
     path = tmp_path / "flight.px4log"
     path.write_bytes(content)
-    stream = FlightStream(Aircraft(elevator=Elevator(output=2)))
-    for batch in open_log(path):
-        stream.feed(batch)
-    stream.finish()
-    return stream
+    return hear_log(path, Aircraft(elevator=Elevator(output=2))).stream
 
 
 def test_the_manoeuvre_in_it_is_found(tmp_path: Path) -> None:
