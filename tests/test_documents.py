@@ -1,6 +1,7 @@
 """What commands print with --json is what the schema files say, and the schema files keep the contract."""
 
 import json
+from pathlib import Path
 
 import pytest
 from jsonschema import Draft202012Validator
@@ -69,6 +70,18 @@ def test_the_analysis_of_a_log_that_cannot_serve_is_what_its_schema_says(advisor
 def test_the_doctors_document_is_what_its_schema_says(advisor: Advisor) -> None:
     printed = advisor("doctor", SHIPPED / "arduplane-default-rates.tlog", "--json").stdout
     assert breaches("doctor", json.loads(printed)) == []
+
+
+def test_the_document_of_a_script_is_what_its_schema_says(advisor: Advisor, tmp_path: Path) -> None:
+    printed = advisor("script", "ardupilot", "-o", tmp_path / "x.lua", "--json").stdout
+    assert breaches("script", json.loads(printed)) == []
+
+
+def test_the_document_without_a_script_is_what_its_schema_says(advisor: Advisor, tmp_path: Path) -> None:
+    printed = advisor(
+        "script", "ardupilot", tmp_path / "none.tlog", "-o", tmp_path / "x.lua", "--json"
+    ).stdout
+    assert breaches("script", json.loads(printed)) == []
 
 
 def test_a_key_that_no_schema_knows_is_found() -> None:

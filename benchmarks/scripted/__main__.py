@@ -30,6 +30,8 @@ from .pilot import SITL
 
 LATE_MS, SIZE_PERCENT, ABORT_S = 20.0, 3.0, 0.1
 LOWEST_M = 55.0
+LONGEST_S = 1800.0
+"""Longest real time of a flight, s."""
 _TELEMETRY_MS = 20.0
 """Interval of the servo outputs in the telemetry, ms, by which an edge may seem late."""
 
@@ -51,7 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with tempfile.TemporaryDirectory() as name:
         folder = given.keep or Path(name)
         folder.mkdir(exist_ok=True)
-        flight = fly_table(table, folder, AIRFRAMES[given.airframe]())
+        flight = fly_table(table, folder, AIRFRAMES[given.airframe](), longest_s=LONGEST_S)
         held = [_asked(flight, aircraft), _aborted(flight), _found(flight, aircraft)]
     return 0 if all(held) else 1
 

@@ -10,7 +10,7 @@ import numpy as np
 from advisor.scripts.ardupilot import ardupilot_script
 from advisor.scripts.table import Entry, ScriptTable
 
-from .pilot import Airframe, Pilot, airborne
+from .pilot import WALL_S, Airframe, Pilot, airborne
 
 UP_US, DOWN_US, GRABBED_US = 1900, 1000, 1600
 LOW_M = 70.0
@@ -114,9 +114,10 @@ def fly_table(
     airframe: Airframe | None = None,
     complete: int | None = None,
     aborts: tuple[str, ...] = tuple(ABORTS),
+    longest_s: float = WALL_S,
 ) -> ScriptFlight:
     """Fly the first ``complete`` inputs of a table (default: all) to their ends, and abort the next ones."""
-    with airborne(ardupilot_script(table), folder, airframe) as pilot:
+    with airborne(ardupilot_script(table), folder, airframe, longest_s) as pilot:
         flight = ScriptFlight(pilot, table, folder / "flight.tlog")
         count = len(table.entries) if complete is None else complete
         for number in range(1, count + 1):

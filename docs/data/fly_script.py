@@ -10,7 +10,7 @@ import time
 from pymavlink import mavutil
 
 RATES = {"ATTITUDE": 50, "AOA_SSA": 50, "RAW_IMU": 50, "SERVO_OUTPUT_RAW": 50, "VFR_HUD": 50}
-UP_M, SWITCH = 100.0, 7
+TAKEN_OFF_M, UP_M, SWITCH = 45.0, 80.0, 7
 link = mavutil.mavlink_connection("tcp:127.0.0.1:5760", source_system=255, dialect="ardupilotmega")
 heard = {"text": "", "height_m": 0.0, "boot_s": 0.0}
 
@@ -42,9 +42,9 @@ def after(seconds):
     return lambda: heard["boot_s"] >= ends
 
 
-def sticks(switch_us):
-    """Return neutral sticks, cruise throttle, and the switch of the script."""
-    pulses = [1500, 1500, 1500, 1500, 0, 0, 0, 1800]
+def sticks(switch_us, pitch_us=1500):
+    """Return the sticks with cruise throttle, and the switch of the script."""
+    pulses = [1500, pitch_us, 1500, 1500, 0, 0, 0, 1800]
     pulses[SWITCH - 1] = switch_us
     return pulses
 
@@ -59,8 +59,9 @@ with open(sys.argv[2], "wb") as log:
     listen(log, after(45.0), 60.0, sticks(1000))
     link.set_mode("TAKEOFF")
     link.mav.command_long_send(1, 1, 400, 0, 1, 21196, 0, 0, 0, 0, 0)
-    listen(log, lambda: heard["height_m"] > UP_M, 120.0, sticks(1000))
+    listen(log, lambda: heard["height_m"] > TAKEN_OFF_M, 120.0, sticks(1000))
     link.set_mode("CRUISE")
+    listen(log, lambda: heard["height_m"] > UP_M, 120.0, sticks(1000, pitch_us=1800))
     for number in range(int(sys.argv[1])):
         listen(log, after(15.0), 20.0, sticks(1000))
         heard["text"] = ""

@@ -71,6 +71,12 @@ class Announced:
         """Return the announced name if an axis has this name, else the name of the movement that was seen."""
         return self.input if self.input in names else seen  # type: ignore[return-value]
 
+    def moves(self, control: str) -> bool:
+        """Return whether the announced name is that of an input of this control, or names no control."""
+        if self.input in PITCH_KINDS ^ SIDE_KINDS:
+            return (self.input in PITCH_KINDS) == (control == "elevator")
+        return True
+
     def no_test(self, length_s: float) -> tuple[str, str] | None:
         """Return reason and sentence for an announced stretch that is no test; None for a test.
 

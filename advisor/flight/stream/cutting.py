@@ -167,6 +167,9 @@ class Cutting:
             for loop in (PITCH, ROLL, YAW)
         }
         moved = part_of_input([SideMovement(loop, span) for loop, span in spans.items()])
+        if said is not None:
+            # The loop moves the other controls.
+            moved = tuple(one for one in moved if said.moves(one.loop.control)) or moved
         rest = all(one.rests_by(mark.end_s) for one in moved)
         if said is not None and len(moved) > 1 and rest and not self.pilot_flies(mark.end_s):
             # After the mark the autopilot's loop moves the surfaces. An input at once does not need this

@@ -277,7 +277,7 @@ def test_a_stretch_in_which_several_surfaces_move_has_one_extent_on_both_axes():
     assert pitch.span.kind == side.span.kind == "multisine"
 
 
-def _in_a_loop(moved: tuple[int, ...]) -> tuple[Span, list[Span]]:
+def _in_a_loop(moved: tuple[int, ...], name: str = "multisine") -> tuple[list[Span], list[Span]]:
     """Spans of an announced input in FBWA, after whose END the loop moves aileron and rudder."""
     wire = Wire()
     heartbeat(wire, 1000.0, mode=5)
@@ -291,16 +291,17 @@ def _in_a_loop(moved: tuple[int, ...]) -> tuple[Span, list[Span]]:
             pulses |= {1: 1650, 4: 1600}
         attitude(wire, 1000.01 + since_s, 50.0 + since_s)
         servo(wire, 1000.011 + since_s, 50.0 + since_s, pulses)
-    text(wire, 1003.9, "ADVISOR BEGIN 1 multisine")
+    text(wire, 1003.9, f"ADVISOR BEGIN 1 {name}")
     text(wire, 1009.0, "ADVISOR END 1 done")
     stream = FlightStream(Aircraft(), lateral=True)
     events = stream.feed(wire.columns()) + stream.finish()
-    (pitch,) = maneuvers(events)
-    return pitch.span, [e.maneuver.span for e in events if isinstance(e, SideManeuverFlown)]
+    return [one.span for one in maneuvers(events)], [
+        e.maneuver.span for e in events if isinstance(e, SideManeuverFlown)
+    ]
 
 
 def test_the_loop_that_moves_a_surface_after_the_end_is_no_part_of_the_input():
-    pitch, (side,) = _in_a_loop((1, 2, 4))
+    (pitch,), (side,) = _in_a_loop((1, 2, 4))
     for span in (pitch, side):
         assert span.start_s == pytest.approx(54.0, abs=0.05)
         assert span.last_step_s < 58.0
@@ -308,6 +309,16 @@ def test_the_loop_that_moves_a_surface_after_the_end_is_no_part_of_the_input():
 
 
 def test_a_surface_that_the_script_holds_is_no_part_of_the_input():
-    pitch, sides = _in_a_loop((2,))
+    (pitch,), sides = _in_a_loop((2,))
     assert (pitch.start_s, pitch.end_s) == pytest.approx((54.0, 62.0), abs=0.05)
     assert sides == []
+
+
+def test_an_elevator_that_the_loop_moves_in_an_announced_aileron_doublet_is_no_test():
+    pitching, (side,) = _in_a_loop((1, 2), "aileron doublet")
+    assert (pitching, side.kind) == ([], "aileron doublet")
+
+
+def test_an_aileron_that_the_loop_moves_in_an_announced_3_2_1_1_is_no_test():
+    (pitch,), sides = _in_a_loop((1, 2), "3-2-1-1")
+    assert (pitch.kind, sides) == ("3-2-1-1", [])
