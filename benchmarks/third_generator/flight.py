@@ -40,6 +40,10 @@ class Gains(NamedTuple):
     height: float
     throttle: float
     damper: float
+    delay_s: float = 0.0
+    """Time between the motion and the hand's response, s."""
+    take_over_s: float = TAKE_OVER_S
+    """Time over which the hand takes over after a test, s."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,8 @@ class Inputs:
     delta: Floats
     throttle: Floats
     throttle_step: Floats
+    remnant: Floats
+    """Motion of the hand without any cause in the aircraft's motion, rad."""
     around: tuple[Floats, ...]
     """One series for each member of ``Around``."""
 
@@ -72,20 +78,24 @@ def _fly(y, plan, series, shape, faults, servo, gains, latch):  # type: ignore[n
     held_delta, held_throttle = plan[5, 0], plan[6, 0]
     linkage = np.array([held_delta, held_delta, held_delta, held_delta, 0.0])
     floating, before, taken = 0.0, held_delta, 1.0
+    late = round(gains.delay_s / STEP_S)
     for k in range(steps):
-        stick, hands_off, speed, height, alpha_0, delta_0, throttle_0, power = plan[:, k]
+        stick, hands_off, speed, height, alpha_0, delta_0, throttle_0, power, remnant = plan[:, k]
         here = _at(series, k, floating)
         v = np.sqrt((y[0] + here.headwind) ** 2 + (y[1] + here.updraft * np.cos(y[3])) ** 2)
         climb = y[0] * np.sin(y[3]) - y[1] * np.cos(y[3])
         if hands_off < 0.5:
             path = min(max(gains.height * (height - y[4]) - 1.5 * climb / speed, -0.06), 0.06)
-            wanted = delta_0 + gains.pitch * (y[3] - alpha_0 - path) + gains.rate * y[2]
+            theta, q = y[3], y[2]
+            if late > 0:
+                theta, q = out[2, max(k - late, 0)], out[1, max(k - late, 0)]
+            wanted = delta_0 + gains.pitch * (theta - alpha_0 - path) + gains.rate * q
             # Taken over softly after a test.
-            taken = min(taken + STEP_S / TAKE_OVER_S, 1.0)
-            delta = held_delta + taken * (wanted - held_delta)
+            taken = min(taken + STEP_S / gains.take_over_s, 1.0)
+            delta = remnant + held_delta + taken * (wanted - held_delta)
             throttle = min(max(throttle_0 + gains.throttle * (speed - v), 0.0), 2.0)
             # The hand remembers where it has been in the last second.
-            held_delta += (delta - held_delta) * STEP_S / 0.8
+            held_delta += (delta - remnant - held_delta) * STEP_S / 0.8
             held_throttle += (throttle - held_throttle) * STEP_S / 0.8
         else:
             taken = 0.0
@@ -133,6 +143,7 @@ def fly(
             inputs.delta,
             inputs.throttle,
             inputs.throttle_step,
+            inputs.remnant,
         ]
     )
     latch = np.array([spoilers[0], spoilers[1], reach_rad])

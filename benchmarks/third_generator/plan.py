@@ -31,6 +31,8 @@ class Plan:
     stage: Floats
     """Number of the manoeuvre that each step belongs to or leads to."""
     gains: Gains
+    remnant: Floats | None = None
+    """Motion of the hand without any cause in the aircraft's motion, rad; None for a perfect hand."""
 
     @property
     def steps(self) -> int:
@@ -175,6 +177,7 @@ def inputs(plan: Plan, around: dict[str, Floats]) -> Inputs:
         delta=by_stage("delta"),
         throttle=by_stage("throttle"),
         throttle_step=plan.power,
+        remnant=np.zeros(plan.steps) if plan.remnant is None else plan.remnant,
         around=tuple(around[name] for name in Around._fields),
     )
 

@@ -92,7 +92,7 @@ class Activity:
     end_s: float
     reason: str
     """``aborted``, ``autopilot``, ``bounce``, ``elsewhere``, ``feedback``, ``ground``, ``hover``,
-    ``no_information``, ``small`` or ``unsettled``."""
+    ``no_information``, ``small``, ``undecided`` or ``unsettled``."""
     text: str
     """Sentence about the movement, for people."""
     stay_s: float

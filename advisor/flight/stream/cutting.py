@@ -23,14 +23,14 @@ from advisor.flight.maneuvers.axes.side_inputs import (
     part_of_input,
     with_elevator,
 )
+from advisor.flight.maneuvers.binned import HISTORY_S
 from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
-from advisor.flight.maneuvers.feedback import HISTORY_S
 from advisor.flight.maneuvers.ground import why_on_ground
-from advisor.flight.maneuvers.loop import PITCH, ROLL, YAW
+from advisor.flight.maneuvers.loop import PITCH, ROLL, YAW, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.markers import marked_span
 from advisor.flight.maneuvers.marks import Mark, Marks
-from advisor.flight.maneuvers.purpose import Because, not_an_input
+from advisor.flight.maneuvers.purpose import Because, judged, not_an_input
 from advisor.flight.maneuvers.steady_speed import at_steady_speed
 from advisor.flight.signals.motion import along_heading
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
@@ -71,6 +71,7 @@ class Cutting:
         self.side_due: list[SideStretch] = []
         """Stretches whose record of aileron and rudder is not yet cut, in the order of their completion."""
         self._claimed: list[SideStretch] = []
+        self._tests: dict[str, list[tuple[float, float]]] = {}
 
     @property
     def is_backwards(self) -> bool:
@@ -82,6 +83,7 @@ class Cutting:
         self._modes = [(-np.inf, mode)]
         self.side_due.clear()
         self._claimed.clear()
+        self._tests.clear()
         self.pitch.begin()
         self.sideways.begin()
 
@@ -99,9 +101,12 @@ class Cutting:
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
         """Return the event of a finished movement: a manoeuvre, or an activity with its reason."""
         maneuver, evidence = self._cut(span, boot, up_to_order)
-        because = self._not_an_input(maneuver, up_to_order)
-        if because is not None:
-            return [self._activity(maneuver, because)]
+        found = self._judged(maneuver, up_to_order)
+        if isinstance(found, Because):
+            return [self._activity(maneuver, found)]
+        if found is not span:
+            span = found
+            maneuver, evidence = self._cut(span, boot, up_to_order)
         if self._lateral and (sides := self._beside(span, up_to_order)):
             joint = self._claim(span, SideInput(sides), boot, up_to_order)
             if joint is not None:
@@ -204,11 +209,10 @@ class Cutting:
         for one in found.movements:
             if one.loop.control not in maneuver.channels:
                 continue
-            names = [name for name in (one.loop.rate, one.loop.angle) if name]
             alone = replace(one.span, record_from_s=maneuver.span.record_from_s, end_s=maneuver.span.end_s)
-            motion = self.motion_before(alone, names, up_to_order)
-            moved = replace(maneuver, span=alone)
-            if not_an_input(moved, on_ground, motion, None, one.loop, passed_over=passed_over) is None:
+            motion = self.motion_before(alone, one.loop, up_to_order)
+            moved, tests = replace(maneuver, span=alone), self._tests.get(one.loop.control, ())
+            if not_an_input(moved, on_ground, motion, None, one.loop, tests, passed_over=passed_over) is None:
                 return False
         return True
 
@@ -224,6 +228,7 @@ class Cutting:
 
     def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         news = _news(maneuver, evidence, self.pitch)
+        self._tests.setdefault(PITCH.control, []).append((maneuver.span.start_s, maneuver.span.end_s))
         self._released = (maneuver.boot, maneuver.span.end_s)
         if self._sign is None or "elevator" not in maneuver.channels:
             return [*news, ManeuverFlown(maneuver)]
@@ -235,18 +240,18 @@ class Cutting:
         return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order), self._limits)
 
     def _not_an_input(self, maneuver: Maneuver, up_to_order: int | None) -> Because | None:
-        span = maneuver.span
-        return not_an_input(
-            maneuver,
-            self.why_on_ground(span, up_to_order),
-            self._motion(span, up_to_order),
-            self._limits,
-            passed_over=self._marks.script_passes_over(span, up_to_order),
-        )
+        found = self._judged(maneuver, up_to_order)
+        return found if isinstance(found, Because) else None
 
-    def _motion(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
-        """Return pitch rate and pitch angle during a movement and before it."""
-        return self.motion_before(span, ("q", "theta"), up_to_order)
+    def _judged(self, maneuver: Maneuver, up_to_order: int | None) -> Because | Span:
+        span = maneuver.span
+        motion = self.motion_before(span, PITCH, up_to_order)
+        on_ground = self.why_on_ground(span, up_to_order)
+        tests, passed_over = (
+            self._tests.get(PITCH.control, ()),
+            self._marks.script_passes_over(span, up_to_order),
+        )
+        return judged(maneuver, on_ground, motion, self._limits, PITCH, tests, passed_over=passed_over)
 
     def pilot_flies(self, at_s: float) -> bool:
         """Return whether the pilot moves the elevator at this time, according to the flight mode."""
@@ -303,11 +308,14 @@ class Cutting:
 
     def side_counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         """Return the event of a lateral manoeuvre, after notices about its instruments."""
+        for loop in (ROLL, YAW):
+            self._tests.setdefault(loop.control, []).append((maneuver.span.start_s, maneuver.span.end_s))
         return [*_news(maneuver, evidence, self.sideways), SideManeuverFlown(maneuver)]
 
-    def motion_before(self, span: Span, names: Sequence[str], up_to_order: int | None) -> dict[str, Channel]:
-        """Return channels during a movement and before it."""
+    def motion_before(self, span: Span, loop: Loop, up_to_order: int | None) -> dict[str, Channel]:
+        """Return a control and its motion during a movement and before it."""
         from_s = span.start_s - HISTORY_S
+        names = [name for name in (loop.control, loop.rate, loop.angle) if name]
         cut = {name: self._tracks.cut(name, from_s, span.end_s, up_to_order) for name in names}
         return {name: channel for name, channel in cut.items() if channel is not None}
 

@@ -1,0 +1,110 @@
+"""A control in bins, from the seconds before a movement to its end, and the motion that hands respond to."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from advisor.flight.maneuvers.maneuver import Span
+from advisor.flight.signals.motion import integrated
+from advisor.flight.signals.record import Channel
+from advisor.process.arrays import FloatArray, IntArray
+
+HISTORY_S = 30.0
+"""Length of flight before a movement that shows the hands' loop and remnant, s: two tests with hands between
+them."""
+_TARGET_S = 15.0
+"""Length of flight before a movement that contains the hands' target of the angle, s: one test with its free
+response, and some steady flight."""
+_BIN_S = 0.1
+"""Length over which the control is averaged, s: the shortest delay of a hand (McRuer & Krendel 1974)."""
+_FEWEST = 20
+"""Least number of bins of hand flying before a movement: five for each of the loop's four numbers."""
+_LEVEL = 10
+"""Number of bins before the movement whose median is the level from which the control moves: one second."""
+_AFTER_S = 0.6
+"""Length after the last step that shows its edge, s: a slow hand-flown edge."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bins:
+    """Control in bins of equal length, from the seconds before to the end of a movement."""
+
+    middle_s: FloatArray
+    moved: FloatArray
+    """Shape (n,): deviation from the level before the movement, rad."""
+    first: int
+    """Index of the movement's first bin."""
+    hands: IntArray
+    """Indices of the bins before the movement that show the hands, and whose neighbour before does."""
+    length_s: float
+
+    @property
+    def movement(self) -> slice:
+        """Bins of the movement."""
+        return slice(self.first, len(self.moved))
+
+    @property
+    def within(self) -> int:
+        """Number of the movement's bins."""
+        return len(self.moved) - self.first
+
+    @property
+    def count(self) -> int:
+        """Number of bins that the models explain."""
+        return len(self.hands) + self.within
+
+    def begin_s(self, index: int) -> float:
+        """Return the time at which a bin of the movement begins, s."""
+        return float(self.middle_s[self.first + index] - 0.5 * self.length_s)
+
+
+def binned(span: Span, control: Channel, tests: Sequence[tuple[float, float]]) -> Bins | None:
+    """Return the control in bins; None if too few bins before the movement show the hands.
+
+    Parameters
+    ----------
+    tests
+        Earlier tests of this control, from begin to end of the free response, s. They show no hands.
+    """
+    length_s = max(_BIN_S, 1.01 * float(np.median(np.diff(control.t))))
+    before = int(min(HISTORY_S, span.start_s - control.t[0]) / length_s)
+    end_s = min(span.last_step_s + _AFTER_S, span.end_s, float(control.t[-1]))
+    edges = np.arange(span.start_s - before * length_s, max(end_s, span.start_s + length_s), length_s)
+    if before < _FEWEST or len(edges) < before + 4:
+        return None
+    mean = np.diff(np.interp(edges, control.t, integrated(control.t, control.y))) / length_s
+    middle_s = 0.5 * (edges[1:] + edges[:-1])
+    free = middle_s < span.start_s
+    for begin_s, over_s in tests:
+        free &= (middle_s < begin_s - length_s) | (middle_s > over_s + 0.5 * length_s)
+    hands = np.flatnonzero(free[1:] & free[:-1]) + 1
+    if len(hands) < _FEWEST:
+        return None
+    level = float(np.median(mean[max(0, before - _LEVEL) : before]))
+    return Bins(middle_s, mean - level, before, hands, length_s)
+
+
+class Motion:
+    """Motion that hands respond to, in the bins of a control."""
+
+    def __init__(self, bins: Bins, rate: Channel, angle: Channel, side: float) -> None:
+        self._bins, self._rate, self._angle, self._side = bins, rate, angle, side
+        start_s = bins.begin_s(0)
+        lately = angle.cut(start_s - _TARGET_S, start_s).y
+        kept = lately if len(lately) else angle.y[:1]
+        self._target, reach = float(np.median(kept)), float(np.ptp(kept))
+        self._targets = float(np.min(kept)) - reach, float(np.max(kept)) + reach
+        self._since_s = bins.middle_s - start_s + 0.5 * bins.length_s
+
+    def terms(self, delay_s: float, taken_over_s: float) -> list[FloatArray]:
+        """Return the loop's terms: rate, angle from the least and from the largest target, and integral."""
+        bins = self._bins
+        at_s = bins.middle_s - delay_s
+        theta = np.interp(at_s, self._angle.t, self._angle.y)
+        summed = np.cumsum(theta - self._target) * bins.length_s
+        terms = [np.interp(at_s, self._rate.t, self._rate.y), *(theta - end for end in self._targets)]
+        terms.append(summed - summed[bins.first])
+        ramp = np.clip(self._since_s / max(taken_over_s, bins.length_s), 0.0, 1.0)
+        gate = np.where(np.arange(len(at_s)) >= bins.first, ramp, 1.0)
+        return [self._side * gate * term for term in terms]

@@ -1,0 +1,145 @@
+"""Manoeuvres found in flights with hands between the tests.
+
+    python -m benchmarks.hands [--flights 20] [--seed 29113007]
+
+Counts the tests that are found whole, and what else is found as a test. The flights are of the second
+generator, whose pilot is a loop without noise, and of the third, with hands of a delay and a remnant.
+"""
+
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+import yaml
+
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.library import read
+from benchmarks.second_generator.cases import cases as second
+from benchmarks.second_generator.maneuvers import STEPPED
+from benchmarks.third_generator.cases import assignments, draw_case
+from benchmarks.third_generator.files import aircraft_file, log_bytes
+from benchmarks.third_generator.hands import by_hand
+from benchmarks.third_generator.nature import drawn
+
+BEGINS_S, ENDS_S = 0.5, 0.8
+"""Largest distance of a found test's first and last step from those flown, s."""
+MULTISINE_UNITS = 14.0
+"""Duration of the second generator's multisine, in its units."""
+FOUND, OTHERS = 0.98, 0.02
+"""Least share of the tests that is found whole, and largest share of others among what is found."""
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A flight with hands between the tests."""
+
+    name: str
+    log: bytes
+    file: dict[str, Any]
+    flown: tuple[tuple[float, float], ...]
+    """First and last step of each test, s since the log began."""
+    boot_s: float
+    """Time since boot at which the log begins, s."""
+
+
+@dataclass(frozen=True)
+class Count:
+    """Tests flown, those found whole, and what else was found."""
+
+    flown: int = 0
+    whole: int = 0
+    others: int = 0
+
+    def __add__(self, other: "Count") -> "Count":
+        return Count(self.flown + other.flown, self.whole + other.whole, self.others + other.others)
+
+    @property
+    def holds(self) -> bool:
+        """Whether enough tests are found whole, and few others."""
+        found = max(self.whole + self.others, 1)
+        return self.whole >= FOUND * self.flown and self.others <= OTHERS * found
+
+
+def flights(count: int, seed: int) -> Iterator[Flight]:
+    """Yield flights of both generators in turns."""
+    for pair in zip(_second(count, seed), _third(count, seed), strict=True):
+        yield from pair
+
+
+def _second(count: int, seed: int) -> Iterator[Flight]:
+    for case in second(count, seed, "none"):
+        flown = [(m["start"], m["start"] + m["unit"] * _units(m["kind"])) for m in case.truth["maneuvers"]]
+        boot_s = case.truth["wiring"]["boot_s"]
+        yield Flight(f"second/{case.name}", case.log, case.aircraft, tuple(flown), boot_s)
+
+
+def _units(kind: str) -> float:
+    return sum(length for _, length in STEPPED[kind]) if kind in STEPPED else MULTISINE_UNITS
+
+
+def _third(count: int, seed: int) -> Iterator[Flight]:
+    for index, assignment in enumerate(assignments(count, seed, "none"), start=1):
+        case = draw_case(assignment, seed, index)
+        for attempt in range(20):
+            rng = np.random.default_rng([seed, index, 7, attempt])
+            setup = replace(case.setup, plan=by_hand(case.setup.plan, rng))
+            try:
+                case = replace(case, setup=setup, shown=setup.flight())
+            except ArithmeticError:
+                continue
+            break
+        nature = drawn(np.random.default_rng([seed, index, 3]), case.ground_m, 0.3)
+        flown = tuple((m.input_s, m.input_end_s) for m in case.setup.plan.maneuvers)
+        log, file = log_bytes(case, nature), aircraft_file(case, nature)
+        yield Flight(f"third/{index:04d}", log, file, flown, case.wiring.boot_s)
+
+
+def extents(found: Sequence[Maneuver], flight: Flight) -> list[tuple[float, float]]:
+    """Return first and last step of what was found, s since the log began."""
+    return [(m.span.start_s - flight.boot_s, m.span.last_step_s - flight.boot_s) for m in found]
+
+
+def counted(found: Sequence[Maneuver], flight: Flight) -> Count:
+    """Return how many of the tests were found whole, and how many others."""
+    whole = sum(
+        any(
+            abs(begin_s - test[0]) <= BEGINS_S and abs(last_s - test[1]) <= ENDS_S
+            for begin_s, last_s in extents(found, flight)
+        )
+        for test in flight.flown
+    )
+    return Count(len(flight.flown), whole, len(found) - whole)
+
+
+@click.command()
+@click.option("--flights", "count", default=20, show_default=True, help="Flights of each generator.")
+@click.option("--seed", default=29113007, show_default=True)
+@click.option("--show", is_flag=True, help="Print what was flown and found.")
+def main(count: int, seed: int, show: bool) -> None:
+    """Print a line for each flight, and the shares."""
+    totals: dict[str, Count] = {}
+    with tempfile.TemporaryDirectory() as folder:
+        log, file = Path(folder, "flight.tlog"), Path(folder, "aircraft.yaml")
+        for flight in flights(count, seed):
+            log.write_bytes(flight.log)
+            file.write_text(yaml.safe_dump(flight.file))
+            found = read(log, file).maneuvers
+            one = counted(found, flight)
+            name = flight.name.partition("/")[0]
+            totals[name] = totals.get(name, Count()) + one
+            print(f"{flight.name}: {one.whole} of {one.flown} whole, {one.others} others", flush=True)
+            if show and not (one.whole == one.flown and one.others == 0):
+                for what, seen in (("flown", flight.flown), ("found", extents(found, flight))):
+                    print(f"   {what}", *(f"{begin:.1f}-{last:.1f}" for begin, last in seen))
+    for name, total in totals.items():
+        print(f"{name}: {total.whole} of {total.flown} whole, {total.others} others")
+    sys.exit(0 if all(total.holds for total in totals.values()) else 1)
+
+
+if __name__ == "__main__":
+    main()
