@@ -235,20 +235,20 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
     """Return the fit in which a stated value is a prior unless the data exclude it."""
     alone = _uncancelled(identified_at(solution, names))
     white = np.sqrt(np.diag(solution.covariance_cr)[N:])
-    if all(x.instrument.stated is None or x.found.contradicts for x in alone):
+    if all((x.instrument.stated is None or x.found.contradicts) and not _cancels(x, alone) for x in alone):
         return InstrumentFit(solution, alone)
     kept, problem = [], solution.problem
     for one, white_std in zip(alone, white, strict=True):
         x, found = one
         share = min(1.0, float(white_std) / found.std)
+        if _cancels(one, alone):
+            kept.append(one._replace(instrument=replace(x, prior=Prior(0.0, MEASURED_LAG_S, share))))
+            continue
         if x.stated is None or found.contradicts:
             kept.append(one._replace(instrument=weighed(x, share)))
             continue
         # A statement is trusted no better than the data confirm it. A confirmed zero holds exactly.
         apart = abs(found.unstated_value - x.stated)
-        if _cancels(one, alone):
-            kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, MEASURED_LAG_S, share))))
-            continue
         if x.known_to > 0.0 and (x.stated != 0.0 or apart > found.unstated_std):
             width = max(x.known_to * abs(x.stated), apart)
             kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, width, share))))
@@ -263,15 +263,15 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
 
 
 def _cancels(one: Identified, all_of_them: Sequence[Identified]) -> bool:
-    """Return whether a delay of the command cancels a lag against a stated lag of zero.
+    """Return whether a delay of the command cancels a lag, of zero or nobody states one.
 
-    A measured surface does not move before its own record. A lag and a negative delay that cancel are one
-    net lateness, which the delay alone describes.
+    Neither a command nor a measured surface acts before its own record. A lag and a negative delay that
+    cancel are one net lateness, which the delay alone describes.
     """
     x, found = one
     delays = [other.found.value for other in all_of_them if other.instrument.name == COMMAND_DELAY.name]
     early = bool(delays) and delays[0] < -CLOCKS_S
-    return x.name == SERVO_LAG.name and x.stated == 0.0 and early and found.unstated_value > 0.0
+    return x.name == SERVO_LAG.name and x.stated in (0.0, None) and early and found.value > 0.0
 
 
 def _uncancelled(alone: tuple[Identified, ...]) -> tuple[Identified, ...]:
