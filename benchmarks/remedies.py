@@ -33,9 +33,10 @@ def contradictions(verdict: Mapping[str, Any]) -> Iterator[str]:
 
 
 def verdicts_of(document: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
-    """Return the manoeuvres of both axes in a document."""
+    """Return the judged manoeuvres of both axes in a document."""
     lateral = document.get("lateral") or {}
-    return [*(document.get("maneuvers") or []), *(lateral.get("maneuvers") or [])]
+    flown = [*(document.get("maneuvers") or []), *(lateral.get("maneuvers") or [])]
+    return [one for one in flown if isinstance(one, Mapping) and "verdict" in one]
 
 
 def main() -> int:

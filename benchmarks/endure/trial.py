@@ -28,6 +28,7 @@ from advisor.session.conductor import Conductor
 from advisor.session.replay import LogPlayer
 from advisor.words.problems import UnusableInputError
 from benchmarks.endure.cases import Case
+from benchmarks.remedies import contradictions, verdicts_of
 
 UNUSABLE = 3
 SOUND_CODES = (0, UNUSABLE)
@@ -94,7 +95,8 @@ def judged(code: int, out: str, err: str) -> Failure | None:
         return Failure(f"internal: {kind} at {':'.join(places[-1]) if places else '?'}", err[-3000:])
     if "Traceback" in err:
         return Failure("traceback on standard error", err[-3000:])
-    return None
+    said = next((text for one in verdicts_of(document) for text in contradictions(one)), None)
+    return None if said is None else Failure(f"advice: {said.partition(':')[0]}", said)
 
 
 def _refuse(token: str) -> float:

@@ -151,6 +151,14 @@ def test_what_is_no_answer_is_a_failure_of_its_kind(code: int, out: str, kind: s
     assert found.kind == kind
 
 
+def test_a_verdict_with_contradicting_advice_is_a_failure():
+    reasons = [{"text": "too large; use less stick"}, {"text": "too small; use 1.4 times the stick"}]
+    document = {"maneuvers": [{"verdict": "rejected", "reasons": reasons}]}
+    found = judged(0, json.dumps(document), "")
+    assert found is not None
+    assert found.kind.startswith("advice")
+
+
 @pytest.mark.parametrize("code", [0, 3])
 def test_a_document_with_a_problem_of_the_log_is_an_answer(code: int):
     assert judged(code, '{"problems": [{"code": "rate", "text": "Too slow.", "fix": "Faster."}]}', "") is None

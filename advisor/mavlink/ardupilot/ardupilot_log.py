@@ -31,7 +31,7 @@ _RECORDS: dict[str, set[str]] = {
     "AOA": {"AOA", "SSA"},
     "ARSP": {"Airspeed"},
     "ATT": {"Roll", "Pitch", "Yaw"},
-    "BARO": {"CRt"},
+    "BARO": set(),
     "CTUN": set(),
     "EKF1": {"VD"},
     "GPS": {"GWk", "GMS"},
@@ -53,7 +53,7 @@ _RECORDS: dict[str, set[str]] = {
 vehicle, an older version) counts as missing."""
 _FIELDS = frozenset[str]().union(*_RECORDS.values(), *SDLOG2_RECORDS.values()) | {
     *("TimeUS", "TimeMS", "T", "I", "C"),
-    *("As", "BU", "Press", "Pri", "ThO", "U"),
+    *("As", "BU", "CRt", "Press", "Pri", "ThO", "U"),
     *HEALTH_FIELDS,
     *(former for renamed in RENAMED.values() for former in renamed),
     *(today for renamed in RENAMED.values() for today in renamed.values()),

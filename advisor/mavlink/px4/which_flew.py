@@ -22,12 +22,18 @@ _ESTIMATES = {
 """Topic of each single estimator, by the topic of the estimator in use, which is read where it is logged."""
 _DEVICES = {
     "sensor_accel": (
+        ("Accelerometer", "device_id"),
         ("sensor_selection", "accel_device_id"),
         ("sensors_status_imu", "accel_device_id_primary"),
     ),
+    "vehicle_air_data": (
+        ("Barometer", "baro_device_id"),
+        ("sensor_selection", "baro_device_id"),
+        ("sensors_status_baro", "device_id_primary"),
+    ),
 }
-"""Topics and fields with the device of the sensor in use, by the sensor's topic. The first logged one
-counts."""
+"""Sensor and its field with the device, then topics and fields with the device in use, by the sensor's topic.
+The first logged one counts."""
 SELECTORS: Mapping[str, set[str]] = {
     "estimator_selector_status": {"primary_instance"},
     "estimator_attitude": {"q[3]"},
@@ -35,6 +41,7 @@ SELECTORS: Mapping[str, set[str]] = {
     "estimator_global_position": {"vel_d"},
     "estimator_wind": {"windspeed_north", "windspeed_east"},
     "sensor_selection": {"accel_device_id"},
+    "sensors_status_baro": {"device_id_primary"},
     "sensors_status_imu": {"accel_device_id_primary"},
 }
 """Necessary fields of the topics that tell which sensor or estimator flew, by the topic's name."""
@@ -56,9 +63,9 @@ def as_flown(topics: Topics) -> tuple[dict[str, list[Topic]], list[str]]:
             flown[name] = [instances[0]]
     if status is not None and numbers is not None:
         said += _changes("Estimator: instance", published_us(status), numbers)
-    for name, places in _DEVICES.items():
+    for name, ((sensor, own), *places) in _DEVICES.items():
         instances = topics.get(name, [])
-        devices = [float(one["device_id"][0]) if "device_id" in one else np.nan for one in instances]
+        devices = [float(one[own][0]) if own in one else np.nan for one in instances]
         for selector, field in places:
             stated = first(topics, selector)
             if stated is None or field not in stated:
@@ -69,7 +76,7 @@ def as_flown(topics: Topics) -> tuple[dict[str, list[Topic]], list[str]]:
             order = {number: place for place, number in enumerate(dict.fromkeys(devices))}
             place_of = np.array([order.get(number, np.nan) for number in device])
             if not np.isnan(place_of).any():
-                said += _changes("Accelerometer: instance", published_us(stated), place_of)
+                said += _changes(f"{sensor}: instance", published_us(stated), place_of)
             break
     return flown, said
 

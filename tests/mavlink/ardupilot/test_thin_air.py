@@ -35,3 +35,15 @@ def test_the_height_of_gps_makes_an_indicated_air_speed_true(height_m, ratio, tm
     airspeed = airspeed_at(height_m, tmp_path)
     assert airspeed.source.endswith("true by the height")
     assert airspeed.gain == pytest.approx(ratio, abs=2e-4)
+
+
+def test_a_barometer_without_a_climb_rate_keeps_its_pressure(tmp_path: Path) -> None:
+    body = struct.Struct("<QBff")
+    names = (b"BARO".ljust(4, b"\0"), b"QBff".ljust(16, b"\0"), b"TimeUS,I,Alt,Press".ljust(64, b"\0"))
+    form = _HEAD + bytes([128, 250, 3 + body.size]) + b"".join(names)
+    readings = [_HEAD + bytes([250]) + body.pack(1000 * k, 0, 3000.0, 70_110.0) for k in range(10)]
+    log = tmp_path / "baro.bin"
+    log.write_bytes(form + b"".join(readings) + LOG.read_bytes())
+    heard = [c for batch in read_whole_log(log) for c in batch if c.name == "SCALED_PRESSURE"]
+    pressures = [value for c in heard for value in c.fields["press_abs"].tolist()]
+    assert pressures == pytest.approx([701.1] * 10)

@@ -8,6 +8,14 @@ from advisor.mavlink.px4.which_flew import as_flown
 T_US = 40_000 * np.arange(100)
 
 
+STATED = {
+    "sensor_selection": ("accel_device_id", "baro_device_id"),
+    "sensors_status_imu": ("accel_device_id_primary",),
+    "sensors_status_baro": ("device_id_primary",),
+}
+"""Fields of each topic with the device of a sensor in use."""
+
+
 def instance(scale, late_us, **fields):
     """Return an instance of a topic with one value a sample."""
     values = np.sin(1e-6 * T_US) + 2.0
@@ -15,14 +23,18 @@ def instance(scale, late_us, **fields):
     return {"timestamp": T_US + late_us, "value": scale * values, **stated}
 
 
-def topics(name, sound):
+def topics(name, sound, selector="sensor_selection"):
     """Return a log in which instance ``sound`` is right, and the other reads a third."""
-    right, wrong = instance(1.0, 10_000, device_id=77), instance(0.3, 20_000, device_id=88)
+    field = "baro_device_id" if name == "vehicle_air_data" else "device_id"
+    right, wrong = (
+        instance(scale, late_us, **{field: number})
+        for scale, late_us, number in ((1.0, 10_000, 77), (0.3, 20_000, 88))
+    )
     numbers = np.full(len(T_US), float(sound))
     return {
         name: [right, wrong] if sound == 0 else [wrong, right],
         "estimator_selector_status": [{"timestamp": T_US, "primary_instance": numbers}],
-        "sensor_selection": [{"timestamp": T_US[:1], "accel_device_id": np.array([77])}],
+        selector: [{"timestamp": T_US[:1], **{stated: np.array([77]) for stated in STATED[selector]}}],
     }
 
 
@@ -40,6 +52,20 @@ def test_a_log_with_two_instances_swapped_is_read_as_its_twin(name, read_as):
     first, swapped = (as_flown(topics(name, sound))[0][read_as][0] for sound in (0, 1))
     assert first["value"].tolist() == swapped["value"].tolist() == instance(1.0, 0)["value"].tolist()
     assert first["timestamp"].tolist() == swapped["timestamp"].tolist()
+
+
+@pytest.mark.parametrize(
+    ("name", "selector"),
+    [
+        ("sensor_accel", "sensors_status_imu"),
+        ("vehicle_air_data", "sensor_selection"), ("vehicle_air_data", "sensors_status_baro"),
+    ],
+)  # fmt: skip
+def test_the_device_that_a_topic_names_flew(name, selector):
+    for sound in (0, 1):
+        flown, said = as_flown(topics(name, sound, selector))
+        assert flown[name][0]["value"].tolist() == instance(1.0, 0)["value"].tolist()
+        assert any("instance 1 flew" in text and "Estimator" not in text for text in said) == bool(sound)
 
 
 def test_a_change_of_the_estimator_is_said_with_its_time_and_read_from_then_on():
