@@ -73,12 +73,12 @@ class Elevator:
     @property
     def is_calibrated(self) -> bool:
         """Whether the file gives a calibration for every output of the elevator."""
-        return self.calibration is not None or any(one.calibration for one in self.outputs)
+        return self.calibration is not None or any(output.calibration for output in self.outputs)
 
     @property
     def ends_deg(self) -> tuple[float, float] | None:
         """Lowest and highest deflection of the calibration, deg. None without a calibration."""
-        calibrations = [(one.weight, one.calibration) for one in self.outputs if one.calibration]
+        calibrations = [(output.weight, output.calibration) for output in self.outputs if output.calibration]
         if self.calibration:
             calibrations = [(1.0, self.calibration)]
         if not calibrations:

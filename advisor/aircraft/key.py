@@ -76,14 +76,14 @@ def keys_of(section: type, path: str = "") -> tuple[Key, ...]:
 
 def _keys_of(section: type, path: str) -> Iterator[Key]:
     hints = get_type_hints(section, include_extras=True)
-    for one in fields(section):
-        at = f"{path}.{one.name}" if path else one.name
-        inner, listed = section_in(hints[one.name])
+    for attribute in fields(section):
+        at = f"{path}.{attribute.name}" if path else attribute.name
+        inner, listed = section_in(hints[attribute.name])
         if inner is not None:
             yield from keys_of(inner, f"{at}[]" if listed else at)
-        elif get_origin(hints[one.name]) is Annotated:
-            hint, key = get_args(hints[one.name])
-            made = one.default if one.default_factory is MISSING else one.default_factory()
+        elif get_origin(hints[attribute.name]) is Annotated:
+            hint, key = get_args(hints[attribute.name])
+            made = attribute.default if attribute.default_factory is MISSING else attribute.default_factory()
             made = REQUIRED if made is MISSING else made
             yield replace(key, path=at, hint=hint, default=made)
 
@@ -100,8 +100,8 @@ def sections_of(section: type, path: str = "") -> Iterator[tuple[str, type]]:
     """Yield a section with its path, then the sections within, in the order of the file."""
     yield path, section
     hints = get_type_hints(section)
-    for one in fields(section):
-        inner, listed = section_in(hints[one.name])
+    for attribute in fields(section):
+        inner, listed = section_in(hints[attribute.name])
         if inner is not None:
-            at = f"{path}.{one.name}" if path else one.name
+            at = f"{path}.{attribute.name}" if path else attribute.name
             yield from sections_of(inner, f"{at}[]" if listed else at)

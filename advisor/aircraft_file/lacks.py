@@ -138,13 +138,13 @@ def contradicted(findings: Iterable[InstrumentFinding]) -> list[Lack]:
     """Return the keys that the motion of a log contradicts, with the sentences of the analysis."""
     return [
         Lack(
-            f"{one.channel}.{_OF_QUANTITY.get(one.quantity, one.quantity)}",
-            f"{one.sentence}.",
-            one.fix or "see the sentence above",
+            f"{finding.channel}.{_OF_QUANTITY.get(finding.quantity, finding.quantity)}",
+            f"{finding.sentence}.",
+            finding.fix or "see the sentence above",
             wrong=True,
         )
-        for one in findings
-        if one.contradicts
+        for finding in findings
+        if finding.contradicts
     ]
 
 

@@ -59,7 +59,7 @@ def aircraft_text(draft: Draft) -> str:
 
 def _outputs(outputs: Sequence[Mapping[str, Any]], comments: Mapping[str, str]) -> list[str]:
     lines = _commented(comments.get("elevator.outputs", "Each output with its own calibration."), "  ")
-    return [*lines, "  outputs:", *(f"    - {_inline(one)}" for one in outputs)]
+    return [*lines, "  outputs:", *(f"    - {_inline(output)}" for output in outputs)]
 
 
 def _entry(key: Key, indent: str, draft: Draft) -> list[str]:

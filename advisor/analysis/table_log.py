@@ -53,14 +53,14 @@ def as_in_tables(aircraft: Aircraft, logs: Sequence[Path]) -> Aircraft:
         Some logs are tables and some are not, or the aircraft file names a column that a table lacks.
     """
     surfaces = [_surfaces_in(log, aircraft.columns or TableColumns()) for log in logs]
-    tables = [one for one in surfaces if one is not None]
+    tables = [surface for surface in surfaces if surface is not None]
     if not tables:
         return aircraft
     if len(tables) < len(logs):
         raise ConfigurationError(
             "Some logs are tables of deflections and some carry servo outputs: analyze them in two commands."
         )
-    return with_outputs(aircraft, tuple(name for name in SURFACES if any(name in one for one in tables)))
+    return with_outputs(aircraft, tuple(name for name in SURFACES if any(name in table for table in tables)))
 
 
 def _surfaces_in(log: Path, columns: TableColumns) -> frozenset[str] | None:

@@ -19,7 +19,7 @@ from advisor.oem.estimate import Estimate
 
 def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
     """Return flights, oldest first if all usable ones have dates, else in the given order."""
-    if not all(SINCE_1970_S <= one.began_s < inf for one in results if one.usable):
+    if not all(SINCE_1970_S <= result.began_s < inf for result in results if result.usable):
         return list(results)
     return sorted(results, key=lambda one: one.began_s if one.usable else inf)
 

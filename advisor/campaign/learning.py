@@ -64,12 +64,12 @@ def learnt(
     )
 
 
-def _is_no_news(used: FoundInstruments, found: FoundInstruments) -> bool:
+def _is_no_news(used: FoundInstruments, found_instruments: FoundInstruments) -> bool:
     """Return whether the values in use lie within the new standard deviations, and are similarly certain."""
-    if used.names != found.names:
+    if used.names != found_instruments.names:
         return False
-    near = np.abs(found.values - used.values) <= found.std
-    return bool(np.all(near & (used.std <= MUCH_SURER * found.std)))
+    near = np.abs(found_instruments.values - used.values) <= found_instruments.std
+    return bool(np.all(near & (used.std <= MUCH_SURER * found_instruments.std)))
 
 
 def of_another_power_on(aircraft: Aircraft) -> Aircraft:

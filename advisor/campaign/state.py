@@ -60,7 +60,7 @@ class AxisState(Generic[E]):
     @property
     def is_accepted(self) -> bool:
         """Whether any manoeuvre is accepted."""
-        return any(one.verdict.accepted for one in self.maneuvers)
+        return any(judged.verdict.accepted for judged in self.maneuvers)
 
 
 LateralState = AxisState[LateralEstimate]

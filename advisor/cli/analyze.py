@@ -114,7 +114,7 @@ def command(
     if state is None or not usable:
         return UNUSABLE
     outcomes = write_exports(orders, partial(_flown_model, state, aircraft))
-    return USAGE if any(one.problem for one in outcomes) else 0
+    return USAGE if any(outcome.problem for outcome in outcomes) else 0
 
 
 def _flown_model(state: "CampaignState", aircraft: "Aircraft") -> "FlownModel":

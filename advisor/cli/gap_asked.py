@@ -86,7 +86,7 @@ class GapAsked:
         else:
             for one in answers:
                 one.show()
-        return max(one.code for one in answers)
+        return max(answer.code for answer in answers)
 
     def improved(self, improves: bool, make: Callable[[], FlownModel]) -> Path | None:
         """Write the improved aircraft file that was asked for, or say why not; return the written file."""

@@ -77,18 +77,18 @@ def write_exports(
 
 
 def _said(outcomes: "list[ExportOutcome]") -> "list[ExportOutcome]":
-    for one in outcomes:
-        missing = f"; it does not carry: {', '.join(one.left_out)}" if one.left_out else ""
-        files = ", ".join(printable(str(file)) for file in one.order.files)
-        click.echo(one.problem or f"{files}: written ({one.order.format}){missing}.", err=True)
+    for outcome in outcomes:
+        missing = f"; it does not carry: {', '.join(outcome.left_out)}" if outcome.left_out else ""
+        files = ", ".join(printable(str(file)) for file in outcome.order.files)
+        click.echo(outcome.problem or f"{files}: written ({outcome.order.format}){missing}.", err=True)
     return outcomes
 
 
 def listed(outcomes: "Sequence[ExportOutcome]") -> list[dict[str, Any]]:
     """Return the value of ``exports`` in the JSON document: the files written."""
     return [
-        {"format": one.order.format, "file": str(file), "left_out": list(one.left_out)}
-        for one in outcomes
-        if not one.problem
-        for file in one.order.files
+        {"format": outcome.order.format, "file": str(file), "left_out": list(outcome.left_out)}
+        for outcome in outcomes
+        if not outcome.problem
+        for file in outcome.order.files
     ]

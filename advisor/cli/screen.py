@@ -158,6 +158,6 @@ def so_far(state: "CampaignState") -> Iterator[str]:
     yield from map(maneuver_line, state.maneuvers)
     if state.lateral is not None and lateral:
         yield "Roll and yaw"
-        yield from (maneuver_line(one, SIDE_ROOM) for one in state.lateral.maneuvers)
+        yield from (maneuver_line(maneuver, SIDE_ROOM) for maneuver in state.lateral.maneuvers)
     if state.maneuvers or lateral:
         yield from decisions(state, pitch=bool(state.maneuvers))

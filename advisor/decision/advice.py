@@ -55,17 +55,17 @@ def next_input(
     return NextInput(f"next: {spoken}", remaining, held_by, chosen)
 
 
-def _choose(conditions: Conditions, known: Knowledge, plan: CampaignPlan) -> Choice | None:
-    std = np.sqrt(known.widening * np.diag(conditions.last_covariance))
-    return best_input(conditions, std, lambda expected: _distance_to_stop(expected, plan, known))
+def _choose(conditions: Conditions, knowledge: Knowledge, plan: CampaignPlan) -> Choice | None:
+    std = np.sqrt(knowledge.widening * np.diag(conditions.last_covariance))
+    return best_input(conditions, std, lambda expected: _distance_to_stop(expected, plan, knowledge))
 
 
-def _distance_to_stop(covariance: FloatArray, plan: CampaignPlan, known: Knowledge) -> float:
+def _distance_to_stop(covariance: FloatArray, plan: CampaignPlan, knowledge: Knowledge) -> float:
     """Return the distance to the stop after one more manoeuvre with these errors; smaller is better."""
     if plan.rule == "information":
-        return share_after(known, covariance, 1)
+        return share_after(knowledge, covariance, 1)
     std = np.sqrt(np.diag(covariance))
-    size = np.maximum(np.abs(known.posterior.theta), known.posterior.std)
+    size = np.maximum(np.abs(knowledge.posterior.theta), knowledge.posterior.std)
     return float(np.linalg.norm(std / size))
 
 
@@ -85,12 +85,12 @@ def forecast(history: Sequence[CandidateManeuver], course: CriterionCourse) -> R
     return by_scatter(members, known.posterior, np.sqrt(np.diag(as_flown)), plan, passing)
 
 
-def _held_by(history: Sequence[CandidateManeuver], plan: CampaignPlan, known: Knowledge) -> str:
+def _held_by(history: Sequence[CandidateManeuver], plan: CampaignPlan, knowledge: Knowledge) -> str:
     if plan.rule != "information":
         members = window(accepted_estimates(history, plan.rule, plan), plan)
         if members is not None:
             return scattered_most(members, plan.criterion)
-    return known.holding_back
+    return knowledge.holding_back
 
 
 def _first_input(aircraft: Aircraft, history: Sequence[CandidateManeuver]) -> NextInput:

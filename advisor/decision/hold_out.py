@@ -73,7 +73,7 @@ def predict_last(usable: Sequence[CandidateManeuver]) -> Mapping[str, PredictedO
 
 
 def _output(
-    fit: ChannelFit, scale: float, begun_s: float, known: Shared, predicted: Response, alone: Response
+    fit: ChannelFit, scale: float, begun_s: float, shared: Shared, predicted: Response, alone: Response
 ) -> PredictedOutput:
     k = PREDICTED.index(fit.name)
     after_s = fit.t - begun_s
@@ -81,7 +81,7 @@ def _output(
     after_s = after_s[seen]
     other = np.interp(after_s, predicted.after_s, predicted.values[k])
     other -= np.interp(after_s, alone.after_s, alone.values[k])
-    band = half_widths(predicted.slopes[k], known.covariance)
+    band = half_widths(predicted.slopes[k], shared.covariance)
     half = scale * np.interp(after_s, predicted.after_s, band)
     return PredictedOutput(
         t=fit.t[seen],

@@ -78,7 +78,7 @@ class Examined:
     @property
     def rates(self) -> Mapping[str, Response]:
         """Response of the angular rate to each control, by the control in the pilot's hand."""
-        return {one.handle: one for one in reversed(self.responses)}
+        return {response.handle: response for response in reversed(self.responses)}
 
 
 def objections(x: Examined) -> tuple[Reason, ...]:
@@ -200,18 +200,18 @@ def _badly_explained(x: Examined, estimate: Estimate, first: str) -> list[Reason
     """
     # In moving air the angle of attack of a vane shows the air, which no model of the aircraft explains.
     reasons = []
-    for one in x.responses:
-        fit = estimate.fits[0].get(one.output)
-        if fit is None or (one.output == "alpha" and estimate.filtered):
+    for response in x.responses:
+        fit = estimate.fits[0].get(response.output)
+        if fit is None or (response.output == "alpha" and estimate.filtered):
             continue
         explained = explained_share(fit)
-        if explained < one.least_r2:
-            shown, limit = distinct_texts(100.0 * max(0.0, explained), 100.0 * one.least_r2)
+        if explained < response.least_r2:
+            shown, limit = distinct_texts(100.0 * max(0.0, explained), 100.0 * response.least_r2)
             moving = estimate.gust_rad is not None
             steady = "" if first == _STEADY else f", {_STEADY}"
             cure = "fly it in calmer air" if moving else f"{first}{steady}, calm air"
-            text = f"the model explains {shown} % of {one.said} (at least {limit}); {cure}"
-            reasons.append(Reason("turbulence" if moving else "fit", text, explained, one.least_r2))
+            text = f"the model explains {shown} % of {response.said} (at least {limit}); {cure}"
+            reasons.append(Reason("turbulence" if moving else "fit", text, explained, response.least_r2))
     return reasons
 
 

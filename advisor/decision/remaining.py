@@ -49,7 +49,7 @@ end of the test is in sight."""
 _DRAWS = 400
 
 
-def by_information(known: Knowledge, next_covariance: FloatArray, odds: Odds) -> Remaining:
+def by_information(knowledge: Knowledge, next_covariance: FloatArray, odds: Odds) -> Remaining:
     """Return the simulated number of further manoeuvres until every tolerance is met and the newest one is
     predicted.
 
@@ -58,8 +58,8 @@ def by_information(known: Knowledge, next_covariance: FloatArray, odds: Odds) ->
     next_covariance
         Shape (8, 8): covariance of the expected errors of each further manoeuvre.
     """
-    good = 1 if np.isnan(known.surprise) or not known.predicted else 0
-    while good <= MOST and share_after(known, next_covariance, good) >= 1.0:
+    good = 1 if np.isnan(knowledge.surprise) or not knowledge.predicted else 0
+    while good <= MOST and share_after(knowledge, next_covariance, good) >= 1.0:
         good += 1
     if good > MOST:
         return Remaining(None, None)
@@ -105,21 +105,21 @@ def _told(flights: FloatArray | IntArray) -> Remaining:
     return Remaining(within[0], within[1])
 
 
-def share_after(known: Knowledge, next_covariance: FloatArray, more: int) -> float:
+def share_after(knowledge: Knowledge, next_covariance: FloatArray, more: int) -> float:
     """Return the largest uncertainty over its tolerance after ``more`` manoeuvres of ``next_covariance``.
 
     Trims and constants belong to each manoeuvre, so only their variances add up.
     """
     inside = np.ix_(DERIVATIVES, DERIVATIVES)
-    information = known.posterior.information + more * information_of(next_covariance[inside])
+    information = knowledge.posterior.information + more * information_of(next_covariance[inside])
     covariance = covariance_of(information)
     with np.errstate(divide="ignore", invalid="ignore"):
-        own = np.diag(known.posterior.covariance)
+        own = np.diag(knowledge.posterior.covariance)
         variance = 1.0 / (1.0 / own + more / np.diag(next_covariance))
         variance[list(DERIVATIVES)] = np.diag(covariance)
-        variance += np.diag(known.posterior.common)
-        half = np.nan_to_num(NORMAL_95 * np.sqrt(variance) / known.tolerance, nan=np.inf)
-    return max(known.shares_with(known.prediction.percent(covariance), half).values(), default=np.inf)
+        variance += np.diag(knowledge.posterior.common)
+        half = np.nan_to_num(NORMAL_95 * np.sqrt(variance) / knowledge.tolerance, nan=np.inf)
+    return max(knowledge.shares_with(knowledge.prediction.percent(covariance), half).values(), default=np.inf)
 
 
 def by_scatter(

@@ -29,10 +29,10 @@ def as_flown(assumed: Assumed, maneuvers: Sequence[Maneuver], joint: Estimate) -
     """
     newest = maneuvers[-NEWEST:]
     singles = [one for m in newest if isinstance(one := estimate(m, assumed.aircraft), Estimate)] or [joint]
-    noise = {name: _median([one.fits[0][name].noise for one in singles if name in one.fits[0]])
+    noise = {name: _median([single.fits[0][name].noise for single in singles if name in single.fits[0]])
              for name in singles[-1].fits[0]}  # fmt: skip
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratios = np.array([one.std / one.std_cr for one in singles])
+        ratios = np.array([single.std / single.std_cr for single in singles])
     colour = np.maximum(1.0, np.median(np.where(np.isfinite(ratios), ratios, 1.0), axis=0))
     amplitudes = [0.5 * float(np.degrees(np.ptp(flown_values(m, "elevator")))) for m in newest]
     return replace(

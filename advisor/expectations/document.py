@@ -20,6 +20,6 @@ def expect_document(
         "problems": plain(problems),
         "log": log,
         "file": file,
-        "holds": None if problems else all(one.holds for one in outcomes),
-        "expectations": [picked(one, "name asked found holds") for one in outcomes],
+        "holds": None if problems else all(outcome.holds for outcome in outcomes),
+        "expectations": [picked(outcome, "name asked found holds") for outcome in outcomes],
     }

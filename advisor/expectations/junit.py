@@ -17,7 +17,7 @@ def junit(log: str, file: str, outcomes: Sequence[Outcome], problems: Sequence[P
     problems
         Reasons why the log cannot be used; then there are no outcomes.
     """
-    failures = sum(not one.holds for one in outcomes)
+    failures = sum(not outcome.holds for outcome in outcomes)
     tests = len(outcomes) + bool(problems)
     counts: dict[str, str] = {
         "tests": str(tests),

@@ -136,11 +136,11 @@ def instruments(estimate: Estimate | None) -> dict[str, Any]:
     return {x.name: picked(x, "value std") for x in (estimate.instruments if estimate else ())}
 
 
-def instrument_document(found: InstrumentFinding) -> dict[str, Any]:
+def instrument_document(finding: InstrumentFinding) -> dict[str, Any]:
     """Return the document part about one instrument finding."""
     return {
-        **picked(found, "code channel quantity stated contradicts used text fix"),
-        "found": picked(found, "value std"),
+        **picked(finding, "code channel quantity stated contradicts used text fix"),
+        "found": picked(finding, "value std"),
     }
 
 

@@ -172,15 +172,15 @@ def _of_the_simulator(d: Diagnosis) -> dict[str, Any]:
     }
 
 
-def changed_document(one: ComparedDerivative) -> dict[str, Any]:
+def changed_document(derivative: ComparedDerivative) -> dict[str, Any]:
     """Return the document part about one derivative, with the simulator's and the flight's value."""
     return {
-        "text": changed(one),
-        "derivative": one.name,
-        "simulator": one.given,
-        "found": one.found.value,
-        "ci95": [one.found.value - one.half, one.found.value + one.half],
-        "percent": one.percent,
+        "text": changed(derivative),
+        "derivative": derivative.name,
+        "simulator": derivative.given,
+        "found": derivative.found.value,
+        "ci95": [derivative.found.value - derivative.half, derivative.found.value + derivative.half],
+        "percent": derivative.percent,
     }
 
 
@@ -209,19 +209,19 @@ def cause_document(c: Cause) -> dict[str, Any]:
     return {**said, "text": ", ".join(sizes_of(c.parameters)), "in_model": c.present, **placed}
 
 
-def _evidence(one: AlternativeEvidence) -> dict[str, Any]:
+def _evidence(evidence: AlternativeEvidence) -> dict[str, Any]:
     return {
-        "alternative": one.alternative.label, **picked(one.alternative, "kind name block"),
-        "text": in_words(one.alternative),
-        "probability": one.probability,
-        "columns": [picked(column, "name value unit") for column in one.columns],
+        "alternative": evidence.alternative.label, **picked(evidence.alternative, "kind name block"),
+        "text": in_words(evidence.alternative),
+        "probability": evidence.probability,
+        "columns": [picked(column, "name value unit") for column in evidence.columns],
     }  # fmt: skip
 
 
-def _in_simulator(found: InSimulator | None) -> Any:
-    if found is None or found.after is None:
+def _in_simulator(in_simulator: InSimulator | None) -> Any:
+    if in_simulator is None or in_simulator.after is None:
         return None
-    return picked(found, "before after percent on_paper maneuvers after_air_and_instruments")
+    return picked(in_simulator, "before after percent on_paper maneuvers after_air_and_instruments")
 
 
 def _qualification(q: Qualification) -> dict[str, Any]:

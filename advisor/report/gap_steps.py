@@ -129,7 +129,7 @@ def _to_put(d: Diagnosis) -> str:
     if not d.improves:
         return ""
     effects = [f"{spelled(c.effect)} {', '.join(sizes_of(c.parameters))}" for c in _effects_of(d)]
-    numbers = [changed(one) for one in d.derivatives if one.differs]
+    numbers = [changed(derivative) for derivative in d.derivatives if derivative.differs]
     in_air = any(c.present and c.block == "air" for c in d.causes)
     return ", ".join(effects or numbers) or ("" if in_air else "the fitted derivatives")
 

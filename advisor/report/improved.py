@@ -67,7 +67,7 @@ def text_of(content: Mapping[str, Any]) -> str:
 def improved_name(diagnosis: Diagnosis, aircraft_file: str | None) -> str:
     """Return the file name ``<aircraft>-with-<effect>.yaml``."""
     stem = Path(aircraft_file).stem if aircraft_file is not None else "aircraft"
-    first = next((one.effect for one in diagnosis.causes if one.present), "fitted-model")
+    first = next((cause.effect for cause in diagnosis.causes if cause.present), "fitted-model")
     return f"{stem}-with-{first.replace('_', '-')}.yaml"
 
 

@@ -92,9 +92,9 @@ def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
     }
 
 
-def level_document(found: LevelFound) -> dict[str, Any]:
+def level_document(level: LevelFound) -> dict[str, Any]:
     """Return a level, and the range of levels within the 95 % interval."""
-    return {"level": found.level, "levels_within_ci95": [found.best_level, found.worst_level]}
+    return {"level": level.level, "levels_within_ci95": [level.best_level, level.worst_level]}
 
 
 def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient]) -> Iterator[str]:

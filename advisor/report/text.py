@@ -26,9 +26,9 @@ def activity_line(activity: Activity) -> str:
     return f" -  {clock(activity.start_s):>7}  to {clock(activity.end_s):<12}  {activity.text}"
 
 
-def instrument_lines(found: Iterable[InstrumentFinding]) -> list[str]:
+def instrument_lines(findings: Iterable[InstrumentFinding]) -> list[str]:
     """Return one line for each instrument contradiction, with its remedy."""
-    return [f"{'!' if f.used else '✗'} {f.sentence}. -> {f.fix}." for f in found if f.contradicts]
+    return [f"{'!' if f.used else '✗'} {f.sentence}. -> {f.fix}." for f in findings if f.contradicts]
 
 
 def caution_lines(maneuvers: Sequence[JudgedManeuver]) -> list[str]:
@@ -98,7 +98,7 @@ class AnalysisText:
         if side is None or not side.maneuvers:
             return
         yield from (Text(), Text("Roll and yaw", style="bold"))
-        yield from (Text(maneuver_line(one, SIDE_ROOM)) for one in side.maneuvers)
+        yield from (Text(maneuver_line(maneuver, SIDE_ROOM)) for maneuver in side.maneuvers)
         joint = joint_table(side, self.aircraft.model)
         if side.model is not None and joint is not None:
             yield Text()

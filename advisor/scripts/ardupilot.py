@@ -104,9 +104,9 @@ def _pairs(pairs: Iterable[tuple[float, float]]) -> str:
 
 def _stated(outputs: Iterable[StatedOutput]) -> str:
     return ", ".join(
-        f"{{n = {one.output}, factor = {one.factor:g}, "
-        f"us_deg = {_pairs(sorted(one.calibration)) if one.calibration else 'nil'}}}"
-        for one in outputs
+        f"{{n = {output.output}, factor = {output.factor:g}, "
+        f"us_deg = {_pairs(sorted(output.calibration)) if output.calibration else 'nil'}}}"
+        for output in outputs
     )
 
 

@@ -24,10 +24,10 @@ def agreeing(found: Diagnosis, logged: Estimate | NoEstimate) -> Diagnosis:
         return found
     told = zip(logged.names, logged.theta.tolist(), logged.std.tolist(), strict=True)
     others = {name: Value(x, std) for name, x, std in told if name not in logged.not_identifiable}
-    shared = [one.name for one in found.derivatives if one.name in others]
+    shared = [derivative.name for derivative in found.derivatives if derivative.name in others]
     model = {**found.model, **{name: found.model[name].agreeing(others[name]) for name in shared}}
     wider = [PARAMETERS[name].symbol for name in shared if model[name] != found.model[name]]
-    derivatives = tuple(replace(one, found=model[one.name]) for one in found.derivatives)
+    derivatives = tuple(replace(derivative, found=model[derivative.name]) for derivative in found.derivatives)
     said = f"The intervals of {', '.join(wider)} contain those of advisor analyze, which lie elsewhere."
     notes = (*found.notes, *([said] if wider else []))
     return replace(found, model=model, derivatives=derivatives, notes=notes)

@@ -96,12 +96,12 @@ def _as_replay(maneuver: Maneuver) -> Replay | None:
     return Replay(t - t[0], alpha, channels["q"].y, theta, a_z, airspeed, np.zeros(t.size))
 
 
-def _identified(name: str, found: Diagnosis, maneuvers: Sequence[Maneuver]) -> tuple[str, ...]:
+def _identified(name: str, diagnosis: Diagnosis, maneuvers: Sequence[Maneuver]) -> tuple[str, ...]:
     numbers = ", ".join(
-        f"{n} {found.model[n].value:.3g} ± {NORMAL_95 * found.model[n].std:.2g}" for n in DERIVATIVES
+        f"{n} {diagnosis.model[n].value:.3g} ± {NORMAL_95 * diagnosis.model[n].std:.2g}" for n in DERIVATIVES
     )
     notes = [f"Of the simulator, {len(maneuvers)} manoeuvres in {name} show {numbers}."]
-    for cause in (c for c in found.causes if c.present):
+    for cause in (c for c in diagnosis.causes if c.present):
         sizes = ", ".join(f"{n} {v.value:.3g} ± {NORMAL_95 * v.std:.2g}" for n, v in cause.parameters.items())
         notes.append(f"The simulator has {spelled(cause.effect)} of its own: {sizes}.")
     return tuple(notes)

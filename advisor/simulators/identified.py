@@ -55,12 +55,12 @@ def odd_part(one: Replay, other: Replay, name: str, t: FloatArray) -> FloatArray
     return half
 
 
-def identified_pitch(one: Replay, other: Replay, t: FloatArray, elevator: FloatArray) -> IdentifiedPitch:
+def identified_pitch(replay: Replay, other: Replay, t: FloatArray, elevator: FloatArray) -> IdentifiedPitch:
     """Return derivatives, lag and dead time with their standard deviations.
 
     Parameters
     ----------
-    one, other
+    replay, other
         Flights with ``elevator`` and with its opposite.
     t, elevator
         Shape (n,): middle times of the input's steps, s, and the elevator's deflection in each step, rad.
@@ -70,7 +70,7 @@ def identified_pitch(one: Replay, other: Replay, t: FloatArray, elevator: FloatA
     UnusableInputError
         No linear model describes the flights.
     """
-    fit = _PitchFit(one, other, t, elevator)
+    fit = _PitchFit(replay, other, t, elevator)
     best = None
     for lag_s, delay_s in product(_STARTS_S, _STARTS_S):
         start = np.array([*fit.regressed(delay_s), lag_s, delay_s])
@@ -199,7 +199,7 @@ def _flown(a: FloatArray, b: FloatArray, inputs: FloatArray, h: float) -> FloatA
     return flown
 
 
-def identified_side(one: Replay, other: Replay, t: FloatArray, moved: FloatArray) -> dict[str, Value]:
+def identified_side(replay: Replay, other: Replay, t: FloatArray, moved: FloatArray) -> dict[str, Value]:
     """Return L and N by sideslip, rates and control (named ``u``), with standard deviations.
 
     Parameters
@@ -207,9 +207,9 @@ def identified_side(one: Replay, other: Replay, t: FloatArray, moved: FloatArray
     t, moved
         Shape (n,): middle times of the input's steps, s, and the control's deflection in each step, rad.
     """
-    h = float(np.median(np.diff(one.t)))
-    grid = np.arange(0.0, min(one.t[-1], t[-1]), h)
-    x = np.column_stack([odd_part(one, other, name, grid) for name in _STATES])
+    h = float(np.median(np.diff(replay.t)))
+    grid = np.arange(0.0, min(replay.t[-1], t[-1]), h)
+    x = np.column_stack([odd_part(replay, other, name, grid) for name in _STATES])
     area = np.concatenate([[0.0], np.cumsum(moved * (t[1] - t[0]))])
     ends = np.arange(len(area)) * (t[1] - t[0])
     mean = np.diff(np.interp(grid, ends, area)) / h

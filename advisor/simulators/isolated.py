@@ -245,13 +245,13 @@ def _plain(replay: Any) -> tuple[dict[str, list[float] | None], dict[str, float]
 def _columns(replay: Any) -> dict[str, list[float] | None]:
     """Return the checked series of a replay as plain numbers."""
     rows: dict[str, list[float] | None] = {}
-    for one in fields(Replay):
-        if one.name == "trim":
+    for attribute in fields(Replay):
+        if attribute.name == "trim":
             continue
-        row = getattr(replay, one.name, None)
-        if row is None and one.name not in _OPTIONAL:
-            raise _NoReplayError(f"its replay has no {one.name}")
-        rows[one.name] = None if row is None else _finite(row, one.name)
+        row = getattr(replay, attribute.name, None)
+        if row is None and attribute.name not in _OPTIONAL:
+            raise _NoReplayError(f"its replay has no {attribute.name}")
+        rows[attribute.name] = None if row is None else _finite(row, attribute.name)
     lengths = {len(row) for row in rows.values() if row is not None}
     if len(lengths) != 1 or min(lengths) < 2:
         raise _NoReplayError(f"its replay's channels need equal lengths of at least 2, not {sorted(lengths)}")

@@ -46,14 +46,14 @@ class _Tried:
 def trim(
     flight: JsbsimFlight,
     condition: Condition,
-    known: SteadyState | None = None,
+    steady_state: SteadyState | None = None,
     near: SteadyState | None = None,
 ) -> SteadyState:
     """Trim the aircraft in steady flight, held still, and return its state.
 
     Parameters
     ----------
-    known
+    steady_state
         Earlier trim of the condition, whose throttle is kept while the engines settle again.
     near
         Trim of a neighbouring condition, at which the search starts.
@@ -64,8 +64,8 @@ def trim(
         No angle of attack and elevator balance the aircraft at the condition.
     """
     flight.begin(condition)
-    tried = [_steady(flight, condition, known or near or SteadyState())]
-    while known is None and flight.engines and (setting := _next_throttle(tried)) is not None:
+    tried = [_steady(flight, condition, steady_state or near or SteadyState())]
+    while steady_state is None and flight.engines and (setting := _next_throttle(tried)) is not None:
         tried.append(_steady(flight, condition, tried[-1].state._replace(throttle=setting)))
     best = tried[-1]
     state = best.state._replace(axial=-best.excess / FOOT_M * flight.mass_slug)

@@ -227,18 +227,18 @@ def _negative(cause: Cause) -> Cause:
 
 
 def _with_share(
-    known: Sequence[AlternativeEvidence], alternative: Alternative, share: float
+    evidence: Sequence[AlternativeEvidence], alternative: Alternative, share: float
 ) -> tuple[AlternativeEvidence, ...]:
     """Return the evidence with more probability for one alternative, and proportionally less for the others.
 
     The likeliest alternative is first.
     """
-    scale = (1.0 - share) / max(sum(one.probability for one in known), _IMPOSSIBLE)
-    others = [replace(one, probability=scale * one.probability) for one in known]
-    mine = next((one for one in others if one.alternative == alternative), None)
+    scale = (1.0 - share) / max(sum(one.probability for one in evidence), _IMPOSSIBLE)
+    others = [replace(one, probability=scale * one.probability) for one in evidence]
+    mine = next((other for other in others if other.alternative == alternative), None)
     mine = mine or AlternativeEvidence(alternative, (), 0.0)
     more = replace(mine, probability=mine.probability + share)
-    rest = [one for one in others if one.alternative != alternative]
+    rest = [other for other in others if other.alternative != alternative]
     return tuple(sorted([more, *rest], key=lambda one: -one.probability))
 
 

@@ -54,7 +54,7 @@ def _shortened(found: Examined, most: int) -> Examined:
     gone, models = found.named[most:], found.findings.models[: most + 1]
     left = {effect: sizes for effect, sizes in found.diagnosis.effects.items() if effect not in gone}
     causes = tuple(
-        replace(one, present=one.present and one.effect not in gone) for one in found.diagnosis.causes
+        replace(cause, present=cause.present and cause.effect not in gone) for cause in found.diagnosis.causes
     )
     return replace(
         found,

@@ -73,16 +73,16 @@ def unseen_of(whole: Examined, holdout: int | None) -> UnseenManeuvers | None:
     return UnseenManeuvers(kept, sized_without(whole, [numbers[i] for i in kept])) if kept else None
 
 
-def sized_without(found: Examined, apart: Collection[int]) -> Examined:
+def sized_without(examined: Examined, apart: Collection[int]) -> Examined:
     """Return a diagnosis with derivatives and sizes of effects from fits without some manoeuvres.
 
     The effects themselves are selected on all manoeuvres. ``apart`` holds the numbers of the manoeuvres that
     the fits exclude.
     """
-    problem, diagnosis = found.findings.problem, found.diagnosis
+    problem, diagnosis = examined.findings.problem, examined.diagnosis
     out = [i for i, flight in enumerate(problem.flights.flights) if flight.number in apart]
     models = []
-    for one in found.findings.models:
+    for one in examined.findings.models:
         seen = replace(problem, flights=one.flights or problem.flights)
         models.append(replace(one, fitted=fit(seen, one.fitted.point, one.fitted.noise, aside=out)))
     point = models[-1].fitted.point
@@ -95,7 +95,7 @@ def sized_without(found: Examined, apart: Collection[int]) -> Examined:
             effects[effect] |= {name: size.value for name, size in sizes.items()}
     model = {name: replace(diagnosis.model[name], value=value) for name, value in slopes}
     sized = replace(diagnosis, model={**diagnosis.model, **model}, effects=effects)
-    return replace(found, diagnosis=sized, findings=replace(found.findings, models=tuple(models)))
+    return replace(examined, diagnosis=sized, findings=replace(examined.findings, models=tuple(models)))
 
 
 def as_changed(unseen: UnseenManeuvers, whole: Examined) -> SearchPoint:

@@ -16,7 +16,7 @@ def plain(value: Any) -> Any:
     if isinstance(value, Real):
         return float(value) if isfinite(value) else None
     if is_dataclass(value):
-        return {one.name: plain(getattr(value, one.name)) for one in fields(value)}
+        return {attribute.name: plain(getattr(value, attribute.name)) for attribute in fields(value)}
     if isinstance(value, Mapping):
         return {key: plain(one) for key, one in value.items()}
     return [plain(one) for one in value] if isinstance(value, Iterable) else value

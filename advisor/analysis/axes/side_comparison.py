@@ -181,7 +181,7 @@ def accepted_of(state: CampaignState) -> list[Maneuver]:
     """Return the accepted manoeuvres of aileron and rudder."""
     lateral = state.lateral
     assert lateral is not None
-    accepted = [one.maneuver for one in lateral.maneuvers if one.verdict.accepted]
+    accepted = [judged.maneuver for judged in lateral.maneuvers if judged.verdict.accepted]
     if not accepted:
         raise UnusableInputError(
             "no_accepted",
@@ -200,10 +200,10 @@ def _identified(log: Path, aircraft: Aircraft) -> Aircraft:
     return with_derivatives(aircraft, found, found.airspeed_m_s)
 
 
-def with_derivatives(aircraft: Aircraft, found: Estimate, airspeed_m_s: float | None) -> Aircraft:
+def with_derivatives(aircraft: Aircraft, estimate: Estimate, airspeed_m_s: float | None) -> Aircraft:
     """Return the aircraft file with the identifiable derivatives of an estimate, at a given air speed."""
-    told = zip(SIDE_PARAMETERS, found.theta.tolist(), strict=True)
-    model = {name: value for name, value in told if name not in found.not_identifiable}
+    told = zip(SIDE_PARAMETERS, estimate.theta.tolist(), strict=True)
+    model = {name: value for name, value in told if name not in estimate.not_identifiable}
     return replace(aircraft, model=model, reference_airspeed_m_s=airspeed_m_s)
 
 

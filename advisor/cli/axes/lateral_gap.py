@@ -102,7 +102,7 @@ def lateral_answer(
         if written is not None:
             click.echo(f"The improved simulator is in {printable(str(written))}.")
 
-    return AxisAnswer(document, show, USAGE if any(one.problem for one in outcomes) else 0)
+    return AxisAnswer(document, show, USAGE if any(outcome.problem for outcome in outcomes) else 0)
 
 
 def _prove(

@@ -116,7 +116,7 @@ def _estimates(axis: _Axis) -> FlightTable:
     rows = [
         (number, e, name)
         for number, e in found
-        for name in (*axis.units, *(one.name for one in e.instruments))
+        for name in (*axis.units, *(instrument.name for instrument in e.instruments))
     ]
 
     def told(values: str, *of: int) -> NDArray[np.float64]:

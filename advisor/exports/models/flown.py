@@ -174,22 +174,22 @@ def side_flown(lateral: LateralState | None, aircraft: Aircraft) -> SideModel | 
     return side_of(model, trim_of(joined, model.airspeed_m_s), air, aircraft)
 
 
-def side_of(found: LateralEstimate, trim: Trim, air: AirData, aircraft: Aircraft) -> SideModel:
+def side_of(estimate: LateralEstimate, trim: Trim, air: AirData, aircraft: Aircraft) -> SideModel:
     """Return the roll and yaw model of an estimate, with the air speed and servos from its fit."""
-    told = zip(SIDE_PARAMETERS, found.theta.tolist(), found.std.tolist(), strict=True)
-    excess, _ = found.nuisances.get("airspeed_excess", (0.0, 0.0))
+    told = zip(SIDE_PARAMETERS, estimate.theta.tolist(), estimate.std.tolist(), strict=True)
+    excess, _ = estimate.nuisances.get("airspeed_excess", (0.0, 0.0))
     return SideModel(
-        {name: Value(value, std) for name, value, std in told if name not in found.not_identifiable},
-        found.not_identifiable,
+        {name: Value(value, std) for name, value, std in told if name not in estimate.not_identifiable},
+        estimate.not_identifiable,
         trim,
         replace(air, excess=excess),
-        {name: _servo(found, name, aircraft) for name in LATERAL.inputs},
+        {name: _servo(estimate, name, aircraft) for name in LATERAL.inputs},
     )
 
 
-def _servo(found: LateralEstimate, control: str, aircraft: Aircraft) -> ExportedServo:
+def _servo(estimate: LateralEstimate, control: str, aircraft: Aircraft) -> ExportedServo:
     stated = getattr(aircraft, control)
-    lag_s, _ = found.nuisances.get(f"{control}_lag_s", (stated.lag_s or 0.0, 0.0))
+    lag_s, _ = estimate.nuisances.get(f"{control}_lag_s", (stated.lag_s or 0.0, 0.0))
     return ExportedServo(delay_s=stated.delay_s or 0.0, lag_s=lag_s)
 
 

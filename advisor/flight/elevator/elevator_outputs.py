@@ -40,12 +40,12 @@ def _as_listed(outputs: Sequence[ElevatorOutput], wiring: Wiring) -> Surface | P
         return _as_given(outputs[0].output, outputs[0].calibration, wiring, "as the aircraft file says")
     parts = in_shares(
         Part(
-            one.output,
-            Calibration(one.calibration) if one.calibration else wiring.scale(one.output),
-            one.weight,
-            one.calibration is not None or _has_known_direction(one.output, wiring),
+            output.output,
+            Calibration(output.calibration) if output.calibration else wiring.scale(output.output),
+            output.weight,
+            output.calibration is not None or _has_known_direction(output.output, wiring),
         )
-        for one in outputs
+        for output in outputs
     )
     calibrated = outputs[0].calibration is not None
     halves = {wiring.roles[n] for n in _numbers(parts) if _is_half(n, wiring)}

@@ -74,11 +74,11 @@ def _modes(modes: LateralModes) -> dict[str, Any]:
 
 def side_quality_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
     """Yield the modes, the levels of light aircraft, and the tests of the aircraft file's model."""
-    yield from (f"  {one.name:<18} {one.sentence}" for one in mode_facts(state))
+    yield from (f"  {fact.name:<18} {fact.sentence}" for fact in mode_facts(state))
     levels = [one for one in levels_of(state) if one.group == next(iter(GROUPS))]
     if levels:
         yield f"  {SOURCE}, Classes {levels[0].group}:"
-        yield from (f"    {one.governing.sentence} ({CATEGORIES[one.category]})" for one in levels)
+        yield from (f"    {level.governing.sentence} ({CATEGORIES[level.category]})" for level in levels)
         yield f"  {MANNED}"
     for one in tests_of(state, aircraft):
         mark = "✓" if one.holds else "✗"

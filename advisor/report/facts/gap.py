@@ -79,8 +79,8 @@ def changed(one: ComparedDerivative) -> str:
 
 def changes(derivatives: Sequence[ComparedDerivative]) -> list[str]:
     """Return a line for each derivative that differs, then a line with the agreeing ones."""
-    agree = [_QUANTITIES[one.name].symbol for one in derivatives if not one.differs]
-    lines = [changed(one) for one in derivatives if one.differs]
+    agree = [_QUANTITIES[derivative.name].symbol for derivative in derivatives if not derivative.differs]
+    lines = [changed(derivative) for derivative in derivatives if derivative.differs]
     return [*lines, *([f"{', '.join(agree)} agree{'s' if len(agree) == 1 else ''}"] if agree else [])]
 
 

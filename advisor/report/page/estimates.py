@@ -47,15 +47,15 @@ def estimates(content: Content) -> Iterator[Block]:
         )  # fmt: skip
     yield from regression_table(model, "equation-error")
     alone = {
-        str(one.maneuver.number): {name: of_one(name, one, prior) for name in PARAMETERS}
-        for one in content.state.maneuvers
-        if one.verdict.accepted and isinstance(one.estimate, Estimate)
+        str(judged.maneuver.number): {name: of_one(name, judged, prior) for name in PARAMETERS}
+        for judged in content.state.maneuvers
+        if judged.verdict.accepted and isinstance(judged.estimate, Estimate)
     }
     yield Gallery(tuple(_forest(name, alone, joint) for name in PARAMETERS))
     yield Table(
         "by-maneuver", "Estimate of each accepted manoeuvre alone, ± half the 95 % interval.",
         ("no.", *(QUANTITIES[name].label for name in PARAMETERS)),
-        tuple((n, *(one.cell.replace("± ", _NARROW) for one in rows.values())) for n, rows in alone.items()),
+        tuple((n, *(row.cell.replace("± ", _NARROW) for row in rows.values())) for n, rows in alone.items()),
         frozenset(range(len(PARAMETERS) + 1)),
     )  # fmt: skip
 

@@ -104,9 +104,9 @@ def answer(document: Document) -> Iterator[Block]:
     yield from listing(list(found["limits"]))
 
 
-def shown_causes(found: Document) -> list[Mapping[str, Any]]:
+def shown_causes(document: Document) -> list[Mapping[str, Any]]:
     """Return the causes with a table row: part of the improved simulator, or of a probability above 0 %."""
-    return [cause for cause in found["causes"] if cause["in_model"] or is_shown(cause["probability"])]
+    return [cause for cause in document["causes"] if cause["in_model"] or is_shown(cause["probability"])]
 
 
 def _channel(name: str, size: Mapping[str, Any]) -> tuple[str, ...]:

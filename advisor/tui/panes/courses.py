@@ -84,7 +84,7 @@ drifts shows an aircraft that changes.
 def _small(chart: Chart, x_label: str, *, foot: bool) -> Chart:
     """Remove the names that the pane's frame shows for all plots."""
     series = tuple(replace(one, name="") for one in chart.series)
-    levels = tuple(replace(one, name="") for one in chart.levels)
+    levels = tuple(replace(level, name="") for level in chart.levels)
     return replace(chart, x_label=x_label, foot=foot, series=series, levels=levels)
 
 

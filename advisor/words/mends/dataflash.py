@@ -49,5 +49,5 @@ class Dataflash(Mends):
     def present(self, messages: Sequence[str]) -> str:
         """Return the bits of LOG_BITMASK that log the given records."""
         records = [_RECORDS[message] for message in messages if message in _RECORDS]
-        bits = dict.fromkeys(f"{one.name} by bit {one.bit} ({one.bit_name})" for one in records)
+        bits = dict.fromkeys(f"{record.name} by bit {record.bit} ({record.bit_name})" for record in records)
         return f"set LOG_BITMASK so that these are logged: {', '.join(bits)}; its default, 65535, has all"

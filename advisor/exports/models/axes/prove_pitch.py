@@ -151,7 +151,7 @@ def _improved(
         return replace(better, simulator=aircraft.simulator), ()
     flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, found.effects))
     if kind != "jsbsim":
-        numbers = [one.name for one in found.derivatives if one.differs]
+        numbers = [derivative.name for derivative in found.derivatives if derivative.differs]
         return replace(flown, effects=effects), tuple(numbers)
     given = replace(against, simulator=aircraft.simulator, elevator=aircraft.elevator)
     name = Path(str(aircraft.simulator).partition(":")[2]).stem

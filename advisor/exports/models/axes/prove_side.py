@@ -83,7 +83,7 @@ def prove_side(
 
 
 def _improved(
-    found: LateralEstimate,
+    estimate: LateralEstimate,
     against: Aircraft,
     servos: Aircraft,
     compared: SideCompared,
@@ -94,14 +94,14 @@ def _improved(
     given = compared.aircraft
     kind, _, _ = (given.simulator or "linear").partition(":")
     if kind in ("linear", "log"):
-        speed = found.airspeed_m_s
+        speed = estimate.airspeed_m_s
         read = None if speed is None else air_flown(fitted).read_speed(speed)
-        return replace(with_derivatives(servos, found, read), simulator="linear"), ()
+        return replace(with_derivatives(servos, estimate, read), simulator="linear"), ()
     ahead: dict[str, Any] = {
         name: _ahead(*(getattr(one, name) for one in (given, against, servos))) for name in LATERAL.inputs
     }
     better = replace(given, **ahead)
-    told = zip(SIDE_PARAMETERS, found.theta, found.std, strict=True)
+    told = zip(SIDE_PARAMETERS, estimate.theta, estimate.std, strict=True)
     wrong = tuple(
         n for n, x, std in told if n in against.model and abs(x - against.model[n]) > NORMAL_95 * std
     )
@@ -109,20 +109,20 @@ def _improved(
     if model is None or model.side is None:
         return better, wrong
     file = folder / f"{Path(str(given.simulator).partition(':')[2]).stem}.xml"
-    side = replace(side_of(found, model.side.trim, model.side.air, servos), servos={})
+    side = replace(side_of(estimate, model.side.trim, model.side.air, servos), servos={})
     made = JSBSIM.made(replace(model, pitch=None, side=side), file)
     file.write_text(made.text, encoding="utf-8")
     return replace(better, simulator=f"jsbsim:{file}"), made.left_out
 
 
-def _ahead(given: SideControl, against: SideControl, found: SideControl) -> SideControl:
+def _ahead(given: SideControl, against: SideControl, side_control: SideControl) -> SideControl:
     """Return the servo ahead of a simulator that has ``against`` behind ``given``, for ``found`` in all."""
 
     def less(name: str) -> float:
-        first, own, whole = (getattr(one, name) or 0.0 for one in (given, against, found))
+        first, own, whole = (getattr(one, name) or 0.0 for one in (given, against, side_control))
         return max(first + whole - own, 0.0)
 
-    return given if found == against else replace(given, lag_s=less("lag_s"), delay_s=less("delay_s"))
+    return given if side_control == against else replace(given, lag_s=less("lag_s"), delay_s=less("delay_s"))
 
 
 def stays_of_side(compared: SideCompared, proof: Proof | None) -> SideCompared:

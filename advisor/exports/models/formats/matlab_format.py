@@ -127,10 +127,10 @@ def script_text(improvement: Improvement) -> Exported:
     return Exported(head + "\n".join([*matrices, *between]) + "\n", left)
 
 
-def _valued(path: str, found: Value, unit: str) -> list[str]:
+def _valued(path: str, value: Value, unit: str) -> list[str]:
     """Return the script's statements for a parameter: value, and both ends of its 95 % interval."""
-    half = NORMAL_95 * found.std
+    half = NORMAL_95 * value.std
     return [
-        f"{path}.value = {found.value:.8g};  % {unit}",
-        f"{path}.ci95 = [{found.value - half:.8g}, {found.value + half:.8g}];",
+        f"{path}.value = {value.value:.8g};  % {unit}",
+        f"{path}.ci95 = [{value.value - half:.8g}, {value.value + half:.8g}];",
     ]

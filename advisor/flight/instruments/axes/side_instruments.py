@@ -160,10 +160,10 @@ def _bank_and_rate(work: Work) -> bool:
     return told is None
 
 
-def _signs(work: Work, name: str, told: Evidence, sense: float) -> bool:
+def _signs(work: Work, name: str, evidence: Evidence, sense: float) -> bool:
     """Compare the signs of both parts of the sideslip with ``sense``; return whether they agree."""
-    parts = [told.get(f"{name}_by_{part}") for part in ("weight", "turn")]
-    both = told.get(f"{name}_by_motion")
+    parts = [evidence.get(f"{name}_by_{part}") for part in ("weight", "turn")]
+    both = evidence.get(f"{name}_by_motion")
     wrong = [part is not None and _resolved(part) and part.value * sense < 0.0 for part in (*parts, both)]
     right = [part is not None and _resolved(part) and part.value * sense > 0.0 for part in parts]
     if (wrong[2] and not any(right)) or all(wrong[:2]):
@@ -230,14 +230,14 @@ def _turned(work: Work, channel: str, measured: Measured, told: str) -> None:
     )  # fmt: skip
 
 
-def _side_force_unit(work: Work, told: Evidence) -> None:
+def _side_force_unit(work: Work, evidence: Evidence) -> None:
     """Compare the unit of the side force with a measured sideslip, or with the usual side force."""
     if not work.has("a_y"):
         return
     source = work.channels["a_y"].source
     stated = stated_force_unit(source)
     factors = {unit: size / FORCE_UNITS_M_S2[stated] for unit, size in FORCE_UNITS_M_S2.items()}
-    by_vane, in_g = told.get("beta_by_force"), told.get("a_y_in_g")
+    by_vane, in_g = evidence.get("beta_by_force"), evidence.get("a_y_in_g")
     if by_vane is not None and _resolved(by_vane):
         others = {unit: factor for unit, factor in factors.items() if unit != stated}
         weighed = weigh(by_vane, others, _FORCE_WIDTH)

@@ -115,7 +115,7 @@ class SidePath:
                 watch.onset_s is not None and watch.onset_s <= last_s + TOGETHER_S
                 for watch in self._watches.values()
             )
-        return any(one.span.closed_by in ("gap", "mode change") for one in found.movements)
+        return any(movement.span.closed_by in ("gap", "mode change") for movement in found.movements)
 
     def _released(self, up_to_order: int | None) -> list[FlightEvent]:
         """Remove the first input, and return its event; empty if it is no test input."""

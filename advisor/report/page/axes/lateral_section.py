@@ -88,10 +88,10 @@ def _modes(content: Content, state: LateralState) -> Iterator[Block]:
         )
 
 
-def _test(one: LateralTest) -> tuple[str, ...]:
-    flown, simulated = (f"{value:.3g}".replace("-", "−") for value in (one.flown, one.simulated))
-    holds = "✓" if one.holds else "✗"
-    return one.entry, one.name, flown, simulated, f"± {one.limit:.2g}", one.unit, holds
+def _test(test: LateralTest) -> tuple[str, ...]:
+    flown, simulated = (f"{value:.3g}".replace("-", "−") for value in (test.flown, test.simulated))
+    holds = "✓" if test.holds else "✗"
+    return test.entry, test.name, flown, simulated, f"± {test.limit:.2g}", test.unit, holds
 
 
 _EXPLAINED = (
@@ -104,7 +104,7 @@ _MOST = 6
 
 def lateral_fits(state: LateralState) -> Iterator[Block]:
     """Yield the fits of the accepted manoeuvres: the worst, the best, then others."""
-    found = ((one, one.estimate) for one in state.maneuvers if one.verdict.accepted)
+    found = ((judged, judged.estimate) for judged in state.maneuvers if judged.verdict.accepted)
     in_order = by_fit((one, e) for one, e in found if isinstance(e, LateralEstimate))
     if in_order:
         yield Paragraph(_EXPLAINED)
