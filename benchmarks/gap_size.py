@@ -48,13 +48,13 @@ OF_AN_AXIS = frozenset(
 letter."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
-    "lines of code": 6965,
-    "constants": 221,
+    "lines of code": 7066,
+    "constants": 223,
     "constants that decide": 38,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 16030,
-    "files naming an axis": 114,
+    "lines of estimation": 16131,
+    "files naming an axis": 115,
 }
 """Upper bound of each count."""
 MOST_COMPLEX = 15

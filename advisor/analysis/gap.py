@@ -202,7 +202,7 @@ def compare_flown(
         whole = stays = examine(chosen.maneuvers, at_true_speed, holdout, progress, prior)
         told = whole.diagnosis
         if prior_derivatives(aircraft) is None:
-            told = without_simulator(told)
+            told = without_simulator(told, aircraft)
         elif changes_something(told):
             progress("measuring the shrink on manoeuvres kept apart", 0.9)
             unseen = unseen_of(whole, holdout)

@@ -21,7 +21,7 @@ from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.records.usable import usable_of
-from advisor.gap.result import Diagnosis, spelled
+from advisor.gap.result import Cause, Diagnosis, spelled
 from advisor.gap.search.baseline import at_another_speed, fit_baseline, of_this_flight
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of, true_over_read
 from advisor.gap.uncatalogued.weight_check import weight_reading
@@ -207,10 +207,37 @@ _STATEMENT = (
 )
 
 
-def without_simulator(diagnosis: Diagnosis) -> Diagnosis:
+_KEYS = {
+    "actuator_lag": ("elevator", "lag_s", "s"), "transport_delay": ("elevator", "delay_s", "s"),
+    "alpha_vane_offset": ("alpha", "vane_arm_m", "m"),
+    "accelerometer_offset": ("accelerometer", "arm_m", "m"),
+}  # fmt: skip
+"""Section and key of the aircraft file that states an effect, with the unit, by the effect's name."""
+
+
+def _key_said(cause: Cause, aircraft: Aircraft) -> str:
+    """Return the sentence about an effect that a key of the aircraft file states; empty for another one."""
+    if cause.effect not in _KEYS or len(cause.parameters) != 1:
+        return ""
+    section, key, unit = _KEYS[cause.effect]
+    (size,) = cause.parameters.values()
+    stated = getattr(getattr(aircraft, section), key)
+    value = (stated or 0.0) + size.value
+    half = NORMAL_95 * size.std
+    says = "states no" if stated is None else "says"
+    given = "" if stated is None else f" {stated:g}"
+    return (
+        f"Your file {says} {section}.{key}{given}; this flight says {value:.3f} ± {half:.3f} {unit}. "
+        f"Change: {section}: {{{key}: {value:.3f}}}."
+    )
+
+
+def without_simulator(diagnosis: Diagnosis, aircraft: Aircraft) -> Diagnosis:
     """Return the diagnosis as a statement about the flight alone, without the claim that there is no gap."""
     notes = (_NOT_GIVEN, *diagnosis.notes)
     first = next((c for c in diagnosis.causes if c.present), None)
+    if diagnosis.improves and first is not None and (changed := _key_said(first, aircraft)):
+        return replace(diagnosis, sentence=as_sure(changed, answers_of(diagnosis.evidence)), notes=notes)
     if diagnosis.improves and first is not None:
         sizes = ", ".join(
             f"{name} {v.value:.3g} ± {NORMAL_95 * v.std:.2g}" for name, v in first.parameters.items()

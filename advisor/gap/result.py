@@ -136,6 +136,31 @@ def ranked(scores: Mapping[str, float]) -> tuple[tuple[str, float], ...]:
 
 
 @dataclass(frozen=True, slots=True)
+class MissingLaw:
+    """A force or moment without a name, as a curve over one quantity."""
+
+    equation: str
+    """Letter of the equation in which the law acts: Z or M."""
+    variable: str
+    """Quantity on which the law depends most: q, alpha or delta_e from trim, or t, the time of flight."""
+    share: float
+    """Share of the law's course that the quantity explains."""
+    curve: tuple[tuple[float, float, float], ...]
+    """Quantity, law in 1/s or rad/s², and half the 95 % interval of its mean, at each point of the curve."""
+    coefficient: Value
+    """Coefficient of the formula ``nearest``, SI."""
+    nearest: str
+    """Formula nearest to the curve, next to a line: ``q*abs(q)``; empty over time."""
+    runner_up: str = ""
+    """Formula that comes next."""
+
+    @property
+    def term(self) -> str:
+        """Term to add to the estimate: ``M:q*abs(q)``; empty over time."""
+        return f"{self.equation}:{self.nearest}" if self.nearest else ""
+
+
+@dataclass(frozen=True, slots=True)
 class Shrink:
     """Shrink of the gap on manoeuvres that were held out of the fit.
 
@@ -317,6 +342,8 @@ class Diagnosis(Weighed):
     """Air of the manoeuvres: kind of the air speed, and density; None unless requested."""
     airspeed_excess: float = 0.0
     """Relative excess of the true air speed over the used air speed, from the final model."""
+    missing_law: MissingLaw | None = None
+    """The law that an answer without a name lacks; None for other answers and for other blocks."""
     structured: Estimate | None = None
     """Joint estimate with the parameters that the user holds and the terms that the user adds; None without
     both."""

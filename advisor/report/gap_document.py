@@ -12,6 +12,7 @@ from advisor.gap.result import (
     Diagnosis,
     Gap,
     InSimulator,
+    MissingLaw,
     Qualification,
     Shrink,
     Trace,
@@ -23,7 +24,15 @@ from advisor.process.arrays import FloatArray
 from advisor.process.parts import FailedPart
 from advisor.report.axis_document import terms_of, with_intervals
 from advisor.report.facts.answers import by_flight_alone, title_of
-from advisor.report.facts.gap import changed, grown_said, heading, shrink_said, size_of_gap, where_said
+from advisor.report.facts.gap import (
+    changed,
+    grown_said,
+    heading,
+    law_said,
+    shrink_said,
+    size_of_gap,
+    where_said,
+)
 from advisor.report.facts.reasons import how_sure
 from advisor.report.facts.sizes import sizes_of
 from advisor.report.gap_steps import steps_to_decide
@@ -39,7 +48,7 @@ NOTHING: Mapping[str, Any] = {
     "improved_model": None, "parameters_changed": [], "traces": [], "share_irreducible": None,
     "decisions": [], "simulator": None, "qualification": None, "static": [], "trims": [],
     "probabilities": None, "evidence": [], "why": [], "answer": None, "decided": None,
-    "rival": None, "how_sure": "", "why_heading": "",
+    "rival": None, "missing_law": None, "how_sure": "", "why_heading": "",
 }  # fmt: skip
 """Keys and values of a document without a diagnosis."""
 
@@ -101,6 +110,7 @@ def _of_pitch(d: Diagnosis) -> dict[str, Any]:
             **picked(d.kinematics, "finding lag_s lag_std_s scale"),
             "text": d.kinematics.sentence, "bias_rad": d.kinematics.offset.rad,
         },
+        "missing_law": d.missing_law and missing_law_document(d.missing_law),
         "yardsticks": {c: {"before": a, "after": b} for c, (a, b) in d.yardsticks.items()},
     }  # fmt: skip
 
@@ -113,6 +123,17 @@ def _of_the_sides(d: Diagnosis) -> dict[str, Any]:
         "next": steps_to_decide(d),
         "parameters_compared": [changed_document(one) for one in d.derivatives],
         "peaks": d.peaks or None,
+    }
+
+
+def missing_law_document(law: MissingLaw) -> dict[str, Any]:
+    """Return the document part about the law without a name, SI."""
+    return {
+        "text": law_said(law),
+        **picked(law, "equation variable share nearest runner_up term"),
+        "coefficient": picked(law.coefficient, "value std"),
+        "curve": [[x, y] for x, y, _ in law.curve],
+        "band": [[y - half, y + half] for _, y, half in law.curve],
     }
 
 

@@ -17,7 +17,7 @@ from advisor.gap.verdict.text import answers_of, limits_of
 from advisor.process.installed import SIMULATOR
 from advisor.report.facts.answers import by_flight_alone, title_of
 from advisor.report.facts.estimates import structure_lines
-from advisor.report.facts.gap import changes, grown_said, shrink_said, size_of_gap, where_said
+from advisor.report.facts.gap import changes, grown_said, law_said, shrink_said, size_of_gap, where_said
 from advisor.report.facts.reasons import how_sure
 from advisor.report.facts.sizes import WORSE, short
 from advisor.report.gap_causes import PRESENT, ranking, unseen, why_of
@@ -141,6 +141,8 @@ def _answer(d: Diagnosis) -> Iterator[Text]:
         yield Text(sure)
     if d.verdict == "unknown":
         yield from (Text(note) for note in d.notes if note.startswith(UNEXPLAINED))
+    if d.missing_law is not None:
+        yield Text(law_said(d.missing_law))
     if d.verdict == "parameters":
         yield from (Text(f"  {line}") for line in changes(d.derivatives))
     if d.verdict not in ("none", "untested") and d.gap.after != d.gap.before and d.traces:

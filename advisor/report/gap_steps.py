@@ -67,6 +67,10 @@ def next_steps(
             found.append(GapStep(f"{put}: {what}.{formats}", command))
         prove = shlex.join([*read, *proved])
         found.append(GapStep(_PROVE.format(after=short(d.gap.after)), prove))
+    if d.missing_law is not None and d.missing_law.term:
+        aircraft = ["--aircraft", aircraft_file] if aircraft_file else []
+        term = ["advisor", "analyze", *logs, *options, *aircraft, "--term", d.missing_law.term]
+        found.append(GapStep("Estimate the missing law as one more term:", shlex.join(term)))
     rival = _against_the_rival(d) if d.verdict != "none" else ""
     if rival:
         found.append(GapStep(rival))

@@ -39,6 +39,7 @@ from advisor.gap.verdict.holdout_numbers import (
     with_offset,
     without_air,
 )
+from advisor.gap.verdict.missing_law import missing_law
 from advisor.gap.verdict.notes import notes_of
 from advisor.gap.verdict.numbers import (
     compared_derivatives,
@@ -189,6 +190,7 @@ def _diagnosed(
         decisions=(*told.decisions, *_of_the_air(found.sought_air)),
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
         derivatives=compared_derivatives(problem, fitted, known),
+        missing_law=missing_law(problem, fitted, where.block) if verdict == "unknown" else None,
         notes=notes_of(e, aircraft, holdout, verdict, nuisances),
         maneuvers=tuple(f.number for f in problem.flights.flights),
         evidence=told.evidence, failed=found.failed, why=told.why, rival=told.rival, answer=answer,

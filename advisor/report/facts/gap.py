@@ -4,10 +4,11 @@ from collections.abc import Sequence
 from math import isnan
 
 from advisor.gap.alternative import Weighed
-from advisor.gap.result import ComparedDerivative, Gap, Shrink, Where
+from advisor.gap.result import ComparedDerivative, Gap, MissingLaw, Shrink, Where
 from advisor.gap.verdict.text import in_words, place
 from advisor.report.facts.sizes import before_after, has_grown, short
 from advisor.words.digits import decimals_for, signed, with_half
+from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import CHANNELS, PARAMETERS, SIDE_PARAMETERS
 
 _QUANTITIES = {**PARAMETERS, **SIDE_PARAMETERS}
@@ -56,6 +57,26 @@ def grown_said(verdict: str, gap: Gap) -> str:
     grown = [*channels, *([f"{noun} {counted(numbers)}"] if numbers else [])]
     cause = "fitted numbers make the gap larger" if verdict == "none" else "the gap is larger than before"
     return f"{cause} in {', '.join(grown)}" if grown else ""
+
+
+_LAWS = {"Z": ("force", "1/s"), "M": ("moment", "rad/s²")}
+"""Missing quantity of each equation, and its unit, by the letter of the equation."""
+_OVER = {
+    "q": "pitch rate", "alpha": "angle of attack", "delta_e": "elevator deflection", "t": "time of flight"
+}  # fmt: skip
+
+
+def law_said(law: MissingLaw) -> str:
+    """Return the sentence about a law without a name: its quantity, and the nearest formula."""
+    what, unit = _LAWS[law.equation]
+    told = f"The missing {what} depends most on the {_OVER[law.variable]}, by {100.0 * law.share:.0f} %"
+    if not law.nearest:
+        return f"{told}."
+    half = NORMAL_95 * law.coefficient.std
+    if abs(law.coefficient.value) < half:
+        return f"{told}; no simple formula fits it."
+    about = f"about {with_half(law.coefficient.value, half)} · {law.nearest} {unit}, next to a line"
+    return f"{told}: {about}; {law.runner_up} comes next."
 
 
 def counted(numbers: Sequence[int]) -> str:

@@ -12,14 +12,17 @@ from advisor.report.facts.sizes import WORSE, marked, short
 from advisor.report.gap_causes import by_reason
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Verbatim, listing, section
 from advisor.report.page.content import Content, Document
-from advisor.report.page.drawing import BLUE, picture
+from advisor.report.page.drawing import BLUE, GREY, picture
 from advisor.report.page.gap_picture import caption, gap_picture
 from advisor.report.table import Table
-from advisor.words.quantities import CHANNELS
+from advisor.words.quantities import CHANNELS, Quantity
 
 _DEFINED = "The gap is the mean square of the simulator's error over that of the noise floor, minus 1: "
 _GLANCE = 4
 """Number of channels side by side, so that the picture fits on the first page of A4."""
+_OVER = {**CHANNELS, "delta_e": CHANNELS["elevator"], "t": Quantity("time of flight", "s")}
+"""Quantities over which a missing law is drawn, by name."""
+_LAWS = {"Z": "missing force [1/s]", "M": "missing moment [rad/s²]"}
 _LINEAR = 10.0
 """Largest gap on a linear axis."""
 
@@ -50,6 +53,7 @@ def gap(content: Content) -> Iterator[Block]:
     where = found["where"]
     if found["verdict"] in ("effect", "unknown"):
         yield Paragraph(f"Where: {where['text']}.")
+    yield from _law(found.get("missing_law"))
     steps = [(spelled(s["effect"]), s["after"]) for s in found["waterfall"] if s["after"] != size["before"]]
     if steps:
         rows = [("as it is", size["before"]), *((f"+ {name}", after) for name, after in steps)]
@@ -83,6 +87,27 @@ def gap(content: Content) -> Iterator[Block]:
         yield Paragraph(f"{number}. {step['text']}")
         if step["command"]:
             yield Verbatim(step["command"])
+
+
+def _law(law: Mapping[str, Any] | None) -> Iterator[Block]:
+    """Yield the law without a name, as a sentence and as a curve with its band; nothing without one."""
+    if law is None:
+        return
+    yield Paragraph(law["text"])
+    svg = picture("missing-law", 4.4, 2.4, _paint_law, law)
+    yield Gallery((Figure(svg, "The missing law over the quantity on which it depends most.", "half"),))
+
+
+def _paint_law(drawing: Drawing, law: Mapping[str, Any]) -> None:
+    axes = drawing.subplots()
+    quantity = _OVER[law["variable"]]
+    x = [quantity.factor * at for at, _ in law["curve"]]
+    low, high = zip(*law["band"], strict=True)
+    axes.fill_between(x, low, high, color=BLUE, alpha=0.2, linewidth=0)
+    axes.plot(x, [y for _, y in law["curve"]], color=BLUE, marker="o", markersize=3)
+    axes.axhline(0.0, color=GREY, linewidth=0.8)
+    axes.set_xlabel(quantity.label)
+    axes.set_ylabel(_LAWS[law["equation"]])
 
 
 def glance(document: Document) -> Iterator[Block]:

@@ -1,0 +1,57 @@
+"""The law that an answer without a name lacks, as a curve with the nearest formula."""
+
+import shlex
+from dataclasses import replace
+
+import pytest
+
+from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.records.prepare import prepare
+from advisor.gap.result import MissingLaw, Value
+from advisor.gap.search.baseline import fit_baseline
+from advisor.gap.verdict.missing_law import missing_law
+from advisor.report.facts.gap import law_said
+from advisor.report.gap_document import gap_document
+from advisor.report.gap_steps import next_steps
+from tests.gap.generator import Setup, fly
+from tests.gap.test_report_screen import diagnosis
+
+
+@pytest.fixture(scope="module")
+def law() -> MissingLaw:
+    """Return the law of flights whose damping grows with the pitch rate."""
+    bent = fly(Setup(seed=8, maneuvers=4, switches={"q_square": -0.06}))
+    found = missing_law(*fit_baseline(prepare(bent, Aircraft()), Aircraft()), "moment_equation")
+    assert found is not None
+    return found
+
+
+def test_a_damping_that_grows_with_the_rate_is_a_curve_over_the_rate(law):
+    assert law.variable == "q"
+    assert {law.nearest, law.runner_up} == {"q*abs(q)", "q**3"}, "an odd formula"
+    assert law.coefficient.value < 0.0
+
+
+def test_the_offered_term_is_one_that_the_estimate_takes(law):
+    assert law.term == f"M:{law.nearest}"
+    d = replace(diagnosis(), verdict="unknown", missing_law=law, causes=(), evidence=())
+    commands = [step.command for step in next_steps(d, ["a.tlog"], "mine.yaml")]
+    assert f"advisor analyze a.tlog --aircraft mine.yaml --term {shlex.quote(law.term)}" in commands
+
+
+def test_the_curve_rises_in_its_quantity_and_has_a_band(law):
+    at = [x for x, _, _ in law.curve]
+    assert at == sorted(at)
+    assert all(half > 0.0 for *_, half in law.curve)
+    told = gap_document(replace(diagnosis(), verdict="unknown", missing_law=law))["missing_law"]
+    assert len(told["curve"]) == len(told["band"]) == len(law.curve)
+
+
+def test_a_formula_within_its_interval_is_not_offered_as_a_law():
+    vague = MissingLaw("M", "q", 0.2, ((0.0, 0.0, 1.0),), Value(1.0, 2.0), "q**2")
+    assert law_said(vague).endswith("by 20 %; no simple formula fits it.")
+
+
+def test_a_law_in_a_sensor_is_no_curve():
+    flights = prepare(fly(Setup(seed=8, maneuvers=3)), Aircraft())
+    assert missing_law(*fit_baseline(flights, Aircraft()), "alpha_sensor") is None
