@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .airframe import GRAVITY_M_S2
+from .arrays import FloatArray
 from .autopilot import MANUAL
 from .loading import ScenarioError
 from .tlog import read_tlog
 
-FloatArray = NDArray[np.float64]
 Stream = tuple[FloatArray, FloatArray]
 """Stamps, s since boot, and values of a channel."""
 

@@ -5,10 +5,9 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .arrays import FloatArray
 from .dynamics import DERIVATIVES, derivatives
 from .trim import Trim
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

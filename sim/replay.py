@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .arrays import FloatArray
 from .autopilot import CRUISE, MANUAL, Autopilot, Demand, Planned
 from .loading import ScenarioError
 from .motion import Motion
@@ -18,8 +19,6 @@ ELEVATOR_FUNCTION = 19
 THROTTLE_FUNCTION = 70
 AUTOPILOT_INVALID = 8
 """Value of HEARTBEAT.autopilot that ground stations send."""
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

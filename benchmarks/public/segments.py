@@ -11,14 +11,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.axes.side_instruments import examine_side
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
-
-FloatArray = NDArray[np.float64]
+from advisor.process.arrays import FloatArray
 
 STATES = ("x_n", "y_e", "z_d", "u", "v", "w", "q_w", "q_x", "q_y", "q_z", "p", "q", "r")
 CONTROLS = ("throttle", "elevator", "aileron", "rudder")

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from advisor.aircraft.aircraft import Aircraft
@@ -12,12 +11,12 @@ from advisor.flight.elevator.axes.side_controls import find_side_control
 from advisor.flight.elevator.elevator_outputs import find_elevator
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring
 from advisor.flight.vehicle.surfaces import Surface
+from advisor.process.arrays import FloatArray
 from advisor.scripts.inputs import CONTROLS, Control
 from advisor.scripts.table import Entry
 
 from .pilot import Pilot
 
-FloatArray = NDArray[np.float64]
 _SETTLED_S = 0.03
 """Time after a step in which its two samples of telemetry lie, s."""
 _CLOCK_S = 0.25

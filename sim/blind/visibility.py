@@ -9,13 +9,12 @@ removed, because commands are recorded. The structural gap is the residual of th
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import FloatArray
 from ..flight import Sample
 from ..linear import ShortPeriod
 from ..servo import Calibration
 
-FloatArray = NDArray[np.float64]
 CHANNELS = ("alpha", "q", "a_z", "theta")
 LEAD_IN_S = 0.5
 SAMPLING_S = 0.02

@@ -3,9 +3,8 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from advisor.process.arrays import FloatArray
 
 PATTERNS: dict[str, tuple[tuple[float, float], ...]] = {
     "3-2-1-1": ((3.0, -1.0), (2.0, 1.0), (1.0, -1.0), (1.0, 1.0)),

@@ -13,8 +13,8 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.problem import LateralProblem, LateralRecord
 from advisor.oem.rows import Signal
+from advisor.process.arrays import FloatArray
 
-FloatArray = NDArray[np.float64]
 Number = TypeVar("Number", float, NDArray[np.float64])
 
 JET = {
