@@ -209,7 +209,7 @@ class Examiner:
             renewed_hz = rate_hz
             if name == "alpha":
                 renewed_hz = min(renewed_hz, _renewal(arrival, status))
-            paced[name] = Paced(name, message, rate_hz, renewed_hz)
+            paced[name] = Paced(name, message, rate_hz, renewed_hz, status.rate_hz)
         return paced
 
     def _surveyed(self, message: str) -> str:

@@ -21,6 +21,8 @@ GAP_INTERVALS = 3.0
 """Shortest gap of a message, in its usual intervals."""
 FALLEN = 0.6
 """Fraction of the usual rate below which a message is considered interrupted."""
+EVEN = 0.9
+"""Least mean rate, over that of the best ten seconds, that is told alone. Jitter and single gaps cost less."""
 
 _DROPPED = (
     "the autopilot could not write all records: log fewer or use a faster card; a manoeuvre with such a "
@@ -45,6 +47,16 @@ class Paced:
     """Samples of the channel per second over the whole record."""
     renewed_hz: float
     """New values of the channel per second, at most ``rate_hz``."""
+    best_hz: float = 0.0
+    """Samples of the channel per second over its best ten seconds."""
+
+    @property
+    def arrives(self) -> str:
+        """Mean rate in words, with that of the best ten seconds where the rate falls."""
+        mean = f"{self.rate_hz:.1f} Hz"
+        if self.rate_hz > EVEN * self.best_hz:
+            return mean
+        return f"{mean} in the mean ({self.best_hz:.1f} Hz over its best ten seconds)"
 
 
 def rate_limits(
@@ -72,7 +84,7 @@ def rate_limits(
         alone = expect(assumed, {**good, name: channel.renewed_hz}, airspeed_m_s)
         repeats = channel.rate_hz >= enough_hz
         message = vehicle.mends.called(channel.message)
-        arrives = f"{message} arrives at {channel.rate_hz:.1f} Hz"
+        arrives = f"{message} arrives at {channel.arrives}"
         if repeats:
             arrives += f" but changes only at {channel.renewed_hz:.1f} Hz"
         limits.append(
