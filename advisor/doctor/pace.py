@@ -22,7 +22,7 @@ GAP_INTERVALS = 3.0
 FALLEN = 0.6
 """Fraction of the usual rate below which a message is considered interrupted."""
 EVEN = 0.9
-"""Least mean rate, over that of the best ten seconds, that is told alone. Jitter and single gaps cost less."""
+"""Least mean rate, over that of the best ten seconds, that is told alone. Jitter costs less."""
 
 _DROPPED = (
     "the autopilot could not write all records: log fewer or use a faster card; a manoeuvre with such a "

@@ -8,7 +8,7 @@ import numpy as np
 
 from advisor.flight.maneuvers.binned import Bins
 from advisor.flight.maneuvers.free_response import FREE_S
-from advisor.flight.maneuvers.movement import BAND
+from advisor.flight.maneuvers.movement import BAND, is_still
 from advisor.process.arrays import FloatArray, IntArray
 
 _REMNANT = 0.02
@@ -116,11 +116,12 @@ def stepped_input(cost: Cost, together: FloatArray, before: float, whole: tuple[
 def _extent(cost: Cost, order: IntArray) -> tuple[int, int]:
     """Return the first bin of the input that the steps form, and the bin of its last step.
 
-    Hands before the input stay near the level before, and so do hands that rest for a free response after
-    the input. The extent is 0 to n, shape of the movement, where no hands are told apart.
+    Hands before the input hold no level away from that before. Hands that rest for a free response after the
+    input stay near that level. The extent is 0 to n, shape of the movement, where no hands are told apart.
     """
     n = cost.bins.within
-    moved = np.abs(cost.bins.moved[cost.bins.movement])
+    control = cost.bins.moved[cost.bins.movement]
+    moved = np.abs(control)
     shapes = cost.white(np.triu(np.ones((n, n))))[order]
     fitted = np.linalg.lstsq(shapes.T, cost.moved[cost.bins.movement], rcond=None)
     sizes = np.asarray(fitted[0], dtype=np.float64)
@@ -136,8 +137,8 @@ def _extent(cost: Cost, order: IntArray) -> tuple[int, int]:
         groups[-1].append(after)
     chosen = int(np.argmax([sum([_height(sizes[edge]) for edge in group]) for group in groups]))
     begin = int(order[groups[chosen][0][0]])
-    if begin == 0 or float(np.median(moved[:begin])) >= near:
-        begin = 0
+    if float(np.median(moved[: begin + 1])) >= near and is_still(control[:begin], float(np.max(moved))):
+        begin = 0  # The first level of the input.
     last = n if chosen == len(groups) - 1 else int(order[groups[chosen][-1][-1]])
     return begin, last
 

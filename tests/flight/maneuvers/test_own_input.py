@@ -157,3 +157,14 @@ def test_an_input_while_the_aircraft_rotates_is_none():
     found = told(TEST, channels)
     assert found.reason == "feedback"
     assert "begins from rest" in found.text
+
+
+def test_hands_that_fly_at_another_level_are_cut_off_too():
+    channels = flight(tremor=0.3)
+    elevator = channels["elevator"]
+    drawn = np.clip((T - TEST_S + 6.0) / 3.0, 0.0, 1.0) * (TEST_S > T)
+    trimmed = 3.0 * DEG * drawn * (1.0 + 0.3 * np.sin(2.0 * T))
+    moved = {**channels, "elevator": Channel("elevator", T, elevator.y + trimmed)}
+    found = told(span(TEST_S - 6.0, TEST_S + 2.1), moved)
+    assert isinstance(found, Span)
+    assert found.start_s == pytest.approx(TEST_S, abs=0.15)
