@@ -289,6 +289,7 @@ def unabsorbed(
     ``weight`` (n,) is the inverse noise of the rows. Directions of ``own`` with relative singular values
     below ``indifferent`` absorb nothing; None means rounding.
     """
-    weighed = own * weight[:, None]
-    taken = np.linalg.lstsq(weighed, columns * weight[:, None], rcond=indifferent)[0]
-    return np.asarray(columns - (weighed @ taken) / weight[:, None])
+    left, sizes, _ = np.linalg.svd(own * weight[:, None], full_matrices=False)
+    least = indifferent or len(own) * np.finfo(float).eps
+    left = left[:, sizes > least * np.max(sizes, initial=0.0)]
+    return np.asarray(columns - left @ (left.T @ (columns * weight[:, None])) / weight[:, None])

@@ -54,7 +54,7 @@ local function add_output(control, n, factor, us_deg)
   end
   if us_deg == nil then
     if scale.low >= scale.trim or scale.trim >= scale.high then
-      blocked = "check SERVO" .. n .. "_MIN/TRIM/MAX"
+      blocked = "SERVO" .. n .. "_MIN/TRIM/MAX do not rise"
       return
     end
     us_deg = {
@@ -155,7 +155,7 @@ local function trouble(before, now)
   if now.airspeed ~= nil and before.airspeed ~= nil then
     local change = 100 * (now.airspeed / before.airspeed - 1)
     if math.abs(change) > AIRSPEED_PERCENT then return string.format("air speed by %.0f %%", change) end
-    if now.airspeed < slowest then return "slower than AIRSPEED_MIN" end
+    if now.airspeed < slowest then return "air speed below AIRSPEED_MIN" end
   end
   return nil
 end

@@ -1,15 +1,17 @@
 """The table of a script: its inputs with their sizes, for one aircraft."""
 
+import hashlib
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.script_identity import ScriptIdentity
 from advisor.scripts.flight_limits import FlightLimits
 from advisor.scripts.inputs import CONTROLS, NAMES, Control, ScriptInput, input_of
 from advisor.scripts.outputs import StatedOutput, stated_outputs
 from advisor.scripts.pace import Pace, pace_of
 from advisor.scripts.sizes import Size, size_of, travel_of
+from advisor.words.printable import printable
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +54,7 @@ class ScriptTable:
     @property
     def name(self) -> str:
         """Name of the aircraft, short enough for a text of 50 bytes."""
-        return ScriptIdentity.of(self.aircraft).name
+        return printable(self.aircraft.name).encode("ascii", "replace").decode()[:20]
 
     def travel_rad(self, control: Control) -> float:
         """Return the travel of a control from neutral to the nearer stop, rad."""
@@ -60,8 +62,11 @@ class ScriptTable:
 
     @property
     def calibration_hash(self) -> str:
-        """Eight digits that change with any calibration or stated output of the aircraft file."""
-        return ScriptIdentity.of(self.aircraft).calibration_hash
+        """Eight digits that change with any calibration or stated output."""
+        outputs = [[(o.output, o.factor, o.calibration) for o in self.outputs[c]] for c in CONTROLS]
+        calibrations = [getattr(self.aircraft, c).calibration for c in CONTROLS]
+        text = json.dumps([outputs, calibrations, sorted(self.parameters.items())])
+        return hashlib.sha256(text.encode()).hexdigest()[:8]
 
 
 def script_table(

@@ -13,7 +13,6 @@ from typing import Literal, get_args
 
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.maneuvers.maneuver import InputKind
-from advisor.flight.maneuvers.script_identity import ScriptIdentity
 from advisor.words.printable import printable
 from advisor.words.vehicle_time import clock
 
@@ -48,8 +47,6 @@ class Announcement:
     said: str = ""
     """Name of the input, reason for the early end, name of the aircraft, or the whole text that is unread."""
     aborted: bool = False
-    calibration_hash: str = ""
-    """Hash of the calibration in the text that names the aircraft."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +109,7 @@ def read_announcement(raw: bytes) -> Announcement | None:
     if end := _END.fullmatch(said):
         return Announcement("end", int(end[1]), (end[3] or "no reason stated").strip(), aborted=not end[2])
     if script := _SCRIPT.fullmatch(said):
-        return Announcement("script", said=script[1], calibration_hash=script[2])
+        return Announcement("script", said=script[1])
     return Announcement("unread", said=said)
 
 
@@ -122,17 +119,16 @@ class Announcements:
     Parameters
     ----------
     aircraft
-        Identity of the aircraft file; None without a file.
+        Name in the aircraft file; None for the name of an aircraft without a file.
     """
 
-    def __init__(self, aircraft: ScriptIdentity | None) -> None:
+    def __init__(self, aircraft: str | None) -> None:
         self._aircraft = aircraft
         self.start_boot()
 
     def start_boot(self) -> None:
         """Begin another power-on without an open input."""
         self._begun: tuple[float, Announcement] | None = None
-        self._named: Announcement | None = None
         self.alone_s: list[float] = []
         """Times of BEGIN and END without a partner, s since boot."""
         self._last: tuple[float, Announcement | None] = (-inf, None)
@@ -154,9 +150,7 @@ class Announcements:
         if said == last and at_s - last_s <= _REPEAT_S:
             return ()
         if said.word == "script":
-            news = said != self._named
-            self._named = said
-            return self._other_aircraft(said) if news else ()
+            return self._other_aircraft(said)
         if said.word == "unread":
             known = "ADVISOR BEGIN number input and ADVISOR END number done"
             return (Notice(SCRIPT_NOTICE, f"The text ADVISOR {said.said} is no mark; marks are {known}."),)
@@ -193,16 +187,10 @@ class Announcements:
         return (Notice(SCRIPT_NOTICE, f"{text}{_BY_HAND}."),)
 
     def _other_aircraft(self, said: Announcement) -> tuple[Notice, ...]:
-        mine = self._aircraft
-        if mine is None or mine == ScriptIdentity(said.said, said.calibration_hash):
+        if self._aircraft is None or said.said == self._aircraft:
             return ()
         text = (
             f"The script in the autopilot was written for the aircraft {said.said}, and the aircraft file is "
-            f"that of {mine.name}"
+            f"that of {self._aircraft}; write the script anew: advisor script ardupilot."
         )
-        if said.said == mine.name:
-            text = (
-                f"The script in the autopilot was written with another calibration ({said.calibration_hash}) "
-                f"than that of the aircraft file ({mine.calibration_hash}), so that its sizes are others"
-            )
-        return (Notice(SCRIPT_NOTICE, f"{text}; write the script anew: advisor script ardupilot."),)
+        return (Notice(SCRIPT_NOTICE, text),)

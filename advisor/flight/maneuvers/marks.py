@@ -13,7 +13,6 @@ import numpy as np
 from advisor.flight.maneuvers.announced import SCRIPT_NOTICE, Announced, Announcement, Announcements
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.maneuvers.maneuver import Span
-from advisor.flight.maneuvers.script_identity import ScriptIdentity
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
 from advisor.words.problems import Problem
 from advisor.words.vehicle_time import clock, stretch
@@ -105,10 +104,10 @@ class Marks:
     Parameters
     ----------
     aircraft
-        Identity of the aircraft file, which a script must state. None: every script is taken.
+        Name in the aircraft file, which a script must state. None: every script is taken.
     """
 
-    def __init__(self, given: Sequence[Mark] = (), aircraft: ScriptIdentity | None = None) -> None:
+    def __init__(self, given: Sequence[Mark] = (), aircraft: str | None = None) -> None:
         self._given = list(given)
         self._script = Announcements(aircraft)
         self._heard: list[tuple[float, float]] = []

@@ -12,7 +12,6 @@ from advisor.flight.elevator.mixing import Mixing
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.markers import MarkerWatch
 from advisor.flight.maneuvers.marks import Mark, Marks
-from advisor.flight.maneuvers.script_identity import ScriptIdentity
 from advisor.flight.signals.attitude import Attitudes
 from advisor.flight.signals.banks import Banks
 from advisor.flight.signals.clocks import BootClock
@@ -74,7 +73,7 @@ class StreamState:
         )
         """Channels of this power-on, the newest stretch of each."""
         self._breaks = Breaks()
-        self.marks = Marks(marks, ScriptIdentity.of_file(aircraft))
+        self.marks = Marks(marks, None if aircraft.name == Aircraft.name else aircraft.name)
         """Marks by hand, by a switch, by texts and by a script."""
         self._cutting = Cutting(self.tracks, self._who, aircraft, self._breaks, self.marks, lateral)
         self._mixing = Mixing(self.tracks)

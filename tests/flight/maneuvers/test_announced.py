@@ -4,19 +4,14 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
 from advisor.flight.elevator.elevator_sign import turned
 from advisor.flight.maneuvers.events import Activity, Notice, SideManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.maneuvers.script_identity import ScriptIdentity
 from advisor.flight.signals.record import Channel
 from advisor.flight.stream.stream import FlightStream
-from advisor.scripts.ardupilot import ardupilot_script
-from advisor.scripts.table import Source, script_table
 from tests.flight.columns import Wire, attitude, fly, heartbeat, plane_parameters, pull, servo, text
 from tests.flight.maneuvers.test_marks import PIECE
 from tests.flight.stream.test_stream import as_plain, flown, maneuvers
-from tests.scripts.engine import Engine
 
 BEGIN, END = "ADVISOR BEGIN 3 reverse 3-2-1-1", "ADVISOR END 3 done"
 
@@ -198,36 +193,13 @@ def test_further_texts_of_a_script_are_no_marks():
 
 
 def test_a_script_of_another_aircraft_is_told_with_both_names():
-    big = ScriptIdentity.of(Aircraft(name="big wing"))
-    wire = announced(*((at_s, f"ADVISOR SCRIPT big wing {big.calibration_hash}") for at_s in (51.0, 52.0)))
+    wire = announced((51.0, "ADVISOR SCRIPT big wing 1a2b3c4d"))
     (sentence,) = told(wire, Aircraft(name="small wing"))
     assert sentence == (
         "The script in the autopilot was written for the aircraft big wing, and the aircraft file is that of "
         "small wing; write the script anew: advisor script ardupilot."
     )
     assert told(wire, Aircraft(name="big wing")) == []
-
-
-def test_a_script_of_another_calibration_is_told_with_both_hashes():
-    mine = Aircraft(name="big wing", elevator=Elevator(calibration=((1000.0, -20.0), (1900.0, 20.0))))
-    (sentence,) = told(announced((51.0, "ADVISOR SCRIPT big wing 1a2b3c4d")), mine)
-    assert sentence == (
-        "The script in the autopilot was written with another calibration (1a2b3c4d) than that of the "
-        f"aircraft file ({ScriptIdentity.of(mine).calibration_hash}), so that its sizes are others; write "
-        "the script anew: advisor script ardupilot."
-    )
-
-
-@pytest.mark.parametrize(
-    "name", ["a glider of a very long name", "Segelflugzeug für Höhe 3", "twenty characters w. s"]
-)
-def test_a_script_of_an_aircraft_with_a_long_name_is_that_aircrafts(name: str):
-    mine = Aircraft(name=name, elevator=Elevator(calibration=((1000.0, -20.0), (1900.0, 20.0))))
-    engine = Engine()
-    engine.load(ardupilot_script(script_table(mine, Source())))
-    line, *_ = engine.said("ADVISOR SCRIPT")
-    assert len(line) <= 50
-    assert told(announced((51.0, line)), mine) == []
 
 
 def test_without_an_aircraft_file_any_script_is_taken():

@@ -137,7 +137,7 @@ class LateralFit(NamedTuple):
 class JointSearch:
     """Joint searches of a campaign, each of which goes on from the one before.
 
-    A further manoeuvre then takes two thirds of the time.
+    A further manoeuvre then takes one fit, not three.
     """
 
     newest: LateralFit | None = None

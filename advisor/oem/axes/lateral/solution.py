@@ -2,7 +2,8 @@
 
 The influence of the measurements and the noise model are those of the pitch axis. A white-noise model makes
 coloured residuals look too accurate relative to a prior. A first fit gives the colour of the noise. The
-second and third fit weight the priors by the noise colour of the fit before.
+second and third fit weight the priors by the noise colour of the fit before. A search that goes on from
+earlier records has their colour, and needs one fit.
 """
 
 from collections.abc import Sequence
@@ -43,6 +44,8 @@ class Searched(NamedTuple):
     solution: Solution
     air: Air
     """White noise and side gusts in the residuals."""
+    still: Solution
+    """Solution whose errors contain the instruments' noise alone."""
 
 
 class Near(NamedTuple):
@@ -72,18 +75,19 @@ def search_lateral(
     problem = begun(problem, nuisances)
     start = _holding(problem, lateral_start(problem))
     prior = priors_of(problem, start[0])
-    fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
-    if isinstance(fit, NoEstimate) or _has_diverged(fit):
-        return RUNS_AWAY
-    solution = _evaluated(fit, prior, final=False)
-    if near is not None:
-        problem, start = _resumed(problem, nuisances, start, near)
-    for final in (False, True):
+    resumed = None if near is None else _resumed(problem, nuisances, start[1], near)
+    if resumed is None:
+        fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
+        if isinstance(fit, NoEstimate) or _has_diverged(fit):
+            return RUNS_AWAY
+        solution = _evaluated(fit, prior, final=False)
+    else:
+        problem, start, solution = resumed
+    for final in (True,) if resumed else (False, True):
         if isinstance(solution, NoEstimate):
             return solution
-        share = share_of(solution.covariance_cr[:N, :N], solution.scattered[:N, :N])
-        prior = replace(prior, share=share)
-        weighed = [replace(x, prior=replace(x.prior, share=share)) for x in nuisances]
+        prior = replace(prior, share=share_of(solution.covariance_cr[:N, :N], solution.scattered[:N, :N]))
+        weighed = [replace(x, prior=replace(x.prior, share=prior.share)) for x in nuisances]
         fit = descended(_MOTION, problem, weighed, prior, start)
         if isinstance(fit, NoEstimate):
             return fit
@@ -93,8 +97,8 @@ def search_lateral(
         solution = _evaluated(fit, prior, final)
     if isinstance(solution, NoEstimate):
         return solution
-    solution, air = in_moving_air(solution, None if near is None else near.searched.air)
-    return Searched(_above_bound(solution), air)
+    blown, air = in_moving_air(solution, None if near is None else near.searched.air)
+    return Searched(_above_bound(blown), air, solution)
 
 
 def _holding(problem: LateralProblem, place: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
@@ -106,24 +110,22 @@ def _holding(problem: LateralProblem, place: tuple[FloatArray, FloatArray]) -> t
 
 
 def _resumed(
-    problem: LateralProblem,
-    nuisances: Sequence[Nuisance],
-    start: tuple[FloatArray, FloatArray],
-    near: Near,
-) -> tuple[LateralProblem, tuple[FloatArray, FloatArray]]:
-    """Return problem and place at the servos, clocks and derivatives of another solution.
+    problem: LateralProblem, nuisances: Sequence[Nuisance], local: FloatArray, near: Near
+) -> tuple[LateralProblem, tuple[FloatArray, FloatArray], Solution] | None:
+    """Return problem and place at the servos, clocks and derivatives of another solution, and that solution.
 
-    Without the other solution's servos and clocks, problem and place stay as they are.
+    ``local`` (m, l) are the local parameters of records that are new to the other solution. None where the
+    other solution has other servos or clocks.
     """
-    there = near.searched.solution
+    there = near.searched.still
     values = {x.name: x.read(there.problem) for x in there.parameters}
     if values.keys() != {x.name for x in nuisances}:
-        return problem, start
+        return None
     for x in nuisances:
         problem = x.write(problem, values[x.name])
-    pairs = zip(near.places, start[1], strict=True)
+    pairs = zip(near.places, local, strict=True)
     local = np.array([own if k is None else there.optimum.local[k] for k, own in pairs])
-    return problem, (there.optimum.shared, local)
+    return problem, (there.optimum.shared, local), there
 
 
 def _has_diverged(fit: Fit) -> bool:
