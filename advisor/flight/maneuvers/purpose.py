@@ -14,6 +14,7 @@ from advisor.aircraft.aircraft import Limits
 from advisor.flight.maneuvers.excitation import excitation
 from advisor.flight.maneuvers.free_response import FREE_S
 from advisor.flight.maneuvers.hand_flying import flown_elsewhere
+from advisor.flight.maneuvers.likeness import begun_in_motion, much_smaller
 from advisor.flight.maneuvers.loop import PITCH, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.markers import SWEPT, marked_span
@@ -38,11 +39,6 @@ nothing. Below one minus it, the hands are said to have moved the control."""
 _LATER_S = 0.5
 """Time after the movement's begin, s, from which an own input's begin cuts the movement: the edge of a
 hand-flown step."""
-_BEFORE_S = 0.5
-"""Length before an input over which the rate is averaged, s: the least rest of the control."""
-_STEADY = 0.5
-"""Largest mean rate before a test, over half the range of the rate within. 260 flown tests of eleven aircraft
-have at most 0.31. Hands that answer a rotation have up to 1.5."""
 _WHAT = {
     "ground": "movements without flight",
     "small": "corrections",
@@ -78,7 +74,7 @@ def judged(
     motion: Mapping[str, Channel] | None = None,
     limits: Limits | None = None,
     loop: Loop = PITCH,
-    tests: Sequence[tuple[float, float]] = (),
+    tests: Sequence[Span] = (),
     *,
     passed_over: bool = False,
 ) -> Because | Span:
@@ -99,7 +95,7 @@ def judged(
         Control that moved, and the motion that responds. Slow movements outside the limits are sought for the
         elevator alone.
     tests
-        Earlier tests of the control, from begin to end of the free response, s.
+        Earlier tests of the control in this power-on.
     passed_over
         Whether a script in the autopilot announces its inputs, but not this movement. In a mode with a closed
         loop the movement is then the loop's.
@@ -132,7 +128,7 @@ def not_an_input(
     motion: Mapping[str, Channel] | None = None,
     limits: Limits | None = None,
     loop: Loop = PITCH,
-    tests: Sequence[tuple[float, float]] = (),
+    tests: Sequence[Span] = (),
     *,
     passed_over: bool = False,
 ) -> Because | None:
@@ -153,7 +149,7 @@ def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None, control: str, 
 
 
 def _told(
-    maneuver: Maneuver, motion: Mapping[str, Channel], loop: Loop, tests: Sequence[tuple[float, float]]
+    maneuver: Maneuver, motion: Mapping[str, Channel], loop: Loop, tests: Sequence[Span]
 ) -> Because | Span:
     """Return the extent of an input that the rate shows, or the reason why the rate shows none."""
     control, span = loop.control, maneuver.span
@@ -172,9 +168,9 @@ def _told(
         )
     asked = not _is_swept(maneuver) and not closes_pitch_loop(maneuver.mode)
     moved = motion.get(control, maneuver.channels[control])
-    odds = None
+    odds, flown = None, [(test.start_s, test.end_s) for test in tests]
     if asked and loop.rate in motion:
-        odds = odds_of_own_input(span, moved, motion[loop.rate], motion.get(loop.angle), found.effect, tests)
+        odds = odds_of_own_input(span, moved, motion[loop.rate], motion.get(loop.angle), found.effect, flown)
     # For an elevator moved from outside, no other evidence is needed to separate cause from effect.
     outside = is_manual(maneuver.mode) or moves_in_sharp_steps(maneuver, control)
     error = found.relative_error if outside else found.external_error
@@ -187,8 +183,13 @@ def _told(
     if odds is not None and odds.probability < LEAST_PROBABILITY:
         return _as_hands(odds, control)
     part = span if odds is None else _part(span, odds, moved)
-    moving = motion.get(loop.rate) if asked else None
-    return (_begun_in_motion(part, moving, loop) if moving is not None else None) or part
+    if not asked:
+        return part
+    moving = motion.get(loop.rate)
+    if moving is not None and (unsteady := begun_in_motion(part, moving, loop)):
+        return Because("feedback", unsteady)
+    smaller = much_smaller(part, tests, control)
+    return part if smaller is None else Because("small", smaller)
 
 
 def _as_hands(odds: Odds, control: str) -> Because:
@@ -198,20 +199,6 @@ def _as_hands(odds: Odds, control: str) -> Because:
     if odds.probability < 1.0 - LEAST_PROBABILITY:
         return Because("feedback", f"hands held the attitude with the {control}: {own}; not a test input")
     return Because("undecided", f"hands, or a test, moved the {control}: {own}; counts for nothing")
-
-
-def _begun_in_motion(span: Span, rate: Channel, loop: Loop) -> Because | None:
-    """Return the reason that an input does not begin from steady flight; None if it does."""
-    before = rate.cut(span.start_s - _BEFORE_S, span.start_s).y
-    within = rate.cut(span.start_s, span.end_s).y
-    if len(before) < 2 or len(within) < 2:
-        return None
-    share = abs(float(np.mean(before))) / max(0.5 * float(np.ptp(within)), 1e-12)
-    if share <= _STEADY:
-        return None
-    shown, most = distinct_texts(100.0 * share, 100.0 * _STEADY)
-    begins = f"the {loop.rate_said} before the {loop.control} moved was {shown} % of that after"
-    return Because("feedback", f"{begins} (limit {most}), and a test begins from rest; not a test input")
 
 
 def _part(span: Span, odds: Odds, control: Channel) -> Span:

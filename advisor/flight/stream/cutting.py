@@ -71,7 +71,7 @@ class Cutting:
         self.side_due: list[SideStretch] = []
         """Stretches whose record of aileron and rudder is not yet cut, in the order of their completion."""
         self._claimed: list[SideStretch] = []
-        self._tests: dict[str, list[tuple[float, float]]] = {}
+        self._tests: dict[str, list[Span]] = {}
 
     @property
     def is_backwards(self) -> bool:
@@ -228,7 +228,7 @@ class Cutting:
 
     def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         news = _news(maneuver, evidence, self.pitch)
-        self._tests.setdefault(PITCH.control, []).append((maneuver.span.start_s, maneuver.span.end_s))
+        self._tests.setdefault(PITCH.control, []).append(maneuver.span)
         self._released = (maneuver.boot, maneuver.span.end_s)
         if self._sign is None or "elevator" not in maneuver.channels:
             return [*news, ManeuverFlown(maneuver)]
@@ -309,7 +309,8 @@ class Cutting:
     def side_counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         """Return the event of a lateral manoeuvre, after notices about its instruments."""
         for loop in (ROLL, YAW):
-            self._tests.setdefault(loop.control, []).append((maneuver.span.start_s, maneuver.span.end_s))
+            # The levels belong to one of the controls, so that they say nothing of the size of the others.
+            self._tests.setdefault(loop.control, []).append(replace(maneuver.span, steps=()))
         return [*_news(maneuver, evidence, self.sideways), SideManeuverFlown(maneuver)]
 
     def motion_before(self, span: Span, loop: Loop, up_to_order: int | None) -> dict[str, Channel]:

@@ -1,5 +1,7 @@
 """Probability of an own input: hands that hold the attitude have one near 0, tests have one near 1."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -63,7 +65,8 @@ def probability(which, channels, effect=-1.0, tests=()):
 def told(which, channels, tests=()):
     record = {name: channel.cut(which.record_from_s, which.end_s) for name, channel in channels.items()}
     motion = {name: channel.cut(which.start_s - 30.0, which.end_s) for name, channel in channels.items()}
-    return judged(Maneuver(1, 0, which, record, "MANUAL"), None, motion, tests=tests)
+    spans = [replace(TEST, start_s=start_s, end_s=end_s) for start_s, end_s in tests]
+    return judged(Maneuver(1, 0, which, record, "MANUAL"), None, motion, tests=spans)
 
 
 def reason(which, channels, tests=()):
@@ -168,3 +171,13 @@ def test_hands_that_fly_at_another_level_are_cut_off_too():
     found = told(span(TEST_S - 6.0, TEST_S + 2.1), moved)
     assert isinstance(found, Span)
     assert found.start_s == pytest.approx(TEST_S, abs=0.15)
+
+
+def test_an_input_much_smaller_than_the_tests_before_is_a_correction():
+    channels = flight()
+    small = replace(TEST, steps=tuple((onset, 0.2 * level) for onset, level in TEST.steps))
+    record = {name: channel.cut(TEST.record_from_s, TEST.end_s) for name, channel in channels.items()}
+    before = replace(TEST, start_s=10.0, end_s=14.0)
+    found = judged(Maneuver(1, 0, small, record, "MANUAL"), None, channels, tests=[before])
+    assert found.reason == "small"
+    assert "20 % of the tests before (at least 25)" in found.text
