@@ -1,4 +1,4 @@
-"""What the tests of a flight have in common: they begin from rest, and are of like size."""
+"""Properties that the tests of a flight share: they begin from rest, and are of like size."""
 
 from collections.abc import Sequence
 
@@ -12,8 +12,8 @@ from advisor.words.digits import distinct_texts
 _BEFORE_S = 0.5
 """Length before an input over which the rate is averaged, s: the least rest of the control."""
 _OF_TESTS = 0.25
-"""Least amplitude of a test, over the median of the tests before it. 250 flown tests have at least 0.39. Hands
-between them have up to 0.23 where nothing else tells them."""
+"""Least amplitude of a test, over the median of the tests before it. 250 flown tests have at least 0.39.
+Hands between them have up to 0.23 where nothing else tells them."""
 _STEADY = 0.5
 """Largest mean rate before a test, over half the range of the rate within. 260 flown tests of eleven aircraft
 have at most 0.31. Hands that answer a rotation have up to 1.5."""
