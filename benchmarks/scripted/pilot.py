@@ -25,6 +25,8 @@ _RATES_HZ = {30: 50, 36: 100, 27: 50, 11020: 50, 65: 50, 74: 10, 33: 10, 29: 5}
 GLOBAL_POSITION_INT, SCALED_PRESSURE. The servo outputs come twice as fast as a usual link sends them, so that
 their edges show."""
 _CRUISE_US = 1500
+_SECOND = 2
+"""TCP port of SERIAL1 in software in the loop, relative to the base port."""
 
 
 class SlowMachineError(RuntimeError):
@@ -67,6 +69,8 @@ class Pilot:
     parameters: dict[str, float] = field(default_factory=dict)
     longest_s: float = WALL_S
     """Longest real time of the flight, s."""
+    second_port: int = 0
+    """TCP port of the vehicle's second link."""
     since_s: float = field(default_factory=time.monotonic)
 
     def fly(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
@@ -161,7 +165,7 @@ def airborne(
         link = None
         try:
             link = _connected(mavutil, port)
-            pilot = Pilot(link, tlog, longest_s=longest_s)
+            pilot = Pilot(link, tlog, longest_s=longest_s, second_port=port + _SECOND)
             _take_off(pilot)
             yield pilot
         finally:
