@@ -95,7 +95,7 @@ def found_of(aircraft: Aircraft) -> FoundInstruments | None:
     return aircraft.found if isinstance(aircraft, AircraftInFlight) else None
 
 
-def with_found(aircraft: Aircraft, found: FoundInstruments) -> AircraftInFlight:
+def with_found(aircraft: Aircraft, found_instruments: FoundInstruments) -> AircraftInFlight:
     """Return the crew's aircraft with instruments that its manoeuvres determined."""
-    as_stated = {one.name: getattr(aircraft, one.name) for one in fields(Aircraft)}
-    return AircraftInFlight(**as_stated, found=found)
+    as_stated = {attribute.name: getattr(aircraft, attribute.name) for attribute in fields(Aircraft)}
+    return AircraftInFlight(**as_stated, found=found_instruments)

@@ -89,8 +89,8 @@ def odds_of_own_input(
     whole = (span.start_s, span.last_step_s)
     loop = 0.5 * _GAINS * log(bins.count) + log(len(_DELAYS_S) * len(_TAKEN_OVER_S))
     rivals = [_compared(Cost(bins, keep, loop), motion, whole) for keep in _KEEPS]
-    own = min((one.own for one in rivals), key=lambda it: it.nats)
-    return Odds(min(one.hands for one in rivals) - own.nats, own.begins_s, own.ends_s)
+    own = min((rival.own for rival in rivals), key=lambda it: it.nats)
+    return Odds(min(rival.hands for rival in rivals) - own.nats, own.begins_s, own.ends_s)
 
 
 @dataclass(frozen=True, slots=True)

@@ -133,11 +133,11 @@ def fit(
     )
 
 
-def _edges_differ(one: SearchPoint, other: SearchPoint) -> bool:
+def _edges_differ(search_point: SearchPoint, other: SearchPoint) -> bool:
     """Return whether the command's edges of two points differ. Unknown edges are placed at their stamps."""
     assert other.edges is not None
     there = np.concatenate(other.edges)
-    shift = there if one.edges is None else there - np.concatenate(one.edges)
+    shift = there if search_point.edges is None else there - np.concatenate(search_point.edges)
     return float(np.sum(shift**2)) > _EDGES_DIFFER**2 * len(shift)
 
 

@@ -86,7 +86,7 @@ def ramps_and_steps(effect: str, block: str, flights: PreparedManeuvers, change:
     return [steady, *steps_in(flights, step, course)]
 
 
-def steps_in(flights: PreparedManeuvers, one: Variant, course: Course) -> list[Variant]:
+def steps_in(flights: PreparedManeuvers, variant: Variant, course: Course) -> list[Variant]:
     """Return a step at each place between two manoeuvres, with the names, starts and bounds of ``one``.
 
     Every step has a gradual change as alternative, fitted from the step's result: fuel that is pumped, people
@@ -95,26 +95,26 @@ def steps_in(flights: PreparedManeuvers, one: Variant, course: Course) -> list[V
 
     def at(at_s: float) -> Variant:
         return replace(
-            one,
+            variant,
             apply_with=lambda p, values, flown: course(p, values, (starts_of(flown) > at_s).astype(float)),
             fixed={"at_s": at_s},
-            likewise=_longer(flights, one, course),
+            likewise=_longer(flights, variant, course),
         )
 
     return [at(at_s) for at_s in breaks(flights)]
 
 
-def _longer(flights: PreparedManeuvers, one: Variant, course: Course) -> tuple[Variant, ...]:
+def _longer(flights: PreparedManeuvers, variant: Variant, course: Course) -> tuple[Variant, ...]:
     """Return the change as a gradual one that begins in flight; empty with too few manoeuvres."""
     if len(flights) < _FOR_GRADUAL:
         return ()
     t, span = starts_of(flights), _span_of(flights)
     gradual = replace(
-        one,
-        names=(*one.names, "at_s", "over_s"),
+        variant,
+        names=(*variant.names, "at_s", "over_s"),
         starts=(),
-        steps=(*one.steps, _TIME_STEP * span, _TIME_STEP * span),
-        bounds=(*one.bounds, (float(t[0] - span), float(t[-1])), (0.05 * span, 2.0 * span)),
+        steps=(*variant.steps, _TIME_STEP * span, _TIME_STEP * span),
+        bounds=(*variant.bounds, (float(t[0] - span), float(t[-1])), (0.05 * span, 2.0 * span)),
         apply_with=lambda p, v, flown: course(
             p, v[:-2], np.clip((starts_of(flown) - v[-2]) / v[-1], 0.0, 1.0)
         ),

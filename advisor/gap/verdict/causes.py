@@ -27,7 +27,7 @@ _CREDIBLE = 0.05
 
 
 def causes_of(
-    found: Inference,
+    inference: Inference,
     posterior: Posterior[PitchModel],
     e: Findings,
     kinematics: KinematicCheck,
@@ -38,10 +38,10 @@ def causes_of(
     answer = posterior.answer
     present: list[Cause] = []
     together = 1.0
-    for stage, one in zip(found.posteriors, named, strict=False):
-        told = posterior if stage is found.posteriors[0] else stage
+    for stage, one in zip(inference.posteriors, named, strict=False):
+        told = posterior if stage is inference.posteriors[0] else stage
         together *= told.of(stated_as(one.name))
-        present.append(_cause(found, e, one, named[-1], told, together, True))
+        present.append(_cause(inference, e, one, named[-1], told, together, True))
     if answer.kind == "air" and (air := moving_air_of(e)) is not None:
         present.append(replace(air, probability=posterior.of(answer)))
     if answer.name == "alpha_bias":
@@ -55,16 +55,16 @@ def causes_of(
         one = posterior.explanation_of(alternative)
         p, left = min(p, left), left - min(p, left)
         if one.name == alternative.name:
-            others.append(_cause(found, e, one, one, posterior, p, False))
+            others.append(_cause(inference, e, one, one, posterior, p, False))
         elif alternative.name == "alpha_bias":
             others.append(_offset(kinematics, posterior, gap, False))
     return (*present, *others)
 
 
 def _cause(
-    found: Inference,
+    inference: Inference,
     e: Findings,
-    one: PitchModel,
+    pitch_model: PitchModel,
     model: PitchModel,
     posterior: Posterior[PitchModel],
     probability: float,
@@ -72,14 +72,14 @@ def _cause(
 ) -> Cause:
     """Return an effect with its sizes from a model, whose posterior gives their errors."""
     point = model.fitted.point
-    k = point.index_of(one.name)
-    std = np.sqrt(np.maximum(np.diag(covariance_of(model.problem, model.fitted, found.heat)), 0.0))
+    k = point.index_of(pitch_model.name)
+    std = np.sqrt(np.maximum(np.diag(covariance_of(model.problem, model.fitted, inference.heat)), 0.0))
     sizes = parameters_of(point.effects[k], np.asarray(point.values[k]), std[point.place(k)])
-    alike, way = _not_told_from(one.name, posterior, e.problem.channels)
-    gap_after = whole_gap(one.held_out.mean_square, e.floor)
-    block = EFFECTS[one.name].block
-    cause = Cause(one.name, block, probability, sizes, alike, way, gap_after, present)
-    return with_model_errors(cause, found.problem)
+    alike, way = _not_told_from(pitch_model.name, posterior, e.problem.channels)
+    gap_after = whole_gap(pitch_model.held_out.mean_square, e.floor)
+    block = EFFECTS[pitch_model.name].block
+    cause = Cause(pitch_model.name, block, probability, sizes, alike, way, gap_after, present)
+    return with_model_errors(cause, inference.problem)
 
 
 def _offset(kinematics: KinematicCheck, posterior: Posterior[PitchModel], gap: Gap, present: bool) -> Cause:

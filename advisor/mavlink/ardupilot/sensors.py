@@ -112,7 +112,7 @@ def said(
     return [
         *_doubts(every, quantity, health),
         *changes(table, quantity, noun),
-        *(_silence(one, quantity) for one in silences),
+        *(_silence(silence, quantity) for silence in silences),
     ]
 
 
@@ -156,10 +156,10 @@ def changes(table: RecordTable, quantity: str, noun: str = "sensor") -> list[Sai
     return sentences
 
 
-def _silence(one: Silence, quantity: str) -> Said:
-    when = stretch(one.begin_us / 1e6, one.end_us / 1e6)
+def _silence(silence: Silence, quantity: str) -> Said:
+    when = stretch(silence.begin_us / 1e6, silence.end_us / 1e6)
     return Said(
-        one.order, one.end_us, f"{quantity}: no sensor was healthy from {when} and none is used there"
+        silence.order, silence.end_us, f"{quantity}: no sensor was healthy from {when} and none is used there"
     )
 
 

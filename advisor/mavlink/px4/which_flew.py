@@ -65,7 +65,7 @@ def as_flown(topics: Topics) -> tuple[dict[str, list[Topic]], list[str]]:
         said += _changes("Estimator: instance", published_us(status), numbers)
     for name, ((sensor, own), *places) in _DEVICES.items():
         instances = topics.get(name, [])
-        devices = [float(one[own][0]) if own in one else np.nan for one in instances]
+        devices = [float(instance[own][0]) if own in instance else np.nan for instance in instances]
         for selector, field in places:
             stated = first(topics, selector)
             if stated is None or field not in stated:

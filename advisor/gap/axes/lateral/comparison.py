@@ -78,6 +78,6 @@ def sentence_of_side(verdict: GapVerdict, derivatives: Sequence[ComparedDerivati
         )
     if verdict == "none":
         return "The simulator's derivatives of roll and yaw are those of the flight; no effect is missing."
-    wrong = [one.name for one in derivatives if one.differs]
+    wrong = [derivative.name for derivative in derivatives if derivative.differs]
     listed = f": {', '.join(wrong)}" if wrong else " together, though none alone"
     return f"The simulator's derivatives of roll and yaw are not those of the flight{listed}."

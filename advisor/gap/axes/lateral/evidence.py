@@ -69,10 +69,10 @@ def posterior_at(fit: Fit, known: Known, share: float) -> tuple[FloatArray, Floa
     return mean, np.diag(scattered + found["systematic"]) ** 0.5
 
 
-def step_of(fit: Fit, told: Information, known: Known) -> FloatArray:
+def step_of(fit: Fit, information: Information, known: Known) -> FloatArray:
     """Return the step (15 + k,) from the fit to the posterior mean."""
-    pull = np.sum(told.gradient, axis=0) - known.precision * (fit.values - known.mean)
-    return np.linalg.solve(np.sum(told.matrix, axis=0) + np.diag(known.precision), pull)
+    pull = np.sum(information.gradient, axis=0) - known.precision * (fit.values - known.mean)
+    return np.linalg.solve(np.sum(information.matrix, axis=0) + np.diag(known.precision), pull)
 
 
 class Squares(NamedTuple):
@@ -85,13 +85,13 @@ class Squares(NamedTuple):
     the predicted manoeuvre itself."""
 
 
-def squares_of(fit: Fit, told: Information, known: Known) -> Squares:
+def squares_of(fit: Fit, information: Information, known: Known) -> Squares:
     """Return the sums of squares of a model in the fit, and on manoeuvres held out one by one."""
-    matrix, gradient = np.sum(told.matrix, axis=0), np.sum(told.gradient, axis=0)
+    matrix, gradient = np.sum(information.matrix, axis=0), np.sum(information.gradient, axis=0)
     squares = np.zeros((2, fit.assembly.maneuvers, len(fit.noise)))
     for m, without in np.ndindex(fit.assembly.maneuvers, 2):
-        posterior = matrix - without * told.matrix[m] + np.diag(known.precision)
-        pull = gradient - without * told.gradient[m] - known.precision * (fit.values - known.mean)
+        posterior = matrix - without * information.matrix[m] + np.diag(known.precision)
+        pull = gradient - without * information.gradient[m] - known.precision * (fit.values - known.mean)
         rows = fit.assembly.owner == m
         left = fit.residual[rows] - fit.columns[rows] @ np.linalg.solve(posterior, pull)
         squares[without, m] = np.bincount(fit.assembly.channel[rows], left**2, len(fit.noise))

@@ -231,18 +231,18 @@ def _slopes(
     return found
 
 
-def _as_fit(point: Point, assembly: LateralAssembly, found: Response, free: Sequence[Free]) -> Fit:
+def _as_fit(point: Point, assembly: LateralAssembly, response: Response, free: Sequence[Free]) -> Fit:
     """Return a fit with its sensitivities, without what local parameters absorb.
 
     The columns of derivatives that the flight does not show are zero.
     """
-    noise, cost = weigh(assembly.z, found.y, assembly.channel, FLOOR)
-    slopes, weight = found.columns(), 1.0 / noise[assembly.channel]
-    columns = np.column_stack([found.g[:, :N], slopes])
+    noise, cost = weigh(assembly.z, response.y, assembly.channel, FLOOR)
+    slopes, weight = response.columns(), 1.0 / noise[assembly.channel]
+    columns = np.column_stack([response.g[:, :N], slopes])
     for rows in assembly.blocks:
-        columns[rows] = unabsorbed(columns[rows], found.g[rows][:, assembly.own], weight[rows])
+        columns[rows] = unabsorbed(columns[rows], response.g[rows][:, assembly.own], weight[rows])
     columns[:, [k for k in range(N) if k not in assembly.free]] = 0.0
-    return Fit(point, assembly, tuple(free), found.y, noise, -0.5 * cost, columns, slopes, found.g)
+    return Fit(point, assembly, tuple(free), response.y, noise, -0.5 * cost, columns, slopes, response.g)
 
 
 def outputs(flown: Flown, point: Point) -> FloatArray:

@@ -35,7 +35,7 @@ def _by_surface(fit: Fit, flown: Flown, m: int, control: str, settings: Sequence
     if control in flown.problem.records[m].inputs:
         now = fit.point.setting
         late = t - now[COMMAND][m]
-        moves += np.column_stack([deflection(flown, m, control, one).at(late) for one in settings])
+        moves += np.column_stack([deflection(flown, m, control, setting).at(late) for setting in settings])
         moves -= deflection(flown, m, control, now).at(late)[:, None]
     return answered(fit.linear(flown), m, control, t, moves)
 
@@ -94,13 +94,13 @@ class Starts:
         self._cost = -2.0 * plain.likelihood - float(self._begin @ self._begin)
         self.of_each = [self._best(effect) for effect in table]
 
-    def together(self, one: Start, other: Start) -> float:
+    def together(self, start: Start, other: Start) -> float:
         """Return the price of two effects together, from the output changes of their starts."""
         from scipy.optimize import nnls  # not on the start path
 
-        left = nnls(np.column_stack([one.way, other.way]), self._begin)[1] ** 2
-        count = len(one.effect.places) + len(other.effect.places)
-        return self._cost + left - one.saved - other.saved + 2.0 * count
+        left = nnls(np.column_stack([start.way, other.way]), self._begin)[1] ** 2
+        count = len(start.effect.places) + len(other.effect.places)
+        return self._cost + left - start.saved - other.saved + 2.0 * count
 
     def _best(self, effect: SideEffect) -> Start:
         """Return the starting value of an effect with the least residual.
