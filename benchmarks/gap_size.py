@@ -53,7 +53,7 @@ LIMITS = {
     "constants that decide": 38,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 16131,
+    "lines of estimation": 16137,
     "files naming an axis": 115,
 }
 """Upper bound of each count."""

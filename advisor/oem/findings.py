@@ -81,18 +81,27 @@ def value_in_words(name: InstrumentName, value: float, std: float) -> str:
         case "servo_lag_s":
             return f"the servo's lag is {value:.3f} ± {half:.3f} s"
         case "command_delay_s":
-            return f"the command acts {1e3 * value:+.0f} ± {1e3 * half:.0f} ms after its stamps"
+            side = "before" if value < 0.0 else "after"
+            return f"the command acts {abs(1e3 * value):.0f} ± {1e3 * half:.0f} ms {side} its stamps"
         case "vane_arm_m":
-            return f"alpha reads like a vane {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
+            place = f"{abs(value):.2f} ± {half:.2f} m {_side(value)} the centre of gravity"
+            return f"alpha reads like a vane {place}"
         case "alpha_delay_s":
-            return f"alpha is {1e3 * value:+.0f} ± {1e3 * half:.0f} ms late relative to the motion"
+            side = "early" if value < 0.0 else "late"
+            return f"alpha is {abs(1e3 * value):.0f} ± {1e3 * half:.0f} ms {side} relative to the motion"
         case "accelerometer_arm_m":
-            return f"the accelerometer reads as if {value:.2f} ± {half:.2f} m ahead of the centre of gravity"
+            place = f"{abs(value):.2f} ± {half:.2f} m {_side(value)} the centre of gravity"
+            return f"the accelerometer reads as if {place}"
         case _:
             return (
                 "the moment that does not change with air speed, such as the thrust's, equals"
                 f" {np.degrees(value):+.1f} ± {np.degrees(half):.1f} deg of elevator"
             )
+
+
+def _side(arm_m: float) -> str:
+    """Return on which side of the centre of gravity an arm lies."""
+    return "ahead of" if arm_m >= 0.0 else "behind"
 
 
 def line_of(name: InstrumentName, value: float) -> str:

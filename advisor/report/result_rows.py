@@ -8,7 +8,7 @@ from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.flight.signals.track import ChannelStatus
 from advisor.oem.equation_error import CAVEAT
 from advisor.oem.estimate import Estimate
-from advisor.report.facts.estimates import QUANTITIES, EstimatedParameter, of_all
+from advisor.report.facts.estimates import EstimatedParameter, estimated_parameter, of_all
 from advisor.report.qualities import reference_speed
 from advisor.report.table import Table, digits
 from advisor.words.digits import signed, with_half
@@ -45,32 +45,31 @@ def joint_table(
 def joint_of(name: str, at: str, rows: Sequence[EstimatedParameter], more: str = "") -> Table:
     """Return the table ``name`` of a joint estimate, at an air speed in words.
 
+    The column of the simulator is left out where the aircraft file has no model.
+
     ``more`` follows the sentence above the table.
     """
-    return Table(
-        name, f"{rows[0].source}{at}; ± is half the 95 % interval.{more}",
-        ("parameter", "estimate ± 95 %", "± 95 % if white", "simulator", "unit"),
-        tuple(
-            (
-                row.name,
-                row.cell,
-                "–" if row.reason else f"{row.half_if_white:.2g}",
-                row.prior_cell,
-                row.unit,
-            )
-            for row in rows
-        ),
-        frozenset({1, 2, 3}),
-    )  # fmt: skip
+    compared = any(row.prior is not None for row in rows)
+    head = ("parameter", "estimate ± 95 %", "± 95 % if white", *(["simulator"] if compared else []), "unit")
+    cells = tuple(
+        (
+            row.name,
+            row.cell,
+            "–" if row.reason or row.held else f"{row.half_if_white:.2g}",
+            *([row.prior_cell] if compared else []),
+            row.unit,
+        )
+        for row in rows
+    )
+    caption = f"{rows[0].source}{at}; ± is half the 95 % interval.{more}"
+    return Table(name, caption, head, cells, frozenset({1, 2, 3} if compared else {1, 2}))
 
 
 def structure_table(estimate: Estimate, name: str) -> Iterator[Table]:
     """Yield the table of the parameters that the user holds and of the terms that the user adds, if any."""
-    rows = [
-        (symbol(one), f"{signed(estimate.value(one), 3)}, held", "–", "rad, m, s") for one in estimate.fixed
-    ]
+    rows = [(symbol(one), f"{signed(estimate.value(one), 3)}, held", "–", "SI") for one in estimate.fixed]
     rows += [
-        (one.name, with_half(one.value, NORMAL_95 * one.std), digits(one.gained, 1), "rad, m, s")
+        (one.name, with_half(one.value, NORMAL_95 * one.std), digits(one.gained, 1), "SI")
         for one in estimate.terms
     ]
     if rows:
@@ -85,11 +84,9 @@ def regression_table(estimate: Estimate, name: str) -> Iterator[Table]:
     """Yield the table of equation error next to output error, if there is any."""
     rows = []
     for one, regressed in estimate.equation_error.items():
-        quantity, known = QUANTITIES[one], one not in estimate.not_identifiable
-        std = estimate.std[estimate.names.index(one)]
-        here = with_half(estimate.value(one), NORMAL_95 * std) if known else "–"
+        here = estimated_parameter(one, "", estimate, {})
         there = with_half(regressed.value, NORMAL_95 * regressed.std)
-        rows.append((quantity.symbol, there, here, quantity.unit))
+        rows.append((here.name, there, here.cell, here.unit))
     if rows:
         head = ("parameter", "equation error ± 95 %", "output error ± 95 %", "unit")
         yield Table(name, CAVEAT, head, tuple(rows), frozenset({1, 2}))

@@ -51,7 +51,8 @@ def estimates(content: Content) -> Iterator[Block]:
         for judged in content.state.maneuvers
         if judged.verdict.accepted and isinstance(judged.estimate, Estimate)
     }
-    yield Gallery(tuple(_forest(name, alone, joint) for name in PARAMETERS))
+    drawn = (name for name in PARAMETERS if name not in model.fixed)
+    yield Gallery(tuple(_forest(name, alone, joint) for name in drawn))
     yield Table(
         "by-maneuver", "Estimate of each accepted manoeuvre alone, ± half the 95 % interval.",
         ("no.", *(QUANTITIES[name].label for name in PARAMETERS)),
