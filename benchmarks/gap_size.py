@@ -49,8 +49,8 @@ letter."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
     "lines of code": 7066,
-    "constants": 223,
-    "constants that decide": 38,
+    "constants": 217,
+    "constants that decide": 31,
     "names compared": 11,
     "complex functions": 0,
     "lines of estimation": 16137,

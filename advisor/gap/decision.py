@@ -13,10 +13,8 @@ LEAST_SIGMA = 3.0
 """Least number of standard deviations by which a parameter of an effect differs from zero."""
 SIGMAS = 5.0
 """Least number of standard deviations of a difference that a check without a model reports. Checked are air
-speed, weight, offset of α, and the speeds of manoeuvres. Errors of such checks are not Gaussian, so three
+speed, weight, offset of α, wind, and speeds of manoeuvres. Errors of such checks are not Gaussian, so three
 would not do."""
-CHANCE = 1e-3
-"""Largest probability by chance with which the test of a wind's gradient rejects (Student's t)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -273,6 +273,18 @@ def test_what_moving_air_explains_is_no_law_without_a_name_where_the_air_moves()
     assert told.of(MOMENT) > 0.9
 
 
+@pytest.mark.parametrize(("behind", "searched"), [(2.0, True), (40.0, False)])
+def test_an_alternative_that_may_be_the_answer_is_judged_by_its_own_residual(behind, searched):
+    """Fitted derivatives leave thirty times a simulator's own residual, and the lag leaves none."""
+    flight = Flight({"actuator_lag": -behind})
+    flight.residual = lambda one, heat: Residual(0.5 if one.name else 30.0, {"moment_equation": 1.0})
+    rows = rows_of(flight, stage_of(flight, None, 6), SPREAD)
+    named, left_alone = (
+        next(row for row in rows if row.alternative == alternative) for alternative in (LAG, NONE)
+    )
+    assert (named.terms["residual"] > left_alone.terms["residual"] + 5.0) is searched
+
+
 def test_a_second_effect_is_sought_after_the_first():
     flight = Flight({"transport_delay": 60.0}, {"actuator_lag": 20.0})
     found = decided(flight, first_stage(flight), SPREAD, lambda rows: rows)

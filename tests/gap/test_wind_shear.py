@@ -70,4 +70,4 @@ def test_heights_must_explain_17_percent_in_a_layer(share, is_found):
 
 @pytest.mark.parametrize(("gradient", "agreed"), [(0.079, False), (-0.081, True)])
 def test_a_gradient_below_a_knot_in_six_metres_does_not_matter(gradient, agreed):
-    assert Shear(gradient, 0.0, 0.5, maneuvers=5).is_agreed() == agreed
+    assert Shear(gradient, 0.0, 0.5, maneuvers=5).is_agreed == agreed

@@ -10,7 +10,7 @@ from advisor.gap.kit.variant import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import THROTTLE
 
-_THROTTLE_MOVES = 0.02
+THROTTLE_MOVES = 0.02
 """Least change of the throttle within a manoeuvre that makes it informative, as a share of its range."""
 _AT_ONCE = Variant(
     "thrust_moment", "moment_equation", ("M_throttle",), ((0.0,),), (0.05,), ((-100.0, 100.0),), 0.0,
@@ -23,7 +23,7 @@ _BEHIND = replace(
 
 
 def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
-    moves = any(float(np.ptp(f.slow[THROTTLE])) > _THROTTLE_MOVES for f in flights.flights)
+    moves = any(float(np.ptp(f.slow[THROTTLE])) > THROTTLE_MOVES for f in flights.flights)
     return (_AT_ONCE, _BEHIND) if moves else ()
 
 

@@ -4,8 +4,10 @@ import numpy as np
 
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem, counts
+from advisor.gap.fitting.step import own_eliminated
 from advisor.gap.records.floor import effective_sample_size
 from advisor.oem.arrow import inverse_of
+from advisor.oem.scatter_between import widened_by_scatter
 from advisor.process.arrays import FloatArray
 
 
@@ -20,7 +22,8 @@ def colour_of(problem: EffectProblem, fitted: EffectFit) -> float:
 
 
 def covariance_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> FloatArray:
-    """Return the posterior covariance of the shared parameters, shape (k, k).
+    """Return the posterior covariance of the shared parameters, with the scatter between manoeuvres, shape
+    (k, k).
 
     Parameters
     ----------
@@ -29,4 +32,5 @@ def covariance_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> Flo
     """
     precision, _ = problem.prior_of(fitted.point)
     information = (fitted.information - np.diag(precision)) / heat + np.diag(precision)
-    return inverse_of(information)[0]
+    pulls = np.array([own_eliminated(block, 1.0 / fitted.noise)[0][:-1, -1] for block in fitted.linear])
+    return widened_by_scatter(inverse_of(information)[0], pulls @ inverse_of(fitted.information)[0])

@@ -14,6 +14,7 @@ from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.foresight.signatures import Signatures
+from advisor.gap.inference.explanation import least_apart
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.floor import floor_margins
 from advisor.gap.result import VISIBLE, Unseen, spelled
@@ -26,10 +27,7 @@ CONFUSED_AT = 0.95
 _LISTED_AT = 0.8
 _MOST_CONFUSIONS = 3
 """Words: least cosine of a listed similar effect, and the largest number of listed effects."""
-_GROWTH = 3.0
-_OF_PEAK = 0.003
-"""Least change of the outputs by a detectable effect, as a share of each channel's peak."""
-_CLOSE = 0.02
+_GROWTH, _CLOSE = 3.0, 0.02
 """Numerical: factor on a size without a signature, and relative difference of two sizes in a row at which the
 refinement ends."""
 
@@ -269,4 +267,5 @@ def _least_change(problem: EffectProblem) -> float:
     # A low-order effect describes an output only within a share of the channel's peak.
     if problem.instruments is None:
         return VISIBLE
-    return max(VISIBLE, float(_OF_PEAK**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))
+    least = least_apart(LEAST_GAIN)
+    return max(VISIBLE, float(least**2 / np.mean((problem.instruments / problem.flights.peaks) ** 2)))

@@ -51,11 +51,6 @@ class Explanation:
     """Part of the evidence that allows for the error of every simulator, nats."""
 
     @property
-    def solution(self) -> object:
-        """Fit of the explanation, equal in still and in moving air."""
-        return self
-
-    @property
     def form_error(self) -> float:
         """Error of the outputs due to the effect's simplified form, as a share of the peaks."""
         return form_error(self.numbers, self.change)
@@ -120,3 +115,9 @@ def most_nats(apart: float, *forms: float) -> float:
     """
     error = float(np.linalg.norm((_MODEL, *forms)))
     return 0.5 * _INDEPENDENT * (apart / error) ** 2
+
+
+def least_apart(nats: float) -> float:
+    """Return the least difference between two models' outputs, as a share of the peaks, that may differ by
+    ``nats``."""
+    return float(_MODEL * np.sqrt(2.0 * nats / _INDEPENDENT))

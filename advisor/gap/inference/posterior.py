@@ -10,15 +10,12 @@ from advisor.gap.alternative import Alternative, together
 from advisor.gap.effects import EFFECTS
 from advisor.gap.inference.explanation import E, Row
 from advisor.gap.inference.prior import FieldPrior
-from advisor.gap.inference.residual import Residual, if_lacking, if_right
+from advisor.gap.inference.residual import MOST_NATS, Residual, if_lacking, if_right
 from advisor.gap.inference.stage import Flight, Stage
 from advisor.gap.inference.with_motion import WITNESSES
 
 _ALWAYS = frozenset({"air"})
 """Blocks with a disturbance in most flights, whose residual indicates no missing law."""
-_SEARCHED = 2
-"""Numerical: number of the likeliest models whose residual is searched for a law. An alternative whose
-residual is not searched gets the residual of the likeliest model."""
 
 
 @dataclass(frozen=True)
@@ -89,15 +86,19 @@ def rows_of(
     if flight.maneuvers < WITNESSES:
         # An effect without a name must repeat, which fewer manoeuvres do not show.
         ways = [way for way in ways if way.alternative.kind != "unknown"]
-    models = {id(way.model.solution): way.model for way in ways}
-    near = list(models.items())[:_SEARCHED]
-    residuals = {key: _repeating(flight, flight.residual(one, stage.heat)) for key, one in near}
-    of_others = residuals[near[0][0]]
-    return [
-        row
-        for way in ways
-        for row in _with_residual(way, residuals.get(id(way.model.solution), of_others), prior)
-    ]
+    rows: list[Row[E]] = []
+    searched: dict[int, Residual] = {}
+    named: dict[tuple[Alternative, bool], Residual] = {}
+    for way in ways:
+        name, model = (way.alternative, way.in_moving_air), id(way.model)
+        if name not in named:
+            best = max((row.weight for row in rows), default=-np.inf)
+            if model not in searched and way.weight + MOST_NATS > best:
+                searched[model] = _repeating(flight, flight.residual(way.model, stage.heat))
+            # An alternative that no residual makes the answer gets the residual of the likeliest model.
+            named[name] = searched.get(model, next(iter(searched.values())))
+        rows += _with_residual(way, named[name], prior)
+    return rows
 
 
 def _repeating(flight: Flight[E], residual: Residual) -> Residual:

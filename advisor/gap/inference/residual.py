@@ -19,6 +19,8 @@ NATURAL = 0.004
 _RIGHT, _LACKING = (0.0, 0.6), (np.log(3.0), 0.9)
 """Prior: mean and standard deviation of the log of the residual's size (``Residual.size``), of a right model
 and of one that lacks a law."""
+MOST_NATS = -float(np.log(min(_RIGHT[1], _LACKING[1])))
+"""Numerical: largest log density, nats, of a residual's size."""
 _LEAST_MISFIT = 0.25
 """Numerical: size of a residual below which the residual counts as zero."""
 

@@ -31,8 +31,6 @@ is mistaken for moving air, an improved simulator looks too good."""
 NATURAL_GUST_ANGLE = 0.006
 """Largest standard deviation of the gust angle, rad, that is natural in every flight and no cause. At 25 m/s
 the limit is 0.15 m/s, the lightest turbulence named in flights of three generators."""
-_LEAST_GUST_PEAK = 0.0025
-"""Least peak of the gust angle for a named gust, rad. A single gust hardly changes the standard deviation."""
 _STANDS_OUT = 4.0
 """Residual power of one manoeuvre over the median of all, above which a gust is sought in that manoeuvre.
 Noise of equal colour in all manoeuvres does not explain a manoeuvre that stands out."""
@@ -105,7 +103,7 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
     # Gaussian air of this many samples reaches four times its standard deviation, a lone gust far more.
     highest = float(np.max(np.abs(joined)))
     gust = highest > 6.0 * typical
-    if found.gust_angle < LEAST_GUST_ANGLE and not (gust and highest > _LEAST_GUST_PEAK):
+    if found.gust_angle < LEAST_GUST_ANGLE and not (gust and highest > NATURAL_GUST_ANGLE):
         return nothing
     if gust:
         course = _of_a_gust(problem, fitted, instruments, found.gust_angle)

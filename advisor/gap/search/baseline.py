@@ -59,8 +59,6 @@ _LOUD = 1.5
 """Residual power in quiet stretches over white noise above which an effect is sought."""
 _QUIETER = 0.7
 """Largest ratio of the quiet residual's power with an effect to that without, for the effect to be kept."""
-_AT_MOST = 2
-"""Largest number of effects in the model for the noise estimate."""
 _MAIN = [DERIVATIVES.index(name) for name in ("Z_alpha", "M_alpha", "M_delta_e")]
 """Indices of the derivatives that a regression hardly ever misses by a factor of three."""
 _ALIKE = 1.0 / 3.0
@@ -221,9 +219,7 @@ def quietest(problem: EffectProblem, fitted: EffectFit) -> EffectFit:
     right effect removes the decaying motion, but no motion that occurs in still flight.
     """
     best, loud = fitted, loudness(problem, fitted)
-    for _ in range(_AT_MOST):
-        if loud < _LOUD:
-            break
+    while loud >= _LOUD:
         present = {variant.effect for variant in best.point.effects}
         # The drift represents all changes between manoeuvres, because their residuals decay equally fast.
         variants = [

@@ -10,12 +10,11 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
-from scipy.special import stdtrit
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.motion import channel_at, gravity_in_plane, integrated, speed_rate
-from advisor.gap.decision import CHANCE
+from advisor.gap.decision import SIGMAS
 from advisor.process.arrays import FloatArray
 
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
@@ -60,11 +59,11 @@ class Shear:
         """Whether the gradient exceeds that of any wind, as with a gust or a wrong air speed."""
         return abs(self.gradient_per_s) > _MOST_PER_S
 
-    def is_agreed(self, tried: int = 1) -> bool:
-        """Return whether the manoeuvres agree on a gradient that matters, the likeliest of ``tried``
-        gradients."""
-        scatter = float(stdtrit(self.maneuvers - 1, 1.0 - 0.5 * CHANCE / tried)) * self.std
-        return self.share >= _LEAST_SHARE and abs(self.gradient_per_s) >= max(_LEAST_PER_S, scatter)
+    @property
+    def is_agreed(self) -> bool:
+        """Whether the manoeuvres agree on a gradient that matters."""
+        least = max(_LEAST_PER_S, SIGMAS * self.std)
+        return self.share >= _LEAST_SHARE and abs(self.gradient_per_s) >= least
 
 
 @dataclass(frozen=True)
@@ -112,7 +111,7 @@ def _shear_of(paths: Sequence[_Path]) -> Shear | None:
     if len(paths) < _LEAST_MANEUVERS:
         return None
     everywhere = _gradient(paths)
-    if everywhere.is_agreed():
+    if everywhere.is_agreed:
         return everywhere
     heights = np.concatenate([p.height for p in paths])
     if np.any(np.isnan(heights)):
@@ -120,7 +119,7 @@ def _shear_of(paths: Sequence[_Path]) -> Shear | None:
     between = combinations(np.quantile(heights, np.linspace(0.0, 1.0, _HEIGHTS)), 2)
     layers = [_gradient(paths, low, high) for low, high in between if high - low >= _THINNEST_M]
     likeliest = max(layers, key=lambda s: s.share, default=everywhere)
-    return likeliest if likeliest.is_agreed(len(layers)) else None
+    return likeliest if likeliest.is_agreed else None
 
 
 def _gradient(paths: Sequence[_Path], low: float = -np.inf, high: float = np.inf) -> Shear:

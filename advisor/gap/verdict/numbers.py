@@ -25,9 +25,6 @@ from advisor.gap.result import Cause, ComparedDerivative, Gap, Shrink, Trace, Va
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.process.arrays import FloatArray
 
-_UNCHANGED = 0.1
-"""Share of the change in flight below which a manoeuvre was flown before the change."""
-
 
 def gap_numbers(problem: EffectProblem, floor: FloatArray, before: HeldOut, last: HeldOut) -> Gap:
     """Return the gap of the simulator as given and of the final model, as numbers."""
@@ -161,7 +158,7 @@ def _as_it_began(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
     off = np.max(
         np.abs(derivatives - fitted.point.derivatives) / derivative_scale(fitted.point.derivatives), axis=1
     )
-    return np.asarray(off - np.min(off) <= _UNCHANGED * np.ptp(off))
+    return np.asarray(off == np.min(off))
 
 
 def fidelity_of(

@@ -16,7 +16,7 @@ from advisor.gap.inference.diagnose import floor_of
 from advisor.gap.inference.evidence import FlightProblem
 from advisor.gap.inference.findings import Findings, Model, Unexplained
 from advisor.gap.inference.residual import residual_of
-from advisor.gap.result import VISIBLE, Diagnosis, GapVerdict, Where, ranked
+from advisor.gap.result import Diagnosis, GapVerdict, Where, ranked
 from advisor.gap.verdict.answer import speed_is_known
 from advisor.gap.verdict.notes import notes_of
 from advisor.gap.verdict.numbers import (
@@ -27,6 +27,7 @@ from advisor.gap.verdict.numbers import (
     model_of,
     traces_of,
 )
+from advisor.gap.verdict.reasons import VISIBLE_GAP
 from advisor.gap.verdict.text import sentence_of, sentence_of_one_maneuver
 
 _FIXED = 0.1
@@ -45,7 +46,7 @@ def answer_of_one(
     file_model = file_model_of(problem, baseline)
     before = file_model or held_out
     unexplained = None
-    if whole_gap(before.mean_square, floor) >= VISIBLE:
+    if whole_gap(before.mean_square, floor) >= VISIBLE_GAP:
         unexplained = _located(problem, baseline)
     e = Findings(problem, (Model(baseline, held_out),), unexplained, None, floor, file_model, None, None)
     gap = gap_numbers(problem, floor, before, held_out)

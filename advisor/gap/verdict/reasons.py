@@ -12,7 +12,7 @@ from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, Posterior, posterior_of, relabelled
 from advisor.words.certainty import DECIDED
 
-_VISIBLE_GAP, _LEAST_DOUBT = 2.0, 0.05
+VISIBLE_GAP, _LEAST_DOUBT = 2.0, 0.05
 """Contract: gap on held-out manoeuvres, and the largest probability of "no gap" in its presence."""
 _WORDS = {
     "prior": "how often each is right, before the flight is looked at",
@@ -97,7 +97,7 @@ def capped(posterior: Posterior[Any], gap: float, left: float) -> Posterior[Any]
         Gap of the plain model, whose derivatives are fitted.
     """
     none = posterior.of(NONE)
-    if gap < _VISIBLE_GAP or none <= _LEAST_DOUBT:
+    if gap < VISIBLE_GAP or none <= _LEAST_DOUBT:
         return posterior
     by_numbers = float(np.clip(1.0 - left / gap, 0.0, 1.0))
     block = next((row.alternative for row in posterior.rows if row.alternative.kind == "unknown"), PARAMETERS)

@@ -27,7 +27,6 @@ from advisor.gap.verdict.causes import MOST_CAUSES
 from advisor.gap.verdict.reasons import capped, weighed
 from advisor.gap.verdict.statements import what
 from advisor.gap.verdict.text import place
-from advisor.model.axes.lateral import LATERAL
 from advisor.process.arrays import FloatArray
 
 PEAKS = ("p", "r")
@@ -143,11 +142,7 @@ def _held_out(case: Case, model: SideModel, heat: float) -> FloatArray:
     """
     known = case.prior_of(model.tolerance, model.fit.free)
     found = squares_of(model.fit, information_of(model.fit, heat**-0.5), known).held_out
-    problem = case.flown.problem
-    for m, record in enumerate(problem.records):
-        others = replace(problem, records=tuple(one for one in problem.records if one is not record))
-        if not all(others.flies(name) for name in filter(problem.flies, LATERAL.inputs)):
-            found[m] = np.nan
+    found[~case.flown.foretold] = np.nan
     return found
 
 

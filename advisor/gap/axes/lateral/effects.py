@@ -17,6 +17,7 @@ from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.actuator_rate_limit import RATE_LIMIT
 from advisor.gap.effects.pitch_rate_scale import SCALE
 from advisor.gap.effects.thrust_moment import EFFECT as THRUST
+from advisor.gap.effects.thrust_moment import THROTTLE_MOVES
 from advisor.gap.effects.transport_delay import DELAY
 from advisor.gap.kit.effect import without_sizes
 from advisor.gap.kit.least import FILTERED_S
@@ -26,9 +27,6 @@ from advisor.gap.result import Unseen, spelled
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.disturbance import SENSORS
 from advisor.process.arrays import FloatArray
-
-THROTTLE_MOVES = 0.02
-"""Least change of the throttle within a record that makes it informative, as for the pitching moment."""
 
 
 @dataclass(frozen=True, slots=True)

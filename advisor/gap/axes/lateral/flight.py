@@ -10,6 +10,7 @@ from advisor.gap.axes.lateral.effects import SideEffect, block_of
 from advisor.gap.axes.lateral.evidence import colour_share, gained, information_of, squares_of, step_of
 from advisor.gap.axes.lateral.fit import Fit, Free, Known, moved_by
 from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
+from advisor.gap.axes.lateral.measure import sums
 from advisor.gap.axes.lateral.models import Case, base_of, base_setting, free_near, free_with
 from advisor.gap.axes.lateral.residual import residual_of
 from advisor.gap.axes.lateral.starts import Start, Starts
@@ -34,10 +35,10 @@ from advisor.process.arrays import FloatArray
 from advisor.process.parts import Parts
 
 _TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
-_STEPS = 2
-"""Numerical: number of Gauss-Newton steps from the optimum in white noise to the one in gusts."""
 LIKELY = 0.01
 """Probability above which an effect is also fitted with side gusts, and above which its sizes are stated."""
+_STEPS = 2
+"""Numerical: number of Gauss-Newton steps from the optimum in white noise to the one in gusts."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,11 +56,6 @@ class SideModel(Explanation):
     """Linear starts of all further effects; None except in the plain model."""
     gusts: Gusts | None = None
     """Side gusts of the model; None in still air."""
-
-    @property
-    def solution(self) -> Fit:
-        """Fit of the explanation."""
-        return self.fit
 
     @property
     def tolerance(self) -> float:
@@ -271,9 +267,11 @@ class SideFlight:
             extra -= len(self.case.flown) * np.log(len(effect.sides[1]))
         was = squares_of(plain, information_of(plain, share), self._wide(plain))
         now = squares_of(fit, told, self.case.prior_of(model.tolerance, fit.free))
-        counts = np.bincount(fit.assembly.channel, minlength=len(fit.noise)).astype(float)
-        gain = gained(was.held_out, now.held_out, counts, share)
-        unseen = min(gain.value - gained(was.in_fit, now.in_fit, counts, share).value, 0.0)
+        # A manoeuvre that alone moves a control is predicted by the prior, which says nothing of an effect.
+        kept = self.case.flown.foretold
+        counts = sums(fit, np.ones(len(fit.residual)))[kept].sum(axis=0)
+        gain = gained(was.held_out[kept], now.held_out[kept], counts, share)
+        unseen = min(gain.value - gained(was.in_fit[kept], now.in_fit[kept], counts, share).value, 0.0)
         is_law = any(effect is law for law in self.laws)
         answer = UNKNOWN if is_law else Alternative("effect", effect.name)
         return replace(

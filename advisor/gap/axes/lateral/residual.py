@@ -74,13 +74,13 @@ def _probe(fit: Fit, block: str, courses: Sequence[Course], noise: FloatArray) -
     values, powers, total, unit = [], [], 0.0, 0.0
     for m, course in enumerate(courses):
         rows = fit.assembly.owner == m
-        coloured = course.columns @ coloured_between(course.knots) * weight[rows, None]
+        colour, columns = coloured_between(course.knots), course.columns * weight[rows, None]
         left = fit.residual[rows] * weight[rows]
-        gram = coloured.T @ coloured
+        gram = colour.T @ (columns.T @ columns) @ colour
         unit = unit or float(np.sqrt(np.trace(gram) / len(left))) + 1e-300
         value, vector = np.linalg.eigh(gram / unit**2)
         values.append(np.maximum(value, 0.0))
-        powers.append((vector.T @ (coloured.T @ left) / unit) ** 2)
+        powers.append((vector.T @ (colour.T @ (columns.T @ left)) / unit) ** 2)
         total += float(left @ left)
     return at_its_size(block, np.hstack(values), np.hstack(powers), unit, total)
 

@@ -39,6 +39,15 @@ class Flown:
     def __len__(self) -> int:
         return len(self.problem.records)
 
+    @property
+    def foretold(self) -> np.ndarray:
+        """Shape (m,): whether other manoeuvres move every control of the flight, so that they predict the
+        manoeuvre."""
+        base = self.problem
+        each = (tuple(one for one in base.records if one is not left) for left in base.records)
+        others = (replace(base, records=records) for records in each)
+        return np.array([all(map(one.flies, filter(base.flies, LATERAL.inputs))) for one in others])
+
 
 Setting = Mapping[Place, FloatArray]
 """Parameter values by their place, shape (manoeuvres,) each; an absent value is zero, as in an ideal

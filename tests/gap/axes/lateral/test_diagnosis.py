@@ -14,10 +14,12 @@ from advisor.gap.alternative import Alternative, AlternativeEvidence, together
 from advisor.gap.axes.lateral import diagnosis
 from advisor.gap.axes.lateral import flight as flight_of_side
 from advisor.gap.axes.lateral.diagnosis import _capped, diagnose_side, where_of
+from advisor.gap.axes.lateral.evidence import Squares
 from advisor.gap.axes.lateral.fit import Fit, Free
 from advisor.gap.axes.lateral.flight import SideFlight, SideModel
 from advisor.gap.axes.lateral.measure import measured, sums
 from advisor.gap.axes.lateral.models import case_of
+from advisor.gap.axes.lateral.setting import Flown
 from advisor.gap.inference.engine import Decided
 from advisor.gap.inference.explanation import Evidence, Row
 from advisor.gap.inference.posterior import NONE, PARAMETERS, posterior_of
@@ -336,9 +338,36 @@ def test_a_manoeuvre_that_alone_moves_a_control_is_not_held_out(monkeypatch, rec
     monkeypatch.setattr(diagnosis, "information_of", lambda *_: None)
     told = SimpleNamespace(held_out=np.zeros((len(records), 1)))
     monkeypatch.setattr(diagnosis, "squares_of", lambda *_: told)
-    case = SimpleNamespace(flown=SimpleNamespace(problem=problem), prior_of=lambda *_: None)
+    case = SimpleNamespace(flown=Flown(problem, ()), prior_of=lambda *_: None)
     model = SimpleNamespace(fit=SimpleNamespace(free=()), tolerance=0.3)
     assert np.count_nonzero(~np.isnan(diagnosis._held_out(case, model, 1.0))) == kept
+
+
+def test_an_effect_loses_nothing_on_a_manoeuvre_that_only_the_prior_predicts(monkeypatch):
+    """The manoeuvre that alone moves the rudder is predicted a hundred times worse with the effect."""
+    moved = Signal(np.arange(2.0), np.array([0.0, 0.1]))
+    flown = [SimpleNamespace(inputs={of: moved}) for of in ("aileron", "aileron", "rudder")]
+    case = SimpleNamespace(flown=Flown(LateralProblem(tuple(flown)), ()), prior_of=lambda *_: None)
+    effect = SimpleNamespace(
+        variant=SimpleNamespace(bounds=((-1.0, 1.0),), names=()), sides=None, of="aileron", name="lag"
+    )
+    laid = SimpleNamespace(maneuvers=3, owner=np.repeat([0, 1, 2], 9), channel=np.zeros(27, int))
+    plain, fit = (SimpleNamespace(assembly=laid, noise=np.ones(1), residual=r, free=(), likelihood=0.0)
+                  for r in (np.ones(27), 0.5 * np.ones(27)))  # fmt: skip
+    squares = {id(plain): [[9.0], [9.0], [9.0]], id(fit): [[4.0], [4.0], [900.0]]}
+
+    def of_each(one, *_):
+        told = np.array(squares[id(one)])
+        return Squares(np.minimum(told, 4.0) if one is fit else told, told)
+
+    nothing = SimpleNamespace(matrix=np.zeros((1, 1, 1)), gradient=np.zeros((1, 1)))
+    monkeypatch.setattr(flight_of_side, "squares_of", of_each)
+    monkeypatch.setattr(flight_of_side, "information_of", lambda *_: tuple(vars(nothing).values()))
+    monkeypatch.setattr(flight_of_side, "step_of", lambda *_: np.zeros(1))
+    monkeypatch.setattr(flight_of_side, "change_of", lambda *_: 0.1)
+    side = SideFlight(case, plain, [effect])
+    monkeypatch.setattr(SideFlight, "_weighed", lambda *_: (Evidence(0.0, 0.0),) * 2)
+    assert side._model(effect, fit, plain, 1.0).unseen == 0.0
 
 
 def test_each_manoeuvre_has_its_gap_before_and_after():
