@@ -84,16 +84,6 @@ def booted_before(maneuver, seconds):
 
 
 @pytest.mark.study
-@pytest.mark.parametrize(("mass", "inertia_of_mass"), [(0.4, 0.6), pytest.param(-0.25, 0.4)])
-def test_a_load_that_adds_less_to_the_inertia_than_to_the_mass_is_a_mass_and_no_ice(mass, inertia_of_mass):
-    flown = Setup(maneuvers=6, mass_step=mass, inertia_of_mass=inertia_of_mass, noise=0.005, seed=11)
-    found = diagnose(fly(flown), Aircraft())
-    assert found.causes[0].effect == "mass_change"
-    assert found.causes[0].parameters["step"].value == pytest.approx(mass, rel=0.08)
-    assert found.causes[0].parameters["inertia"].value == pytest.approx(inertia_of_mass * mass, rel=0.08)
-
-
-@pytest.mark.study
 @pytest.mark.parametrize("late_s", [0.05, -0.03])
 def test_a_message_that_is_late_shifts_attitude_and_pitch_rate_together(late_s):
     skew = {"q": late_s, "theta": late_s}
@@ -332,14 +322,3 @@ def test_stated_errors_of_the_terms_at_zero_angles_cover_their_scatter():
         stated = np.mean([model[name].std for model in found])
         # Eight flights know a scatter to within a factor of two (chi-square, 99 %).
         assert 0.5 * scatter < stated < 3.0 * scatter
-
-
-@pytest.mark.study
-def test_beside_moving_air_the_sentence_says_what_the_effect_removes_and_manoeuvres_are_kept_out_too():
-    flown = fly(Setup(switches={"delay": 0.06}, gust_std=0.4, maneuvers=6))
-    found, apart = diagnose(flown, Aircraft()), diagnose(flown, Aircraft(), holdout=2)
-    assert {c.effect for c in found.causes if c.present} == {"transport_delay", "turbulence"}
-    assert found.shrink.beyond_air_percent > 97.0
-    assert "of the gap that is not the air's" in found.sentence
-    assert apart.shrink.holdout == (5, 6)
-    assert apart.shrink.before != found.shrink.before

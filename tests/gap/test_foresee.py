@@ -234,7 +234,6 @@ def test_an_elevator_that_pitches_up_when_it_goes_down_is_foreseen_with_a_note(t
 @pytest.mark.parametrize(
     ("effect", "changes"),
     [
-        ("transport_delay", lambda size: {"switches": {"delay": size}}),
         ("pitch_rate_scale", lambda size: {"q_scale": size}),
         ("alpha_lag", lambda size: {"switches": {"vane_lag": size}}),
     ],

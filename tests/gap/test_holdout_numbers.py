@@ -4,16 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.ndimage import gaussian_filter1d
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import rms_of
 from advisor.gap.fitting.holdout import hold_out, measured_in
-from advisor.gap.records.floor import prefiltered
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.simulator.layout import OUTPUTS
 from advisor.gap.verdict.holdout_numbers import over_maneuvers
 from tests.gap.generator import Setup, fly
 
@@ -59,22 +56,7 @@ def test_what_only_a_manoeuvre_kept_out_could_tell_is_measured_there():
 
 
 @pytest.mark.study
-@pytest.mark.parametrize("smoothed", [False, True])
-def test_in_moving_air_the_gap_is_held_against_instruments_and_never_against_next_to_nothing(smoothed):
-    flown = []
-    for maneuver in fly(Setup(maneuvers=6, gust_std=0.4, noise=0.002 if smoothed else 0.01, seed=34)):
-        channels = {
-            name: replace(c, y=gaussian_filter1d(c.y, 2.0)) if smoothed and name in OUTPUTS else c
-            for name, c in maneuver.channels.items()
-        }
-        flown.append(replace(maneuver, channels=channels))
-    found = diagnose(flown, Aircraft())
-    # A filter leaves less of the gusts than every flight has: they make the gap, and are no cause.
-    assert [c.effect for c in found.causes if c.present] == ([] if smoothed else ["turbulence"])
-    assert ("light gusts, as in every flight, make most of the gap" in found.sentence) == smoothed
-    assert found.gap.after < 0.1 * found.gap.before
-    assert (found.gap.after > 0.0) != smoothed
-    flights = prepare(flown, Aircraft())
-    assert all(prefiltered(flights).values()) == smoothed
-    for channel, peak in zip(flights.channels, flights.peaks, strict=True):
-        assert found.gap.floor[channel] > (0.01 * peak if smoothed else 0.0)
+def test_in_moving_air_the_gap_is_held_against_instruments():
+    found = diagnose(fly(Setup(maneuvers=6, gust_std=0.4, noise=0.01, seed=34)), Aircraft())
+    assert [c.effect for c in found.causes if c.present] == ["turbulence"]
+    assert 0.0 < found.gap.after < 0.1 * found.gap.before

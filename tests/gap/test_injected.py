@@ -49,7 +49,6 @@ def later(by):
         pytest.param("q", scaled(0.85), "pitch_rate_scale", "scale", -0.15, marks=pytest.mark.study),
         ("q", shifted(np.radians(1.2)), "pitch_rate_bias", "bias_rad_s", np.radians(1.2)),
         pytest.param("a_z", later(0.08), "accelerometer_skew", "skew_s", 0.08, marks=pytest.mark.study),
-        pytest.param("alpha", shifted(0.026), "alpha_bias", "bias_rad", 0.026, marks=pytest.mark.study),
     ],
 )
 def test_an_effect_put_into_a_recorded_flight_is_named_with_its_size(

@@ -5,10 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.delayed_fit import coloured_covariance
 from advisor.flight.instruments.kinematics import check_alpha, combine
-from advisor.gap.diagnose import diagnose
 from advisor.gap.uncatalogued.wind_shear import wind_shear
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 
@@ -58,12 +56,6 @@ def without_accelerometer(maneuvers):
     return [
         replace(m, channels={name: c for name, c in m.channels.items() if name != "a_z"}) for m in maneuvers
     ]
-
-
-@pytest.mark.study
-def test_a_constant_offset_has_its_name_without_an_accelerometer_too():
-    named = diagnose(without_accelerometer(flown(alpha_bias=0.01)), Aircraft())
-    assert [c.effect for c in named.causes if c.present] == ["alpha_bias"]
 
 
 def test_a_constant_offset_shows_without_an_accelerometer_too():
@@ -159,13 +151,6 @@ def test_no_wind_changes_by_most_of_its_own_speed_in_a_metre():
     assert wind_shear([blown(m, 0.7) for m in still]).is_implausible
 
 
-@pytest.mark.study
-def test_a_wind_that_is_steeper_than_any_is_unknown_in_the_air():
-    found = diagnose([blown(m, 0.7) for m in fly(Setup(maneuvers=5, seed=51))], Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "air")
-    assert any("which no wind explains" in note for note in found.notes)
-
-
 @pytest.mark.parametrize("by_s", [0.3, 0.6])
 def test_an_air_speed_that_is_late_is_no_wind_and_hides_none(by_s):
     still = fly(Setup(maneuvers=6, seed=3, speed_change=0.05))
@@ -182,34 +167,6 @@ def test_wind_that_changes_with_height_shows_in_the_air_speed_and_nowhere_else()
     assert found.gradient_per_s == pytest.approx(0.2, abs=4.0 * found.std)
     # Three manoeuvres may agree by chance.
     assert wind_shear(sheared[:3]) is None
-
-
-@pytest.mark.study
-def test_wind_that_changes_with_height_is_unknown_in_the_air():
-    found = diagnose([blown(m, 0.2) for m in fly(Setup(maneuvers=5, seed=51))], Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "air")
-
-
-@pytest.mark.study
-def test_an_accelerometer_that_does_not_read_in_proportion_feigns_wind_that_changes_with_height():
-    bent = []
-    for maneuver in (blown(m, 0.2) for m in fly(Setup(maneuvers=6, seed=38))):
-        a_z = maneuver.channels["a_z"]
-        reading = replace(a_z, y=a_z.y + 0.02 * (a_z.y + 9.8) ** 2)
-        bent.append(replace(maneuver, channels={**maneuver.channels, "a_z": reading}))
-    assert wind_shear(bent) is not None
-    found = diagnose(bent, Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "accelerometer")
-    assert any("does not read in proportion" in note for note in found.notes)
-    assert not any("wind changed" in note for note in found.notes)
-
-
-@pytest.mark.study
-def test_a_wind_that_plainly_changes_with_height_is_told_from_air_that_moves_besides():
-    moving = fly(Setup(maneuvers=6, gust_std=0.5, seed=53))
-    assert diagnose(moving, Aircraft()).causes[0].effect == "turbulence"
-    found = diagnose([blown(m, 0.25) for m in moving], Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "air")
 
 
 def test_a_wind_that_all_manoeuvres_agree_on_is_plain_though_the_air_speed_is_rough():

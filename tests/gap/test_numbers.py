@@ -15,9 +15,6 @@ HEIGHTS = (120.0, 121.0, 119.0)
 CAUSES = {
     "transport_delay": Setup(maneuvers=4, switches={"delay": 0.1}, seed=21),
     "alpha_bias": Setup(maneuvers=4, alpha_bias=0.03, seed=22),
-    "airspeed_variation": Setup(
-        maneuvers=6, surge=0.8, surge_hz=0.1, logs_throttle=True, heights_m=HEIGHTS, seed=202
-    ),
 }
 
 
@@ -77,18 +74,6 @@ def test_a_file_without_the_terms_at_zero_angles_has_wrong_numbers_all_the_same(
     assert diagnose(flown, wrong).verdict == "parameters"
 
 
-def test_wrong_numbers_that_make_nearly_all_of_a_gap_are_the_answer_though_a_moment_bends_a_little(sound):
-    _, right = sound
-    model = {name: value.value for name, value in right.model.items()}
-    wrong = Aircraft(model={**model, "M_alpha": 0.45 * model["M_alpha"], "M_q": 1.3 * model["M_q"]})
-    found = diagnose(fly(Setup(maneuvers=6, switches={"cm_a2": 1.6}, seed=5)), wrong)
-    assert [c.effect for c in found.causes if c.present] == ["nonlinear_pitching_moment"]
-    assert found.verdict == "parameters"
-    assert "wrong numbers" in found.sentence
-    assert "nonlinear pitching moment" in found.sentence
-    assert found.shrink.by_numbers_percent > 98.0
-
-
 @pytest.mark.parametrize(
     ("number", "block"), [("Z_alpha", "force_equation"), ("M_delta_e", "moment_equation")]
 )
@@ -97,33 +82,3 @@ def test_a_wrong_number_is_placed_in_its_equation(sound, number, block):
     model = {name: value.value for name, value in right.model.items()}
     found = diagnose(flown, Aircraft(model={**model, number: 0.75 * model[number]}))
     assert (found.verdict, found.where.block) == ("parameters", block)
-
-
-@pytest.mark.parametrize(
-    ("gust_m_s", "off", "verdict", "said"),
-    [
-        (2.0, {"M_delta_e": 0.88}, "parameters", "the air makes the rest"),
-        (6.0, {"Z_alpha": 0.8}, "effect", "its parameters are wrong too"),
-    ],
-)
-def test_of_a_gust_and_wrong_numbers_the_larger_part_of_the_gap_is_the_answer(
-    sound, gust_m_s, off, verdict, said
-):
-    _, right = sound
-    model = {name: off.get(name, 1.0) * value.value for name, value in right.model.items()}
-    given = Aircraft(model=model, reference_airspeed_m_s=right.reference_airspeed_m_s)
-    found = diagnose(fly(Setup(maneuvers=4, gust_pulse=gust_m_s, seed=26)), given)
-    assert found.verdict == verdict
-    assert said in found.sentence
-    assert [c.effect for c in found.causes if c.present] == ["gust"]
-
-
-@pytest.mark.study
-def test_beside_something_unknown_what_was_named_stays():
-    setup = Setup(maneuvers=6, switches={"delay": 0.06, "beat": 0.004}, seed=21)
-    found = diagnose(fly(setup), Aircraft())
-    assert found.verdict == "unknown"
-    assert found.causes[0].effect == "transport_delay"
-    assert found.causes[0].present
-    assert "in addition to what looks like transport delay" in found.sentence
-    assert found.effects["transport_delay"]["delay_s"] == pytest.approx(0.06, abs=0.005)

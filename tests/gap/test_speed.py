@@ -46,13 +46,6 @@ def test_a_speed_at_which_nothing_flies_is_none_to_estimator_and_diagnosis_alike
     assert (airspeed(maneuver.channels) is not None) == (share > 1.0)
 
 
-@pytest.mark.study
-def test_manoeuvres_flown_at_different_speeds_are_no_cause_where_the_speed_is_measured():
-    found = diagnose(fly(Setup(maneuvers=6, speed_change=0.08, heights_m=HEIGHTS, seed=8)), Aircraft())
-    assert found.verdict == "none"
-    assert found.waterfall == (("airspeed_variation", found.gap.before),)
-
-
 def throttled(**thrust):
     return fly(Setup(maneuvers=6, logs_throttle=True, heights_m=HEIGHTS, seed=202, **thrust))
 
@@ -62,15 +55,6 @@ def throttled(**thrust):
 def test_a_speed_that_follows_the_throttle_is_no_cause(engine_lag_s):
     found = diagnose(throttled(thrust_amplitude=0.8, engine_lag_s=engine_lag_s), Aircraft())
     assert found.verdict == "none"
-
-
-@pytest.mark.study
-def test_beside_a_named_effect_the_gap_is_what_a_simulator_leaves_that_knows_neither():
-    found = diagnose(throttled(surge=0.8, surge_hz=0.1, q_scale=0.08), Aircraft())
-    assert [c.effect for c in found.causes if c.present] == ["pitch_rate_scale", "airspeed_variation"]
-    assert [effect for effect, _ in found.waterfall] == ["airspeed_variation", "pitch_rate_scale"]
-    left = [found.gap.before, *(after for _, after in found.waterfall)]
-    assert left == sorted(left, reverse=True)
 
 
 @pytest.mark.study
@@ -144,7 +128,7 @@ def test_without_an_air_speed_in_the_log_the_motion_shows_how_the_manoeuvres_spe
 @pytest.mark.study
 @pytest.mark.parametrize(
     ("off", "height_m", "verdict"),
-    [(0.95, 0.0, "none"), (1.03, 0.0, "none"), (0.86, 3000.0, "none"), (0.86, 0.0, "unknown")],
+    [(0.95, 0.0, "none"), (1.03, 0.0, "none"), (0.86, 0.0, "unknown")],
 )
 def test_an_air_speed_that_is_not_quite_the_true_one_is_said_and_no_cause_where_thin_air_explains_it(
     off, height_m, verdict

@@ -8,7 +8,6 @@ from scipy.signal import butter, lfilter, sosfiltfilt
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
-from advisor.aircraft.sensors import Alpha
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.prior import ERROR_IF_WRONG, prior_precision
 from advisor.gap.kit.changes_between import shift_moments
@@ -24,17 +23,10 @@ pytestmark = pytest.mark.study
 BELIEVED = np.array([-4.3, -0.03, -0.28, -37.0, -4.8, -52.0])
 
 
-def test_damping_that_grows_with_the_rate_has_no_name_but_a_place():
-    found = diagnose(fly(Setup(maneuvers=6, switches={"q_square": -4.0}, seed=21)), Aircraft())
-    assert found.verdict == "unknown"
-    assert found.where.block == "moment_equation"
-
-
-@pytest.mark.parametrize("named", [{}, {"delay": 0.06}])
-def test_a_vane_that_jumps_now_and_then_is_unknown_in_the_vane_whatever_is_named_besides(named):
+def test_a_vane_that_jumps_now_and_then_is_unknown_in_the_vane():
     maneuvers = []
     rng = np.random.default_rng(22)
-    for maneuver in fly(Setup(maneuvers=6, switches=named, seed=22)):
+    for maneuver in fly(Setup(maneuvers=6, seed=22)):
         alpha = maneuver.channels["alpha"]
         hit = np.convolve(rng.random(len(alpha)) < 0.006, np.ones(4), mode="same") > 0.0
         jumpy = replace(alpha, y=alpha.y + 0.03 * hit)
@@ -42,7 +34,6 @@ def test_a_vane_that_jumps_now_and_then_is_unknown_in_the_vane_whatever_is_named
     found = diagnose(maneuvers, Aircraft())
     assert found.verdict == "unknown"
     assert found.where.block == "alpha_sensor"
-    assert [c.effect for c in found.causes if c.present] == ["transport_delay"] * len(named)
 
 
 def test_a_vane_that_sticks_for_long_is_unknown_in_the_vane_and_not_a_channel_that_repeats_itself():
@@ -125,16 +116,6 @@ def test_a_wandering_centre_of_gravity_gives_every_force_the_same_further_arm():
     assert changes / forces == pytest.approx(np.full(3, changes[0] / forces[0]))
 
 
-def test_a_moment_of_the_angles_rate_is_told_from_three_other_derivatives_in_moving_air_too(still_file):
-    moving = Setup(maneuvers=6, switches={"cm_alphadot": -8.0}, gust_std=0.3, seed=27)
-    found = diagnose(fly(moving), still_file)
-    assert found.causes[0].effect == "alpha_dot"
-    # M_α̇ = Cm_α̇ q̄ S c²/(2 V I_yy)
-    true = -8.0 * 0.5 * 1.225 * 22.0 * 0.62 * 0.30**2 / (2.0 * 1.1)
-    size = found.causes[0].parameters["M_alpha_dot"]
-    assert abs(size.value - true) < 3.0 * size.std
-
-
 def test_three_wrong_derivatives_of_the_file_are_no_moment_of_the_angles_rate(still_file):
     off = {**still_file.model, "M_alpha": 1.3 * still_file.model["M_alpha"]}
     off |= {"M_q": 0.7 * off["M_q"], "M_delta_e": 1.2 * off["M_delta_e"]}
@@ -145,12 +126,6 @@ def test_numbers_of_the_file_that_are_off_come_before_the_air_of_the_day(still_f
     off = Aircraft(model={**still_file.model, "M_alpha": 1.4 * still_file.model["M_alpha"]})
     found = diagnose(fly(Setup(maneuvers=6, gust_std=0.3, seed=29)), off)
     assert found.verdict == "parameters"
-
-
-def test_of_two_arms_alike_in_the_data_the_one_that_the_file_leaves_open_is_named():
-    flown = fly(Setup(maneuvers=6, switches={"acc_arm": 0.4}, seed=30))
-    vane_known = Aircraft(alpha=Alpha(vane_arm_m=0.0))
-    assert diagnose(flown, vane_known).causes[0].effect == "accelerometer_offset"
 
 
 def test_an_angle_renewed_faster_than_an_autopilot_estimates_it_comes_from_an_instrument():
@@ -187,22 +162,6 @@ def test_a_record_filtered_on_the_ground_is_told_from_noise_and_from_moving_air(
     assert not is_smoothed([air])
 
 
-@pytest.mark.study
-def test_a_record_that_was_filtered_beside_the_light_gusts_of_any_flight_names_nothing():
-    rng, sections = np.random.default_rng(61), butter(4, 3.0, fs=50.0, output="sos")
-    flown = []
-    for maneuver in fly(Setup(maneuvers=6, gust_std=0.15, coloured=0.5, seed=61)):
-        alpha = maneuver.channels["alpha"]
-        slow = lfilter([0.0022], [1.0, -0.93], rng.standard_normal(len(alpha.y)))
-        channels = {**maneuver.channels, "alpha": replace(alpha, y=alpha.y + slow)}
-        for name in ("alpha", "q", "a_z", "theta"):
-            channels[name] = replace(channels[name], y=sosfiltfilt(sections, channels[name].y))
-        flown.append(replace(maneuver, channels=channels))
-    found = diagnose(flown, Aircraft())
-    assert found.verdict == "none"
-    assert not any(c.present for c in found.causes)
-
-
 def flown_with(channel, change, **setup):
     """Return manoeuvres with one channel changed: a function of manoeuvre number, stamps and values."""
     flown = fly(Setup(maneuvers=6, **setup))
@@ -212,21 +171,9 @@ def flown_with(channel, change, **setup):
     ]
 
 
-def test_a_clock_that_drifts_is_unknown_in_the_time_stamps():
-    flown = flown_with("q", lambda k, q: replace(q, y=np.interp(q.t - 0.012 * k, q.t, q.y)), seed=31)
-    found = diagnose(flown, Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "timing")
-
-
 def test_what_a_command_logged_ten_times_a_second_leaves_open_is_not_unknown():
     seldom = flown_with("elevator", lambda k, e: replace(e, t=e.t[k % 5 :: 5], y=e.y[k % 5 :: 5]), seed=5)
     assert diagnose(seldom, Aircraft()).verdict == "none"
-
-
-def test_a_scale_that_drifts_is_unknown_in_the_sensor():
-    flown = flown_with("q", lambda k, q: replace(q, y=q.y * (1.0 + 0.06 * k)), seed=31)
-    found = diagnose(flown, Aircraft())
-    assert (found.verdict, found.where.block) == ("unknown", "pitch_rate_sensor")
 
 
 def test_a_visible_gap_that_is_too_small_for_a_name_is_not_called_nothing():

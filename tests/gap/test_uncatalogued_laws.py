@@ -34,14 +34,11 @@ def scaled(setup, channel, factor):
     return with_reading(setup, channel, lambda y: factor * y)
 
 
-@pytest.mark.parametrize(("channel", "factor", "block"), [
-    ("a_z", 0.88, "accelerometer"),
-    pytest.param("theta", 1.1, "attitude_sensor", marks=pytest.mark.study),
-])  # fmt: skip
-def test_a_scale_without_a_name_is_no_sum_of_named_effects_even_in_moving_air(channel, factor, block):
-    found = diagnose(scaled(replace(HARD, maneuvers=9), channel, factor), Aircraft())
+@pytest.mark.study
+def test_a_scale_without_a_name_is_no_sum_of_named_effects_even_in_moving_air():
+    found = diagnose(scaled(replace(HARD, maneuvers=9), "theta", 1.1), Aircraft())
     assert found.verdict == "unknown"
-    assert found.where.block == block
+    assert found.where.block == "attitude_sensor"
     # An attitude that reads a tenth high has its zero off, too.
     others = {"turbulence", "gust", "alpha_bias"}
     assert not {c.effect for c in found.causes if c.present} - others
@@ -50,15 +47,6 @@ def test_a_scale_without_a_name_is_no_sum_of_named_effects_even_in_moving_air(ch
 def test_where_a_named_instrument_is_off_no_other_is_suspected():
     found = diagnose(scaled(Setup(maneuvers=6, seed=38), "q", 1.08), Aircraft())
     assert [c.effect for c in found.causes if c.present] == ["pitch_rate_scale"]
-
-
-@pytest.mark.parametrize(
-    "setup", [HARD, pytest.param(Setup(seed=6, coloured=0.5, jitter=0.004), marks=pytest.mark.study)]
-)
-def test_an_air_speed_that_is_off_is_not_blamed_on_the_aircraft_and_may_be_the_accelerometer(setup):
-    found = diagnose(scaled(setup, "airspeed", 1.08), Aircraft())
-    assert found.verdict == "unknown"
-    assert any("accelerometer that reads as much too low looks the same" in note for note in found.notes)
 
 
 @pytest.mark.parametrize(
@@ -170,7 +158,6 @@ def test_a_force_or_a_moment_that_bends_is_no_instruments_fault(switches):
 @pytest.mark.parametrize(("lost_cl", "bends", "gust_std"), [
     (0.06, 0.0, 0.12),
     pytest.param(0.12, 0.0, 0.0, marks=pytest.mark.study),
-    pytest.param(0.06, -8.0, 0.0, marks=pytest.mark.study),
 ])  # fmt: skip
 def test_lift_that_comes_back_another_way_than_it_went_is_no_lift_that_bends(lost_cl, bends, gust_std):
     stalling = {"lets_go_at": 0.09, "holds_below": 0.05, "lost_cl": lost_cl, "cl_a2": bends}
