@@ -95,15 +95,6 @@ def test_a_message_that_is_late_shifts_attitude_and_pitch_rate_together(late_s):
 
 
 @pytest.mark.study
-@pytest.mark.parametrize("scale", [0.12, pytest.param(-0.28)])
-def test_a_scale_error_of_the_vane_is_not_taken_for_an_offset(scale):
-    found = diagnose(fly(Setup(maneuvers=6, alpha_scale=scale, seed=5)), Aircraft())
-    assert found.causes[0].effect == "alpha_scale"
-    assert found.causes[0].parameters["scale"].value == pytest.approx(scale, abs=0.01)
-    assert not any(c.effect == "alpha_bias" for c in found.causes)
-
-
-@pytest.mark.study
 def test_nothing_is_named_when_nothing_is_there():
     found = diagnose(fly(Setup(maneuvers=6, coloured=0.8, seed=9, airframe=LIGHT_AIRCRAFT)), Aircraft())
     assert found.verdict == "none"
