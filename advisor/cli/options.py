@@ -223,7 +223,7 @@ def refuse_unwritable_folder(option: str, folder: Path) -> None:
 
 @contextmanager
 def writing(option: str, path: Path) -> Iterator[None]:
-    """Say in one sentence that what an option names could not be written after all: the disk is full.
+    """Turn a failed write, such as one on a full disk, into one sentence that names the option and the file.
 
     Raises
     ------

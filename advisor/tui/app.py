@@ -144,7 +144,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
             self._tidy()
 
     def _tidy(self) -> None:
-        """Do one piece of the work that would delay a key."""
+        """Prepare one style sheet, or collect garbage. Either would delay the answer to a key."""
         if not self._sheets.prepare(self.stylesheet):
             self._garbage.collect_if_due()
 
@@ -227,7 +227,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
         return action not in only_elsewhere
 
     def get_system_commands(self, screen: Screen[object]) -> Iterable[SystemCommand]:
-        """Yield every action of the advisor, after those of Textual's own commands that it lacks."""
+        """Yield Textual's own commands that no action of the advisor replaces, then the advisor's actions."""
         mine = commands(self, screen)
         names = {command.title for command in mine}
         yield from (own for own in super().get_system_commands(screen) if own.title not in names)

@@ -68,7 +68,15 @@ def compare_side_logs(
 def compare_side_flown(
     state: CampaignState, aircraft: Aircraft, prior: FieldPrior = FIELD, progress: Progress = lambda *_: None
 ) -> SideCompared:
-    """Compare a flight with roll and yaw of the aircraft file, or of its simulator; raise as above."""
+    """Compare a flight with roll and yaw of the aircraft file, or of its simulator.
+
+    Raises
+    ------
+    ConfigurationError
+        The file's simulator cannot be built.
+    UnusableInputError
+        No manoeuvre of aileron or rudder is accepted, or the simulator does not fly them.
+    """
     accepted = accepted_of(state)
     compared, against = beside_simulator(accepted, aircraft, progress)
     progress("comparing", 1.0)

@@ -78,10 +78,10 @@ def counts(values: Sequence[int]) -> NDArray[np.int64]:
 
 
 def truths(values: Sequence[bool]) -> NDArray[np.bool_]:
-    """Return truth values as a column's values, shape (n,)."""
+    """Return truth values as the values of a table's column, shape (n,)."""
     return np.array(list(values), dtype=np.bool_)
 
 
 def numbers(values: Sequence[float | None]) -> NDArray[np.float64]:
-    """Return numbers as a column's values, shape (n,), with NaN for None."""
+    """Return numbers as the values of a table's column, shape (n,), with NaN for None."""
     return np.array([np.nan if value is None else value for value in values], dtype=np.float64)

@@ -23,7 +23,7 @@ _USEC = ("time_usec", 1e-6)
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """One physical quantity from one message."""
+    """Field of a message that holds one physical quantity, with its conversion to SI units."""
 
     channel: str
     message: str

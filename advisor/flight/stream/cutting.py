@@ -149,7 +149,7 @@ class Cutting:
         )
 
     def side_events(self, stretch: SideStretch) -> list[FlightEvent]:
-        """Return the event of a stretch with an input of aileron and rudder; empty if it is no test input."""
+        """Return the event of a stretch of aileron and rudder; empty where the stretch is no test input."""
         maneuver, evidence = self.side(stretch.span, stretch.boot, stretch.order)
         if stretch.swept and self.is_no_side_input(maneuver, stretch.found, stretch.order):
             return []

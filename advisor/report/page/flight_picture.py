@@ -170,7 +170,7 @@ def _mark(axes: Axes, judged: Sequence[JudgedManeuver]) -> None:
 
 
 def _as_judged(channel: Channel, judged: Sequence[JudgedManeuver]) -> Channel:
-    """Return the elevator with the sign of the manoeuvres, if only they determined the sign."""
+    """Return the elevator with the sign of the manoeuvres, where nothing else states a sign."""
     flown = [j.maneuver.channels["elevator"] for j in judged if "elevator" in j.maneuver.channels]
     alike = sum(
         float(np.dot(e.y - e.y.mean(), np.interp(e.t, channel.t, channel.y) - channel.y.mean()))

@@ -51,7 +51,7 @@ class Pane(Part, Vertical):
             self.border_subtitle = text
 
     def rows(self) -> TableRows | None:
-        """Return the pane's content as a table: of its cells, else of its curves; None for a pane with text
+        """Return the cells of the pane as a table, or the values of its curves; None for a pane with text
         only."""
         if tables := self.query(DataTable):
             table = tables.first()
