@@ -20,12 +20,18 @@ have at most 0.31. Hands that answer a rotation have up to 1.5."""
 
 
 def begun_in_motion(span: Span, rate: Channel, loop: Loop) -> str | None:
-    """Return the reason that an input does not begin from steady flight; None if it does."""
+    """Return the reason that an input does not begin from steady flight; None if it does.
+
+    A rotation that goes on after the input is a turn, which is steady flight.
+    """
     before = rate.cut(span.start_s - _BEFORE_S, span.start_s).y
     within = rate.cut(span.start_s, span.end_s).y
     if len(before) < 2 or len(within) < 2:
         return None
-    share = abs(float(np.mean(before))) / max(0.5 * float(np.ptp(within)), 1e-12)
+    after = rate.cut(span.end_s - _BEFORE_S, span.end_s).y
+    turns = float(np.mean(before))
+    stops = min(abs(turns), abs(turns - float(np.mean(after)))) if len(after) else abs(turns)
+    share = stops / max(0.5 * float(np.ptp(within)), 1e-12)
     if share <= _STEADY:
         return None
     shown, most = distinct_texts(100.0 * share, 100.0 * _STEADY)
@@ -34,7 +40,12 @@ def begun_in_motion(span: Span, rate: Channel, loop: Loop) -> str | None:
 
 
 def much_smaller(span: Span, tests: Sequence[Span], control: str) -> str | None:
-    """Return the reason that an input is much smaller than the tests before; None if it is not."""
+    """Return the reason that an input is much smaller than the tests before; None if it is not.
+
+    Hands fly no 3-2-1-1 by accident, however small.
+    """
+    if "3-2-1-1" in span.kind:
+        return None
     before = [_amplitude(test) for test in tests if test.steps]
     share = _amplitude(span) / max(float(np.median(before)), 1e-12) if before else 1.0
     if share >= _OF_TESTS:

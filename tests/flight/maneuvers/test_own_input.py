@@ -152,14 +152,16 @@ def test_an_input_to_an_unstable_aircraft_counts_though_feedback_explains_most_o
     assert told(doublet, channels) == doublet
 
 
-def test_an_input_while_the_aircraft_rotates_is_none():
+@pytest.mark.parametrize(("until_s", "is_test"), [(TEST_S, False), (T[-1], True)])
+def test_an_input_that_ends_a_rotation_is_none_and_one_in_a_turn_is(until_s, is_test):
     rolling = flight()
-    turned = np.where((TEST_S - 1.0 < T) & (TEST_S > T), 0.5, 0.0)
-    q = rolling["q"]
-    channels = {**rolling, "q": Channel("q", T, q.y + turned)}
+    turned = np.where((TEST_S - 1.0 < T) & (until_s > T), 0.5, 0.0)
+    channels = {**rolling, "q": Channel("q", T, rolling["q"].y + turned)}
     found = told(TEST, channels)
-    assert found.reason == "feedback"
-    assert "begins from rest" in found.text
+    assert isinstance(found, Span) == is_test
+    if not is_test:
+        assert found.reason == "feedback"
+        assert "begins from rest" in found.text
 
 
 def test_hands_that_fly_at_another_level_are_cut_off_too():
@@ -173,11 +175,16 @@ def test_hands_that_fly_at_another_level_are_cut_off_too():
     assert found.start_s == pytest.approx(TEST_S, abs=0.15)
 
 
-def test_an_input_much_smaller_than_the_tests_before_is_a_correction():
+@pytest.mark.parametrize(("kind", "reason"), [("other", "small"), ("pulse", "small"), ("3-2-1-1", None)])
+def test_an_input_much_smaller_than_the_tests_before_is_a_correction(kind, reason):
     channels = flight()
-    small = replace(TEST, steps=tuple((onset, 0.2 * level) for onset, level in TEST.steps))
+    steps = tuple((onset, 0.2 * level) for onset, level in TEST.steps)
     record = {name: channel.cut(TEST.record_from_s, TEST.end_s) for name, channel in channels.items()}
     before = replace(TEST, start_s=10.0, end_s=14.0)
-    found = judged(Maneuver(1, 0, small, record, "MANUAL"), None, channels, tests=[before])
-    assert found.reason == "small"
-    assert "20 % of the tests before (at least 25)" in found.text
+    small = Maneuver(1, 0, replace(TEST, steps=steps, kind=kind), record, "MANUAL")
+    found = judged(small, None, channels, tests=[before])
+    if reason is None:
+        assert isinstance(found, Span)
+    else:
+        assert found.reason == reason
+        assert "20 % of the tests before (at least 25)" in found.text
