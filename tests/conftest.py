@@ -18,7 +18,6 @@ import pytest
 from advisor.bundled.demo import Demonstration
 from advisor.cli import group as cli
 from advisor.process.first_run import compile_once
-from advisor.process.tasks.threads import pin_linear_algebra
 
 Advisor = Callable[..., "CompletedProcess[str]"]
 """Called with the words that follow ``advisor`` on the command line."""
@@ -26,9 +25,6 @@ Advisor = Callable[..., "CompletedProcess[str]"]
 # A shell has the programs that it starts in the background ignore Ctrl-C, which tests send to programs.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
-
-# As in the command: with a thread a core, processes side by side take twice their time.
-pin_linear_algebra()
 
 # Children look for no module in the current folder, but some are given what tests define.
 os.environ["PYTHONPATH"] = os.pathsep.join(
