@@ -17,6 +17,8 @@ from advisor.scripts.table import Entry
 
 from .pilot import Pilot
 
+TELEMETRY_MS = 10.0
+"""Interval of the servo outputs in the telemetry of `pilot`, ms, by which two edges are known."""
 _SETTLED_S = 0.03
 """Time after a step in which its two samples of telemetry lie, s."""
 _CLOCK_S = 0.25
