@@ -27,11 +27,12 @@ STILL = (0.0, 0.3)
 
 
 def by_hand(plan: Plan, rng: Generator) -> Plan:
-    """Return the plan flown by hands with a delay and a remnant."""
+    """Return the plan flown by hands with a delay and a remnant, without a damper of the autopilot."""
     size = float(rng.uniform(*REMNANT)) * float(np.median([m.amplitude_rad for m in plan.maneuvers]))
     gains = plan.gains._replace(
         pitch=plan.gains.pitch * float(rng.uniform(*GAIN)),
         delay_s=min(float(rng.uniform(*DELAY_S)), 0.6 / plan.own_rad_s),
+        damper=0.0,
         take_over_s=float(np.exp(rng.uniform(*np.log(TAKE_OVER_S)))),
     )
     remnant = size * _coloured(plan.steps, float(rng.uniform(*COLOUR_S)), rng)
