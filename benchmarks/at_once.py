@@ -1,7 +1,9 @@
 """Inputs of three surfaces at once, flown by ArduPlane, against the truth by its simulator's formulas.
 
     python -m benchmarks.at_once [TLOG ...] [--coefficients FILE] [--keep FILE]
+    python -m benchmarks.at_once --airframes 9 [--seed N] [--keep FILE]
 
+With ``--airframes``, each of so many drawn airframes flies, as ``benchmarks.arduplane_generator`` draws them.
 Without a log, ArduPlane in software in the loop flies three multisines of 20 s. Each moves elevator, aileron
 and rudder at once. The table shows each derivative of both axes, with its truth at the true air speed flown.
 The ground speed is the true air speed, because no wind blows. The exit code is 0 if every stretch is found
@@ -23,14 +25,14 @@ from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.mavlink.logs.whole import read_whole_log
 from advisor.oem.estimate import Estimate
 from benchmarks.ardupilot_plane import MASS_KG, SKYWALKER
-from benchmarks.arduplane_generator.airframe import DENSITY
+from benchmarks.arduplane_generator.airframe import DENSITY, draw_airframe
 from benchmarks.arduplane_generator.simulator import FOLDER, fly, is_here
 
 STRETCHES = 3
 FULL_RAD = float(np.radians(25.0)) * 500.0 / 400.0
 """Deflection at the simulator's control of 1, rad: 500 us, of which SERVOn_MIN and MAX give 400 us 25 deg."""
 ARM_M = (-0.15, -0.05)
-"""Place of the simulated plane's centre of gravity along body x and z, m (CGOffset)."""
+"""Place of the stock plane's centre of gravity along body x and z, m (CGOffset)."""
 NEAR = 0.05
 NORMAL_95 = 1.96
 _SCRIPT = Path(__file__).with_name("at_once.lua")
@@ -44,11 +46,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--keep", type=Path, default=Path("at-once.tlog"), help="where a flown log is written"
     )
+    parser.add_argument("--airframes", type=int, default=0, help="number of drawn airframes that fly")
+    parser.add_argument("--seed", type=int, default=29)
     given = parser.parse_args(arguments)
     if not given.logs and not is_here():
         print(f"No log is given, and {FOLDER} holds no simulator: give a log.", file=sys.stderr)
         return 2
     coefficients = json.loads(given.coefficients.read_text(encoding="utf-8"))
+    if given.airframes:
+        drawn = [draw_airframe(np.random.default_rng([given.seed, k])) for k in range(given.airframes)]
+        return max(_table(_flown(one.coefficients, given.keep), one.coefficients) for one in drawn)
     logs = given.logs or [_flown(coefficients, given.keep)]
     return max(_table(log, coefficients) for log in logs)
 
@@ -81,6 +88,11 @@ def _table(log: Path, coefficients: Mapping[str, float]) -> int:
     near = sum(bool(truth) and abs(value / truth - 1.0) <= NEAR for _, value, _, truth in rows)
     inside = sum(abs(value - truth) <= half for _, value, half, truth in rows)
     print(f"\n{inside} of {len(rows)} intervals hold; {near} estimates lie within {100.0 * NEAR:.0f} %.")
+    for axis, state in found.axes.items():
+        at = state.flight_test.stopped_at
+        print(f"{axis}: {f'TEST COMPLETE after stretch {at}' if at else 'the test goes on'}")
+        refused = [one.verdict.sentence for one in state.maneuvers if not one.verdict.accepted]
+        print("".join(f"{axis} refused: {sentence}\n" for sentence in refused), end="", flush=True)
     accepted = [sum(one.verdict.accepted for one in axis) for axis in (found.maneuvers, sideways)]
     return 0 if accepted == [STRETCHES, STRETCHES] else 1
 
@@ -132,11 +144,12 @@ def derivatives(coefficients: Mapping[str, float], speed_m_s: float) -> dict[str
     yaws to the right.
     """
     c = SKYWALKER | dict(coefficients)
-    v, (x, z) = speed_m_s, ARM_M
+    v, x, z = speed_m_s, c.get("CGOffset_x", ARM_M[0]), c.get("CGOffset_z", ARM_M[1])
     force = 0.5 * DENSITY * v**2 * c["s"]
     per_mass, long, span = force / (MASS_KG * v), c["c"] / (2.0 * v), c["b"] / (2.0 * v)
     told = {
-        "Z_alpha": -per_mass * (c["c_lift_a"] + c["c_drag_p"]), "Z_q": 0.0, "Z_delta_e": 0.0,
+        "Z_alpha": -per_mass * (c["c_lift_a"] + c["c_drag_p"]), "Z_q": -per_mass * c["c_lift_q"] * long,
+        "Z_delta_e": per_mass * c["c_lift_deltae"] / FULL_RAD,
         "M_alpha": force * (c["c"] * c["c_m_a"] + x * (c["c_lift_a"] + c["c_drag_p"])),
         "M_q": force * c["c"] * c["c_m_q"] * long,
         "M_delta_e": -force * c["c"] * c["c_m_deltae"] / FULL_RAD,

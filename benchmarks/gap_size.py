@@ -53,8 +53,8 @@ LIMITS = {
     "constants that decide": 31,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 16137,
-    "files naming an axis": 115,
+    "lines of estimation": 16680,
+    "files naming an axis": 116,
 }
 """Upper bound of each count."""
 MOST_COMPLEX = 15

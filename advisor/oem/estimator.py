@@ -2,12 +2,14 @@
 
 from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.oem.driven import driven
 from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
 from advisor.oem.equation_error import equation_error
@@ -16,17 +18,18 @@ from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.gained import told, without_term
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.identifiability import correlated, not_identifiable
-from advisor.oem.instrument_fit import Identified, InstrumentFit, fit_instruments, refreshed
-from advisor.oem.instruments import COMMAND_DELAY, knows_the_lag, unknown_instruments
+from advisor.oem.instrument_fit import PITCH, Identified, InstrumentFit, fit_instruments, refreshed
+from advisor.oem.instruments import COMMAND_DELAY, Instrument, knows_the_lag, unknown_instruments
 from advisor.oem.known_instruments import FoundInstruments, found_of
 from advisor.oem.notes import notes
 from advisor.oem.prediction import prediction_band
 from advisor.oem.prepare import Prepared, prepare
+from advisor.oem.prior import Priors, about_zero, precision
 from advisor.oem.problem import OutputErrorProblem
 from advisor.oem.rows import Laid
 from advisor.oem.solution import Solution, evaluate, search, solve
-from advisor.oem.turbulence import Turbulence
 from advisor.oem.weighing import Weighing
+from advisor.process.arrays import FloatArray
 
 N = len(PARAMETERS)
 COLOURED = 0.5
@@ -61,6 +64,14 @@ def fit_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> "Fit | NoE
     return Fit(maneuvers, aircraft, prepared, plain, _with_instruments(plain, aircraft))
 
 
+class Forces(NamedTuple):
+    """An estimate with unknown forces."""
+
+    solution: Solution
+    gust_rad: float | None
+    """Standard deviation of the gust angle, rad; None in still air."""
+
+
 @dataclass(frozen=True, slots=True)
 class Fit:
     """Output-error fit with the log's instruments, before corrections for step times and moving air."""
@@ -81,19 +92,19 @@ class Fit:
         """Return the estimate with step times, and by filter error in moving air."""
         solution = with_edges(self.fitted.solution)
         identified = refreshed(self.fitted.identified, solution)
-        air = _air(solution, self.maneuvers, self.prepared)
-        filtered = None
-        if air is not None:
-            names = [x.instrument for x in identified]
+        names = [x.instrument for x in identified]
+        forces = self._without_alpha(solution, names) if self.prepared.alpha_left_out else None
+        if not self.prepared.alpha_left_out and self._shows_forces(solution):
             # Gusts can draw output error's instruments so far that the search from there diverges.
-            filtered = filter_error(solution, air.air, names) or filter_error(self.plain, air.air, names)
-        if filtered is not None:
+            starts = (solution, self.plain)
+            found_forces = next(filter(None, (driven(one, PITCH, names, _priors) for one in starts)), None)
+            forces = found_forces and Forces(found_forces.solution, found_forces.gust_rad)
+        if forces is not None:
             # The lag's ridge is a property of the input, which moving air does not change.
-            filtered = replace(filtered, modes=solution.modes, profile=solution.profile)
-            identified = refreshed(identified, filtered)
-        found = report(
-            solution, self.prepared, self.aircraft, identified=identified, air=air, filtered=filtered
-        )
+            corrected = replace(forces.solution, modes=solution.modes, profile=solution.profile)
+            forces = forces._replace(solution=corrected)
+            identified = refreshed(identified, corrected)
+        found = report(solution, self.prepared, self.aircraft, identified=identified, forces=forces)
         terms = self.prepared.problem.terms
         values = {x.instrument.name: (x.found.value, x.found.std) for x in identified}
         open_terms = [name for name in terms if name in values]
@@ -107,6 +118,27 @@ class Fit:
         """Return the solution without one of the user's terms; None without such a solution."""
         other = fit_jointly(self.maneuvers, without_term(self.aircraft, term))
         return None if isinstance(other, NoEstimate) else other.fitted.solution
+
+    def _without_alpha(self, solution: Solution, names: Sequence[Instrument]) -> Forces | None:
+        """Return the estimate by filter error without an angle of attack, where only the specific force shows
+        gusts; None where the search diverges."""
+        found = moving_air(solution, seen_by_alpha=False)
+        if not found.is_air:
+            return None
+        corrected = filter_error(solution, found.air, names) or filter_error(self.plain, found.air, names)
+        gust_rad = found.gust_angle if found.present else None
+        return None if corrected is None else Forces(corrected, gust_rad)
+
+    @staticmethod
+    def _shows_forces(solution: Solution) -> bool:
+        """Return whether output error may not be valid."""
+        fits = [fit["q"] for fit in channel_fits(solution.assembly, solution.optimum)]
+        return not all(fit.lag1 < COLOURED or 1.0 - fit.r2 < UNEXPLAINED for fit in fits)
+
+
+def _priors(problem: OutputErrorProblem, shared: FloatArray) -> Priors:
+    """Return the priors of the derivatives for a problem."""
+    return about_zero(precision(problem, shared))
 
 
 def _begun(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> tuple[Prepared, Solution] | NoEstimate:
@@ -136,26 +168,6 @@ def _with_instruments(plain: Solution, aircraft: Aircraft) -> InstrumentFit:
     held = fit_instruments(other, unknown_instruments(problem, aircraft))
     weighing = Weighing.by(linear.solution.noise.colours, linear.solution.assembly)
     return held if held.misfit(weighing) < linear.misfit(weighing) else linear
-
-
-def _air(solution: Solution, maneuvers: Sequence[Maneuver], prepared: Prepared) -> Turbulence | None:
-    """Return moving air and instrument noise if output error is not valid, else None.
-
-    Without an angle of attack the specific force shows every gust, so its noise is always modelled.
-    """
-    if prepared.alpha_left_out:
-        found = moving_air(solution, seen_by_alpha=False)
-        return found if found.is_air else None
-    fits = [fit["q"] for fit in channel_fits(solution.assembly, solution.optimum)]
-    if all(fit.lag1 < COLOURED or 1.0 - fit.r2 < UNEXPLAINED for fit in fits):
-        return None
-    found = moving_air(solution, seen_by_alpha=not _derives_alpha(maneuvers))
-    return found if found.present else None
-
-
-def _derives_alpha(maneuvers: Sequence[Maneuver]) -> bool:
-    """Return whether the angle of attack comes from inertial sensors instead of a vane."""
-    return any("alpha" in m.channels and m.channels["alpha"].provenance == "derived" for m in maneuvers)
 
 
 def lag_is_unknown(aircraft: Aircraft) -> bool:
@@ -204,8 +216,7 @@ def report(
     aircraft: Aircraft,
     *,
     identified: Sequence[Identified] = (),
-    air: Turbulence | None = None,
-    filtered: Solution | None = None,
+    forces: Forces | None = None,
     quick: bool = False,
 ) -> Estimate:
     """Return a solution as a reported estimate.
@@ -213,11 +224,11 @@ def report(
     Parameters
     ----------
     identified : instrument parameters of the fit.
-    air : moving air, where output error is not valid.
-    filtered : solution of filter error, where moving air was allowed for.
+    forces : estimate with unknown forces, where output error is not valid.
     quick : leave out what takes milliseconds: the cost of missing channels, and the efficient estimate.
     """
     sound = [x for x in identified if x.instrument.name not in solution.problem.terms]
+    filtered = None if forces is None else forces.solution
     best = filtered or (solution if quick else efficient(solution))
     source = filtered or solution
     within = replace(source, covariance=best.covariance, systematic=best.systematic)
@@ -254,7 +265,7 @@ def report(
         if identified
         else None,
         common=common,
-        gust_rad=air.gust_angle if air is not None and air.present else None,
+        gust_rad=None if forces is None else forces.gust_rad,
         filtered=filtered is not None,
         servo_lag_s=best.problem.servo.lag_s,
         prediction={} if quick else prediction_band(best.assembly, best, predicted),

@@ -22,17 +22,18 @@ from scipy.special import expit
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.instruments.lateness import CLOCKS_S
-from advisor.model.outputs import N_PARAMETERS
+from advisor.model.outputs import N_PARAMETERS, SHARED
 from advisor.model.response import respond
 from advisor.model.short_period import NAMES
 from advisor.oem.descent import Fit, Response, descended
+from advisor.oem.driven import Linear
 from advisor.oem.estimate import InstrumentEstimate, NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.extra import Prior, penalty
 from advisor.oem.gauss_newton import CONVERGED
 from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, Instrument, extra_of
 from advisor.oem.prior import about_zero, precision
-from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
+from advisor.oem.problem import ASSUMED_M_S, Assembly, OutputErrorProblem, assemble
 from advisor.oem.profile import needs_profile, profiled
 from advisor.oem.solution import Solution, evaluate, reported, search, spread_of
 from advisor.oem.weighing import Weighing
@@ -48,6 +49,11 @@ between the grid's stamps (``surface``)."""
 MEASURED_LAG_S = 0.005
 """Standard deviation of a stated lag of zero, s, if only a command before its stamps contradicts the zero. A
 measured surface is late by its sensor's filter, at most one period of 200 Hz."""
+SAME_SENSOR_S = 0.002
+"""Standard deviation of the delay between specific force and pitch rate, s, which one sensor measures. The
+stamps of two messages are rounded to 1 ms. The messages leave the autopilot's loop up to some milliseconds
+apart. 2 ms move Z_α of a small aircraft by 3 %. This delay, Z_q and the delay of α look alike,
+so the delay is not estimated."""
 CONTRADICTS = 3.0
 """Distance of a stated value from the data's value, in combined standard deviations, that is a
 contradiction."""
@@ -97,6 +103,30 @@ class _Pitch:
         return np.zeros(laid.maneuvers)
 
     @staticmethod
+    def linear(problem: OutputErrorProblem, shared: FloatArray, m: int, /) -> Linear:
+        """Return the linear motion of manoeuvre ``m`` in α, q and θ at its mean air speed."""
+        airspeed = problem.records[m].airspeed
+        speed = ASSUMED_M_S if airspeed is None else float(np.mean(airspeed.y))
+        ratio = speed / (problem.reference_airspeed_m_s or speed)
+        of = dict(zip(SHARED, shared.tolist(), strict=True))
+        force = np.array([ratio * of["Z_alpha"], of["Z_q"], 0.0])
+        moment = np.array([ratio**2 * of["M_alpha"], ratio * of["M_q"], 0.0])
+        matrix = np.array([force + np.array([0.0, 1.0, 0.0]), moment, [0.0, 1.0, 0.0]])
+        lift = (1.0 + of["airspeed_scale"]) * speed * force - problem.accelerometer_arm_m * moment
+        vane = [1.0, -problem.vane_arm_m / speed, 0.0]
+        seen = np.array([vane, [0.0, 1.0, 0.0], lift, [0.0, 0.0, 1.0]])
+        air_seen = np.array([0.0 if problem.alpha_is_computed else 1.0, 0.0, lift[0], 0.0])
+        return Linear(matrix, seen, np.array([force[0], moment[0], 0.0]), air_seen, np.array([0, 1]))
+
+    @staticmethod
+    def unsure(laid: Assembly, y: FloatArray, /) -> FloatArray:
+        """Return the change of the outputs by a standard deviation of the specific force's delay, (N, 1)."""
+        column = np.zeros((len(y), 1))
+        for rows in (named["a_z"] for named in laid.rows if "a_z" in named):
+            column[rows, 0] = -SAME_SENSOR_S * np.gradient(y[rows], laid.t[rows])
+        return column
+
+    @staticmethod
     def respond(
         problem: OutputErrorProblem,
         laid: Assembly,
@@ -116,7 +146,7 @@ class _Pitch:
         return Response(y, g, columns, np.empty((laid.maneuvers, 0)))
 
 
-_PITCH = _Pitch()
+PITCH = _Pitch()
 
 
 def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> InstrumentFit:
@@ -211,7 +241,7 @@ def _searched(
     ``share`` is the factor on the derivative priors' standard deviations in a white-noise fit.
     """
     prior = replace(about_zero(precision(problem, place[0])), share=share)
-    fit = descended(_PITCH, problem, names, prior, place)
+    fit = descended(PITCH, problem, names, prior, place)
     return None if isinstance(fit, NoEstimate) or fit.optimum.status != CONVERGED else fit
 
 

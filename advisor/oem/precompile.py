@@ -11,11 +11,14 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
+from advisor.model.outputs import SHARED
 from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.oem.driven import driven
 from advisor.oem.estimator import estimate_jointly
-from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.following import Follower
+from advisor.oem.instrument_fit import PITCH
 from advisor.oem.prepare import Prepared, prepare
+from advisor.oem.prior import about_zero
 from advisor.oem.solution import Solution, solve
 
 
@@ -25,7 +28,7 @@ def warm() -> None:
     prepared = prepare([maneuver], Aircraft())
     solution = solve(prepared.problem) if isinstance(prepared, Prepared) else None
     if isinstance(solution, Solution):
-        filter_error(solution, moving_air(solution, seen_by_alpha=True).air, ())
+        driven(solution, PITCH, (), lambda *_: about_zero(np.zeros(len(SHARED))))
     estimate_jointly([maneuver, maneuver], Aircraft())
     Follower(Aircraft()).refresh(maneuver)
     estimate_lateral([_rolled(maneuver)], Aircraft())

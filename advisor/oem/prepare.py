@@ -244,8 +244,22 @@ def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Seq
         airspeed=speed,
         normal_gravity=normal,
         gravity_z=gravity,
+        sideslip_turn=_sideslip_turn(channels, alpha),
         inferred_alpha=None if "alpha" in usable else alpha,
     )
+
+
+def _sideslip_turn(channels: Mapping[str, Channel], alpha: Signal) -> Signal | None:
+    """Return the rate of α by rolling in sideslip, rad/s; None without a sideslip or a roll rate.
+
+    The level of a computed sideslip follows the estimated wind, so that only its changes count.
+    """
+    if not all(_has(channels, name) for name in ("beta", "p")):
+        return None
+    t, p = signal_of(channels["p"])
+    beta, angle = signal_of(channels["beta"]), alpha.at(t)
+    slip = beta.at(t) - (float(np.mean(beta.y)) if _is_computed(channels["beta"]) else 0.0)
+    return Signal(t, -np.tan(slip) * (p * np.cos(angle) + channel_at("r", t, channels) * np.sin(angle)))
 
 
 def _level(channels: Mapping[str, Channel]) -> Signal:

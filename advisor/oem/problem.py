@@ -24,6 +24,9 @@ from advisor.oem.surface import Servo
 from advisor.oem.terms import forcing
 from advisor.process.arrays import FloatArray
 
+ASSUMED_M_S = 20.0
+"""Assumed air speed if none is known, m/s. The gust angle and the weight's part of α̇ depend on the air
+speed."""
 STAMP_DIGITS = 12
 """Decimals to which step lengths are distinguished, because equal steps share their matrices."""
 
@@ -42,6 +45,9 @@ class Record:
     """Gravity normal to the flight path in the plane of symmetry, over g; None for 1, as in level flight."""
     gravity_z: Signal | None = None
     """Component g·cos θ·cos φ of gravity, m/s², in the equation of a_z; None for 9.80665."""
+    sideslip_turn: Signal | None = None
+    """Part of α̇ that rolling in sideslip causes without a force, -tan β·(p·cos α + r·sin α), rad/s; None for
+    an unknown sideslip."""
     held: bool = False
     """Whether the input is held between its stamps instead of linear."""
     signals: Mapping[str, Signal] = field(default_factory=dict)
@@ -198,6 +204,9 @@ def _piece(record: Record, problem: OutputErrorProblem) -> Piece:
         if record.normal_gravity is not None:
             known += pull * (record.normal_gravity.at(middle) - 1.0)
     gravity = np.full(len(t), GRAVITY_M_S2) if record.gravity_z is None else record.gravity_z.at(t)
+    if record.sideslip_turn is not None:
+        known += record.sideslip_turn.at(middle)
+        gravity = gravity + airspeed * record.sideslip_turn.at(t)  # the turn is no specific force
     columns = {
         "steps": padded(np.column_stack([np.round(step, STAMP_DIGITS), ratio])),
         "elevator": at_event,

@@ -17,12 +17,8 @@ from advisor.oem.innovations import AirModel, gains_of
 from advisor.oem.instruments import Instrument, extra_of
 from advisor.oem.kalman import Gains
 from advisor.oem.prior import precision
-from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
+from advisor.oem.problem import ASSUMED_M_S, Assembly, OutputErrorProblem, assemble
 from advisor.process.arrays import FloatArray
-
-ASSUMED_M_S = 20.0
-"""Assumed air speed if none is known, m/s. The gust angle and the weight's part of α̇ depend on the air
-speed."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,8 +24,8 @@ from advisor.gap.records.unmeasured_alpha import is_estimate
 from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_about
 from advisor.gap.records.usable import edges_of, held_from, outputs_of, recorded, usable_of
 from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUST
+from advisor.oem.problem import ASSUMED_M_S
 from advisor.oem.rows import Signal
-from advisor.oem.whitened import ASSUMED_M_S
 from advisor.process.arrays import FloatArray
 
 _CHORD_OF_1_KG_M = 0.15

@@ -8,11 +8,10 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, Estimation
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.axes.lateral.effects import SideEffect
 from advisor.gap.axes.lateral.fit import Fit, Free, Known, Point, fitted
-from advisor.gap.axes.lateral.setting import AIR_SPEED, COMMAND, Flown, Place
+from advisor.gap.axes.lateral.setting import AIR_SPEED, ANGLE_OF_ATTACK, COMMAND, Flown, Place
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
 from advisor.model.axes.lateral import LATERAL, natural_size
 from advisor.oem.axes.lateral.instruments import beta_arm_m, nuisances_of
@@ -29,7 +28,7 @@ SMALL_SHARE = 0.1
 (``natural_size``)."""
 NATURAL_STEP = 1e-3
 """Numerical: finite-difference step of a natural delay (s) or arm (m)."""
-_PLACES = {"command": COMMAND, "air": AIR_SPEED}
+_PLACES = {"command": COMMAND, "air": AIR_SPEED, "alpha": ANGLE_OF_ATTACK}
 """Place in a setting of each kind of nuisance parameter that belongs to no control or output."""
 _ENTRIES = {"delay": "skew_s", "arm": "arm_m", "lag": "lag_s"}
 """Entry in a setting of each kind of nuisance parameter, by the kind's name."""
@@ -104,9 +103,6 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
         # A lag that the file leaves open is absent from the simulator: such a lag is an effect.
         if one.kind != "lag" or place in setting:
             natural.append(Free(place, one.prior.std, NATURAL_STEP * one.per_second, mean=one.prior.mean))
-    forces = [record.outputs["a_y"].t for record in problem.records if "a_y" in record.outputs]
-    if forces:
-        natural.append(Free(("a_y", "skew_s"), lateness_std(forces), NATURAL_STEP))
     told = assemble_lateral(problem).free
     stated = tuple(name for k, name in enumerate(SIDE_PARAMETERS) if name in aircraft.model and k in told)
     given = np.array([aircraft.model.get(n, v) for n, v in zip(SIDE_PARAMETERS, theta, strict=True)])

@@ -23,6 +23,8 @@ COMMAND = ("command", "delay_s")
 PROPELLER = ("throttle", "aileron_rad")
 AIR_SPEED = ("air", "scale")
 """Place of the air speed's scale error: the relative excess of the true over the read air speed."""
+ANGLE_OF_ATTACK = ("air", "alpha_rad")
+"""Place of the excess of the true over the read angle of attack."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +73,7 @@ def laid_out(flown: Flown, setting: Setting) -> LateralAssembly:
     problem = replace(
         base,
         airspeed_excess=whole(AIR_SPEED),
+        alpha_excess_rad=whole(ANGLE_OF_ATTACK),
         records=tuple(_driven(flown, m, setting) for m in range(len(flown))),
         servos={name: Servo() for name in LATERAL.inputs},
         command_delay_s=whole(COMMAND),

@@ -7,22 +7,15 @@ enters its own output alone. The likelihoods of the residuals distinguish both.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotri
-from scipy.special import expit
 
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.response import Index
-from advisor.oem.axes.lateral.disturbance import Course, Linear, courses_of
-from advisor.oem.covariance import cramer_rao
-from advisor.oem.extra import Extra
-from advisor.oem.model_error import directions
-from advisor.oem.solution import Solution
+from advisor.oem.axes.lateral.disturbance import Course
 from advisor.oem.turbulence import KNOTS_S
-from advisor.oem.weighing import Weighing
 from advisor.process.arrays import FloatArray
 
 MEMORY_S = 0.5, 5.0
@@ -238,36 +231,3 @@ def likeliest(sums: Sequence[Sums], noise: FloatArray, prior: Integrated, near: 
         options={"maxfun": _MOST_STEPS, "gtol": _FLAT, "ftol": 0.0},
     )  # fmt: skip
     return air(optimum.x)
-
-
-def in_moving_air(solution: Solution, near: Air | None = None) -> tuple[Solution, Air]:
-    """Return a solution whose errors contain side gusts, as far as gusts explain the residuals better.
-
-    The second result are the likeliest gusts. Their search begins at the gusts ``near``.
-
-    The covariance in gusts is AᵀΓA, with the influence A of the measurements. Gusts and coloured instruments
-    count by their restricted likelihoods. The colour of an output's noise leaves out what the output's own
-    best fit explains. The likelihood of coloured instruments is therefore that at its best common variance.
-    """
-    laid, noise, rows = solution.assembly, solution.optimum.noise, solution.influence.rows
-    fit = Linear(solution.problem, laid, solution.theta, solution.sensitivities, noise)
-    extra = solution.extra or Extra.none(len(laid.z))
-    free = np.column_stack([solution.sensitivities[:, laid.common], extra.columns])
-    free = np.concatenate([fit.unabsorbed(m, free[block]) for m, block in enumerate(laid.blocks)])
-    free = directions(free * fit.weight[:, None]) / fit.weight[:, None]
-    columns = np.column_stack([solution.residual, free])
-    courses = list(zip(laid.blocks, courses_of(fit), strict=True))
-    sums = [Sums.of(laid.channel[block], columns[block], course) for block, course in courses]
-    prior = Integrated(*np.zeros((2, free.shape[1])))
-    air = likeliest(sums, noise, prior, near)
-    weighing = Weighing.by(solution.noise.colours, laid)
-    white = weighing.forward(columns)
-    left, volume, _ = prior.left(white.T @ white)
-    freedom = max(len(white) - free.shape[1] - len(laid.own) * laid.maneuvers, 1)
-    still = weighing.volume + volume + freedom * (1.0 + np.log(max(left, 1e-300) / freedom))
-    share = float(expit(0.5 * (still - air.cost(sums, prior)[0])))
-    blown = solution.covariance_cr + cramer_rao(laid, rows, air.noise) - cramer_rao(laid, rows, noise)
-    for block, course in courses:
-        pull = rows[block].T @ course.columns
-        blown += pull @ air.angles(course.knots) @ pull.T
-    return replace(solution, covariance=share * blown + (1.0 - share) * solution.covariance), air

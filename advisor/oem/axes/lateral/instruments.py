@@ -8,9 +8,9 @@ by -N_β·x/V. The true air speed differs from the air speed that the sensor rea
 quantity is an additional parameter, whose error is part of every interval.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -22,6 +22,10 @@ from advisor.oem.extra import Prior
 from advisor.oem.instruments import FLAT, KNOWN_TO, PLACE_S, USUAL_LAG
 from advisor.process.arrays import FloatArray
 
+ANGLE_OF_ATTACK = Prior(0.0, 0.01)
+"""Prior of the excess of the true over the read angle of attack, rad. An autopilot's own angle is 0.2 to 0.5
+deg off, and a vane is mounted no better. With an angle of half a degree too much, rolling turns into sideslip
+that no side force explains."""
 AIR_SPEED = Prior(0.0, 0.02)
 """Prior of the relative excess of the true over the read air speed. The read speed may be an indicated one,
 and a static port reads a pressure that the wing changes."""
@@ -32,14 +36,18 @@ LARGEST_MOVE_S = 0.03
 """Largest step of one nuisance parameter, s, for which the fit is nearly linear."""
 
 
+EXCESSES: Mapping[str, str] = {"air": "airspeed_excess", "alpha": "alpha_excess_rad"}
+"""Field of a problem with the excess of the true over the read value, by the kind of nuisance parameter."""
+
+
 @dataclass(frozen=True, slots=True)
 class Nuisance:
     """One nuisance parameter of a lateral fit, in s, or in m for an arm."""
 
-    kind: Literal["lag", "delay", "command", "arm", "air", "term"]
+    kind: Literal["lag", "delay", "command", "arm", "air", "alpha", "term"]
     """Kind of the parameter: servo lag, delay of one output or of all commands, or place of the sideslip
-    vane. The kind ``air`` is the relative excess of the true air speed, and ``term`` a coefficient that the
-    user added."""
+    vane. The kinds ``air`` and ``alpha`` are excesses of the true over the read air speed and angle of
+    attack, and ``term`` is a coefficient that the user added."""
     of: str
     """Control, output or term that the parameter belongs to; empty for the commands."""
     prior: Prior
@@ -49,8 +57,8 @@ class Nuisance:
     @property
     def name(self) -> str:
         """Name of the nuisance parameter with its unit."""
-        if self.kind == "air":
-            return "airspeed_excess"
+        if self.kind in EXCESSES:
+            return EXCESSES[self.kind]
         if self.kind == "term":
             return self.of
         what = {"lag": "lag_s", "arm": "arm_m"}.get(self.kind, "delay_s")
@@ -62,8 +70,8 @@ class Nuisance:
             return problem.servos[self.of].lag_s
         if self.kind == "arm":
             return problem.beta_arm_m
-        if self.kind == "air":
-            return problem.airspeed_excess
+        if self.kind in EXCESSES:
+            return float(getattr(problem, self.name))
         if self.kind == "term":
             return problem.terms[self.of]
         return problem.delays_s.get(self.of, 0.0) if self.kind == "delay" else problem.command_delay_s
@@ -74,8 +82,9 @@ class Nuisance:
             return replace(problem, command_delay_s=value)
         if self.kind == "arm":
             return replace(problem, beta_arm_m=value)
-        if self.kind == "air":
-            return replace(problem, airspeed_excess=value)
+        if self.kind in EXCESSES:
+            changed: dict[str, Any] = {self.name: value}
+            return replace(problem, **changed)
         if self.kind == "term":
             return replace(problem, terms={**problem.terms, self.of: value})
         if self.kind == "delay":
@@ -94,7 +103,7 @@ def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance,
     moving = [name for name in LATERAL.inputs if problem.moves(name)]
     stamps = [record.inputs[name].t for record in problem.records for name in moving if name in record.inputs]
     found = [Nuisance("command", "", Prior(0.0, lateness_std(stamps)))] if stamps else []
-    for name in ("bank", "beta"):
+    for name in ("bank", "a_y", "beta"):
         measured = [record.outputs[name].t for record in problem.records if name in record.outputs]
         if measured:
             found.append(Nuisance("delay", name, Prior(0.0, lateness_std(measured))))
@@ -108,7 +117,7 @@ def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance,
         elif stated > 0.0:
             found.append(Nuisance("lag", name, Prior(stated, KNOWN_TO * stated)))
     if moving and problem.tells_force:
-        found.append(Nuisance("air", "", AIR_SPEED))
+        found += [Nuisance("air", "", AIR_SPEED), Nuisance("alpha", "", ANGLE_OF_ATTACK)]
     found += [Nuisance("term", term, FLAT) for term in problem.terms]
     return tuple(found)
 
@@ -138,29 +147,32 @@ def columns_of(
     by_cause: FloatArray,
     motion: FloatArray,
     nuisances: Sequence[Nuisance],
-    by_speed: Callable[[], FloatArray],
+    by_excess: Callable[[str], FloatArray],
     by_term: Callable[[str], FloatArray],
+    y: FloatArray,
 ) -> FloatArray:
     """Return the derivatives of the outputs by the nuisance parameters, shape (N, k).
 
     Parameters
     ----------
-    by_speed
-        Function that returns the derivative (N,) of the outputs by the relative excess of the air speed.
+    by_excess
+        Function that returns the derivative (N,) of the outputs by an excess of a true over a read value.
     by_term
         Function that returns the derivative (N,) of the outputs by the coefficient of one added term.
     by_cause
         Shape (N, 3): derivatives of the outputs by ``CAUSES``, which change the motion.
     motion
         Shape (E, 2, 4): states and their rates at the events, for the instruments of the outputs.
+    y
+        Shape (N,): simulated outputs.
     """
     columns, known = np.zeros((len(assembly.z), len(nuisances))), assembly.grid.known
     for k, x in enumerate(nuisances):
         if x.kind in ("command", "lag"):
             columns[:, k] = by_cause[:, CAUSES.index(x.of or "command")]
             continue
-        if x.kind == "air":
-            columns[:, k] = by_speed()
+        if x.kind in EXCESSES:
+            columns[:, k] = by_excess(x.name)
             continue
         if x.kind == "term":
             columns[:, k] = by_term(x.of)
@@ -168,7 +180,10 @@ def columns_of(
         output = LATERAL.outputs.index(x.of)
         row = assembly.grid.row[output]
         at, row = np.flatnonzero(row >= 0), row[row >= 0]
-        if x.kind == "delay":
+        if x.of == "a_y":  # the outputs' rates have no rates of their own
+            for rows in (named["a_y"] for named in assembly.rows if "a_y" in named):
+                columns[rows, k] = -np.gradient(y[rows], assembly.t[rows], edge_order=2)
+        elif x.kind == "delay":
             terms = [(state, factor) for of, state, factor in SEEN if of == output]
             columns[row, k] = -sum(known[at, factor] * motion[at, 1, state] for state, factor in terms)
         else:

@@ -5,11 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.model.axes.lateral import LATERAL
+from advisor.model.axes.lateral import LATERAL, Trim, state_matrix
 from advisor.model.axis_response import respond_axis
 from advisor.oem.axes.lateral.instruments import Nuisance, columns_of
-from advisor.oem.axes.lateral.problem import SPEED_POWERS, LateralAssembly, LateralProblem, assemble_lateral
+from advisor.oem.axes.lateral.problem import (
+    COSINE,
+    SINE,
+    SPEED_POWERS,
+    LateralAssembly,
+    LateralProblem,
+    assemble_lateral,
+)
 from advisor.oem.descent import Response
+from advisor.oem.driven import Linear
 from advisor.oem.instrument_columns import STEP
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution
@@ -18,9 +26,11 @@ from advisor.process.arrays import FloatArray
 LEAST_NOISE = {"p": 5e-4, "r": 5e-4, "bank": 5e-4, "a_y": 0.01, "beta": 5e-4}
 """Least standard deviation of each output, SI. Gyros of 0.007 deg/s/√Hz have 5e-4 rad/s at 20 Hz, and the
 model's errors are as large."""
+FORCED = "beta", "p", "r"
+"""States whose rates contain a force or a moment."""
 FLOOR = np.array([LEAST_NOISE[name] for name in LATERAL.outputs])
-_SPEED_STEP = 1e-3
-"""Numerical: step of the air speed for the finite-difference derivative of the outputs."""
+_EXCESS_STEP = 1e-3
+"""Numerical: step of an excess, 1 or rad, for the finite-difference derivative of the outputs."""
 _ALL = len(LATERAL.names.shared) + len(LATERAL.names.local)
 
 
@@ -45,6 +55,34 @@ class LateralMotion:
         return laid.begin
 
     @staticmethod
+    def linear(problem: LateralProblem, shared: FloatArray, m: int, /) -> Linear:
+        """Return the linear motion of manoeuvre ``m`` at its mean air speed and trim."""
+        record = problem.records[m]
+        speed = float(np.mean(record.airspeed.y))
+        ratio = speed / (problem.reference_airspeed_m_s or speed)
+        scaled = shared * np.array([ratio**term.power for term in LATERAL.shared])
+        true = (1.0 + problem.airspeed_excess) * speed
+        trim = Trim(true, float(np.mean(record.alpha.y)), float(np.mean(record.theta.y)))
+        matrix = state_matrix(scaled, trim)
+        aerodynamic = matrix - state_matrix(np.zeros(len(shared)), trim)
+        seen = np.zeros((len(LATERAL.outputs), len(LATERAL.states)))
+        for row, column in (("p", "p"), ("r", "r"), ("bank", "bank"), ("beta", "beta")):
+            seen[LATERAL.outputs.index(row), LATERAL.states.index(column)] = 1.0
+        beta, yaw = LATERAL.states.index("beta"), LATERAL.states.index("r")
+        vane, force = LATERAL.outputs.index("beta"), LATERAL.outputs.index("a_y")
+        seen[vane, yaw] = problem.beta_arm_m / true
+        seen[force] = true * aerodynamic[beta] + problem.accelerometer_arm_m * aerodynamic[yaw]
+        air_seen = np.zeros(len(LATERAL.outputs))
+        air_seen[vane], air_seen[force] = 1.0, seen[force, beta]
+        forced = np.array([LATERAL.states.index(name) for name in FORCED])
+        return Linear(matrix, seen, aerodynamic[:, beta], air_seen, forced)
+
+    @staticmethod
+    def unsure(_: LateralAssembly, y: FloatArray, /) -> FloatArray:
+        """Return no change of the outputs: the fit estimates every instrument, shape (N, 0)."""
+        return np.empty((len(y), 0))
+
+    @staticmethod
     def respond(
         problem: LateralProblem,
         laid: LateralAssembly,
@@ -59,10 +97,15 @@ class LateralMotion:
             return None
         y, g, motion = found
 
-        def by_speed() -> FloatArray:
-            faster = 1.0 + _SPEED_STEP / (1.0 + problem.airspeed_excess)
-            grid = laid.grid._replace(known=laid.grid.known * faster**SPEED_POWERS)
-            return (outputs_of(replace(laid, grid=grid), shared, local) - y) / _SPEED_STEP
+        def by_excess(name: str) -> FloatArray:
+            known = laid.grid.known.copy()
+            if name == "airspeed_excess":
+                known *= (1.0 + _EXCESS_STEP / (1.0 + problem.airspeed_excess)) ** SPEED_POWERS
+            else:
+                turned = np.exp(1j * _EXCESS_STEP) * (-known[:, COSINE] + 1j * known[:, SINE])
+                known[:, SINE], known[:, COSINE] = turned.imag, -turned.real
+            grid = laid.grid._replace(known=known)
+            return (outputs_of(replace(laid, grid=grid), shared, local) - y) / _EXCESS_STEP
 
         def by_term(term: str) -> FloatArray:
             alone = replace(problem, terms={**dict.fromkeys(problem.terms, 0.0), term: 1.0})
@@ -73,7 +116,7 @@ class LateralMotion:
             return (up - down) / (2.0 * step)
 
         def columns() -> FloatArray:
-            return columns_of(laid, g[:, _ALL:], motion, nuisances, by_speed, by_term)
+            return columns_of(laid, g[:, _ALL:], motion, nuisances, by_excess, by_term, y)
 
         return Response(y, g[:, :_ALL], columns, motion[laid.grid.first[:-1], 1])
 

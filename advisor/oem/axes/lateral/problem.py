@@ -34,8 +34,8 @@ NEEDED = ("p", "r", "bank")
 """Outputs that every record has."""
 CAUSES = ("command", *LATERAL.inputs)
 """Causes of changed inputs: the delay of all commands, and the lag of each servo."""
-SPEED = 7
-"""Index of the air speed among the known factors."""
+SINE, COSINE, SPEED = 1, 2, 7
+"""Indices of sin α, -cos α and the air speed among the known factors."""
 SPEED_POWERS = np.array([0, 0, 0, -1, 0, 0, -1, 1, 0])
 """Power of the true air speed in each known factor: 1, sin α, -cos α, (g/V)·cos θ, q·tan θ, tan θ, x_β/V, V,
 x_a."""
@@ -110,6 +110,8 @@ class LateralProblem:
     """Coefficient of each term that the user added, by its text."""
     means: Mapping[str, float] = field(default_factory=dict)
     """Value from which a signal counts in the terms, by the signal's name."""
+    alpha_excess_rad: float = 0.0
+    """Excess of the true over the read angle of attack, rad."""
 
     @property
     def tells_force(self) -> bool:
@@ -269,6 +271,7 @@ def _known(
 ) -> FloatArray:
     """Return the known factors (E, 9): of the rates on each step, of the outputs at each event."""
     alpha, theta, q = (padded(s.at(middle)) for s in (record.alpha, record.theta, record.q))
+    alpha += problem.alpha_excess_rad
     true, tangent = 1.0 + problem.airspeed_excess, np.tan(theta)
     speed = true * record.airspeed.at(t)
     weight = GRAVITY_M_S2 / (true * read) * np.cos(theta)

@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
-from advisor.oem.axes.lateral.gusts import Air, in_moving_air
 from advisor.oem.axes.lateral.instruments import Nuisance, begun
 from advisor.oem.axes.lateral.motion import FLOOR, LateralMotion
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.axes.lateral.start import lateral_start
 from advisor.oem.descent import Fit, descended
+from advisor.oem.driven import driven
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.identifiability import LARGEST_ERROR
@@ -39,11 +39,9 @@ _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
 
 
 class Searched(NamedTuple):
-    """A solution with the gusts in its residuals."""
+    """Solution of a search."""
 
     solution: Solution
-    air: Air
-    """White noise and side gusts in the residuals."""
     still: Solution
     """Solution whose errors contain the instruments' noise alone."""
 
@@ -97,8 +95,8 @@ def search_lateral(
         solution = _evaluated(fit, prior, final)
     if isinstance(solution, NoEstimate):
         return solution
-    blown, air = in_moving_air(solution, None if near is None else near.searched.air)
-    return Searched(_above_bound(blown), air, solution)
+    found = driven(solution, _MOTION, nuisances, lambda *_: replace(prior, share=1.0))
+    return Searched(solution if found is None else _above_bound(found.solution), solution)
 
 
 def _holding(problem: LateralProblem, place: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:

@@ -22,10 +22,10 @@ GUSTS_RAD = 0.0015
 
 @pytest.fixture
 def coloured(monkeypatch):
-    """Return the solutions before their errors contain gusts."""
-    seen, blown = [], lateral_solution.in_moving_air
+    """Return the solutions before unknown forces are sought."""
+    seen, sought = [], lateral_solution.driven
     monkeypatch.setattr(
-        lateral_solution, "in_moving_air", lambda one, near: seen.append(one) or blown(one, near)
+        lateral_solution, "driven", lambda one, *others: seen.append(one) or sought(one, *others)
     )
     return seen
 

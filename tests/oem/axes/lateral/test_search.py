@@ -30,7 +30,9 @@ CLOCKS = (
     Nuisance("delay", "bank", WIDE),
     Nuisance("delay", "beta", WIDE),
     Nuisance("arm", "beta", WIDE, SPEED_M_S),
+    Nuisance("delay", "a_y", WIDE),
     Nuisance("air", "", WIDE),
+    Nuisance("alpha", "", WIDE),
 )
 
 
@@ -108,6 +110,18 @@ def test_without_noise_an_air_speed_that_reads_too_little_is_found_and_moves_no_
     fit = descended(LateralMotion(), problem, (excess,), KNOWN_NOTHING, lateral_start(problem))
     assert excess.read(fit.problem) == pytest.approx(0.04, abs=0.004)
     assert fit.optimum.shared[LATERAL.names.reported.index("Y_beta")] == pytest.approx(-0.2, abs=0.002)
+
+
+def test_without_noise_an_angle_of_attack_that_reads_too_much_is_found_and_moves_no_derivative():
+    records = []
+    for record in both_inputs(JET, measured=("p", "r", "bank", "a_y")).records:
+        true = record.alpha
+        records.append(replace(record, alpha=Signal(true.t, true.y + 0.01)))
+    excess = Nuisance("alpha", "", WIDE)
+    problem = LateralProblem(tuple(records))
+    fit = descended(LateralMotion(), problem, (excess,), KNOWN_NOTHING, lateral_start(problem))
+    assert excess.read(fit.problem) == pytest.approx(-0.01, abs=0.002)
+    assert fit.optimum.shared[LATERAL.names.reported.index("Y_p")] == pytest.approx(JET["Y_p"], abs=0.002)
 
 
 def test_a_lag_stays_within_its_range_and_everything_else_follows(doublets):

@@ -1,4 +1,4 @@
-"""Filter error: right where the air moves, the same as output error where it does not."""
+"""Unknown forces in an estimate: right where gusts or a propeller drive the aircraft, absent where not."""
 
 from dataclasses import replace
 from functools import cache
@@ -11,14 +11,16 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.campaign.single_maneuver import assess, cautions_of
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem import estimator, turbulence
+from advisor.oem import estimator
+from advisor.oem.driven import Driven, driven
+from advisor.oem.driven_kernel import driven_filter
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
-from advisor.oem.filter_error import filter_error, moving_air
+from advisor.oem.instrument_fit import PITCH
 from advisor.oem.prepare import Prepared, prepare
+from advisor.oem.prior import about_zero, precision
 from advisor.oem.solution import Solution, solve
 from advisor.oem.surface import Servo
-from advisor.oem.turbulence import Rows, find_turbulence
 from tests.oem.builders import UAV, Array, elevator_3211, maneuver, trim_alpha, trim_elevator
 
 KNOWN_SERVO = Aircraft(elevator=Elevator(lag_s=0.0, delay_s=0.0))
@@ -26,9 +28,11 @@ STEP_S, SPEED = 0.005, 25.0
 M_ALPHA, M_DELTA = 5, 7
 
 
-def flown(gust_rad: float, seed: int, memory_s: float = 0.6) -> Maneuver:
-    """Return a 3-2-1-1 through first-order Gauss-Markov gusts, by the general matrix exponential at 200
-    Hz."""
+def flown(gust_rad: float, seed: int, memory_s: float = 0.6, shaken: float = 0.0) -> Maneuver:
+    """Return a 3-2-1-1 through first-order Gauss-Markov gusts, by the general matrix exponential at 200 Hz.
+
+    ``shaken`` is the root of the intensity of white noise on the pitch acceleration, rad/s^1.5.
+    """
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 10.0, STEP_S)
     trim = trim_elevator(UAV)
@@ -43,8 +47,10 @@ def flown(gust_rad: float, seed: int, memory_s: float = 0.6) -> Maneuver:
     whole = expm(np.block([[a, np.eye(2)], [np.zeros((2, 4))]]) * STEP_S)
     x = np.zeros((len(t), 2))
     x[0] = [trim_alpha(UAV), 0.0]
+    jolts = shaken * np.sqrt(STEP_S) * np.random.default_rng(seed + 1).standard_normal(len(t))
     for i in range(len(t) - 1):
         x[i + 1] = whole[:2, :2] @ x[i] + whole[:2, 2:] @ (drive[i] + drive[i + 1]) / 2.0
+        x[i + 1, 1] += jolts[i]
     at = slice(None, None, 4)
     vane = x[at, 0] + gust[at] + 2e-4 * rng.standard_normal(len(t[at]))
     rate = x[at, 1] + 1e-3 * rng.standard_normal(len(t[at]))
@@ -61,26 +67,32 @@ def solved(flight: Maneuver, aircraft: Aircraft = KNOWN_SERVO) -> Solution:
     return solution
 
 
-def estimates(gust_rad: float, seeds: range) -> tuple[Array, Array, Array]:
-    """Return output error's values, filter error's values and its standard deviations, each (n, 8)."""
+def driven_from(solution: Solution) -> Driven | None:
+    return driven(solution, PITCH, (), lambda problem, shared: about_zero(precision(problem, shared)))
+
+
+def estimates(seeds: range, **air: float) -> tuple[Array, Array, Array]:
+    """Return output error's values, the values with unknown forces and their standard deviations, (n, 8)."""
     output, filtered, std = [], [], []
     for seed in seeds:
-        first = solved(flown(gust_rad, seed))
-        second = filter_error(first, moving_air(first, seen_by_alpha=True).air, ())
+        first = solved(flown(seed=seed, **air))
+        second = driven_from(first)
         assert second is not None
         output.append(first.theta)
-        filtered.append(second.theta)
-        std.append(np.sqrt(np.diag(second.covariance)))
+        filtered.append(second.solution.theta)
+        std.append(np.sqrt(np.diag(second.solution.covariance)))
     return np.array(output), np.array(filtered), np.array(std)
 
 
 @cache
-def in_turbulence() -> tuple[Array, Array, Array]:
-    return estimates(0.01, range(12))
+def disturbed(kind: str) -> tuple[Array, Array, Array]:
+    return estimates(
+        range(8), **({"gust_rad": 0.01} if kind == "gusts" else {"gust_rad": 0.0, "shaken": 0.05})
+    )
 
 
-def test_in_turbulence_the_moment_derivatives_scatter_less_than_output_errors() -> None:
-    output, filtered, _ = in_turbulence()
+def test_in_gusts_derivatives_scatter_less_than_output_errors() -> None:
+    output, filtered, _ = disturbed("gusts")
 
     def scatter(values: Array) -> Array:
         error = values[:, [M_ALPHA, M_DELTA]] - UAV[[M_ALPHA, M_DELTA]]
@@ -89,36 +101,54 @@ def test_in_turbulence_the_moment_derivatives_scatter_less_than_output_errors() 
     assert np.all(scatter(filtered) < 0.3 * scatter(output))
 
 
-def test_in_turbulence_its_errors_lie_between_a_third_and_twice_of_its_standard_deviations() -> None:
-    _, filtered, std = in_turbulence()
+@pytest.mark.parametrize("kind", ["gusts", "jolts"])
+def test_errors_lie_between_a_third_and_twice_of_their_standard_deviations(kind: str) -> None:
+    _, filtered, std = disturbed(kind)
     ratio = np.sqrt(np.mean(((filtered - UAV) / std) ** 2, axis=0))[[M_ALPHA, M_DELTA]]
     assert np.all(ratio > 1.0 / 3.0)
     assert np.all(ratio < 2.0)
 
 
-def test_in_still_air_it_agrees_with_output_error() -> None:
-    output, filtered, std = estimates(0.0, range(100, 103))
-    assert np.all(np.abs(filtered - output) < 3.0 * std)
+@pytest.mark.parametrize("seed", range(3))
+def test_still_air_has_no_unknown_forces(seed: int) -> None:
+    assert driven_from(solved(flown(0.0, seed))) is None
 
 
 @pytest.mark.parametrize("gust_deg", [0.5, 1.0, 2.0])
 def test_the_size_of_the_gusts_is_found(gust_deg: float) -> None:
-    found = moving_air(solved(flown(np.radians(gust_deg), 3)), seen_by_alpha=True)
-    assert found.present
-    assert np.degrees(found.gust_angle) == pytest.approx(gust_deg, rel=0.6)
+    found = driven_from(solved(flown(np.radians(gust_deg), 3)))
+    assert found is not None
+    assert np.degrees(found.noise.gust) == pytest.approx(gust_deg, rel=0.6)
 
 
-def test_still_air_and_noisy_instruments_are_not_taken_for_turbulence() -> None:
-    for seed in range(5):
-        assert not moving_air(solved(flown(0.0, seed)), seen_by_alpha=True).present
+def test_the_size_of_jolts_is_found() -> None:
+    found = driven_from(solved(flown(0.0, 3, shaken=0.05)))
+    assert found is not None
+    assert found.noise.drive[1] == pytest.approx(0.05, rel=0.3)
+    assert found.gust_rad is None
 
 
-def test_a_servo_lag_left_out_is_not_taken_for_turbulence() -> None:
-    late = solved(flown(0.0, 1), Aircraft(elevator=Elevator(lag_s=0.06)))
-    assert moving_air(late, seen_by_alpha=True).gust_angle < np.radians(0.5)
+def test_innovations_of_a_driven_motion_are_white() -> None:
+    rng, step, n = np.random.default_rng(1), 0.02, 4000
+    matrix, memory_s = np.array([[0.0, 1.0], [-9.0, -1.0]]), 0.5
+    x, noise, rows = np.zeros(2), 0.0, np.empty((n, 1))
+    once, keep = expm(matrix * step / 10), np.exp(-step / memory_s)
+    for i in range(n):
+        for _ in range(10):
+            x = once @ x + [0.0, np.sqrt(step / 10) * rng.standard_normal()]
+        noise = keep * noise + 0.02 * np.sqrt(1.0 - keep**2) * rng.standard_normal()
+        rows[i] = x[0] + noise + 0.01 * rng.standard_normal()
+    kind, zero = np.ones(n, np.int64), np.zeros(n, np.int64)
+    kind[0] = 0
+    white, _ = driven_filter(
+        np.array([0.0, step]), kind, zero, matrix, np.array([[1.0, 0.0]]), np.zeros(2), np.array([0.0, 1.0]),
+        np.array([0.01]), np.array([0.02]), memory_s, rows,
+    )  # fmt: skip
+    assert np.mean(white**2) == pytest.approx(1.0, abs=0.1)
+    assert abs(float(white[1:, 0] @ white[:-1, 0])) / n < 0.05
 
 
-def test_in_moving_air_the_estimate_is_filter_errors_and_in_still_air_output_errors() -> None:
+def test_in_moving_air_the_estimate_has_unknown_forces_and_in_still_air_none() -> None:
     rough, calm = estimate(flown(0.01, 4), KNOWN_SERVO), estimate(flown(0.0, 4), KNOWN_SERVO)
     assert isinstance(rough, Estimate)
     assert isinstance(calm, Estimate)
@@ -143,50 +173,25 @@ def test_gusts_that_read_as_nothing_are_no_caution() -> None:
         assert any("moving air" in caution for caution in said) is told
 
 
-@pytest.mark.parametrize("size", [0.0, 1e-14, 1e9])
-def test_the_search_for_moving_air_ends_without_noise_and_with_absurd_noise(size):
-    t = np.arange(0.0, 6.0, 0.02)
-    rows = Rows(np.repeat(t, 4), np.tile(np.arange(4), len(t)), size * np.sin(np.arange(4.0 * len(t))), 25.0)
-    found = find_turbulence([rows], np.array([-4.0, 0.0, -40.0, -4.0]), np.full(4, 1e-3), True)
-    assert not found.present or size > 1.0
-
-
 @pytest.mark.parametrize(("index", "value"), [(0, 30.0), (4, -1000.0), (3, np.inf)])
 @pytest.mark.filterwarnings("ignore:overflow:RuntimeWarning", "ignore:invalid value:RuntimeWarning")
 def test_a_model_that_runs_away_gives_no_estimate_instead_of_a_fault(index: int, value: float) -> None:
     first = solved(flown(0.01, 1))
-    air = moving_air(first, seen_by_alpha=True).air
     shared = first.optimum.shared.copy()
     shared[index] = value
-    away = replace(first, optimum=first.optimum._replace(shared=shared))
-    found = filter_error(away, air, ())
-    assert found is None or np.all(np.isfinite(found.theta))
+    found = driven_from(replace(first, optimum=first.optimum._replace(shared=shared)))
+    assert found is None or np.all(np.isfinite(found.solution.theta))
 
 
 def test_a_search_that_diverges_from_the_instruments_starts_again_without_them(monkeypatch):
     starts = []
 
-    def diverges_once(solution, air, instruments):
+    def diverges_once(solution, *others):
         starts.append(solution)
-        return None if len(starts) == 1 else filter_error(solution, air, instruments)
+        return None if len(starts) == 1 else driven(solution, *others)
 
-    monkeypatch.setattr(estimator, "filter_error", diverges_once)
+    monkeypatch.setattr(estimator, "driven", diverges_once)
     found = estimate(flown(0.02, seed=3), KNOWN_SERVO)
     assert isinstance(found, Estimate)
     assert found.filtered
     assert starts[1].problem.servo == Servo(0.0, 0.0)
-
-
-@pytest.mark.parametrize(("gain", "looks"), [(4.9, False), (5.1, True)])
-def test_moving_air_is_sought_where_colour_gains_five_nats_over_white_noise(monkeypatch, gain, looks):
-    searches = []
-
-    def descend(rows, system, start, moving, steps, start_variance):
-        searches.append(moving)
-        return start, 100.0
-
-    monkeypatch.setattr(turbulence, "_descend", descend)
-    monkeypatch.setattr(turbulence, "cost_of", lambda *_: 100.0 + 2.0 * gain)
-    rows = Rows(np.arange(8.0), np.tile(np.arange(4), 2), np.ones(8), 25.0)
-    find_turbulence([rows], np.array([-4.0, 0.0, -40.0, -4.0]), np.full(4, 1e-3), True)
-    assert (True in searches) is looks
