@@ -16,7 +16,7 @@ them."""
 _TARGET_S = 15.0
 """Length of flight before a movement that contains the hands' target of the angle, s: one test with its free
 response, and some steady flight."""
-_BIN_S = 0.1
+BIN_S = 0.1
 """Length over which the control is averaged, s: the shortest delay of a hand (McRuer & Krendel 1974)."""
 _FEWEST = 20
 """Least number of bins of hand flying before a movement: five for each of the loop's four numbers."""
@@ -37,7 +37,6 @@ class Bins:
     """Index of the movement's first bin."""
     hands: IntArray
     """Indices of the bins before the movement that show the hands, and whose neighbour before does."""
-    length_s: float
 
     @property
     def movement(self) -> slice:
@@ -56,33 +55,35 @@ class Bins:
 
     def begin_s(self, index: int) -> float:
         """Return the time at which a bin of the movement begins, s."""
-        return float(self.middle_s[self.first + index] - 0.5 * self.length_s)
+        return float(self.middle_s[self.first + index] - 0.5 * BIN_S)
 
 
 def binned(span: Span, control: Channel, tests: Sequence[tuple[float, float]]) -> Bins | None:
     """Return the control in bins; None if too few bins before the movement show the hands.
+
+    A control sampled more slowly than hands respond does not show them.
 
     Parameters
     ----------
     tests
         Earlier tests of this control, from begin to end of the free response, s. They show no hands.
     """
-    length_s = max(_BIN_S, 1.01 * float(np.median(np.diff(control.t))))
-    before = int(min(HISTORY_S, span.start_s - control.t[0]) / length_s)
+    interval_s = float(np.median(np.diff(control.t)))
+    before = int(min(HISTORY_S, span.start_s - control.t[0]) / BIN_S)
     end_s = min(span.last_step_s + _AFTER_S, span.end_s, float(control.t[-1]))
-    edges = np.arange(span.start_s - before * length_s, max(end_s, span.start_s + length_s), length_s)
-    if before < _FEWEST or len(edges) < before + 4:
+    edges = np.arange(span.start_s - before * BIN_S, max(end_s, span.start_s + BIN_S), BIN_S)
+    if 1.01 * interval_s > BIN_S or before < _FEWEST or len(edges) < before + 4:
         return None
-    mean = np.diff(np.interp(edges, control.t, integrated(control.t, control.y))) / length_s
+    mean = np.diff(np.interp(edges, control.t, integrated(control.t, control.y))) / BIN_S
     middle_s = 0.5 * (edges[1:] + edges[:-1])
     free = middle_s < span.start_s
     for begin_s, over_s in tests:
-        free &= (middle_s < begin_s - length_s) | (middle_s > over_s + 0.5 * length_s)
+        free &= (middle_s < begin_s - BIN_S) | (middle_s > over_s + 0.5 * BIN_S)
     hands = np.flatnonzero(free[1:] & free[:-1]) + 1
     if len(hands) < _FEWEST:
         return None
     level = float(np.median(mean[max(0, before - _LEVEL) : before]))
-    return Bins(middle_s, mean - level, before, hands, length_s)
+    return Bins(middle_s, mean - level, before, hands)
 
 
 class Motion:
@@ -95,16 +96,16 @@ class Motion:
         kept = lately if len(lately) else angle.y[:1]
         self._target, reach = float(np.median(kept)), float(np.ptp(kept))
         self._targets = float(np.min(kept)) - reach, float(np.max(kept)) + reach
-        self._since_s = bins.middle_s - start_s + 0.5 * bins.length_s
+        self._since_s = bins.middle_s - start_s + 0.5 * BIN_S
 
     def terms(self, delay_s: float, taken_over_s: float) -> list[FloatArray]:
         """Return the loop's terms: rate, angle from the least and from the largest target, and integral."""
         bins = self._bins
         at_s = bins.middle_s - delay_s
         theta = np.interp(at_s, self._angle.t, self._angle.y)
-        summed = np.cumsum(theta - self._target) * bins.length_s
+        summed = np.cumsum(theta - self._target) * BIN_S
         terms = [np.interp(at_s, self._rate.t, self._rate.y), *(theta - end for end in self._targets)]
         terms.append(summed - summed[bins.first])
-        ramp = np.clip(self._since_s / max(taken_over_s, bins.length_s), 0.0, 1.0)
+        ramp = np.clip(self._since_s / max(taken_over_s, BIN_S), 0.0, 1.0)
         gate = np.where(np.arange(len(at_s)) >= bins.first, ramp, 1.0)
         return [self._side * gate * term for term in terms]

@@ -182,9 +182,9 @@ def _told(
         return Because("no_information", f"the {control}'s effect on the {loop.rate_said} is known {known}")
     if odds is not None and odds.probability < LEAST_PROBABILITY:
         return _as_hands(odds, control)
-    part = span if odds is None else _part(span, odds, moved)
-    if not asked:
-        return part
+    if odds is None:
+        return span  # Nothing before the movement shows what hands do.
+    part = _part(span, odds, moved)
     moving = motion.get(loop.rate)
     if moving is not None and (unsteady := begun_in_motion(part, moving, loop)):
         return Because("feedback", unsteady)

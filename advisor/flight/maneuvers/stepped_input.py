@@ -6,7 +6,7 @@ from math import inf, log
 
 import numpy as np
 
-from advisor.flight.maneuvers.binned import Bins
+from advisor.flight.maneuvers.binned import BIN_S, Bins
 from advisor.flight.maneuvers.free_response import FREE_S
 from advisor.flight.maneuvers.movement import BAND, is_still
 from advisor.process.arrays import FloatArray, IntArray
@@ -132,7 +132,7 @@ def _extent(cost: Cost, order: IntArray) -> tuple[int, int]:
     groups = [[large[0]]]
     for before, after in pairwise(large):
         rests = moved[order[before[-1]] + 1 : order[after[0]]]
-        if len(rests) * cost.bins.length_s >= FREE_S[0] and float(np.median(rests)) < near:
+        if len(rests) * BIN_S >= FREE_S[0] and float(np.median(rests)) < near:
             groups.append([])
         groups[-1].append(after)
     chosen = int(np.argmax([sum([_height(sizes[edge]) for edge in group]) for group in groups]))
