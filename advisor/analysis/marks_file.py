@@ -17,6 +17,7 @@ from advisor.process.atomic_file import write_atomically
 from advisor.process.yaml_file import read_yaml
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
+from advisor.words.vehicle_time import stretch
 
 SUFFIX = ".maneuvers.yaml"
 _TEXT_KEYS = {"excluded": "because", "notes": "text", "remarks": "text"}
@@ -122,7 +123,7 @@ def _mark(path: Path, where: str, entry: dict[str, Any]) -> Mark:
     start_s, end_s = (_number(path, where, entry, key) for key in ("start_s", "end_s"))
     if not 0.0 < end_s - start_s <= LONGEST_S:
         raise _mistake(path, f"{where}: end_s must lie after start_s, by at most {LONGEST_S:.0f} s")
-    name = f"{path.name}: the mark from {start_s:g} to {end_s:g} s"
+    name = f"{path.name}: the mark from {stretch(start_s, end_s)}"
     # Whoever edits the file need not know of power-ons: the first power-on that holds the stretch is meant.
     return Mark(start_s, end_s, _power_on(path, where, entry) if "boot" in entry else None, name=name)
 

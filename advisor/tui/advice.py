@@ -50,8 +50,11 @@ def advise(view: View) -> Advice:
 
 def _is_a_word(word: Advice, view: View) -> bool:
     """Return whether the verdicts give a word, for which a manoeuvre must be judged or in flight."""
-    if word.word in ("RECOVER", "TEST COMPLETE"):
-        return True
+    return word.word in ("RECOVER", "TEST COMPLETE") or _is_flown(view)
+
+
+def _is_flown(view: View) -> bool:
+    """Return whether a manoeuvre of either axis has been judged."""
     side = view.state.lateral
     return bool(view.state.maneuvers or (side is not None and side.maneuvers))
 
@@ -74,6 +77,8 @@ def _by_verdicts(view: View, is_old: bool) -> Advice:
         return Advice("TEST COMPLETE", verdict.sentence, "good")
     if state.vehicle is None:
         return Advice("WAIT", view.health.sentence, "quiet")
+    if not (state.serves or is_old or _is_flown(view)):
+        return Advice("WAIT", "The vehicle is heard; its first seconds of data are awaited.", "quiet")
     sentence = plan.sentence if plan is not None and verdict.decision == "stop" else verdict.sentence
     if last and not last.verdict.accepted and last.maneuver.span.is_test_input:
         return Advice("REPEAT", sentence, "warn")

@@ -112,7 +112,7 @@ def test_a_time_that_the_log_does_not_hold_is_told_with_exit_code_3(advisor: Adv
     speed = ["--speed", "max"] if command == "replay" else []
     result = advisor(command, log, *speed, "--maneuver", "4000:4012")
     assert result.returncode == 3
-    assert "--maneuver 4000:4012 lies outside of the log, which holds 20.0 to" in result.stderr
+    assert "--maneuver 4000:4012 lies outside of the log, which holds 0:20.0 to" in result.stderr
     assert "+12:+24" in result.stderr
 
 

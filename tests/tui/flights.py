@@ -200,6 +200,7 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
         readable=flying is not None,
         whole_flight=_whole(maneuvers, now_s),
         notices=("      –  following ardupilot 1/1", *notices),
+        serves=True,
     )
 
 

@@ -102,6 +102,13 @@ def test_after_the_stop_no_data_are_wanted():
     assert advise(view(replace(flights.state(7), no_data=(SLOW,)))).word == "TEST COMPLETE"
 
 
+def test_before_the_data_are_judged_the_screen_waits_and_gives_no_advice():
+    advice = advise(view(replace(flights.state(0), serves=False)))
+    assert advice.word == "WAIT"
+    assert "next" not in advice.sentence
+    assert advise(view(flights.state(0))).word == "CONTINUE"
+
+
 REVERSED = InstrumentFinding(
     "alpha", "sign", "nose up", "nose down", 0.02, True, "alpha has the wrong sign", "turn the vane"
 )

@@ -308,11 +308,11 @@ class Marks:
 
     def problems(self) -> list[Problem]:
         """Return a problem for each mark that lies in no power-on of the stream."""
-        heard = " and ".join(f"{a:.1f} to {b:.1f} s" for a, b in self._heard if np.isfinite(a))
+        heard = " and ".join(stretch(a, b) for a, b in self._heard if np.isfinite(a))
         return [
             Problem(
                 "mark_outside",
-                f"{mark.name} lies outside of the log, which holds {heard or 'no'} vehicle time.",
+                f"{mark.name} lies outside of the log, which holds {heard or 'no vehicle time'}.",
                 "Give a stretch within the log: seconds since power-on, or from its start with + (+12:+24).",
             )
             for mark in self._given

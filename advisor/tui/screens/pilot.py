@@ -31,7 +31,7 @@ The large word is what to do now:
 - **RECOVER**: further response of the manoeuvre in the air adds nothing.
 - **ENOUGH**: with the input in the air each derivative is within its tolerance; let go.
 - **TEST COMPLETE**: the criterion fell below its limit. A later rejected manoeuvre is **NOT USED**.
-- **WAIT**, **NO LINK**, **BEHIND**: no vehicle is heard, or this computer is late. After a first verdict the
+- **WAIT**, **NO LINK**, **BEHIND**: no data are judged, or this computer is late. After a first verdict the
   last word stays, and its age stands below.
 - **NO DATA**: the vehicle does not send what is needed; the line below says what to change.
 

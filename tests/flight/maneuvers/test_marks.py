@@ -137,7 +137,9 @@ def test_a_mark_outside_of_the_log_is_a_problem_once_the_log_is_over():
     stream.finish()
     (problem,) = stream.problems()
     assert problem.code == "mark_outside"
-    assert problem.text.startswith("--maneuver 400:420 lies outside of the log, which holds 50.0 to 64.0 s")
+    assert problem.text.startswith(
+        "--maneuver 400:420 lies outside of the log, which holds 0:50.0 to 1:04.0."
+    )
 
 
 def test_a_mark_may_reach_a_moment_beyond_a_recording_and_ends_with_the_data():
