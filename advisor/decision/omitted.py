@@ -55,7 +55,7 @@ class Bias:
     """Coefficient of the omitted term over its standard deviation."""
 
 
-def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray, turning: bool = False) -> Bias | None:
+def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray) -> Bias | None:
     """Return the bias due to an omitted moment; None for a constant moment, for too short a fit,
     and for a model whose response overflows.
 
@@ -63,8 +63,6 @@ def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray, turning: b
     ----------
     term
         Shape (n,): omitted part of q̇ for a coefficient of one, at the stamps of the fitted pitch rate.
-    turning
-        Whether the term is a part of α̇ without a force, instead of a part of q̇.
     """
     fits = estimate.fits[0]
     t = fits["q"].t
@@ -73,7 +71,7 @@ def bias_by(maneuver: Maneuver, estimate: Estimate, term: FloatArray, turning: b
     elevator = maneuver.channels["elevator"]
     moved = np.interp(t, elevator.t, elevator.y)
     with np.errstate(over="ignore", invalid="ignore"):
-        columns = _columns(estimate, t, moved - moved[0], term, turning)
+        columns = _columns(estimate, t, moved - moved[0], term)
     return bias_of([(fits[name], columns[name]) for name in _OUTPUTS if name in fits], t, len(PARAMETERS))
 
 
@@ -87,7 +85,7 @@ def sensitivities(maneuver: Maneuver, estimate: Estimate) -> tuple[FloatArray, d
     moved = behind(t, np.interp(t, elevator.t, elevator.y) - elevator.y[0], estimate.servo_lag_s)
     late = estimate.value("M_delta_e") * np.gradient(moved, t)
     with np.errstate(over="ignore", invalid="ignore"):
-        columns = _columns(estimate, t, moved, late, False)
+        columns = _columns(estimate, t, moved, late)
     return t, {name: np.nan_to_num(column) for name, column in columns.items()}
 
 
@@ -121,9 +119,7 @@ def _regressed(outputs: list[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray
     return taken / size[:-1] * size[-1], coefficient / float(size[-1]), ratio
 
 
-def _columns(
-    estimate: Estimate, t: FloatArray, moved: FloatArray, term: FloatArray, turning: bool
-) -> dict[str, FloatArray]:
+def _columns(estimate: Estimate, t: FloatArray, moved: FloatArray, term: FloatArray) -> dict[str, FloatArray]:
     """Return the sensitivities of each output, shape (n, 11): eight parameters, two states, the term."""
     z_alpha, z_q, z_delta, m_alpha, m_q, m_delta = (
         estimate.value(name) for name in ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
@@ -133,7 +129,7 @@ def _columns(
     regressors = np.stack([np.ones(len(t)), alpha, q, moved], axis=1)
     inputs = np.zeros((2, len(t), 2 * regressors.shape[1] + _LOCAL + 1))
     inputs[0, :, :4] = inputs[1, :, 4:8] = regressors
-    inputs[0 if turning else 1, :, -1] = term
+    inputs[1, :, -1] = term
     initial = np.zeros((2, inputs.shape[2]))
     initial[0, 8] = initial[1, 9] = 1.0
     states = driven(system, t, inputs, initial)
@@ -183,12 +179,11 @@ def coupled(maneuver: Maneuver, estimate: Estimate, exceeded: Collection[str] = 
     Parameters
     ----------
     exceeded
-        Codes of the limits that the manoeuvre exceeds. Bank, air speed, aileron and rudder are examined
-        beyond their limits only.
+        Codes of the limits that the manoeuvre exceeds. Air speed, aileron and rudder are examined beyond
+        their limits only.
     """
     return [
         *_rolling_with_yawing(maneuver, estimate),
-        *(_slipping_in_a_roll(maneuver, estimate) if "bank" in exceeded else ()),
         *(_changing_speed(maneuver, estimate) if "airspeed" in exceeded else ()),
         *_moved(maneuver, estimate, "throttle", "leave it where it is"),
         *(
@@ -208,17 +203,6 @@ def _rolling_with_yawing(maneuver: Maneuver, estimate: Estimate) -> list[Reason]
         return []
     cure = "let roll and yaw die down before the first step"
     return beyond(estimate, found.of_one, "coupling", "rolling and yawing", cure)
-
-
-def _slipping_in_a_roll(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:
-    if not {"p", "beta"} <= maneuver.channels.keys():
-        return []
-    beta = _at_fit(maneuver, estimate, "beta")
-    term = -_at_fit(maneuver, estimate, "p") * (beta - np.mean(beta))
-    found = bias_by(maneuver, estimate, term, turning=True)
-    if found is None:
-        return []
-    return beyond(estimate, found.of_one, "bank", "rolling with sideslip", "fly it wings level")
 
 
 def _changing_speed(maneuver: Maneuver, estimate: Estimate) -> list[Reason]:

@@ -106,16 +106,6 @@ def test_a_model_so_unstable_that_its_response_overflows_tells_no_bias():
     assert coupled(maneuver, replace(estimated, theta=theta)) == []
 
 
-def test_a_banked_flight_with_sideslip_that_moves_an_estimate_is_named_beyond_the_limit_of_bank():
-    p = 40.0 * DEG * np.sin(2.2 * T)
-    beta = 20.0 * DEG * np.sin(2.2 * T)
-    maneuver, estimated = flown(0.15, p=p, beta=beta)
-    (reason,) = coupled(maneuver, estimated, {"bank"})
-    assert reason.code == "bank"
-    assert "fly it wings level" in reason.text
-    assert coupled(maneuver, estimated) == []
-
-
 def test_an_aileron_with_a_pitching_moment_that_moves_an_estimate_is_named():
     aileron = 6.0 * DEG * np.sin(2.2 * T)
     maneuver, estimated = flown(0.3, 1.0 * aileron, aileron=aileron)

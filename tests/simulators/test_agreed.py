@@ -58,7 +58,7 @@ def test_derivatives_agree_with_the_log_next_to_a_users_simulator(kind, monkeypa
     examined = SimpleNamespace(diagnosis=diagnosis(), findings=None)
     monkeypatch.setattr(reading, "examine", lambda *_: examined)
     monkeypatch.setattr(reading, "with_static_errors", lambda told, *_: told)
-    monkeypatch.setattr(reading, "without_simulator", lambda told: told)
+    monkeypatch.setattr(reading, "without_simulator", lambda told, *_: told)
     monkeypatch.setattr(reading, "estimate_jointly", lambda *_: LOGGED)
     told = reading.compare_flown(
         reading.GapFlights(flown(maneuvers=2), 0, ()), Aircraft(), simulator

@@ -26,6 +26,7 @@ def hands_off(shape, level, stick, servo=Servo(), faults=Faults()) -> Channels: 
         delta=one * level.delta,
         throttle=one * level.throttle,
         throttle_step=0.0 * one,
+        remnant=0.0 * one,
         around=tuple(value * one for value in Around()),
     )
     _, channels = fly(level.state, given, shape, faults, servo, NO_HANDS, (1e9, -1e9), 1.0)
