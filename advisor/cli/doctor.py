@@ -2,6 +2,7 @@
 
 import json
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -104,6 +105,7 @@ def examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Ex
     UnusableInputError
         The log cannot be read.
     """
+    from advisor.analysis.vibration import vibration_of
     from advisor.doctor.examiner import Examiner
     from advisor.mavlink.logs.whole import read_whole_log
     from advisor.mavlink.wire.frames import FrameScanner, Received
@@ -114,7 +116,9 @@ def examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Ex
     vehicle = examiner.vehicle
     senders = scanner.statistics.senders
     came = senders.get((vehicle.system, vehicle.component), Received()) if vehicle else Received()
-    return examiner.findings(repeated_percent=came.repeated_percent, repeated_after_s=came.repeated_after_s)
+    found = examiner.findings(repeated_percent=came.repeated_percent, repeated_after_s=came.repeated_after_s)
+    unit_s = found.expectation.unit_s if found.expectation else None
+    return replace(found, notes=(*found.notes, *vibration_of(log, aircraft.columns).notes(unit_s)))
 
 
 def _examine_link(

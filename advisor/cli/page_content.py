@@ -13,6 +13,7 @@ from advisor import __version__
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.axes.side_comparison import compare_side_flown
 from advisor.analysis.log_series import SINCE_1970_S, began_s
+from advisor.analysis.vibration import Vibration, vibration_of
 from advisor.analysis.whole_flights import WholeFlights, holds_no_test, read_whole
 from advisor.cli.doctor import examine_log
 from advisor.cli.log_options import LogsAsked
@@ -71,6 +72,7 @@ def gather(
         if with_gap and not holds_no_test(flights.left_out)
         else None,
         begun=tuple(map(_date, flights.logs)),
+        vibration=tuple(_vibration(log, aircraft) for log in flights.logs),
         origin=Origin(
             _hashes(flights, asked.aircraft_file),
             dict(_versions()),
@@ -78,6 +80,13 @@ def gather(
         ),
     )
     return content, said
+
+
+def _vibration(log: Path, aircraft: Aircraft) -> Vibration | None:
+    try:
+        return vibration_of(log, aircraft.columns)
+    except UnusableInputError:
+        return None
 
 
 def _examined(log: Path, aircraft: Aircraft, target_system: int | None) -> Document:

@@ -66,6 +66,8 @@ RADIO 166: uint8 rssi, uint8 remrssi, uint8 txbuf, uint8 noise, uint8 remnoise, 
 WIND 168: float direction, float speed, float speed_z
 WIND_COV 231: uint64 time_usec, float wind_x, float wind_y, float wind_z, float var_horiz, float var_vert,
     float wind_alt, float horiz_accuracy, float vert_accuracy
+VIBRATION 241: uint64 time_usec, float vibration_x, float vibration_y, float vibration_z, uint32 clipping_0,
+    uint32 clipping_1, uint32 clipping_2
 MESSAGE_INTERVAL 244: uint16 message_id, int32 interval_us
 EXTENDED_SYS_STATE 245: uint8 vtol_state, uint8 landed_state
 NAMED_VALUE_FLOAT 251: uint32 time_boot_ms, char[10] name, float value

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.vibration import Vibration
 from advisor.campaign.state import CampaignState
 from advisor.flight.signals.power_on import PowerOn
 
@@ -43,3 +44,5 @@ class Content:
     origin: Origin
     begun: tuple[str, ...] = ()
     """Date and time at which each log began."""
+    vibration: tuple[Vibration | None, ...] = ()
+    """Vibration of each log; None for an unreadable log."""
