@@ -12,6 +12,7 @@ from pathlib import Path
 from advisor import __version__
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.axes.side_comparison import compare_side_flown
+from advisor.analysis.field_sums import FieldSum
 from advisor.analysis.log_series import SINCE_1970_S, began_s
 from advisor.analysis.vibration import Vibration, vibration_of
 from advisor.analysis.whole_flights import WholeFlights, holds_no_test, read_whole
@@ -37,6 +38,7 @@ def gather(
     with_gap: bool,
     tell: Progress = lambda *_: None,
     command: str | None = None,
+    fields: Mapping[Path, tuple[FieldSum, ...]] | None = None,
 ) -> tuple[Content, list[str]]:
     """Return the content of the page, and sentences on logs that do not count.
 
@@ -44,6 +46,9 @@ def gather(
     ----------
     command
         Command line that repeats the page; None: the one that this process was started with.
+
+    fields
+        Fields that are asked for by name, by the path of the log.
 
     Raises
     ------
@@ -72,6 +77,7 @@ def gather(
         if with_gap and not holds_no_test(flights.left_out)
         else None,
         begun=tuple(map(_date, flights.logs)),
+        fields=tuple((fields or {}).get(log, ()) for log in flights.logs),
         vibration=tuple(_vibration(log, aircraft) for log in flights.logs),
         origin=Origin(
             _hashes(flights, asked.aircraft_file),

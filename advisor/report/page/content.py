@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.field_sums import FieldSum
 from advisor.analysis.vibration import Vibration
 from advisor.campaign.state import CampaignState
 from advisor.flight.signals.power_on import PowerOn
@@ -46,3 +47,5 @@ class Content:
     """Date and time at which each log began."""
     vibration: tuple[Vibration | None, ...] = ()
     """Vibration of each log; None for an unreadable log."""
+    fields: tuple[tuple[FieldSum, ...], ...] = ()
+    """Fields of each log that were asked for by name."""

@@ -15,6 +15,7 @@ from advisor.report.page.content import Content
 from advisor.report.page.criterion import criterion
 from advisor.report.page.drawing import LAYER
 from advisor.report.page.estimates import estimates
+from advisor.report.page.fields import fields
 from advisor.report.page.fits import fits
 from advisor.report.page.flight_picture import flight_picture
 from advisor.report.page.flying import flying
@@ -28,7 +29,7 @@ from advisor.words.quantities import CHANNELS
 PageFormat = Literal["html", "md"]
 _PARTS: tuple[Part, ...] = (
     headline, flight_picture, gap, estimates, criterion, flying, maneuvers, fits, prediction, lateral,
-    vibration, telemetry, assumptions, provenance,
+    fields, vibration, telemetry, assumptions, provenance,
 )  # fmt: skip
 
 _OF_PITCH = frozenset({estimates, criterion, flying, maneuvers, fits, prediction})
