@@ -58,21 +58,23 @@ class Bins:
         return float(self.middle_s[self.first + index] - 0.5 * BIN_S)
 
 
+def shows_hands(control: Channel) -> bool:
+    """Return whether a control is sampled more quickly than hands respond."""
+    return len(control) < 2 or float(np.median(np.diff(control.t))) < 0.99 * BIN_S
+
+
 def binned(span: Span, control: Channel, tests: Sequence[tuple[float, float]]) -> Bins | None:
     """Return the control in bins; None if too few bins before the movement show the hands.
-
-    A control sampled more slowly than hands respond does not show them.
 
     Parameters
     ----------
     tests
         Earlier tests of this control, from begin to end of the free response, s. They show no hands.
     """
-    interval_s = float(np.median(np.diff(control.t)))
     before = int(min(HISTORY_S, span.start_s - control.t[0]) / BIN_S)
     end_s = min(span.last_step_s + _AFTER_S, span.end_s, float(control.t[-1]))
     edges = np.arange(span.start_s - before * BIN_S, max(end_s, span.start_s + BIN_S), BIN_S)
-    if 1.01 * interval_s > BIN_S or before < _FEWEST or len(edges) < before + 4:
+    if before < _FEWEST or len(edges) < before + 4:
         return None
     mean = np.diff(np.interp(edges, control.t, integrated(control.t, control.y))) / BIN_S
     middle_s = 0.5 * (edges[1:] + edges[:-1])

@@ -11,6 +11,7 @@ from math import degrees, isfinite, radians
 import numpy as np
 
 from advisor.aircraft.aircraft import Limits
+from advisor.flight.maneuvers.binned import shows_hands
 from advisor.flight.maneuvers.excitation import excitation
 from advisor.flight.maneuvers.free_response import FREE_S
 from advisor.flight.maneuvers.hand_flying import flown_elsewhere
@@ -166,8 +167,8 @@ def _told(
         return Because(
             "small", f"a correction: the {loop.rate_said} moved by {shown} deg/s only (at least {least})"
         )
-    asked = not _is_swept(maneuver) and not closes_pitch_loop(maneuver.mode)
     moved = motion.get(control, maneuver.channels[control])
+    asked = not _is_swept(maneuver) and not closes_pitch_loop(maneuver.mode) and shows_hands(moved)
     odds, flown = None, [(test.start_s, test.end_s) for test in tests]
     if asked and loop.rate in motion:
         odds = odds_of_own_input(span, moved, motion[loop.rate], motion.get(loop.angle), found.effect, flown)
@@ -182,9 +183,9 @@ def _told(
         return Because("no_information", f"the {control}'s effect on the {loop.rate_said} is known {known}")
     if odds is not None and odds.probability < LEAST_PROBABILITY:
         return _as_hands(odds, control)
-    if odds is None:
-        return span  # Nothing before the movement shows what hands do.
-    part = _part(span, odds, moved)
+    part = span if odds is None else _part(span, odds, moved)
+    if not asked:
+        return part
     moving = motion.get(loop.rate)
     if moving is not None and (unsteady := begun_in_motion(part, moving, loop)):
         return Because("feedback", unsteady)

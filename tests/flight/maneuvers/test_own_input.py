@@ -122,6 +122,11 @@ def test_a_recovery_is_listed_with_its_probability_and_the_test_before_counts():
     assert "% (at least 95)" in found.text
 
 
+def test_a_control_sampled_at_the_hands_delay_is_judged_by_its_shape():
+    slow = {name: Channel(name, channel.t[::5], channel.y[::5]) for name, channel in flight().items()}
+    assert told(RECOVERY, slow, [(TEST_S, RECOVERY_S)]) == RECOVERY
+
+
 def test_a_test_after_hands_in_one_movement_is_cut_where_it_begins():
     swallowed = span(TEST_S - 6.0, TEST_S + 2.1)
     found = told(swallowed, flight(tremor=0.3))
