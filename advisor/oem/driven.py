@@ -40,7 +40,7 @@ LEAST_GUST_RAD = 0.0017
 """Least standard deviation of a reported gust angle, rad: 0.1 deg."""
 SCALE = 0.03 / 3.0**0.5
 """Standard deviation of the scale of an instrument, relative. Data sheets of autopilots' gyros and
-accelerometers allow 3 % to either side. No residual shows a scale that the derivatives absorb."""
+accelerometers allow 3 % to either side. Residuals show a part of it, and the derivatives absorb the rest."""
 STAMP_S = 1e-3 / 12.0**0.5
 """Standard deviation of a stamp in whole milliseconds, s."""
 CLEARLY = 20.0
@@ -362,14 +362,17 @@ class _System(NamedTuple):
     """Sum of squares after a step of all parameters, up to a constant."""
 
     @classmethod
-    def of(cls, place: _Place, white: FloatArray, prior: Priors) -> "_System":
-        """Return the normal equations of the whitened ``columns`` of a place."""
+    def of(cls, place: _Place, white: FloatArray, prior: Priors, further: int = 0) -> "_System":
+        """Return the normal equations of the whitened ``columns`` of a place.
+
+        The columns of so many ``further`` parameters follow, each with a prior of mean 0 and deviation 1.
+        """
         laid, extra = place.assembly, place.extra
         common, own = laid.common, laid.own
         known = (prior.std**-2)[common]
-        information = np.diag(np.concatenate([known, extra.weight**2]))
+        information = np.diag(np.concatenate([known, extra.weight**2, np.ones(further)]))
         towards = known * (prior.mean - place.shared)[common]
-        gradient = np.concatenate([towards, extra.weight * extra.pull])
+        gradient = np.concatenate([towards, extra.weight * extra.pull, np.zeros(further)])
         parts, misfit = [], 0.0
         for rows in laid.blocks:
             residual, columns = white[rows, 0], white[rows, 1 + len(own) :]
@@ -468,26 +471,32 @@ def _solution(
     """Return the solution at the place, with Cramér-Rao errors and errors for coloured innovations."""
     laid, fitted = place.assembly, place.assembly.z - place.residual
     unsure = np.column_stack([motion.unsure(laid, fitted), _scaled(laid, fitted)])
-    columns = [place.residual, place.sensitivities, unsure, place.extra.columns]
-    white, _ = place.whitened(np.column_stack(columns), noise)
-    split = 1 + place.sensitivities.shape[1]
-    last = split + unsure.shape[1]
+    white, _ = place.whitened(
+        np.column_stack([place.residual, place.sensitivities, place.extra.columns, unsure]), noise
+    )
+    size, split = unsure.shape[1], 1 + place.sensitivities.shape[1]
+    left, g, extra, unsure = np.split(white, [1, split, white.shape[1] - size], axis=1)
     prior = priors(place.problem, place.shared)
     errors = errors_of(
         laid,
-        white[:, 0],
-        white[:, 1:split],
+        left[:, 0],
+        g,
         np.ones(len(laid.names.outputs)),
-        place.extra.whitened(white[:, last:]),
+        place.extra.whitened(extra),
         np.asarray(prior.std**-2.0),
         prior_share=1.0,
     )
     if errors is None:
         return None
-    pulled = errors["influence"].rows.T @ white[:, split:last]
+    # The estimate keeps the scales at 1: their posterior second moment is the error.
+    ordered = np.column_stack([left, g[:, laid.own], g[:, laid.common], extra, unsure])
+    system = _System.of(place, ordered, prior, size)
+    shown = system.step({})[-size:]
+    moment = inverse_of(system.information)[0][-size:, -size:] + np.outer(shown, shown)
+    pulled = errors["influence"].rows.T @ unsure
     # Dynamics that the model lacks do not stand out in innovations: their error is that of output error.
-    systematic, size = pulled @ pulled.T, min(len(pulled), len(start.systematic))
-    systematic[:size, :size] += start.systematic[:size, :size]
+    systematic, kept = pulled @ moment @ pulled.T, min(len(pulled), len(start.systematic))
+    systematic[:kept, :kept] += start.systematic[:kept, :kept]
     errors["systematic"] = systematic
     optimum = start.optimum._replace(
         shared=place.shared,

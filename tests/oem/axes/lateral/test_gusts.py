@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.model.axes.lateral import LATERAL
+from advisor.oem import driven
 from advisor.oem.axes.lateral import solution as lateral_solution
 from advisor.oem.axes.lateral.disturbance import Course, Linear, courses_of
 from advisor.oem.axes.lateral.gusts import Air, Integrated, Sums, likeliest
@@ -34,6 +35,20 @@ def problem_of(rng):
     return LateralProblem((flown(JET, aileron=aileron_doublet(T), measured=MEASURED, rng=rng),))
 
 
+def in_gusts(rng, still):
+    """Return the problem of a test in side gusts with a memory of 1 s."""
+    fit = Linear(still.problem, still.assembly, vector(JET), still.sensitivities, still.optimum.noise)
+    (course,) = courses_of(fit)
+    markov = np.exp(-np.abs(course.knots[:, None] - course.knots))
+    change = course.columns @ np.linalg.cholesky(markov) @ rng.standard_normal(len(course.knots))
+    (record,) = problem_of(rng).records
+    outputs = {
+        name: Signal(record.outputs[name].t, record.outputs[name].y + GUSTS_RAD * change[rows])
+        for name, rows in still.assembly.rows[0].items()
+    }
+    return LateralProblem((replace(record, outputs=outputs),))
+
+
 def std_of(solution):
     return np.sqrt(np.diag(solution.widened)[KNOWN])
 
@@ -46,24 +61,25 @@ def test_still_air_leaves_the_errors_of_the_instruments(coloured):
 def test_errors_of_one_test_contain_its_gusts(coloured):
     rng = np.random.default_rng(2)
     still = solve_lateral(problem_of(rng))
-    fit = Linear(still.problem, still.assembly, vector(JET), still.sensitivities, still.optimum.noise)
-    (course,) = courses_of(fit)
-    markov = np.exp(-np.abs(course.knots[:, None] - course.knots))
     off, wide, narrow = [], [], []
     for _ in range(4):
-        change = course.columns @ np.linalg.cholesky(markov) @ rng.standard_normal(len(course.knots))
-        problem = problem_of(rng)
-        (record,) = problem.records
-        outputs = {
-            name: Signal(record.outputs[name].t, record.outputs[name].y + GUSTS_RAD * change[rows])
-            for name, rows in still.assembly.rows[0].items()
-        }
-        found = solve_lateral(LateralProblem((replace(record, outputs=outputs),)))
+        found = solve_lateral(in_gusts(rng, still))
         off.append(np.abs(found.theta - vector(JET))[KNOWN])
         wide.append(std_of(found))
         narrow.append(std_of(coloured[-1]))
     assert np.mean(np.array(off) / wide < 1.96) > 0.85
     assert np.mean(np.array(off) / narrow < 1.96) < 0.75
+
+
+def test_a_scale_that_residuals_show_counts_less_than_one_that_the_aileron_absorbs(monkeypatch):
+    rng = np.random.default_rng(2)
+    problem = in_gusts(rng, solve_lateral(problem_of(rng)))
+    monkeypatch.setattr(driven, "SCALE", 0.1)
+    errors = std_of(solve_lateral(problem))
+    monkeypatch.setattr(driven, "SCALE", 1.0)
+    L_beta, L_p, L_delta_a, *_ = std_of(solve_lateral(problem)) / errors
+    assert max(L_beta, L_p) < 2.0
+    assert L_delta_a > 5.0
 
 
 def test_slopes_of_the_likelihood_are_its_differences():
