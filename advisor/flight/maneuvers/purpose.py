@@ -168,7 +168,9 @@ def _told(
             "small", f"a correction: the {loop.rate_said} moved by {shown} deg/s only (at least {least})"
         )
     moved = motion.get(control, maneuver.channels[control])
-    asked = not _is_swept(maneuver) and not closes_pitch_loop(maneuver.mode) and shows_hands(moved)
+    # A part behind a leap of the stamps shows nothing of the seconds before.
+    hidden = bool(maneuver.leapt_s) or not shows_hands(moved)
+    asked = not hidden and not _is_swept(maneuver) and not closes_pitch_loop(maneuver.mode)
     odds, flown = None, [(test.start_s, test.end_s) for test in tests]
     if asked and loop.rate in motion:
         odds = odds_of_own_input(span, moved, motion[loop.rate], motion.get(loop.angle), found.effect, flown)

@@ -51,7 +51,7 @@ def flight(seed: int, count: int) -> list[Record]:
         message = (
             random_message(KNOWN[rng.integers(len(KNOWN))], rng)
             if known
-            else dialect.MAVLink_vibration_message(i, 2.0, 3.0, 4.0, 5, 6, 7)
+            else dialect.MAVLink_hwstatus_message(i, 5)
         )
         version = 1 if message.get_msgId() < 256 and rng.random() < 0.3 else 2
         frame = sender.frame(message, version)
