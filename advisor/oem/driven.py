@@ -17,6 +17,7 @@ import numpy as np
 from advisor.flight.signals.robust import robust_std
 from advisor.model.response import Index
 from advisor.oem.arrow import inverse_of
+from advisor.oem.coordinate_search import coordinate_search
 from advisor.oem.descent import Motion
 from advisor.oem.driven_kernel import driven_filter
 from advisor.oem.evaluation import errors_of
@@ -333,21 +334,7 @@ def _likeliest(place: _Place, noise: Noise, steps: Sequence[float]) -> Noise:
     """Return the likeliest noise, by a coordinate search in the logarithms with decreasing steps."""
     outputs = len(noise.white)
     free = [*place.there, *(outputs + place.there), *range(2 * outputs, len(noise.logarithms))]
-    best, x = place.cost(noise, MOST_MANEUVERS), noise.logarithms
-    for step in steps:
-        for i in free:
-            for direction in (step, -step):
-                before = best
-                while True:
-                    moved = x.copy()
-                    moved[i] += direction
-                    cost = place.cost(noise.at(moved), MOST_MANEUVERS)
-                    if not cost < best - 0.5:
-                        break
-                    best, x = cost, noise.at(moved).logarithms
-                if best < before:
-                    # The opposite direction leads back to the previous point.
-                    break
+    x, _ = coordinate_search(lambda y: place.cost(noise.at(y), MOST_MANEUVERS), noise.logarithms, free, steps)
     return noise.at(x)
 
 

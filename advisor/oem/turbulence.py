@@ -11,6 +11,7 @@ import numpy as np
 
 from advisor.model.outputs import OUTPUTS
 from advisor.oem import innovations
+from advisor.oem.coordinate_search import coordinate_search
 from advisor.oem.innovations import A_Z, ALPHA, AirModel
 from advisor.oem.kalman import DIFFUSE
 from advisor.process.arrays import FloatArray
@@ -151,19 +152,5 @@ def _descend(
         return AirModel(v[:4], v[4:8], float(np.clip(v[8], 0.02, 5.0)), float(v[9]) if moving else 0.0,
                         float(np.clip(v[10], 0.05, 20.0)), start.seen_by_alpha)  # fmt: skip
 
-    best = cost_of(rows, system, model(x), start_variance)
-    for step in steps:
-        for i in free:
-            for direction in (step, -step):
-                before = best
-                while True:
-                    moved = x.copy()
-                    moved[i] += direction
-                    cost = cost_of(rows, system, model(moved), start_variance)
-                    if not cost < best - 0.5:
-                        break
-                    best, x = cost, moved
-                if best < before:
-                    # The opposite direction leads back to the previous point.
-                    break
+    x, best = coordinate_search(lambda y: cost_of(rows, system, model(y), start_variance), x, free, steps)
     return model(x), best
