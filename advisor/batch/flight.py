@@ -32,6 +32,13 @@ class BatchTask:
     """Name of the aircraft file; empty without one."""
     sha256: str
     """SHA-256 hash of the log."""
+    aircraft_path: Path | None = None
+    """Path of the aircraft file; None without a file."""
+
+    @property
+    def aircraft_name(self) -> str:
+        """Name of the aircraft, from the name of its file; empty without a file."""
+        return self.aircraft.name if self.aircraft_file else ""
 
     @property
     def key(self) -> str:
@@ -56,6 +63,8 @@ class Analyzed:
     """Document of ``advisor analyze --json``."""
     joint: dict[str, Any] = field(default_factory=dict)
     """Joint estimate with its covariances, for comparison over flights; empty without one."""
+    aircraft_name: str = ""
+    """Name of the aircraft, from the name of its file; empty without a file."""
 
     @property
     def usable(self) -> bool:
@@ -127,7 +136,8 @@ def analyze(task: BatchTask) -> Analyzed:
         joint = {name: plain(getattr(state.model, name)) for name in _KEPT}
         joint["airspeed_m_s"] = plain(state.model.airspeed_m_s)
     began = began_s(task.log)
-    return Analyzed(str(task.log), task.aircraft_file, task.sha256, began, document, joint)
+    name = task.aircraft_name
+    return Analyzed(str(task.log), task.aircraft_file, task.sha256, began, document, joint, name)
 
 
 def analyze_shared(task: BatchTask) -> Analyzed:
@@ -152,7 +162,8 @@ def analyze_shared(task: BatchTask) -> Analyzed:
 def failed(task: BatchTask, problems: Sequence[Problem]) -> Analyzed:
     """Return the result of a log whose analysis failed."""
     document = analysis_document(None, [str(task.log)], task.aircraft, {0: problems})
-    return Analyzed(str(task.log), task.aircraft_file, task.sha256, nan, document)
+    name = task.aircraft_name
+    return Analyzed(str(task.log), task.aircraft_file, task.sha256, nan, document, aircraft_name=name)
 
 
 def keep(result: Analyzed, path: Path) -> None:

@@ -1,5 +1,6 @@
 """The results of a batch as tables: flights, manoeuvres, changes."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import inf
@@ -67,6 +68,18 @@ def aircraft_of(flight: Analyzed) -> str:
     vehicle = flight.document["log"]["vehicle"] or {}
     system = f"system {vehicle['system']}" if vehicle else ""
     return " ".join(filter(None, (flight.aircraft_file, vehicle.get("autopilot"), system)))
+
+
+def names_of(flights: Sequence[Analyzed]) -> dict[str, str]:
+    """Return the name of each aircraft for people, by the aircraft's identity.
+
+    Aircraft that share a name have their identity in brackets behind the name. Nameless aircraft show their
+    identity alone.
+    """
+    names = {aircraft_of(flight): flight.aircraft_name for flight in flights}
+    often = Counter(names.values())
+    shared = {identity: f"{name} ({identity})" for identity, name in names.items() if often[name] > 1}
+    return {identity: (name and shared.get(identity, name)) or identity for identity, name in names.items()}
 
 
 def mixed_up(flights: Sequence[Analyzed]) -> list[str]:

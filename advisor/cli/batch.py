@@ -1,6 +1,6 @@
 """``advisor batch``: many flights, each analyzed once."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from importlib.util import find_spec
@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 import click
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.cli.batch_reports import page_of, write_reports
 from advisor.cli.options import UNUSABLE, aircraft_option, read_aircraft, refuse_unwritable_folder, writing
+from advisor.cli.report import refuse_missing_libraries
 from advisor.cli.running import Progress, runner_of, running_options
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 
     Run = Callable[[Sequence[BatchTask]], Iterator[tuple[BatchTask, Analyzed | Exception]]]
 
+INDEX = "index.html"
+"""Name of the page of all flights."""
 KEPT = "flights"
 """Folder of each log's result, by the key of the log."""
 
@@ -44,12 +48,14 @@ KEPT = "flights"
     metavar="MAP.yaml",
     help="For several aircraft: one line for each pattern of logs, with its aircraft file.",
 )
+@click.option("--reports", "with_reports", is_flag=True, help="Write the page of each flight as well.")
 @running_options
 def command(
     places: tuple[Path, ...],
     out: Path,
     aircraft_file: Path | None,
     map_file: Path | None,
+    with_reports: bool,
     workers: int | None,
     scheduler: str | None,
 ) -> int:
@@ -62,12 +68,14 @@ def command(
     \b
     Example:
       advisor batch flights/ -o results --aircraft my-aircraft.yaml --workers 8
-      advisor batch flights/ -o results --aircraft-map fleet.yaml
+      advisor batch flights/ -o results --aircraft-map fleet.yaml --reports
       advisor batch /shared/flights -o results --scheduler tcp://10.0.0.5:8786
     """
     if aircraft_file is not None and map_file is not None:
         raise ConfigurationError("Give --aircraft for one aircraft, or --aircraft-map for several, not both.")
     refuse_unwritable_folder("-o", out)
+    if with_reports:
+        refuse_missing_libraries("advisor batch --reports")
     from advisor.batch.flight import analyze, analyze_shared
     from advisor.batch.logs import find_logs
 
@@ -78,7 +86,9 @@ def command(
     with writing("-o", out):
         (out / KEPT).mkdir(parents=True, exist_ok=True)
         results |= _analyzed(tasks, out, run)
-    return _told([results[log] for log in logs if log in results], out)
+        usable = [task for task in tasks if results[task.log].usable]
+        pages = write_reports(usable, out, partial(runner, page_of)) if with_reports else {}
+    return _told([results[log] for log in logs if log in results], out, pages)
 
 
 def _tasks(
@@ -96,7 +106,7 @@ def _tasks(
         file = chosen.file_of(log) if chosen is not None else aircraft_file
         if file not in described:
             described[file] = read_aircraft(file)
-        task = BatchTask(log, described[file], file.name if file else "", "")
+        task = BatchTask(log, described[file], file.name if file else "", "", file)
         if chosen is not None and file is None:
             fix = "Add a line for the log, or a last one for '*'."
             problem = Problem("no_aircraft", f"{log} matches no pattern in {map_file}.", fix)
@@ -153,8 +163,9 @@ def _fault(task: "BatchTask", error: Exception) -> Problem:
     )
 
 
-def _told(results: "Sequence[Analyzed]", out: Path) -> int:
+def _told(results: "Sequence[Analyzed]", out: Path, pages: Mapping[Path, str]) -> int:
     """Write the tables, and print failures and changes."""
+    from advisor.batch.index import index_page
     from advisor.batch.tables import changes_of, in_order, mixed_up, not_told_apart, tables_of
     from advisor.exports.flights.formats import write_formats
     from advisor.exports.flights.staging import staged
@@ -163,6 +174,7 @@ def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     form = "parquet" if find_spec("pyarrow") else "csv"
     with staged(out) as stage:
         write_formats(tables_of(flights), stage, [form])
+        (stage / INDEX).write_text(index_page(flights, pages), encoding="utf-8")
     failures = [flight for flight in flights if not flight.usable]
     for flight in failures:
         click.echo(printable(f"{flight.log}: {' '.join(flight.reasons)}"), err=True)
@@ -175,6 +187,6 @@ def _told(results: "Sequence[Analyzed]", out: Path) -> int:
     maneuvers = sum(len(flight.maneuvers) for flight in flights)
     click.echo(
         f"{printable(str(out))}: flights: {len(flights)}; manoeuvres: {maneuvers}; logs that cannot be used:"
-        f" {len(failures)}; tables: flights.{form}, maneuvers.{form}, changes.{form}."
+        f" {len(failures)}; tables: flights.{form}, maneuvers.{form}, changes.{form}; page: {INDEX}."
     )
     return UNUSABLE if len(failures) == len(flights) else 0

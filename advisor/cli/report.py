@@ -67,12 +67,23 @@ def command(asked: LogsAsked, out: Path, form: str | None, names: tuple[str, ...
 
 def _refuse(inputs: Sequence[Path], out: Path) -> None:
     """Refuse, before any work, orders that would fail after it."""
-    missing = [name for name in _NEEDED if find_spec(name) is None]
-    if missing:
-        raise ConfigurationError(
-            f"advisor report needs {' and '.join(missing)}: pip install 'inflight-advisor[report]'."
-        )
+    refuse_missing_libraries("advisor report")
     refuse_unwritable("-o", out)
     for given in inputs:
         if out.exists() and given.exists() and out.samefile(given):
             raise ConfigurationError(f"-o: {out} is an input of the report; name another file.")
+
+
+def refuse_missing_libraries(command: str) -> None:
+    """Refuse a command that draws pages where the libraries for pages are missing.
+
+    Raises
+    ------
+    ConfigurationError
+        A library is missing.
+    """
+    missing = [name for name in _NEEDED if find_spec(name) is None]
+    if missing:
+        raise ConfigurationError(
+            f"{command} needs {' and '.join(missing)}: pip install 'inflight-advisor[report]'."
+        )

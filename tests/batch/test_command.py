@@ -3,7 +3,7 @@
 import json
 import resource
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.batch.flight import Analyzed, BatchTask, failed, kept, sha256_of
 from advisor.batch.logs import AircraftMap, find_logs, read_map
 from advisor.batch.tables import aircraft_of, is_whole, mixed_up
+from advisor.cli.batch_reports import write_reports
 from advisor.process.tasks import processes
 from advisor.process.tasks.runner import run_here
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
@@ -120,12 +121,13 @@ def test_a_centre_of_gravity_that_has_moved_is_told_since_its_first_flight(
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_the_second_run_analyzes_nothing_and_gives_the_same_tables(
+def test_the_second_run_analyzes_nothing_and_gives_the_same_tables_and_page(
     folder: Path, advisor: Advisor, tmp_path: Path
 ) -> None:
     out = tmp_path / "out"
-    assert "empty.bin is empty." in advisor("batch", folder, "-o", out, "--workers", 1).stderr
+    advisor("batch", folder, "-o", out, "--workers", 1)
     before = {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
+    assert "Cannot be used: empty.bin is empty." in before["index.html"].decode()
     stamps = {path: path.stat().st_mtime_ns for path in (out / "flights").iterdir()}
     run = advisor("batch", folder, "-o", out, "--workers", 1)
     assert "3 of 3 logs were analyzed before." in run.stderr
@@ -304,3 +306,19 @@ def test_results_below_a_file_are_refused_in_one_sentence(
     assert run.returncode == 2
     assert run.stderr.startswith("-o: ")
     assert f"lies below the file {tmp_path / 'file'}" in run.stderr
+
+
+def test_each_flight_that_counts_has_a_report_that_is_written_once(tmp_path: Path) -> None:
+    log, other = tmp_path / "one.tlog", tmp_path / "two.tlog"
+    tasks = [BatchTask(one, Aircraft(), "", one.stem) for one in (log, other)]
+    asked: list[str] = []
+
+    def run(tasks: Sequence[BatchTask]) -> Iterator[tuple[BatchTask, str | Exception]]:
+        asked.extend(task.sha256 for task in tasks)
+        yield from ((task, "page" if task.log == log else ValueError("no fit")) for task in tasks)
+
+    place = f"reports/{tasks[0].key}.html"
+    for _ in range(2):
+        assert write_reports(tasks, tmp_path, run) == {log: place}
+    assert (tmp_path / place).read_text() == "page"
+    assert asked == ["one", "two", "two"]

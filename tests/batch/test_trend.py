@@ -6,7 +6,6 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.batch.flight import Analyzed
-from advisor.batch.tables import changes_of, not_told_apart
 from advisor.batch.trend import change_over_flights, lying_apart
 from advisor.oem.estimate import Estimate
 
@@ -62,31 +61,3 @@ def test_an_estimate_that_was_kept_is_compared_as_it_was() -> None:
     assert again is not None
     np.testing.assert_array_equal(again.theta, estimate.theta)
     np.testing.assert_array_equal(np.isfinite(again.covariance), np.isfinite(estimate.covariance))
-
-
-def analyzed(number: int, elevator: float = 1.0, file: str = "") -> Analyzed:
-    """Return the stored result of a flight; without the name of a file no aircraft file was given."""
-    joint = flight(number, elevator)
-    document = {"usable": True, "problems": [], "log": {"vehicle": {"system": 1, "autopilot": "px4"}}}
-    kept = {name: getattr(joint, name).tolist() for name in ("theta", "covariance", "covariance_cr")}
-    return Analyzed("flight.bin", file, "", 1.8e9 + number, document, {**kept, "airspeed_m_s": 25.0})
-
-
-def test_without_an_aircraft_file_flights_that_disagree_are_not_told_apart() -> None:
-    nameless = [analyzed(n, 1.0 if n < 6 else 0.8) for n in range(1, 11)]
-    (sentence,) = not_told_apart(nameless).values()
-    assert sentence.startswith(
-        "Not told apart: px4 system 1 may be one aircraft that has changed, or several."
-    )
-    assert "lies apart" in sentence
-    assert changes_of(nameless) == {}
-
-
-def test_without_an_aircraft_file_flights_that_agree_count_as_those_of_one_aircraft() -> None:
-    assert not_told_apart([analyzed(n) for n in (1, 2)]) == {}
-
-
-def test_an_aircraft_file_says_that_its_flights_are_of_one_aircraft() -> None:
-    named = [analyzed(n, 1.0 if n < 6 else 0.8, "a.yaml") for n in range(1, 11)]
-    assert not_told_apart(named) == {}
-    assert list(changes_of(named)) == ["a.yaml px4 system 1"]
