@@ -6,18 +6,16 @@ their share of M away. Coloured noise lowers M as it has widened the joint estim
 covariance the covariance becomes (P⁻¹ + M)⁻¹ (Kay, Estimation Theory, 1993, ch. 8).
 """
 
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Any
 
 import numpy as np
 
 from advisor.decision.arriving import Arriving
-from advisor.decision.axes.lateral_omitted import side_sensitivities
 from advisor.decision.axes.lateral_stop import JUDGED
+from advisor.decision.axes.linear_motion import PITCH, SIDE, Motion, sensitivities
 from advisor.decision.envelope import moved_controls
-from advisor.decision.omitted import sensitivities
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
@@ -42,11 +40,11 @@ def arriving(flying: Maneuver, until_s: float, pitch: Known, side: Known) -> Arr
     judged = [*pitch.percent] if "elevator" in moved else []
     if pitch.model is not None and judged:
         cut = up_to(until_s, flying, pitch.since_s)
-        percent |= _added(cut, pitch, sensitivities, {"q", "elevator"}, judged)
+        percent |= _added(cut, pitch, PITCH, {"q", "elevator"}, judged)
     names = [name for name, control in JUDGED.items() if control in moved and name in side.percent]
     if isinstance(side.model, LateralEstimate) and names:
         cut = up_to(until_s, flying, side.since_s)
-        percent |= _added(cut, side, side_sensitivities, {"p", "airspeed"}, names)
+        percent |= _added(cut, side, SIDE, {"p", "airspeed"}, names)
     return Arriving(until_s, percent, tuple(name for name in (*judged, *names) if name not in percent))
 
 
@@ -59,11 +57,7 @@ def up_to(until_s: float, flying: Maneuver, since_s: float = -inf) -> Maneuver:
 
 
 def _added(
-    cut: Maneuver,
-    known: Known,
-    sensitivities_of: Callable[[Maneuver, Any], tuple[FloatArray, dict[str, FloatArray]]],
-    needed: Set[str],
-    judged: Sequence[str],
+    cut: Maneuver, known: Known, motion: Motion, needed: Set[str], judged: Sequence[str]
 ) -> dict[str, float]:
     """Return the errors of the judged derivatives with the samples of a cut input."""
     model = known.model
@@ -71,7 +65,7 @@ def _added(
     names = [name for name in judged if name in model.names]
     if not needed <= cut.channels.keys():
         return {name: percent for name in names if (percent := known.percent[name]) is not None}
-    t, columns = sensitivities_of(cut, model)
+    t, columns = sensitivities(motion, cut, model)
     return _after(cut, model, known.percent, t, columns, names)
 
 

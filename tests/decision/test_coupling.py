@@ -7,7 +7,9 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.omitted import bias_by, coupled
+from advisor.decision.axes.influences import coupled
+from advisor.decision.axes.linear_motion import PITCH, LinearMotion
+from advisor.decision.omitted import bias_by
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimator import estimate
@@ -75,12 +77,18 @@ def test_a_throttle_without_a_pitching_moment_is_lived_with():
 def test_the_bias_of_a_known_moment_is_the_error_of_the_estimate_within_a_factor_of_two():
     p, r = dutch_roll(18.0 * DEG)
     maneuver, estimated = flown(0.5, 0.8 * p * r, p=p, r=r)
-    found = bias_by(maneuver, estimated, p * r)
-    assert found is not None
+    bias = of_moment(maneuver, estimated, p * r)
+    assert bias is not None
     off = derivatives(maneuver) - derivatives(flown(0.5)[0])
     for name in ("M_alpha", "M_delta_e"):
         k = PARAMETERS.index(name)
-        assert 0.5 < 0.8 * found.of_one[k] / off[k] < 2.0
+        assert 0.5 < 0.8 * bias.of_one[k] / off[k] < 2.0
+
+
+def of_moment(maneuver, estimated, moment):
+    """Return the bias by an omitted pitching moment, rad/s²."""
+    linear = LinearMotion(PITCH, maneuver, estimated, estimated.fits[0]["q"].t)
+    return bias_by(np.interp(linear.t, T, moment), "q", linear, estimated)
 
 
 def derivatives(maneuver):
@@ -95,7 +103,7 @@ def derivatives(maneuver):
 def test_a_record_without_roll_and_yaw_rate_is_not_asked():
     maneuver, estimated = flown()
     assert coupled(maneuver, estimated) == []
-    assert bias_by(replace(maneuver), estimated, np.ones(len(estimated.fits[0]["q"].t))) is None
+    assert of_moment(maneuver, estimated, np.ones(len(T))) is None
 
 
 def test_a_model_so_unstable_that_its_response_overflows_tells_no_bias():

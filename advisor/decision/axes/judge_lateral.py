@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.lateral_omitted import side_coupled
+from advisor.decision.axes.influences import side_coupled
 from advisor.decision.envelope import (
     above,
     banked,

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.axes.influences import carries_speed, coupled, has_banking
 from advisor.decision.envelope import (
     banked,
     follows_motion,
@@ -16,7 +17,6 @@ from advisor.decision.envelope import (
     throttled,
     too_quick,
 )
-from advisor.decision.omitted import carries_speed, coupled, has_banking
 from advisor.decision.quality import Examined, objections
 from advisor.decision.response import Response, explained_share
 from advisor.decision.verdict import Reason
