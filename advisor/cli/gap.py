@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
@@ -29,7 +29,7 @@ _OF_A_FLIGHT = {
     "exports": "--export", "proving": "--prove", "specification": "--simulator", "figure": "--figure",
     "axis": "--axis", "fixes": "--fix", "terms": "--term",
 }  # fmt: skip
-_OF_THE_PITCH = {name: _OF_A_FLIGHT[name] for name in ("holdout", "everything")}
+_OF_THE_PITCH = {"holdout": "--holdout"}
 _OF_A_PLAN = {
     "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
 }  # fmt: skip
@@ -152,22 +152,21 @@ def command(
         flown = _axis_flown(asked, aircraft, by_hand)
         axis = flown.axis
         if axis == "lateral":
-            _refuse_foreign({"holdout": "--holdout"}, "with --axis pitch")
+            _refuse_foreign(_OF_THE_PITCH, "with --axis pitch")
         orders = orders_of(exports, aircraft, [*asked.inputs, out], axis)
     from advisor.cli.gap_asked import GapAsked
 
     gap = GapAsked(asked, aircraft, shares, out, figure, orders, proving, why, as_json)
-    if axis == "both":
-        from advisor.cli.axes.both_gap import compare_both
+    from advisor.cli.axes.axis_gap import AxisGap, answered
+    from advisor.cli.axes.lateral_gap import SideGap
+    from advisor.cli.axes.pitch_gap import PitchGap
 
-        return compare_both(gap, by_hand, holdout, everything, flown)
-    if axis == "lateral":
-        from advisor.cli.axes.lateral_gap import compare_lateral
-
-        return compare_lateral(gap, flown.state if flown is not None else None)
-    from advisor.cli.axes.pitch_gap import compare_pitch
-
-    return compare_pitch(gap, by_hand, holdout, everything, flown.elevator if flown is not None else None)
+    asked_for: list[AxisGap[Any]] = []
+    if axis != "lateral":
+        asked_for.append(PitchGap(gap, by_hand, holdout, flown and flown.elevator))
+    if axis != "pitch":
+        asked_for.append(SideGap(gap, flown and flown.state))
+    return answered(asked_for, everything)
 
 
 def _axis_flown(asked: LogsAsked, aircraft: "Aircraft", by_hand: "Sequence[ByHand]") -> "AxisFlown":

@@ -37,7 +37,7 @@ def ranking(causes: Sequence[Cause], before: float, what: str = "simulator") -> 
         yield _table(likely, before)
         kept = f"{PRESENT} part of the improved {what}; " if any(c.present for c in likely) else ""
         yield Text(f"{kept}prob.: that it is the main cause; ±: 95 %", style="dim")
-    unlikely = [spelled(c.effect) for c in causes if c not in likely]
+    unlikely = [called(c) for c in causes if c not in likely]
     if unlikely:
         yield Text(f"Below 1 %: {', '.join(unlikely)}.", style="dim")
     for c in likely:
@@ -45,12 +45,17 @@ def ranking(causes: Sequence[Cause], before: float, what: str = "simulator") -> 
             yield Text(confusion_sentence(c))
 
 
+def called(c: Cause) -> str:
+    """Return the name of a cause for people, with its control or sensor on an axis with several."""
+    return c.named or spelled(c.effect)
+
+
 def confusion_sentence(c: Cause) -> str:
     """Return a sentence about effects that look alike, and the way to distinguish them."""
     others = [spelled(name) for name in c.cannot_be_told_from]
     listed = others[0] if len(others) == 1 else f"{', '.join(others[:-1])} or {others[-1]}"
     way = f" To tell them apart, {c.tell_apart_by}." if c.tell_apart_by else ""
-    return f"{spelled(c.effect).capitalize()} cannot be told from {listed} here.{way}"
+    return f"{called(c).capitalize()} cannot be told from {listed} here.{way}"
 
 
 def unseen(effects: Sequence[Unseen]) -> Table:
@@ -81,7 +86,7 @@ def _table(causes: Sequence[Cause], before: float) -> Table:
     for c in causes:
         mark = PRESENT if c.present else " "
         table.add_row(
-            Text(f"{mark} {spelled(c.effect)}", style="bold" if c.present else ""),
+            Text(f"{mark} {called(c)}", style="bold" if c.present else ""),
             in_percent(c.probability), Text("\n".join(sizes_of(c.parameters))),
             marked(c.gap_after, before),
         )  # fmt: skip

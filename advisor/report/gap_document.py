@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from advisor.gap.alternative import AlternativeEvidence, Weighed
+from advisor.gap.alternative import AlternativeEvidence
 from advisor.gap.result import (
     Cause,
     ComparedDerivative,
@@ -23,7 +23,7 @@ from advisor.oem.estimate import Estimate
 from advisor.process.arrays import FloatArray
 from advisor.process.parts import FailedPart
 from advisor.report.axis_document import terms_of, with_intervals
-from advisor.report.facts.answers import by_flight_alone, title_of
+from advisor.report.facts.answers import sure_of, title_of
 from advisor.report.facts.gap import (
     changed,
     grown_said,
@@ -33,7 +33,6 @@ from advisor.report.facts.gap import (
     size_of_gap,
     where_said,
 )
-from advisor.report.facts.reasons import how_sure
 from advisor.report.facts.sizes import sizes_of
 from advisor.report.gap_steps import steps_to_decide
 from advisor.words.certainty import is_decided
@@ -117,8 +116,7 @@ def _of_pitch(d: Diagnosis) -> dict[str, Any]:
 
 def _of_the_sides(d: Diagnosis) -> dict[str, Any]:
     """Return the keys about the nuisance parameters and the derivatives that no manoeuvre shows."""
-    tested = {} if d.verdict != "untested" else {"how_sure": ""}
-    return tested | {
+    return {
         **picked(d, "not_identifiable instruments"),
         "next": steps_to_decide(d),
         "parameters_compared": [changed_document(one) for one in d.derivatives],
@@ -164,11 +162,11 @@ def numbers_document(verdict: str, gap: Gap, where: Where, shrink: Shrink | None
     }
 
 
-def weighed_document(d: Weighed) -> dict[str, Any]:
+def weighed_document(d: Diagnosis) -> dict[str, Any]:
     """Return the document part with the alternatives' probabilities, their evidence, and the reasons."""
     answers = answers_of(d.evidence)
     return {
-        "how_sure": how_sure(answers, by_flight_alone(d.evidence)),
+        "how_sure": sure_of(d),
         "probabilities": d.probabilities,
         "evidence": [_evidence(one) for one in d.evidence],
         "why_heading": heading(d),

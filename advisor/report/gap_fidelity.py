@@ -9,7 +9,7 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from advisor.gap.result import Diagnosis, Gap, Trace
+from advisor.gap.result import Diagnosis, Gap, Trace, Yardsticks
 from advisor.process.arrays import FloatArray
 from advisor.report.facts.sizes import before_after, short
 from advisor.words.quantities import CHANNELS
@@ -55,25 +55,31 @@ def yardsticks(d: Diagnosis) -> Iterator[RenderableType]:
     """Yield gap, Theil's coefficient with its parts, R² and the share within the qualification tolerance."""
     yield Text("fidelity on held-out manoeuvres, before → after", style="bold")
     yield _yardsticks(d)
-    yield Text(_LEGEND, style="dim")
+    if d.yardsticks:
+        yield Text(_LEGEND, style="dim")
 
 
 def _yardsticks(d: Diagnosis) -> Table:
     # One column of padding, not two: with the largest possible numbers the table fills 80 columns.
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
-    for heading in ("", "gap", "Theil", "of error", "R²", "in band, %"):
+    for heading in ("", "gap", *(("Theil", "of error", "R²", "in band, %") if d.yardsticks else ())):
         table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
-    for channel, (before, after) in d.yardsticks.items():
-        inside = "" if after.within_tolerance is None or before.within_tolerance is None else (
-            f"{100 * before.within_tolerance:.0f} → {100 * after.within_tolerance:.0f}"
-        )  # fmt: skip
-        split = "/".join(f"{100 * share:.0f}" for share in (after.bias, after.variance, after.covariance))
-        table.add_row(
-            CHANNELS[channel].symbol,
-            before_after(d.gap.by_channel[channel], d.gap.by_channel_after[channel]),
-            f"{before.theil:.3f} → {after.theil:.3f}", split, f"{before.r2:.4f} → {after.r2:.4f}", inside,
-        )  # fmt: skip
+    for channel, given in d.gap.by_channel.items():
+        cells = [CHANNELS[channel].symbol, before_after(given, d.gap.by_channel_after[channel])]
+        if channel in d.yardsticks:
+            cells += _measures(*d.yardsticks[channel])
+        table.add_row(*cells)
     return table
+
+
+def _measures(before: Yardsticks, after: Yardsticks) -> list[str]:
+    inside = "" if after.within_tolerance is None or before.within_tolerance is None else (
+        f"{100 * before.within_tolerance:.0f} → {100 * after.within_tolerance:.0f}"
+    )  # fmt: skip
+    split = "/".join(f"{100 * share:.0f}" for share in (after.bias, after.variance, after.covariance))
+    return [
+        f"{before.theil:.3f} → {after.theil:.3f}", split, f"{before.r2:.4f} → {after.r2:.4f}", inside,
+    ]  # fmt: skip
 
 
 def _pair(trace: Trace, width: int) -> tuple[str, str]:
@@ -105,7 +111,8 @@ _LEFT = 38
 
 def whereabouts(gap: Gap) -> Text:
     """Return phases and frequencies side by side, then every manoeuvre before and after, with bars."""
-    lines = [*_beside(list(_phases(gap)), list(_bands(gap))), "", *_maneuvers(gap)]
+    beside = [*_beside(list(_phases(gap)), list(_bands(gap))), ""] if gap.by_phase or gap.by_band_hz else []
+    lines = [*beside, *_maneuvers(gap)]
     return Text("\n".join(lines), no_wrap=True, overflow="crop")
 
 

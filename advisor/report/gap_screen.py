@@ -13,13 +13,12 @@ from rich.text import Text
 
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.verdict.notes import UNEXPLAINED
-from advisor.gap.verdict.text import answers_of, limits_of
+from advisor.gap.verdict.text import limits_of
 from advisor.process.installed import SIMULATOR
-from advisor.report.facts.answers import by_flight_alone, title_of
+from advisor.report.facts.answers import sure_of, title_of
 from advisor.report.facts.estimates import structure_lines
 from advisor.report.facts.gap import changes, grown_said, law_said, shrink_said, size_of_gap, where_said
-from advisor.report.facts.reasons import how_sure
-from advisor.report.facts.sizes import WORSE, short
+from advisor.report.facts.sizes import WORSE, named, short, with_error
 from advisor.report.gap_causes import PRESENT, ranking, unseen, why_of
 from advisor.report.gap_fidelity import errors, peaks, whereabouts, worst_maneuver, yardsticks
 from advisor.report.gap_simulator import simulated
@@ -27,15 +26,24 @@ from advisor.report.gap_steps import GapStep
 
 WIDEST = 120
 """Largest number of columns at which lines are easy to read."""
-_PICTURE = (
-    (
-        ("input", "command → surface"),
-        ("moment_equation", "pitching moment"),
-        ("pitch_rate_sensor", "pitch rate"),
+_PICTURES = {
+    "pitch": (
+        (
+            ("input", "command → surface"),
+            ("moment_equation", "pitching moment"),
+            ("pitch_rate_sensor", "pitch rate"),
+        ),
+        (("air", "air"), ("force_equation", "lift"), ("alpha_sensor", "angle of attack")),
+        (("timing", "time stamps"), ("accelerometer", "accelerometer"), ("attitude_sensor", "attitude")),
     ),
-    (("air", "air"), ("force_equation", "lift"), ("alpha_sensor", "angle of attack")),
-    (("timing", "time stamps"), ("accelerometer", "accelerometer"), ("attitude_sensor", "attitude")),
-)
+    "lateral": (
+        (("aileron", "aileron"), ("rolling_moment", "rolling moment"), ("roll_rate_sensor", "roll rate")),
+        (("rudder", "rudder"), ("yawing_moment", "yawing moment"), ("yaw_rate_sensor", "yaw rate")),
+        (("air", "air"), ("side_force", "side force"), ("sideslip_sensor", "sideslip")),
+        (("timing", "time stamps"), ("accelerometer", "accelerometer"), ("attitude_sensor", "attitude")),
+    ),
+}
+"""Blocks of the simulator in the picture of each axis, row by row, with their labels."""
 _SCORES = "per cent: how well a block would explain the gap on its own, the best 100 %"
 _AS_GOOD = "100 % elsewhere: the data alone can hardly distinguish the two blocks"
 _ROUNDS_TO_ALL = 0.995
@@ -66,7 +74,11 @@ class GapScreen:
     def _parts(self, width: int) -> Iterator[RenderableType]:
         d = self.diagnosis
         yield Panel(Group(*_answer(d)), title=title_of(d), title_align="left")
-        yield _numbers(d)
+        if d.gap.by_channel:
+            yield _numbers(d)
+        if d.instruments:
+            yield Text("Nuisance parameters of the fit, no part of the answer:")
+            yield from (Text(f"  {named(name)} {with_error(name, x)}") for name, x in d.instruments.items())
         if d.structured is not None:
             yield from map(Text, structure_lines(d.structured))
         if d.verdict not in ("none", "untested"):
@@ -74,7 +86,7 @@ class GapScreen:
                 f"where: {where_said(d.where, d.shrink)}" if d.verdict in ("effect", "unknown") else "where"
             )
             yield Panel(Group(*_picture(d)), title=where, title_align="left")
-        if self.everything:
+        if self.everything and d.gap.by_maneuver:
             yield from self._course()
         if d.causes and (d.verdict != "none" or self.everything):
             yield ""
@@ -85,7 +97,7 @@ class GapScreen:
             yield ""
             yield from simulated(d.in_simulator, self.everything)
         if self.everything:
-            yield from self._errors(width)
+            yield from self._errors(width) if d.gap.by_maneuver else ()
             yield from self._limits(width)
         if self.improved is not None:
             yield ""
@@ -137,7 +149,7 @@ class GapScreen:
 def _answer(d: Diagnosis) -> Iterator[Text]:
     """Yield the sentence, the differing derivatives, the errors in an engineer's units, and the limits."""
     yield Text(d.sentence)
-    if sure := how_sure(answers_of(d.evidence), by_flight_alone(d.evidence)):
+    if sure := sure_of(d):
         yield Text(sure)
     if d.verdict == "unknown":
         yield from (Text(note) for note in d.notes if note.startswith(UNEXPLAINED))
@@ -204,18 +216,19 @@ def _picture(d: Diagnosis) -> Iterator[RenderableType]:
     """Yield the simulator as blocks, with the gap's block between arrows and scores of the others."""
     table = Table.grid(expand=True, padding=(0, 1))
     guilty = d.where.block if d.verdict in ("effect", "unknown") else ""
-    named = {c.block for c in d.causes if c.present} - {guilty}
+    places = {block for row in _PICTURES[d.axis] for block, _ in row}
+    taking_part = {at for c in d.causes if c.present for at in (c.block, c.of)} & places - {guilty}
     scores = {
         block: score
         for block, score in d.where.ranking
-        if round(100.0 * score) > 0 and block != guilty and block not in named
+        if round(100.0 * score) > 0 and block != guilty and block not in taking_part
     }
-    for row in _PICTURE:
+    for row in _PICTURES[d.axis]:
         cells = []
         for block, label in row:
             if block == guilty:
                 cells.append(Text(f"▶ {label.upper()} ◀", style="bold reverse"))
-            elif block in named:
+            elif block in taking_part:
                 cells.append(Text(f"[{label}] {PRESENT}", style="bold"))
             elif block in scores:
                 cells.append(Text(f"[{label}] {100 * scores[block]:.0f} %"))
@@ -223,7 +236,7 @@ def _picture(d: Diagnosis) -> Iterator[RenderableType]:
                 cells.append(Text(f"[{label}]", style="dim"))
         table.add_row(*cells)
     yield table
-    if named:
+    if taking_part:
         yield Text(f"{PRESENT} part of the improved {_improved(d)}, too", style="dim")
     if scores:
         yield Text(_SCORES, style="dim")

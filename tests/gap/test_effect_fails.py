@@ -10,7 +10,6 @@ from advisor.gap.axes.lateral.flight import SideFlight
 from advisor.gap.inference import pitch
 from advisor.gap.inference.pitch import PitchFlight
 from advisor.process.parts import FailedPart
-from advisor.report.axes.side_gap_text import side_gap_lines
 from advisor.report.gap_document import gap_document
 from tests.gap.axes.lateral.test_diagnosis import FOUND
 from tests.gap.test_report_screen import diagnosis, printed
@@ -19,23 +18,14 @@ PLAY = FailedPart("pitch, effect actuator_backlash", "LinAlgError: Singular matr
 SINGULAR = np.linalg.LinAlgError("Singular matrix")
 
 
-def test_the_document_and_the_screen_name_the_effect_that_failed_and_keep_the_answer() -> None:
-    found = diagnosis(failed=(PLAY,))
+@pytest.mark.parametrize("found", [diagnosis(failed=(PLAY,)), replace(FOUND, failed=(PLAY,))])
+def test_the_document_and_the_screen_name_the_effect_that_failed_and_keep_the_answer(found) -> None:
     document = gap_document(found)
     assert document["usable"] is True
-    assert document["verdict"] == found.verdict
+    assert document.get("lateral", document)["verdict"] == found.verdict
     assert [(one["code"], one["part"]) for one in document["problems"]] == [("internal", PLAY.part)]
     said = " ".join(" ".join(printed(found, 120)).replace("│", " ").split())
     assert "! A fault of the advisor, not yours, ended this part: pitch, effect actuator_backlash" in said
-
-
-def test_roll_and_yaw_name_the_effect_that_failed_and_keep_the_answer() -> None:
-    found = replace(FOUND, failed=(PLAY,))
-    document = gap_document(found)
-    assert [one["part"] for one in document["problems"]] == [PLAY.part]
-    assert document["usable"] is True
-    assert document["lateral"]["verdict"] == "effect"
-    assert any(PLAY.part in line for line in side_gap_lines(found))
 
 
 def test_an_effect_of_roll_and_yaw_whose_fit_fails_is_left_out() -> None:

@@ -1,11 +1,8 @@
 """``advisor gap`` of roll and yaw: the simulator against the manoeuvres of aileron and rudder."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
-
-import click
 
 from advisor.analysis.axes.side_comparison import (
     SideCompared,
@@ -15,104 +12,67 @@ from advisor.analysis.axes.side_comparison import (
 )
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
-from advisor.cli.gap_asked import AxisAnswer, GapAsked, Unanswered, write_figure
-from advisor.cli.improvement_export import listed, write_exports
-from advisor.cli.options import USAGE
-from advisor.cli.proving import document as proof_document
-from advisor.cli.proving import print_proof, proof_of
-from advisor.cli.stages import Stages
+from advisor.cli.axes.axis_gap import AxisGap, Tell
+from advisor.cli.gap_asked import GapAsked
 from advisor.exports.models.axes.handed_over import improved_side
 from advisor.exports.models.axes.prove_side import prove_side, stays_of_side
+from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.proof import Proof
-from advisor.report.axes.side_gap_text import side_gap_lines
-from advisor.report.gap_causes import why_of
-from advisor.report.gap_document import axis_document, gap_document
-from advisor.report.table import PlainConsole
-from advisor.words.printable import printable
+from advisor.exports.models.write import ExportOutcome
+from advisor.gap.result import Diagnosis
+from advisor.report.gap_steps import GapStep, steps_to_decide
 
 
-def compare_lateral(asked: GapAsked, state: CampaignState | None = None) -> int:
-    """Diagnose the gap of roll and yaw, print the result and write the files.
+class SideGap(AxisGap[SideCompared]):
+    """``advisor gap`` of roll and yaw.
 
     Parameters
     ----------
     state
         State of the campaign with both axes, if the logs are already read.
     """
-    compared = diagnosed_lateral(asked, state)
-    if isinstance(compared, Unanswered):
-        return asked.refused(compared)
-    return asked.answered(lateral_answer(asked, *proved_lateral(asked, compared)))
 
+    name, part = "Roll and yaw", "lateral"
 
-def diagnosed_lateral(asked: GapAsked, state: CampaignState | None = None) -> SideCompared | Unanswered:
-    """Return the diagnosis of roll and yaw, or the reason for none."""
-    with Stages() as tell:
+    def __init__(self, asked: GapAsked, state: CampaignState | None = None) -> None:
+        super().__init__(asked)
+        self._state = state
 
-        def compare() -> SideCompared:
-            if state is not None:
-                return compare_side_flown(state, asked.aircraft, asked.prior, tell)
-            tell("reading", 0.0)
-            read = asked.read
-            return compare_side_logs(
-                read.logs,
-                asked.aircraft,
-                read.target_system,
-                read.marks,
-                no_marks=read.no_marks,
-                prior=asked.prior,
-                progress=tell,
-            )
+    def compare(self, tell: Tell) -> SideCompared:
+        """Read the logs and compare the flight with the simulator."""
+        asked, read = self.asked, self.asked.read
+        if self._state is not None:
+            return compare_side_flown(self._state, asked.aircraft, asked.prior, tell)
+        tell("reading", 0.0)
+        return compare_side_logs(
+            read.logs, asked.aircraft, read.target_system, read.marks,
+            no_marks=read.no_marks, prior=asked.prior, progress=tell,
+        )  # fmt: skip
 
-        return asked.attempted("lateral, diagnosis", compare)
+    def prove(self, compared: SideCompared, named: Sequence[Path], tell: Tell) -> Proof:
+        """Fly the improved roll and yaw on the manoeuvres of logs; without any, on the last third."""
+        tell("flying for the proof", 0.0)
+        fresh = None
+        if named:
+            target, no_marks = self.asked.read.target_system, self.asked.read.no_marks
+            read = read_whole(named, compared.aircraft, target, no_marks=no_marks, axis="lateral")
+            fresh = accepted_of(read.state)
+        return prove_side(compared, fresh, self.asked.prior, tell)
 
+    def stays(self, compared: SideCompared, proof: Proof | None) -> Diagnosis:
+        """Return the part of a diagnosis that a proof confirms."""
+        return stays_of_side(compared, proof).gap
 
-def proved_lateral(asked: GapAsked, compared: SideCompared) -> tuple[SideCompared, Proof | None]:
-    """Return what stays of a diagnosis after the proof that was asked for, and the proof."""
-    proof = proof_of(asked.proving, partial(_prove, asked, compared))
-    return stays_of_side(compared, proof), proof
+    def improved(self, compared: SideCompared, diagnosis: Diagnosis) -> FlownModel:
+        """Return the model for the improved aircraft file."""
+        return replace(self.exported(compared, diagnosis), pitch=None)
 
+    def exported(self, compared: SideCompared, diagnosis: Diagnosis) -> FlownModel:
+        """Return the model for other programs."""
+        return improved_side(replace(compared, gap=diagnosis))
 
-def lateral_answer(
-    asked: GapAsked, compared: SideCompared, proof: Proof | None, writes: bool = True
-) -> AxisAnswer:
-    """Return the answer of roll and yaw.
-
-    Parameters
-    ----------
-    writes
-        Whether this axis writes the model files that were asked for.
-    """
-    found = compared.gap
-    written, outcomes = None, []
-    if writes:
-        written = asked.improved(found.improves, lambda: replace(improved_side(compared), pitch=None))
-        outcomes = write_exports(asked.orders, partial(improved_side, compared))
-    if found.traces:
-        write_figure(asked.figure, lambda: axis_document(found))
-    document = gap_document(found) | {"exports": listed(outcomes)}
-    named = {"improved_model": None if written is None else str(written)}
-    document["lateral"] |= named | proof_document(proof)
-
-    def show() -> None:
-        click.echo("\n".join(side_gap_lines(found)))
-        if asked.why and found.evidence:
-            PlainConsole().print(*why_of(found))
-        print_proof(proof)
-        if written is not None:
-            click.echo(f"The improved simulator is in {printable(str(written))}.")
-
-    return AxisAnswer(document, show, USAGE if any(outcome.problem for outcome in outcomes) else 0)
-
-
-def _prove(
-    asked: GapAsked, compared: SideCompared, named: Sequence[Path], tell: Callable[[str, float], None]
-) -> Proof:
-    """Fly the improved roll and yaw on the manoeuvres of logs; without any, on the last third."""
-    tell("flying for the proof", 0.0)
-    fresh = None
-    if named:
-        target, no_marks = asked.read.target_system, asked.read.no_marks
-        read = read_whole(named, compared.aircraft, target, no_marks=no_marks, axis="lateral")
-        fresh = accepted_of(read.state)
-    return prove_side(compared, fresh, asked.prior, tell)
+    def steps(
+        self, diagnosis: Diagnosis, written: Path | None, outcomes: Sequence[ExportOutcome]
+    ) -> list[GapStep]:
+        """Return the flight that separates the two likeliest answers."""
+        return steps_to_decide(diagnosis)

@@ -6,6 +6,7 @@ from math import exp, log
 from advisor.gap.alternative import AlternativeEvidence, together
 from advisor.gap.result import VISIBLE, Diagnosis
 from advisor.gap.verdict.text import answers_of, in_words
+from advisor.report.facts.reasons import how_sure
 from advisor.words.certainty import Answers, title
 
 _TITLES = {
@@ -38,6 +39,12 @@ def is_turned(evidence: Sequence[AlternativeEvidence]) -> bool:
     """Return whether the answer is the likeliest by its frequency before the flight alone."""
     answers, alone = answers_of(evidence), by_flight_alone(evidence)
     return bool(answers) and answers[0][0] != alone[0][0]
+
+
+def sure_of(d: Diagnosis) -> str:
+    """Return the sentence about the likeliest answers; empty without a simulator to compare with."""
+    tested = d.verdict != "untested"
+    return how_sure(answers_of(d.evidence), by_flight_alone(d.evidence)) if tested else ""
 
 
 def title_of(d: Diagnosis) -> str:

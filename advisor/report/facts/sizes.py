@@ -54,7 +54,9 @@ _IN_WORDS = {
 
 
 def short(x: float) -> str:
-    """Return a number with three digits, without powers of ten up to thousands."""
+    """Return a number with three digits, without powers of ten up to thousands; a dash for NaN."""
+    if math.isnan(x):
+        return "–"
     if abs(x) < _LEAST:
         return "0" if abs(x) < _ROUNDING else "<0.001"
     return f"{x:,.0f}" if 1e3 <= abs(x) < 1e7 else f"{x:.3g}"

@@ -28,10 +28,10 @@ from advisor.gap.result import Cause, Diagnosis, Gap, Shrink, Value, Where
 from advisor.gap.verdict.text import answers_of
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.rows import Signal
-from advisor.report.axes.side_gap_text import side_gap_lines
 from advisor.report.gap_document import axis_document, gap_document
 from benchmarks.lateral_gap import CASES, diagnosed
 from tests.gap.axes.lateral.test_comparison import maneuvers
+from tests.gap.test_report_screen import printed
 from tests.oem.axes.lateral.builders import JET
 from tests.schemas import breaches
 
@@ -86,27 +86,24 @@ def test_the_place_of_an_effect_is_that_of_its_control_or_sensor():
     assert places == ["aileron", "roll_rate_sensor"]
 
 
-def test_the_text_says_the_cause_with_its_size_and_the_errors_that_it_removes():
-    text = "\n".join(side_gap_lines(FOUND))
+def test_the_screen_says_the_cause_with_its_control_its_size_and_its_place():
+    text = "\n".join(printed(FOUND, 100))
     assert "The real aileron has play of 0.57 deg to either side" in text
-    assert "aileron actuator backlash: 0.57 ± 0.11 deg (70 %)" in text
-    assert "largest error of p: 11.46 → 2.86 deg/s" in text
-    assert "nothing to correct 20 %" in text
+    assert "● aileron actuator backlash    70 %   0.57 ± 0.11 deg" in text
+    assert "▶ AILERON ◀" in text
+    assert "nothing to correct 20" in text
 
 
-def test_without_a_simulator_the_text_has_neither_its_probabilities_nor_a_table_of_its_gap():
-    alone = replace(
-        FOUND,
-        verdict="untested",
-        instruments={"rudder_lag_s": Value(0.06, 0.003), "airspeed_excess": Value(0.03, 0.01)},
-    )
-    text = "\n".join(side_gap_lines(alone))
+def test_without_a_simulator_the_screen_has_neither_probabilities_nor_the_size_of_a_gap():
+    instruments = {"rudder_lag_s": Value(0.06, 0.003), "airspeed_excess": Value(0.03, 0.01)}
+    alone = replace(FOUND, verdict="untested", gap=Gap(), shrink=None, causes=(), instruments=instruments)
+    text = "\n".join(printed(alone, 100))
     assert axis_document(alone)["how_sure"] == ""
     assert axis_document(FOUND)["how_sure"]
-    assert text.startswith("NOTHING TO COMPARE WITH: ")
+    assert "NOTHING TO COMPARE WITH" in text
     assert "wrong numbers" not in text
     assert "aileron actuator backlash" not in text
-    assert "before" not in text
+    assert "noise floor" not in text
     assert "Nuisance parameters of the fit, no part of the answer:" in text
     assert "rudder lag 60.0 ± 5.9 ms" in text
     assert "airspeed excess 3.0 ± 2.0 %" in text
