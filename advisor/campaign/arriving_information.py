@@ -12,6 +12,7 @@ from advisor.campaign.state import LateralState
 from advisor.decision.arriving import FIRST_S, Arriving
 from advisor.decision.arriving_errors import Known, arriving, up_to
 from advisor.decision.axes.lateral_stop import JUDGED, shares_of
+from advisor.decision.envelope import moved_controls
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import knowledge
 from advisor.decision.verdict import FlightTestVerdict
@@ -84,13 +85,14 @@ class ArrivingInformation:
     def _known(
         self, joint: Mapping[AxisName, Known], second: int, flying: Maneuver, longer: int
     ) -> tuple[Known, Known]:
-        """Return the joint estimate of each axis, or without one the estimate of the input alone."""
+        """Return the joint estimate of each axis. A moved axis without one has that of the input alone."""
         known: dict[AxisName, Known] = dict(joint)
-        for axis in [axis for axis, one in joint.items() if one.model is None]:
+        begun_s, until_s = flying.span.start_s, flying.span.start_s + second
+        cut = up_to(until_s, flying)
+        moved = {"pitch" if control == "elevator" else "lateral" for control in moved_controls(cut)}
+        for axis in [axis for axis, one in joint.items() if one.model is None and axis in moved]:
             estimated = self._alone.get(axis)
-            begun_s, until_s = flying.span.start_s, flying.span.start_s + second
             if estimated is None or until_s - begun_s >= longer * (estimated.since_s - begun_s):
-                cut = up_to(until_s, flying)
                 alone = self._pitch(cut) if axis == "pitch" else self._side(cut)
                 self._alone[axis] = Known(*alone, until_s)
             known[axis] = self._alone[axis]

@@ -8,7 +8,9 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
+from advisor.campaign import arriving_information
 from advisor.campaign.arriving_information import ArrivingInformation
+from advisor.campaign.state import LateralState
 from advisor.decision.arriving import Arriving
 from advisor.decision.arriving_errors import Known, arriving
 from advisor.decision.verdict import FlightTestVerdict, RuleProgress
@@ -61,11 +63,11 @@ def test_an_unknown_derivative_has_no_error_and_is_never_enough():
     assert not found.is_enough
 
 
-def followed(information, end_s: float):
+def followed(information, end_s: float, lateral=None):
     """Follow the first input of a flight test up to a time."""
     so_far = replace(once()[0], span=replace(once()[0].span, end_s=end_s))
     nothing = FlightTestVerdict("information", "continue", "", None, 100.0, None, {})
-    return information.follow(so_far, None, nothing, None)
+    return information.follow(so_far, None, nothing, lateral)
 
 
 def test_the_first_input_has_the_errors_of_its_own_data():
@@ -81,6 +83,15 @@ def test_the_first_input_has_one_error_whoever_looks_how_often():
     for end_s in range(4, 13):
         followed(often, float(end_s))
     assert followed(often, 13.0) == followed(ArrivingInformation(aircraft), 13.0)
+
+
+def test_an_axis_whose_controls_rest_is_not_estimated(monkeypatch):
+    estimated = []
+    monkeypatch.setattr(arriving_information, "estimate_lateral", lambda *_: estimated.append(1))
+    information = ArrivingInformation(Aircraft(elevator=Elevator(lag_s=0.0)))
+    state = LateralState((), FlightTestVerdict("information", "continue", "", None, 100.0, None, {}), None)
+    found = followed(information, 13.0, state)
+    assert ({*found.percent}, estimated) == ({*BEFORE}, [])
 
 
 def test_samples_count_up_to_whole_seconds_whenever_somebody_looks():

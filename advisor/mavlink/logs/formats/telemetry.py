@@ -5,10 +5,14 @@ from advisor.mavlink.logs.tlog import scan_tlog
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.mavlink.wire.scan import STAMP_BYTES
 
+_BLOCK_BYTES = 1 << 14
+"""Numerical: bytes that are scanned at once for the first message."""
+
 
 def _begins_at(beginning: bytes) -> int | None:
     scanner = FrameScanner()
-    columns = scanner.feed(beginning) + scanner.close()
+    blocks = (beginning[at : at + _BLOCK_BYTES] for at in range(0, len(beginning), _BLOCK_BYTES))
+    columns = next(filter(None, map(scanner.feed, blocks)), None) or scanner.close()
     if not columns:
         return None
     front = FrameScanner(())
