@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
@@ -20,7 +21,6 @@ from advisor.campaign.state import (
     AxisState,
     CampaignState,
     JudgedManeuver,
-    LateralState,
     WholeFlights,
     has_begun,
 )
@@ -42,10 +42,10 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns
-from advisor.flight.stream.flights import FlightHeard, Flights
+from advisor.flight.stream.flights import Flights
 from advisor.flight.stream.stream import FlightStream
-from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.estimate import Estimate
+from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.process.aside import Aside
 from advisor.process.parts import Parts
 from advisor.words.axes import AxisName
 from advisor.words.problems import Problem
@@ -66,6 +66,18 @@ class ManeuverJudged:
     axis: AxisName = "pitch"
     revised: tuple[str, ...] = ()
     """Sentences about earlier manoeuvres whose verdict changed, each with its reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Verdicts:
+    """What the manoeuvres that have been judged so far say."""
+
+    axes: Mapping[AxisName, AxisState[Any]]
+    learnt: Aircraft
+    maneuvers: tuple[Maneuver, ...]
+    """Manoeuvres of all axes."""
+    estimates: tuple[Estimate | NoEstimate, ...]
+    """Estimates of the elevator's manoeuvres."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +109,9 @@ class Campaign:
     advises
         Whether roll and yaw are estimated jointly after every manoeuvre, for the advice to stop; else only at
         the end.
+    aside
+        Judge manoeuvres in another thread while the stream is read on, for screens. Verdicts and numbers are
+        the same, and come when they are ready.
     """
 
     def __init__(
@@ -110,6 +125,7 @@ class Campaign:
         names: Sequence[str] = (),
         lateral: bool = False,
         advises: bool = True,
+        aside: bool = False,
     ) -> None:
         self._journal = Journal()
         self._parts = Parts(lambda failed: self._journal.write(str(failed.problem)))
@@ -122,14 +138,16 @@ class Campaign:
             "pitch": self._elevator,
             "lateral": self._lateral or self._elevator,
         }
-        self.engineer = Engineer(self._flights, self._journal, axes, by_hand)
-        """The engineer, whose decisions count in all verdicts."""
+        self._engineer = Engineer(self._flights, self._journal, axes, by_hand)
+        self._aside: Aside[ManeuverJudged] = Aside(aside)
         self._activity: tuple[Activity, ...] = ()
         self._whole_flights = WholeFlights()
         self._ended = False
         self._settling = Settling() if settle else None
         self._information = ArrivingInformation(aircraft) if settle or tell is not None else None
         self._heard_enough: Announced | None = None
+        self._outputs_unknown: Problem | None = None
+        self._shown: _Verdicts | None = None
 
     def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
         """Process the next messages, in order of arrival. The result does not depend on how the messages are
@@ -139,14 +157,31 @@ class Campaign:
             told.append(enough)
             if self._tell is not None:
                 self._tell(enough)
-        self.engineer.repeat_remarks()
+        self._engineer.repeat_remarks()
         return told
+
+    @property
+    def is_judging(self) -> bool:
+        """Whether a manoeuvre has been flown whose verdict has not been told."""
+        return self._aside.is_pending
+
+    def wait(self) -> None:
+        """Return when every manoeuvre so far has been judged."""
+        self._aside.wait()
+
+    @property
+    def engineer(self) -> Engineer:
+        """The engineer, whose decisions count in all verdicts."""
+        self.wait()
+        return self._engineer
 
     def finish(self) -> list[CampaignEvent]:
         """End the stream: a manoeuvre without only its quiet end is still used."""
         if self._stream.marks.by_hand_since_s is not None:
-            self.engineer.end_maneuver()
+            self._engineer.end_maneuver()
         told = self._take(self._flights.finish())
+        self.wait()
+        told += self._take(())
         self._ended = True
         for campaign in filter(None, (self._elevator, self._lateral)):
             campaign.finish()
@@ -158,31 +193,29 @@ class Campaign:
     @property
     def state(self) -> CampaignState:
         """State after the newest message, as shown on screens."""
-        stream, flights, elevator = self._stream, self._flights, self._elevator
-        flying, channels, model = flights.so_far(), stream.channels, elevator.model
-        settled = self._settled(flying, model)
+        stream, flights = self._stream, self._flights
+        flying, channels = flights.so_far(), stream.channels
         heard = flights.heard(channels, self._ended)
-        numbers = tuple(judged.maneuver.number for judged in elevator.joined)
-        axes: dict[AxisName, AxisState[Any]] = {
-            "pitch": AxisState(elevator.judged, elevator.flight_test, model, numbers)
-        }
-        lateral = self._lateral_state(heard)
-        if lateral is not None:
-            axes["lateral"] = lateral
-        side = lateral.model if lateral is not None else None
-        instruments = self._parts.make("instruments", lambda: self._contradictions(model, side), lambda _: ())
+        unknown = [one.sides_unknown for one in heard]
+        self._outputs_unknown = unknown[-1] if all(unknown) else None
+        shown = self._so_far()
+        settled = self._settled(flying, shown)
+        pitch, side = shown.axes["pitch"], shown.axes.get("lateral")
+        sideways = side is not None and side.has_begun and not pitch.has_begun
+        instruments = self._parts.make("instruments", lambda: self._contradictions(shown), lambda _: ())
         return CampaignState(
             vehicle=stream.vehicle,
             now_s=stream.now_s,
             mode=stream.mode,
             channels=channels,
-            axes=axes,
+            axes=shown.axes,
             flying=flying,
             marking_since_s=stream.marks.by_hand_since_s,
             settling=settled.estimate if settled else None,
             readable=settled is not None and settled.readable,
-            enough=settled.enough if settled and not self._tests_sideways else None,
-            arriving=self._arrived(flying, model, lateral),
+            enough=settled.enough if settled and not sideways else None,
+            arriving=self._arrived(flying),
+            judging=self._aside.is_busy,
             elevator_notes=flights.elevator_notes,
             reader_notes=(
                 *self._journal.reader_notes,
@@ -203,34 +236,48 @@ class Campaign:
             failed=self._parts.failed,
         )
 
-    def _lateral_state(self, heard: Sequence[FlightHeard]) -> LateralState | None:
-        """Return the state of roll and yaw, with the reason if no flight names their outputs."""
-        if self._lateral is None:
-            return None
-        unknown = [one.sides_unknown for one in heard]
-        return self._lateral.state(unknown[-1] if all(unknown) else None)
+    def _so_far(self) -> _Verdicts:
+        """Return what has been judged so far; while a manoeuvre is being judged, what was before it."""
+        if self._shown is None or not self._aside.is_busy:
+            self._shown = self._verdicts()
+        return self._shown
 
-    def _settled(self, flying: Maneuver | None, model: Estimate | None) -> Settled | None:
+    def _verdicts(self) -> _Verdicts:
+        """Return what all manoeuvres so far say."""
+        elevator, lateral = self._elevator, self._lateral
+        numbers = tuple(judged.maneuver.number for judged in elevator.joined)
+        axes: dict[AxisName, AxisState[Any]] = {
+            "pitch": AxisState(elevator.judged, elevator.flight_test, elevator.model, numbers)
+        }
+        if lateral is not None:
+            axes["lateral"] = lateral.state(self._outputs_unknown)
+        sideways = lateral.maneuvers if lateral is not None else ()
+        return _Verdicts(axes, elevator.learnt, (*elevator.maneuvers, *sideways), elevator.estimates)
+
+    def _settled(self, flying: Maneuver | None, shown: _Verdicts) -> Settled | None:
         """Return the estimate of the manoeuvre that is being flown, for live displays."""
         settling = self._settling
         if settling is None:
             return None
         return self._parts.make(
             "estimate of the manoeuvre being flown",
-            lambda: settling.follow(flying, self._elevator.learnt, model),
+            lambda: settling.follow(flying, shown.learnt, shown.axes["pitch"].model),
             lambda _: None,
         )
 
-    def _arrived(
-        self, flying: Maneuver | None, model: Estimate | None, lateral: LateralState | None
-    ) -> Arriving | None:
-        """Return the errors with the information of the manoeuvre that is being flown, for live displays."""
+    def _arrived(self, flying: Maneuver | None) -> Arriving | None:
+        """Return the errors with the information of the manoeuvre that is being flown, for live displays.
+
+        They add to the estimate of all manoeuvres before, and wait for it.
+        """
         information = self._information
-        if information is None:
+        if information is None or self._aside.is_busy:
             return None
+        shown = self._so_far()
+        pitch, lateral = shown.axes["pitch"], shown.axes.get("lateral")
         return self._parts.make(
             "information of the manoeuvre being flown",
-            lambda: information.follow(flying, model, self._elevator.flight_test, lateral),
+            lambda: information.follow(flying, pitch.model, pitch.flight_test, lateral),
             lambda _: None,
         )
 
@@ -242,22 +289,18 @@ class Campaign:
             return None
         if flown == self._heard_enough or not self._information.is_due(self._stream.now_s):
             return None
-        lateral = self._lateral_state(self._flights.heard(self._stream.channels, self._ended))
-        arrived = self._arrived(self._flights.so_far(), self._elevator.model, lateral)
+        arrived = self._arrived(self._flights.so_far())
         if arrived is None or not arrived.is_enough:
             return None
         self._heard_enough = flown
         return InputEnough(flown.number)
 
-    def _contradictions(
-        self, model: Estimate | None, side: LateralEstimate | None
-    ) -> tuple[InstrumentFinding, ...]:
+    def _contradictions(self, shown: _Verdicts) -> tuple[InstrumentFinding, ...]:
         """Return the contradictions of the instruments, from the motion and from the fits."""
-        sideways = self._lateral.maneuvers if self._lateral is not None else ()
-        maneuvers = (*self._elevator.maneuvers, *sideways)
-        by_motion = together(maneuvers, self._stream.instruments)
-        found = with_fit(by_motion, model, self._elevator.estimates, self._aircraft)
-        return (*found, *side_signs(side, self._aircraft))
+        by_motion = together(shown.maneuvers, self._stream.instruments)
+        side = shown.axes.get("lateral")
+        of_fits = with_fit(by_motion, shown.axes["pitch"].model, shown.estimates, self._aircraft)
+        return (*of_fits, *side_signs(side.model if side is not None else None, self._aircraft))
 
     @property
     def power_on(self) -> tuple[int, int]:
@@ -285,7 +328,7 @@ class Campaign:
         self._journal.write(sentence, self._stream.now_s)
 
     def _take(self, events: Sequence[FlightEvent]) -> list[CampaignEvent]:
-        told: list[CampaignEvent] = []
+        told = self._heard_verdicts()
         for event in events:
             told.append(event)
             self._journal.take(event)
@@ -293,9 +336,9 @@ class Campaign:
                 case ModeChanged(mode, at_s):
                     self._whole_flights.change_mode(self.power_on, at_s, mode)
                 case ManeuverFlown(maneuver):
-                    told.append(self._judge(self._elevator, maneuver, "pitch"))
+                    told += self._give(self._elevator, maneuver, "pitch")
                 case SideManeuverFlown(maneuver) if self._lateral is not None:
-                    told.append(self._judge(self._lateral, maneuver, "lateral"))
+                    told += self._give(self._lateral, maneuver, "lateral")
                 case Activity():
                     joined = event.joined(self._activity[-1]) if self._activity else None
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
@@ -308,20 +351,41 @@ class Campaign:
                 self._tell(happened)
         return told
 
-    def _judge(
+    def _give(
         self, half: ElevatorCampaign | LateralCampaign, maneuver: Maneuver, axis: AxisName
+    ) -> list[CampaignEvent]:
+        """Have a manoeuvre judged that has just been flown, and return the verdicts that are ready."""
+        if self._aside.in_thread:
+            self._so_far()
+        self._aside.do(partial(self._judge, half, maneuver, axis, self._engineer.decided))
+        return self._heard_verdicts()
+
+    def _judge(
+        self,
+        half: ElevatorCampaign | LateralCampaign,
+        maneuver: Maneuver,
+        axis: AxisName,
+        decided: ByHand,
     ) -> ManeuverJudged:
-        """Judge a manoeuvre that has just been flown, and log its verdict and the decision."""
-        half.take(maneuver, self.engineer.decided)
-        span, judged = maneuver.span, half.judged[-1]
-        which = f", {span.kind}" if axis == "lateral" else ""
-        verdict = f"{OF[axis]}manoeuvre {maneuver.number} ({clock(span.start_s)}{which})"
-        self._journal.write_of_past(f"{verdict}: {judged.verdict.sentence}", span.end_s)
-        revised = half.take_revisions()
-        for said in revised:
-            self._journal.write_of_past(f"{_TEST_OF[axis]}{said}", span.end_s)
-        self._journal.write_of_past(f"{_TEST_OF[axis]}{half.flight_test.sentence}", span.end_s)
-        return ManeuverJudged(judged, half.flight_test, self._plan, axis, revised)
+        """Judge a manoeuvre, and decide on the test."""
+        half.take(maneuver, decided)
+        event = ManeuverJudged(half.judged[-1], half.flight_test, self._plan, axis, half.take_revisions())
+        if self._aside.in_thread:
+            self._shown = self._verdicts()
+        return event
+
+    def _heard_verdicts(self) -> list[CampaignEvent]:
+        """Return the manoeuvres that have been judged, and log their verdicts and the decisions."""
+        events = self._aside.made()
+        for event in events:
+            maneuver, axis = event.judged.maneuver, event.axis
+            span = maneuver.span
+            which = f", {span.kind}" if axis == "lateral" else ""
+            of_it = f"{OF[axis]}manoeuvre {maneuver.number} ({clock(span.start_s)}{which})"
+            self._journal.write_of_past(f"{of_it}: {event.judged.verdict.sentence}", span.end_s)
+            for said in (*event.revised, event.flight_test.sentence):
+                self._journal.write_of_past(f"{_TEST_OF[axis]}{said}", span.end_s)
+        return [*events]
 
     def _revised_at_the_end(self, half: AxisCampaign) -> list[CampaignEvent]:
         """Log the verdicts that the estimate of all manoeuvres together has changed."""
@@ -339,14 +403,9 @@ class Campaign:
             return None
         return crew_plan(self._elevator.flight_test, self._lateral.flight_test)
 
-    @property
-    def _tests_sideways(self) -> bool:
-        """Whether roll and yaw are tested, and the elevator only trims."""
-        lateral = self._lateral
-        return lateral is not None and has_begun(lateral.judged) and not has_begun(self._elevator.judged)
-
     def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
         """Keep the better record of a manoeuvre that arrived twice; an exclusion of either remains."""
+        self.wait()
         maneuver = event.maneuver
         where = f" in {self._flights.name}" if self._flights.name else ""
         better = "; this record holds more and takes the place" if event.takes_place else ""
@@ -356,7 +415,7 @@ class Campaign:
             maneuver.span.end_s,
         )
         known = self._elevator.numbered(maneuver.number).excluded_because
-        because = known if known is not None else self.engineer.decided.excluded_because(maneuver)
+        because = known if known is not None else self._engineer.decided.excluded_because(maneuver)
         if not event.takes_place:
             if because != known:
                 self._elevator.exclude(maneuver.number, because)
@@ -368,6 +427,7 @@ class Campaign:
 
     def _count_anew(self, event: ElevatorRescaled) -> list[CampaignEvent]:
         """Scale earlier manoeuvres by an elevator limit that arrived late, so that all use one scale."""
+        self.wait()
         again = recount(self._elevator.maneuvers, event)
         if again.notice is None:
             return []

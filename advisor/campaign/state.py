@@ -145,6 +145,8 @@ class CampaignState:
     """Advice to recover, given when more free response would not improve the estimate."""
     arriving: Arriving | None = None
     """Errors of the derivatives with the information of the input that is being flown, at whole seconds."""
+    judging: bool = False
+    """Whether a manoeuvre has been flown and is being judged."""
     elevator_notes: tuple[str, ...] = ()
     """Assumptions about the elevator's scale and sign, as sentences."""
     reader_notes: tuple[str, ...] = ()

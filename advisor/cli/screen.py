@@ -120,9 +120,7 @@ def _campaign(
 ) -> "Campaign":
     from advisor.campaign.campaign import Campaign
 
-    return Campaign(
-        aircraft, target_system, settle, tell, by_hand=by_hand, marks=marks, names=names, lateral=True
-    )
+    return Campaign(aircraft, target_system, settle, tell, by_hand, marks, names, lateral=True, aside=settle)
 
 
 def _show(

@@ -5,8 +5,8 @@ from math import inf, isfinite, isnan
 from advisor.mavlink.link.health import LinkStatistics
 
 BEHIND_S = 2.0
-"""Backlog, s, above which the crew is informed that this computer is late. A joint estimate of seven
-manoeuvres delays the next record by up to 2 s on a laptop. A manoeuvre takes 10 s."""
+"""Backlog, s, above which the crew is informed that this computer is late. Estimates of flown manoeuvres do
+not delay the next record, but they share the processor with its reading. A manoeuvre takes 10 s."""
 
 
 def backlog_s(link: LinkStatistics, read_to_s: float) -> float:

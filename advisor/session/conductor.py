@@ -100,10 +100,12 @@ class Conductor(Conducting):
                 campaign.finish()
                 self._keep(campaign)
                 self._arrive()
-            elif batch:
+            elif batch or campaign.is_judging:
                 # Before a long estimate, whoever waits learns how old the data are.
                 self._report_if_due(campaign)
                 campaign.feed(batch)
+                if self._player is not None and self._player.is_hurried:
+                    campaign.wait()
             if self._pending:
                 self._decide_what_is_due(campaign)
             if self._goal and self._goal.reached(campaign.state, self._position_s()):

@@ -100,6 +100,11 @@ class LogPlayer:
             return LinkHealth("ended", "The log has been played to its end.", figures)
         return LinkHealth("good", "A recorded log is being played.", figures)
 
+    @property
+    def is_hurried(self) -> bool:
+        """Whether the log is played faster than it was flown."""
+        return self._hurrying or self._tempo.speed > 1.0
+
     def playback(self) -> Playback:
         """Return the position of the replay."""
         duration_s = self._timeline.duration_s if self._timeline else 0.0

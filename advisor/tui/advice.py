@@ -79,6 +79,8 @@ def _by_verdicts(view: View, is_old: bool) -> Advice:
         return Advice("WAIT", view.health.sentence, "quiet")
     if not (state.serves or is_old or _is_flown(view)):
         return Advice("WAIT", "The vehicle is heard; its first seconds of data are awaited.", "quiet")
+    if state.judging and not _is_flown(view):
+        return Advice("WAIT", "The first manoeuvre is being judged.", "quiet")
     sentence = plan.sentence if plan is not None and verdict.decision == "stop" else verdict.sentence
     if last and not last.verdict.accepted and last.maneuver.span.is_test_input:
         return Advice("REPEAT", sentence, "warn")

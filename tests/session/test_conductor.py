@@ -112,6 +112,13 @@ def test_jumping_back_starts_a_new_campaign_and_ends_just_before_the_manoeuvre()
     assert flight.campaigns[1].fed == list(range(4 * A_MANEUVER))
 
 
+@pytest.mark.parametrize(("speed", "waits"), [(1.0, False), (2.0, True), (inf, True)])
+def test_a_log_that_is_played_faster_than_flown_waits_for_every_verdict(speed: float, waits: bool):
+    flight = Flown(speed)
+    flight.run()
+    assert (flight.campaigns[0].waited > 0) is waits
+
+
 def test_jumping_ahead_keeps_the_campaign_and_the_pace():
     flight = Flown(speed=1.0)
     flight.when(always, lambda: flight.conductor.jump(2))

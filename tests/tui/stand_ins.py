@@ -43,6 +43,8 @@ class StagedCampaign:
         self.problems: list[Problem] = []
         self.decided = by_hand
         self.engineer = self
+        self.is_judging = False
+        self.waited = 0
         self._marking_since_s: float | None = None
         self._logged: list[tuple[int, str]] = []
         self._known: dict[object, tuple[JudgedManeuver, ...]] = {}
@@ -82,6 +84,9 @@ class StagedCampaign:
         self._stage += 1
         self.fed += sorted(int(k) for piece in batch for k in piece.order)
         return []
+
+    def wait(self) -> None:
+        self.waited += 1
 
     def finish(self) -> list[object]:
         self.calls.append(("finish",))

@@ -109,6 +109,11 @@ def test_before_the_data_are_judged_the_screen_waits_and_gives_no_advice():
     assert advise(view(flights.state(0))).word == "CONTINUE"
 
 
+def test_while_the_first_manoeuvre_is_judged_the_screen_waits():
+    assert advise(view(replace(flights.state(0), judging=True))).word == "WAIT"
+    assert advise(view(replace(flights.state(3), judging=True))).word == "CONTINUE"
+
+
 REVERSED = InstrumentFinding(
     "alpha", "sign", "nose up", "nose down", 0.02, True, "alpha has the wrong sign", "turn the vane"
 )

@@ -125,7 +125,7 @@ def flying_in_words(view: View) -> str:
     if marked_s is not None:
         return f"marked by hand for {view.state.now_s - marked_s:.0f} s"
     if view.state.flying is None:
-        return "between manoeuvres"
+        return "the last manoeuvre is being judged" if view.state.judging else "between manoeuvres"
     arrived = view.state.arriving
     enough = arrived is not None and arrived.is_enough
     return f"{view.state.progress}; ENOUGH: let go" if enough else view.state.progress
