@@ -70,7 +70,7 @@ class ManeuverJudged:
 
 @dataclass(frozen=True, slots=True)
 class _Verdicts:
-    """What the manoeuvres that have been judged so far say."""
+    """Verdicts of the manoeuvres that have been judged so far."""
 
     axes: Mapping[AxisName, AxisState[Any]]
     learnt: Aircraft

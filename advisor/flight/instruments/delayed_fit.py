@@ -187,11 +187,11 @@ def coloured_covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArra
     n = len(residual)
     inverse = inverse_information(jacobian)
     lags = max(1, n // 5)
-    inner = float(residual @ residual) / n * (jacobian.T @ jacobian)
-    for k in range(1, lags):
-        weight = (1.0 - k / lags) * float(residual[k:] @ residual[:-k]) / n
-        cross = jacobian[k:].T @ jacobian[:-k]
-        inner = inner + weight * (cross + cross.T)
+    taper = 1.0 - np.arange(lags) / lags
+    weights = taper * np.correlate(residual, residual, "full")[n - 1 : n - 1 + lags] / n
+    both_sides = np.concatenate([weights[:0:-1], weights])
+    smoothed = [np.convolve(column, both_sides)[lags - 1 : lags - 1 + n] for column in jacobian.T]
+    inner = jacobian.T @ np.column_stack(smoothed)
     plain = float(residual @ residual) / max(n - jacobian.shape[1], 1) * inverse
     # The tapered sum may fall below the white-noise value by chance. Such a small value is not used.
     wider = np.sqrt(np.maximum(np.diag(inverse @ inner @ inverse) / np.maximum(np.diag(plain), 1e-300), 1.0))

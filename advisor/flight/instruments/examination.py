@@ -64,7 +64,7 @@ def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) ->
         if _speed_unit(work):
             _alpha_and_force(work)
         _force_behind_climb(work)
-    return Examined(work.channels, work.evidence, tuple(work.findings))
+    return work.done
 
 
 def _attitude_and_rate(work: Work) -> bool:
@@ -176,13 +176,12 @@ def _unwrap_alpha(work: Work) -> None:
     near_zero = (alpha.y >= 0.0) & (np.abs(alpha.y - pi) > pi / 2.0) & (alpha.y < 2.01 * pi)
     if not np.all(near_zero) or np.max(alpha.y) < pi:
         return
-    turned = (alpha.y + pi) % (2.0 * pi) - pi
     work.contradict(
         "alpha", "unit", "-180 to 180 deg", "0 to 360 deg", Measured(degrees(float(np.max(alpha.y))), 0.0),
         "alpha is counted from 0 to 360 deg; estimates count it about 0",
         f"send {alpha.source} from -180 to 180 deg", used=True,
     )  # fmt: skip
-    work.channels["alpha"] = replace(alpha, y=turned)
+    work.correct("alpha", lambda channel: replace(channel, y=(channel.y + pi) % (2.0 * pi) - pi))
 
 
 def _weighed_alpha(known: Measured) -> Weighed:

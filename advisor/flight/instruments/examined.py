@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from math import floor, inf, log2
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding, Quantit
 from advisor.flight.signals.record import Channel
 from advisor.words.quantiles import NORMAL_95
 
+Correction = Callable[[Channel], Channel]
 REVERSED = "reversed"
 FILTER_S = 0.015
 """Longest delay, s, of a gyro or an accelerometer by an autopilot's filters: 11 ms at 20 Hz, 15 ms at 15
@@ -35,6 +37,16 @@ class Examined:
     """Evidence of this record alone."""
     findings: tuple[InstrumentFinding, ...]
     """Contradictions of the instruments, from this and earlier evidence."""
+    corrections: tuple[tuple[str, Correction], ...] = ()
+    """Changes that turn recorded channels into ``channels``, each with its channel's name, in their order."""
+
+    def of_longer(self, recorded: Mapping[str, Channel]) -> "Examined":
+        """Return the examination of the first part of a record for the whole of its recorded channels."""
+        channels = dict(recorded)
+        for name, correction in self.corrections:
+            if name in channels:
+                channels[name] = correction(channels[name])
+        return replace(self, channels=channels)
 
 
 class ExaminedRecords:
@@ -55,12 +67,24 @@ class ExaminedRecords:
     def begin(self) -> None:
         """Begin another power-on, without evidence."""
         self._evidence: Evidence = {}
+        self._growing: tuple[float, float, Examined] | None = None
         self.findings: tuple[InstrumentFinding, ...] = ()
         """Contradictions of the instruments in the counted records of this power-on."""
 
     def examined(self, channels: Mapping[str, Channel]) -> Examined:
         """Return the examination of a record, with the evidence of the counted records."""
         return self._examine(channels, self._evidence)
+
+    def so_far(self, channels: Mapping[str, Channel], begun_s: float, now_s: float) -> Examined:
+        """Return the examination of a record that grows, repeated whenever the record's length has doubled.
+
+        All examinations of a record together then cost at most twice the last one.
+        """
+        until_s = begun_s + 2.0 ** floor(log2(now_s - begun_s))
+        if self._growing is None or self._growing[:2] != (begun_s, until_s):
+            first = {name: channel.cut(-inf, until_s) for name, channel in channels.items()}
+            self._growing = begun_s, until_s, self.examined(first)
+        return self._growing[2].of_longer(channels)
 
     def count(self, evidence: Evidence, findings: tuple[InstrumentFinding, ...]) -> None:
         """Add the evidence of a record, with the findings up to this record."""
@@ -74,6 +98,7 @@ class Work:
 
     def __init__(self, channels: dict[str, Channel], earlier: Evidence) -> None:
         self.channels = channels
+        self._corrections: list[tuple[str, Correction]] = []
         self._earlier = earlier
         self.evidence: dict[str, Measured] = {}
         self.findings: list[InstrumentFinding] = []
@@ -87,15 +112,24 @@ class Work:
         self.evidence |= new
         return pooled((self._earlier, self.evidence))
 
+    @property
+    def done(self) -> Examined:
+        """The finished examination."""
+        return Examined(self.channels, self.evidence, tuple(self.findings), tuple(self._corrections))
+
+    def correct(self, name: str, correction: Correction) -> None:
+        """Replace a channel by its corrected one."""
+        if name in self.channels:
+            self._corrections.append((name, correction))
+            self.channels[name] = correction(self.channels[name])
+
     def shift(self, name: str, by_s: float) -> None:
         """Shift the stamps of a channel to earlier times."""
-        if name in self.channels:
-            self.channels[name] = replace(self.channels[name], t=self.channels[name].t - by_s)
+        self.correct(name, lambda channel: replace(channel, t=channel.t - by_s))
 
     def divide(self, name: str, by: float) -> None:
         """Divide the values of a channel by a factor."""
-        if name in self.channels:
-            self.channels[name] = replace(self.channels[name], y=self.channels[name].y / by)
+        self.correct(name, lambda channel: replace(channel, y=channel.y / by))
 
     def contradict(
         self,

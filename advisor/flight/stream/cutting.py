@@ -93,7 +93,7 @@ class Cutting:
 
     def so_far(self, span: Span, boot: int) -> Maneuver | None:
         """Return the manoeuvre if the movement ended now; None if its finished input is no test input."""
-        maneuver, _ = self._cut(span, boot, None)
+        maneuver, _ = self._cut(span, boot, None, grows=True)
         if span.input_is_over and self._not_an_input(maneuver, None) is not None:
             return None
         return turned(maneuver) if self.is_backwards else maneuver
@@ -265,8 +265,13 @@ class Cutting:
         """Return the first time after ``after_s`` at which the flight mode may have changed, s since boot."""
         return max(min((since_s for since_s, _ in self._modes if since_s > after_s), default=np.inf), after_s)
 
-    def _cut(self, span: Span, boot: int, up_to_order: int | None) -> tuple[Maneuver, Evidence]:
-        """Return the manoeuvre, with its evidence about the instruments."""
+    def _cut(
+        self, span: Span, boot: int, up_to_order: int | None, grows: bool = False
+    ) -> tuple[Maneuver, Evidence]:
+        """Return the manoeuvre, with its evidence about the instruments.
+
+        The instruments of a record that ``grows`` are examined at times, not at every sample.
+        """
         earlier_boot, earlier_s = self._released
         if earlier_boot == boot and earlier_s > span.record_from_s:
             # The lead-in does not reach into the record of another manoeuvre.
@@ -274,7 +279,7 @@ class Cutting:
         channels, notes = self._recorded(span, up_to_order)
         distrusts = self._who.distrusts(distrusted(channels))
         trusted = _trusted(channels, distrusts)
-        maneuver, evidence = self._examined(self.pitch, span, boot, up_to_order, trusted, notes)
+        maneuver, evidence = self._examined(self.pitch, span, boot, up_to_order, trusted, notes, grows)
         maneuver = replace(
             maneuver,
             distrusts=tuple(distrusts),
@@ -296,9 +301,11 @@ class Cutting:
         up_to_order: int | None,
         channels: Mapping[str, Channel],
         notes: Sequence[str],
+        grows: bool = False,
     ) -> tuple[Maneuver, Evidence]:
         """Return the next manoeuvre of an axis from its recorded channels, with its evidence."""
-        examined = axis.examined(channels)
+        length = (span.record_from_s, span.end_s)
+        examined = axis.so_far(channels, *length) if grows else axis.examined(channels)
         found = {**examined.channels, **self._air(span, up_to_order)}
         mode = self._stay(_middle_s(span))[1]
         maneuver = Maneuver(

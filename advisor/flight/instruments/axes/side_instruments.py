@@ -148,7 +148,7 @@ def examine_side(channels: Mapping[str, Channel], earlier: Evidence | None = Non
             told = work.learn(force_against_motion(work.channels))
             if _signs(work, "a_y", told, -1.0):
                 _side_force_unit(work, told)
-    return Examined(work.channels, work.evidence, tuple(work.findings))
+    return work.done
 
 
 def _bank_and_rate(work: Work) -> bool:
