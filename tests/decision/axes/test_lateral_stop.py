@@ -1,68 +1,55 @@
+"""Stop and advice of roll and yaw, on hand-made estimates of a jet."""
+
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.axes.lateral_stop import FlownInput, lateral_flight_test
 from advisor.decision.heard import Heard
-from advisor.model.axes.lateral import LATERAL, Trim
-from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.axes.lateral.estimator import Errors, lateral_modes
-from tests.oem.axes.lateral.builders import JET, vector
+from tests.campaign.side_builders import estimate
 
-N = len(LATERAL.shared)
 AIRCRAFT = Aircraft()
 
 
-def told(*flown, percent=2.0, off=0.0):
-    """Return an estimate of the jet with equal relative errors, ``off`` standard deviations from the
-    truth."""
-    std = 0.01 * percent * np.maximum(np.abs(vector(JET)), 0.1)
-    covariance = np.diag(std**2)
-    return LateralEstimate(
-        theta=vector(JET) + off * std, covariance_cr=covariance, covariance=covariance, cost=1e-9, fits=(),
-        iterations=3, not_identifiable={}, correlated=(), condition=1.0, airspeed_m_s=130.0,
-        names=LATERAL.names.reported, nuisances={}, flown=flown,
-        modes=lateral_modes(vector(JET), Errors(covariance, np.zeros((1, 15))), Trim(130.0)),
-    )  # fmt: skip
-
-
 def test_aileron_and_rudder_within_their_tolerance_and_checked_stop_the_test():
-    both = told("aileron", "rudder")
-    verdict = lateral_flight_test([told("aileron"), told("rudder")] * 2, both, AIRCRAFT)
+    both = estimate("aileron", "rudder")
+    verdict = lateral_flight_test([estimate("aileron"), estimate("rudder")] * 2, both, AIRCRAFT)
     assert verdict.decision == "stop"
     assert verdict.stopped_at == 4
     assert verdict.next.advice == "no further manoeuvre needed"
 
 
 def test_a_control_that_one_manoeuvre_moved_is_flown_once_more_to_check_the_estimate():
-    both = told("aileron", "rudder")
-    verdict = lateral_flight_test([told("aileron"), told("rudder"), told("aileron")], both, AIRCRAFT)
+    both = estimate("aileron", "rudder")
+    verdict = lateral_flight_test(
+        [estimate("aileron"), estimate("rudder"), estimate("aileron")], both, AIRCRAFT
+    )
     assert verdict.decision == "continue"
     assert verdict.sentence == "CONTINUE: one input of the rudder cannot show its own error; one more will."
     assert verdict.next.advice.startswith("next: rudder doublet")
 
 
 def test_the_joint_estimate_that_is_shown_decides_and_not_the_single_ones():
-    poor = [told("aileron", percent=40.0), told("rudder", percent=40.0)] * 2
-    good = told("aileron", "rudder", percent=2.0)
+    poor = [estimate("aileron", percent=40.0), estimate("rudder", percent=40.0)] * 2
+    good = estimate("aileron", "rudder", percent=2.0)
     assert lateral_flight_test(poor, good, AIRCRAFT).decision == "stop"
-    verdict = lateral_flight_test([told("aileron"), told("rudder")] * 2, poor[0], AIRCRAFT)
+    verdict = lateral_flight_test([estimate("aileron"), estimate("rudder")] * 2, poor[0], AIRCRAFT)
     assert verdict.decision == "continue"
 
 
 def test_the_share_that_is_said_is_that_of_the_joint_interval():
-    joint = told("aileron", "rudder", percent=9.0)
-    verdict = lateral_flight_test([told("aileron"), told("rudder")] * 2, joint, AIRCRAFT)
+    joint = estimate("aileron", "rudder", percent=9.0)
+    verdict = lateral_flight_test([estimate("aileron"), estimate("rudder")] * 2, joint, AIRCRAFT)
     share = 100.0 * 1.96 * 0.09 / 0.10  # two times the tolerance of 5 %
     assert np.isclose(verdict.by_rule["information"].parameter_percent["L_p"], share, rtol=1e-3)
     assert "is 176 % of its tolerance" in verdict.sentence
 
 
 def test_a_stop_that_the_crew_has_heard_stays():
-    history = [told("aileron"), told("rudder")] * 2
-    first = lateral_flight_test(history, told("aileron", "rudder"), AIRCRAFT)
-    worse = told("aileron", "rudder", percent=30.0)
+    history = [estimate("aileron"), estimate("rudder")] * 2
+    first = lateral_flight_test(history, estimate("aileron", "rudder"), AIRCRAFT)
+    worse = estimate("aileron", "rudder", percent=30.0)
     heard = [Heard({"information": None}, frozenset())] * 3 + [Heard.of(first)]
-    verdict = lateral_flight_test([*history, told("rudder")], worse, AIRCRAFT, (), heard)
+    verdict = lateral_flight_test([*history, estimate("rudder")], worse, AIRCRAFT, (), heard)
     assert verdict.decision == "stop"
     assert verdict.stopped_at == 4
     assert verdict.sentence.startswith(
@@ -72,7 +59,7 @@ def test_a_stop_that_the_crew_has_heard_stays():
 
 
 def test_the_aileron_alone_does_not_stop_the_test_and_the_rudder_is_advised():
-    verdict = lateral_flight_test([told("aileron")] * 5, told("aileron"), AIRCRAFT)
+    verdict = lateral_flight_test([estimate("aileron")] * 5, estimate("aileron"), AIRCRAFT)
     assert verdict.decision == "continue"
     assert verdict.criterion_percent is None
     assert verdict.sentence == "CONTINUE: no accepted manoeuvre has moved the rudder."
@@ -88,15 +75,15 @@ def test_without_any_manoeuvre_the_aileron_comes_first():
 
 
 def test_without_a_joint_estimate_nothing_is_known():
-    verdict = lateral_flight_test([told("aileron"), told("rudder")] * 2, None, AIRCRAFT)
+    verdict = lateral_flight_test([estimate("aileron"), estimate("rudder")] * 2, None, AIRCRAFT)
     assert verdict.decision == "continue"
     assert verdict.sentence == "CONTINUE: the error of L_p is unknown."
 
 
 def test_the_forecast_counts_the_manoeuvres_that_the_worst_derivative_of_each_control_lacks():
     # Two inputs of each control leave 196 % of the tolerance: the variance must fall to a quarter.
-    history = [told("aileron"), told("rudder")] * 2
-    poor = told("aileron", "rudder", percent=10.0)
+    history = [estimate("aileron"), estimate("rudder")] * 2
+    poor = estimate("aileron", "rudder", percent=10.0)
     remaining = lateral_flight_test(history, poor, AIRCRAFT).next.remaining
     assert 12 <= remaining.median <= 18
     assert 25 <= remaining.p90 <= 45
@@ -104,9 +91,9 @@ def test_the_forecast_counts_the_manoeuvres_that_the_worst_derivative_of_each_co
 
 def test_more_manoeuvres_narrow_the_forecast():
     def width(pairs):
-        history = [told("aileron"), told("rudder")] * pairs
+        history = [estimate("aileron"), estimate("rudder")] * pairs
         remaining = lateral_flight_test(
-            history, told("aileron", "rudder", percent=6.0), AIRCRAFT
+            history, estimate("aileron", "rudder", percent=6.0), AIRCRAFT
         ).next.remaining
         return (remaining.p90 - remaining.median) / (2 * pairs + remaining.median)
 
@@ -114,55 +101,57 @@ def test_more_manoeuvres_narrow_the_forecast():
 
 
 def test_a_control_to_be_checked_lacks_one_manoeuvre():
-    history = [told("aileron"), told("rudder"), told("aileron")]
-    remaining = lateral_flight_test(history, told("aileron", "rudder"), AIRCRAFT).next.remaining
+    history = [estimate("aileron"), estimate("rudder"), estimate("aileron")]
+    remaining = lateral_flight_test(history, estimate("aileron", "rudder"), AIRCRAFT).next.remaining
     assert remaining.median == 1
 
 
 def test_refused_manoeuvres_lengthen_the_forecast():
-    history = [told("aileron"), told("rudder")] * 2
-    poor = told("aileron", "rudder", percent=10.0)
+    history = [estimate("aileron"), estimate("rudder")] * 2
+    poor = estimate("aileron", "rudder", percent=10.0)
     clean = lateral_flight_test(history, poor, AIRCRAFT).next.remaining
     spoilt = lateral_flight_test([*history, *[None] * 8], poor, AIRCRAFT).next.remaining
     assert spoilt.median > clean.median
 
 
 def test_nothing_is_foretold_before_both_controls_have_moved():
-    assert lateral_flight_test([told("aileron")], told("aileron"), AIRCRAFT).next.remaining is None
+    assert lateral_flight_test([estimate("aileron")], estimate("aileron"), AIRCRAFT).next.remaining is None
 
 
 def test_after_a_refusal_the_advice_names_the_input_that_was_refused():
-    history = [told("aileron"), told("aileron"), told("rudder"), None]
+    history = [estimate("aileron"), estimate("aileron"), estimate("rudder"), None]
     flown = [
         FlownInput("aileron", 0.1, 0.2),
         FlownInput("aileron", 0.1, 0.2),
         FlownInput("rudder", 0.1, 0.2),
         FlownInput("aileron", 0.1, 0.2, "fly it again"),
     ]
-    open_aileron = told("aileron", "rudder", percent=9.0)
+    open_aileron = estimate("aileron", "rudder", percent=9.0)
     advice = lateral_flight_test(history, open_aileron, AIRCRAFT, flown).next.advice
     assert advice.startswith("next: aileron doublet")
     assert advice.endswith("; fly it again")
 
 
 def test_a_remedy_for_a_complete_control_does_not_stand_beside_the_advice_on_the_other():
-    history = [told("aileron"), told("aileron"), told("rudder"), None]
+    history = [estimate("aileron"), estimate("aileron"), estimate("rudder"), None]
     flown = [
         FlownInput("rudder", 0.1, 0.2),
         FlownInput("aileron", 0.1, 0.2, "fly it again"),
     ]
-    advice = lateral_flight_test(history, told("aileron", "rudder"), AIRCRAFT, flown).next.advice
+    advice = lateral_flight_test(history, estimate("aileron", "rudder"), AIRCRAFT, flown).next.advice
     assert advice.startswith("next: rudder doublet")
     assert "again" not in advice
 
 
 def test_an_aircraft_without_a_rudder_is_asked_for_no_rudder_input():
-    verdict = lateral_flight_test([told("aileron")], told("aileron"), AIRCRAFT, controls=("aileron",))
+    verdict = lateral_flight_test([estimate("aileron")], estimate("aileron"), AIRCRAFT, controls=("aileron",))
     assert "this aircraft has no rudder" in verdict.sentence
     assert verdict.next.advice.startswith("next: aileron doublet")
     assert set(verdict.by_rule["information"].parameter_percent) == {"L_p", "L_delta_a", "N_beta"}
 
 
 def test_two_aileron_inputs_stop_the_test_of_an_aircraft_without_a_rudder():
-    verdict = lateral_flight_test([told("aileron")] * 2, told("aileron"), AIRCRAFT, controls=("aileron",))
+    verdict = lateral_flight_test(
+        [estimate("aileron")] * 2, estimate("aileron"), AIRCRAFT, controls=("aileron",)
+    )
     assert verdict.decision == "stop"

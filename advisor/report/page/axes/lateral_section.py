@@ -2,18 +2,15 @@
 
 from collections.abc import Iterator
 
-from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
+from advisor.campaign.state import CampaignState, LateralState
 from advisor.decision.axes.lateral_requirements import GROUPS, SOURCE, LateralTest
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.mil_f_8785c import MANNED
-from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.estimate import Estimate
 from advisor.report.facts.decision import INDENT, decisions
 from advisor.report.facts.estimates import structure_lines, untold
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, listing, section
+from advisor.report.page.blocks import Block, Paragraph, listing, section
 from advisor.report.page.content import Content
-from advisor.report.page.drawing import picture
-from advisor.report.page.fits import by_fit, caption_of, paint_rows
+from advisor.report.page.fits import fit_blocks
 from advisor.report.page.maneuvers import ANCHORS, HEAD, maneuver_row
 from advisor.report.qualities import MODE_NAMES, levels_of, mode_facts, tests_of
 from advisor.report.result_rows import joint_table, regression_table, structure_table
@@ -44,7 +41,7 @@ def lateral(content: Content) -> Iterator[Block]:
     yield from listing([*structure_lines(state.model), *untold(state.model)])
     yield from regression_table(state.model, "lateral-equation-error")
     yield from _modes(content, state)
-    yield from lateral_fits(state)
+    yield from fit_blocks(state.maneuvers, LATERAL.inputs, "lateral model", "lateral-fit")
 
 
 def decided(state: CampaignState, *, pitch: bool = True) -> Iterator[Block]:
@@ -92,29 +89,3 @@ def _test(test: LateralTest) -> tuple[str, ...]:
     flown, simulated = (f"{value:.3g}".replace("-", "−") for value in (test.flown, test.simulated))
     holds = "✓" if test.holds else "✗"
     return test.entry, test.name, flown, simulated, f"± {test.limit:.2g}", test.unit, holds
-
-
-_EXPLAINED = (
-    "Grey: measured. Dark dashes: the lateral model fitted to this manoeuvre alone. The aileron is positive "
-    "where it rolls to the left, the rudder where it yaws to the left."
-)
-_MOST = 6
-"""Largest number of fit pictures, which include the worst and the best fit."""
-
-
-def lateral_fits(state: LateralState) -> Iterator[Block]:
-    """Yield the fits of the accepted manoeuvres: the worst, the best, then others."""
-    found = ((judged, judged.estimate) for judged in state.maneuvers if judged.verdict.accepted)
-    in_order = by_fit((one, e) for one, e in found if isinstance(e, LateralEstimate))
-    if in_order:
-        yield Paragraph(_EXPLAINED)
-        kept = [*in_order[:1], *reversed(in_order[1:])][:_MOST]
-        yield Gallery(tuple(_figure(*one) for one in sorted(kept, key=lambda one: one[0].maneuver.number)))
-
-
-def _figure(judged: JudgedManeuver, estimate: Estimate) -> Figure:
-    maneuver, outputs = judged.maneuver, tuple(estimate.fits[0].values())
-    inputs = {name: maneuver.channels[name] for name in LATERAL.inputs if name in maneuver.channels}
-    size = 3.6, 0.7 + 0.85 * (len(inputs) + len(outputs))
-    svg = picture(f"lateral-fit-{maneuver.number}", *size, paint_rows, inputs, outputs, maneuver.span.start_s)
-    return Figure(svg, caption_of(judged, estimate), "half")
