@@ -18,10 +18,10 @@ _TARGET_S = 15.0
 response, and some steady flight."""
 BIN_S = 0.1
 """Length over which the control is averaged, s: the shortest delay of a hand (McRuer & Krendel 1974)."""
-_FEWEST = 20
+FEWEST = 20
 """Least number of bins of hand flying before a movement: five for each of the loop's four numbers."""
-_LEVEL = 10
-"""Number of bins before the movement whose median is the level from which the control moves: one second."""
+LEVEL = 10
+"""Number of bins before a movement whose median is the level from which the control moves: one second."""
 _AFTER_S = 0.6
 """Length after the last step that shows its edge, s: a slow hand-flown edge."""
 
@@ -74,7 +74,7 @@ def binned(span: Span, control: Channel, tests: Sequence[tuple[float, float]]) -
     before = int(min(HISTORY_S, span.start_s - control.t[0]) / BIN_S)
     end_s = min(span.last_step_s + _AFTER_S, span.end_s, float(control.t[-1]))
     edges = np.arange(span.start_s - before * BIN_S, max(end_s, span.start_s + BIN_S), BIN_S)
-    if before < _FEWEST or len(edges) < before + 4:
+    if before < FEWEST or len(edges) < before + 4:
         return None
     mean = np.diff(np.interp(edges, control.t, integrated(control.t, control.y))) / BIN_S
     middle_s = 0.5 * (edges[1:] + edges[:-1])
@@ -82,9 +82,9 @@ def binned(span: Span, control: Channel, tests: Sequence[tuple[float, float]]) -
     for begin_s, over_s in tests:
         free &= (middle_s < begin_s - BIN_S) | (middle_s > over_s + 0.5 * BIN_S)
     hands = np.flatnonzero(free[1:] & free[:-1]) + 1
-    if len(hands) < _FEWEST:
+    if len(hands) < FEWEST:
         return None
-    level = float(np.median(mean[max(0, before - _LEVEL) : before]))
+    level = float(np.median(mean[max(0, before - LEVEL) : before]))
     return Bins(middle_s, mean - level, before, hands)
 
 
@@ -100,14 +100,18 @@ class Motion:
         self._targets = float(np.min(kept)) - reach, float(np.max(kept)) + reach
         self._since_s = bins.middle_s - start_s + 0.5 * BIN_S
 
-    def terms(self, delay_s: float, taken_over_s: float) -> list[FloatArray]:
-        """Return the loop's terms: rate, angle from the least and from the largest target, and integral."""
+    def terms(self, delay_s: float, taken_over_s: Sequence[tuple[float, float]]) -> FloatArray:
+        """Return the loop's terms with each time of the take-over, shape (4·k, n).
+
+        The terms are the rate, the angle from the least and from the largest target, and the integral.
+        """
         bins = self._bins
         at_s = bins.middle_s - delay_s
         theta = np.interp(at_s, self._angle.t, self._angle.y)
         summed = np.cumsum(theta - self._target) * BIN_S
         terms = [np.interp(at_s, self._rate.t, self._rate.y), *(theta - end for end in self._targets)]
         terms.append(summed - summed[bins.first])
-        ramp = np.clip(self._since_s / max(taken_over_s, BIN_S), 0.0, 1.0)
-        gate = np.where(np.arange(len(at_s)) >= bins.first, ramp, 1.0)
-        return [self._side * gate * term for term in terms]
+        begin_s, lasts_s = np.array(taken_over_s).T[:, :, None]
+        ramps = np.clip((self._since_s - begin_s) / lasts_s, 0.0, 1.0)
+        gates = np.where(np.arange(len(at_s)) >= bins.first, ramps, 1.0)
+        return np.asarray(self._side * (gates[:, None] * np.array(terms)).reshape(-1, len(at_s)))

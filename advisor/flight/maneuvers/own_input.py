@@ -26,8 +26,9 @@ from advisor.process.arrays import FloatArray
 
 _DELAYS_S = (0.0, 0.1, 0.2, 0.3)
 """Delays of the loop, s: that of a damper, and those of hands, 0.1 to 0.3 (McRuer & Krendel 1974)."""
-_TAKEN_OVER_S = (0.1, 0.3, 0.9)
-"""Times in which hands take over, s: at once, in one delay, slowly."""
+_TAKEN_OVER = ((0.0, 0.1), (0.1, 0.1), (0.0, 0.9))
+"""Begin and length of ramps, s, whose mixture is the course of a take-over: at any time within the first two
+bins, or slowly."""
 _KEEPS = (0.5, 0.8, 0.95)
 """Correlations of the remnant from bin to bin: time constants of 0.15, 0.45 and 2 s."""
 _GAINS = 4
@@ -87,7 +88,7 @@ def odds_of_own_input(
         angle = Channel("angle", rate.t, integrated(rate.t, rate.y))
     motion = Motion(bins, rate, angle, -1.0 if effect > 0.0 else 1.0)
     whole = (span.start_s, span.last_step_s)
-    loop = 0.5 * _GAINS * log(bins.count) + log(len(_DELAYS_S) * len(_TAKEN_OVER_S))
+    loop = 0.5 * _GAINS * log(bins.count) + log(len(_DELAYS_S))
     rivals = [_compared(Cost(bins, keep, loop), motion, whole) for keep in _KEEPS]
     own = min((rival.own for rival in rivals), key=lambda it: it.nats)
     return Odds(min(rival.hands for rival in rivals) - own.nats, own.begins_s, own.ends_s)
@@ -103,31 +104,55 @@ class _Rivals:
 
 @dataclass(frozen=True, slots=True)
 class _Loop:
-    """Loop of one delay and take-over, fitted to the seconds before and to the movement."""
+    """Loop of one delay, fitted to the seconds before and to the movement."""
 
     before: float
     """Sum of squares of the seconds before, with gains from them."""
     within: float
     """Sum of squares of the movement, with gains of its own."""
-    both: FloatArray
-    """Residual of both with common gains."""
+    terms: FloatArray
+    """Shape (k, m + n): the loop's terms in the seconds before and in the movement."""
 
 
 def _compared(cost: Cost, motion: Motion, whole: tuple[float, float]) -> _Rivals:
     """Return the costs of both models at one correlation of the remnant."""
-    loops = [_loop(cost, motion.terms(delay_s, over_s)) for delay_s in _DELAYS_S for over_s in _TAKEN_OVER_S]
-    usual = min(loops, key=lambda loop: squares(loop.both))
-    hands = cost.of(squares(usual.both)) + cost.loop
-    other_gains = cost.of(min(loop.before + loop.within for loop in loops)) + 2.0 * cost.loop
+    loops = [_loop(cost, motion.terms(delay_s, _TAKEN_OVER)) for delay_s in _DELAYS_S]
     before = min(loop.before for loop in loops)
-    alone = squares(cost.moved[cost.bins.movement])
-    smooth = cost.of_two(before, alone) + cost.loop
-    own = min(Own(smooth, *whole), stepped_input(cost, usual.both, before, whole), key=lambda it: it.nats)
-    return _Rivals(min(hands, other_gains), own)
+    cost = cost.grown(before)
+    until = _Until(cost, [loop.terms for loop in loops])
+    usual = cost.of(until(cost.bins.within)) + cost.loop
+    other_gains = cost.of(min(loop.before + cost.ratio * loop.within for loop in loops))
+    other_gains += 2.0 * cost.loop + log(cost.bins.count) + log(len(_TAKEN_OVER))
+    smooth = cost.of_two(before, squares(cost.moved[cost.bins.movement])) + cost.loop
+    own = min(Own(smooth, *whole), stepped_input(cost, until, before, whole), key=lambda it: it.nats)
+    return _Rivals(min(usual, other_gains), own)
 
 
-def _loop(cost: Cost, terms: list[FloatArray]) -> _Loop:
-    """Return the fits of a loop's terms to the seconds before, to the movement, and to both."""
+class _Until:
+    """Least weighted sum of squares of the seconds before and of a movement's first bins, for one loop.
+
+    Parameters
+    ----------
+    loops
+        Terms of the loop of each delay, shape (k, m + n).
+    """
+
+    def __init__(self, cost: Cost, loops: Sequence[FloatArray]) -> None:
+        bins = cost.bins
+        self._before = len(bins.hands)
+        weight = np.ones(bins.count)
+        weight[self._before :] = np.sqrt(cost.ratio)
+        y = cost.moved[np.concatenate([bins.hands, np.arange(bins.first, len(bins.moved))])]
+        self._y, self._loops = weight * y, [weight * terms for terms in loops]
+
+    def __call__(self, within: int) -> float:
+        """Return the sum of squares with the first ``within`` bins of the movement."""
+        rows = slice(self._before + within)
+        return min(squares(_left(terms[:, rows], self._y[rows])) for terms in self._loops)
+
+
+def _loop(cost: Cost, terms: FloatArray) -> _Loop:
+    """Return the fits of a loop's terms to the seconds before and to the movement."""
     bins, here = cost.bins, cost.bins.movement
     level = np.ones(len(bins.moved))
     level[here] = 0.0
@@ -138,7 +163,7 @@ def _loop(cost: Cost, terms: list[FloatArray]) -> _Loop:
     rows = np.concatenate([bins.hands, np.arange(bins.first, len(bins.moved))])
     before = _left(white[:, bins.hands], cost.moved[bins.hands])
     within = _left(white[:-2, here], cost.moved[here])
-    return _Loop(squares(before), squares(within), _left(white[:, rows], cost.moved[rows]))
+    return _Loop(squares(before), squares(within), white[:, rows])
 
 
 def _left(terms: FloatArray, y: FloatArray) -> FloatArray:

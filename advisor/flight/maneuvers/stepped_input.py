@@ -1,12 +1,14 @@
 """Cost of models of a control, and the piecewise constant input with the least cost."""
 
+from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, log
 
 import numpy as np
 
-from advisor.flight.maneuvers.binned import BIN_S, Bins
+from advisor.flight.maneuvers.binned import BIN_S, FEWEST, LEVEL, Bins
 from advisor.flight.maneuvers.free_response import FREE_S
 from advisor.flight.maneuvers.movement import BAND, is_still
 from advisor.process.arrays import FloatArray, IntArray
@@ -26,6 +28,8 @@ _ROUNDING = 1e-8
 """Least variance of a model's residual, over that of the movement: rounding of the samples' means."""
 _LEAST = 1e-16
 """Least sum of squares of a residual, rad²."""
+_SHOWN = log(19.0)
+"""Least log-odds at which hands have flown before the input: the level of all intervals."""
 _MOST_STEPS = 14
 """Largest number of steps of an own input: two edges for each step of a 3-2-1-1 and its return, twice."""
 
@@ -46,11 +50,14 @@ class Cost:
         self.bins, self._keep = bins, keep
         self.moved = self.white(bins.moved)
         size = float(np.mean(bins.moved[bins.movement] ** 2))
-        self._floor = (_REMNANT * (1.0 - keep**2) + _ROUNDING) * size + _LEAST
+        self._floor = _REMNANT * (1.0 - keep**2) * size
+        self._least = _ROUNDING * size + _LEAST
+        self.ratio = 1.0
+        """Variance of the remnant before the movement over that within."""
         self.step = 1.5 * log(bins.within)
         """Cost of a step: half of log n for its size, and log n for its time."""
         self.loop = loop
-        """Cost of a loop's gains, delay and take-over."""
+        """Cost of a loop's gains and delay."""
 
     def white(self, y: FloatArray) -> FloatArray:
         """Return a series without the remnant's correlation, along the last axis."""
@@ -58,32 +65,43 @@ class Cost:
         out[..., 1:] -= self._keep * y[..., :-1]
         return out
 
-    def of(self, left: float) -> float:
-        """Return the cost of a sum of squares over all bins, with one variance."""
-        return 0.5 * self.bins.count * log(left + self._floor * self.bins.count)
+    def grown(self, before: float) -> "Cost":
+        """Return the costs with a remnant that grows with the movement.
 
-    def of_each(self, left: FloatArray) -> FloatArray:
-        """Return the cost of several sums of squares."""
-        costs: FloatArray = 0.5 * self.bins.count * np.log(left + self._floor * self.bins.count)
-        return costs
+        Parameters
+        ----------
+        before
+            Sum of squares of the seconds before.
+        """
+        other = copy(self)
+        remnant = before / len(self.bins.hands) + self._least
+        other.ratio = remnant / (remnant + self._floor)
+        return other
+
+    def of(self, left: float) -> float:
+        """Return the cost of a weighted sum of squares over all bins."""
+        bins = self.bins
+        return 0.5 * (bins.count * log(left + self._least * bins.count) - bins.within * log(self.ratio))
 
     def of_two(self, before: float, within: float) -> float:
         """Return the cost with another variance within the movement; infinite unless it is larger."""
         n, m = self.bins.within, len(self.bins.hands)
-        least, larger = before / m + self._floor, within / n + self._floor
+        least, larger = before / m + self._least, within / n + self._floor
         if larger <= least:
             return inf
         count = log(self.bins.count)
         return 0.5 * (m * (log(least) + count) + n * (log(larger) + count) + log(n))
 
 
-def stepped_input(cost: Cost, together: FloatArray, before: float, whole: tuple[float, float]) -> Own:
+def stepped_input(
+    cost: Cost, until: Callable[[int], float], before: float, whole: tuple[float, float]
+) -> Own:
     """Return the piecewise constant input with the least cost, from the begin or after hands.
 
     Parameters
     ----------
-    together
-        Residual of the hands' loop with common gains: seconds before, then the movement.
+    until
+        Function that returns the sum of squares of the seconds before and of a movement's first bins.
     before
         Sum of squares of the seconds before.
     whole
@@ -91,23 +109,24 @@ def stepped_input(cost: Cost, together: FloatArray, before: float, whole: tuple[
     """
     bins, n = cost.bins, cost.bins.within
     left, steps = _steps(cost, before)
-    all_steps = cost.of(before + squares(left)) + cost.loop + cost.step * len(steps)
     order = np.sort(np.array(steps, dtype=int))
-    taken = np.searchsorted(order, np.arange(n))
-    hands = np.concatenate(([0.0], np.cumsum(together[len(bins.hands) :] ** 2)[:-1]))
-    own = np.cumsum((left**2)[::-1])[::-1]
-    left_over = squares(together[: len(bins.hands)]) + hands + own
-    later = cost.of_each(left_over) + cost.loop + cost.step * (len(order) - taken) + log(n)
-    # One edge is no input: hands that take over make one.
-    later[np.append(order, n)[taken] + _EDGE_BINS > (order[-1] if len(order) else 0)] = inf
-    best = int(np.argmin(later))
-    if later[best] < all_steps:
-        order = order[taken[best] :]
+    own = cost.ratio * np.append(np.cumsum((left**2)[::-1])[::-1], 0.0)
+    best = cost.of(before + float(own[0])) + cost.loop + cost.step * len(steps)
+    first = 0
+    for k, begin in enumerate(order.tolist()):
+        # One edge is no input: hands that take over make one.
+        if begin < FEWEST or begin + _EDGE_BINS > order[-1]:
+            continue
+        left_over = cost.of(until(begin) + float(own[begin]))
+        later = left_over + cost.loop + cost.step * (len(order) - k) + log(n) + _SHOWN
+        if later < best:
+            best, first = later, k
+    order = order[first:]
     if len(order) == 0:
-        return Own(all_steps, *whole)
+        return Own(best, *whole)
     begin, end = _extent(cost, order)
     return Own(
-        min(float(later[best]), all_steps),
+        best,
         whole[0] if begin == 0 else bins.begin_s(begin),
         whole[1] if end == n else bins.begin_s(end),
     )
@@ -117,17 +136,22 @@ def _extent(cost: Cost, order: IntArray) -> tuple[int, int]:
     """Return the first bin of the input that the steps form, and the bin of its last step.
 
     Hands before the input hold no level away from that before. Hands that rest for a free response after the
-    input stay near that level. The extent is 0 to n, shape of the movement, where no hands are told apart.
+    input stay near that level. Where hands flew until the first step, the level is theirs. The extent is 0
+    to n, shape of the movement, where no hands are told apart.
     """
     n = cost.bins.within
     control = cost.bins.moved[cost.bins.movement]
+    after_hands = order[0] >= FEWEST
+    if after_hands:
+        control = control - np.median(control[order[0] - LEVEL : order[0] - 1])
     moved = np.abs(control)
-    shapes = cost.white(np.triu(np.ones((n, n))))[order]
-    fitted = np.linalg.lstsq(shapes.T, cost.moved[cost.bins.movement], rcond=None)
+    shapes = np.triu(np.ones((n, n)))[order][:, order[0] :]
+    fitted = np.linalg.lstsq(shapes.T, control[order[0] :], rcond=None)
     sizes = np.asarray(fitted[0], dtype=np.float64)
     edges = np.split(np.arange(len(order)), np.flatnonzero(np.diff(order) >= _EDGE_BINS) + 1)
     heights = np.array([_height(sizes[edge]) for edge in edges])
-    large = [edge for edge, high in zip(edges, heights, strict=True) if high >= _SMALL * np.max(heights)]
+    least = _SMALL * np.max(heights)
+    large = [edge for k, edge in enumerate(edges) if heights[k] >= least or (after_hands and k == 0)]
     near = BAND * float(np.max(moved))
     groups = [[large[0]]]
     for before, after in pairwise(large):
@@ -166,8 +190,8 @@ def _steps(cost: Cost, before: float) -> tuple[FloatArray, list[int]]:
         size = np.einsum("ij,ij->i", new, new)
         gain = np.where(size > _NEW, (new @ left) ** 2 / np.maximum(size, _NEW), 0.0)
         k = int(np.argmax(gain))
-        now = squares(left)
-        if cost.of(before + now) - cost.of(before + now - float(gain[k])) < cost.step:
+        now = before + cost.ratio * squares(left)
+        if cost.of(now) - cost.of(now - cost.ratio * float(gain[k])) < cost.step:
             break
         steps.append(k)
         basis, _ = np.linalg.qr(shapes[steps].T)

@@ -82,6 +82,12 @@ def test_a_recovery_after_the_test_is_none():
     assert probability(RECOVERY, flight(), tests=[(TEST_S, RECOVERY_S)]) < 0.05
 
 
+@pytest.mark.parametrize("after_s", [0.0, 0.03, 0.05, 0.08, 0.1])
+def test_hands_may_take_over_between_two_bins(after_s):
+    begun = replace(RECOVERY, start_s=RECOVERY_S - after_s)
+    assert probability(begun, flight(), tests=[(TEST_S, RECOVERY_S - after_s)]) < 0.05
+
+
 def test_hands_that_tremble_count_for_nothing():
     assert probability(HELD, flight(tremor=0.5)) < 0.95
 
