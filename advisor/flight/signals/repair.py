@@ -86,5 +86,7 @@ def _wild(y: FloatArray) -> NDArray[np.bool_]:
     nearer = np.minimum(np.abs(y[1:-1] - y[:-2]), np.abs(y[1:-1] - y[2:]))
     low, high = np.percentile(y, _OTHERS)
     wild = np.zeros(len(y), dtype=bool)
+    if not np.any(nearer > high - low):
+        return wild
     wild[1:-1] = (nearer > high - low) & (away > _NOISE * robust_std(y[1:-1] - neighbours)) & (high > low)
     return wild

@@ -98,7 +98,8 @@ class Track:
     """Buffer of samples that grows at its end and drops its beginning.
 
     Late packets are kept, and are sorted in when a stretch is cut. Duplicate samples are dropped when a
-    stretch is cut.
+    stretch is cut. Gaps, rates and ranges are counted when somebody asks, because samples arrive in
+    many small batches.
     """
 
     def __init__(self, name: str, source: str, provenance: str) -> None:
@@ -108,37 +109,49 @@ class Track:
         self.newest_s = -np.inf
         self.newest = np.nan
         """Value of the sample with the newest stamp, ``newest_s``."""
-        self.largest_gap_s = 0.0
+        self._largest_gap_s = 0.0
         self._best = BestRate()
-        self.lowest, self.highest = np.inf, -np.inf
-        """Smallest and largest value since boot."""
-        self.extremes = Extremes()
-        """Extremes of the whole power-on, in bounded memory."""
+        self._lowest, self._highest = np.inf, -np.inf
+        self._extremes = Extremes()
+        self._counted, self._counted_s = 0, np.nan
+        """Number of samples in the buffer that are counted, and the newest stamp among all counted ones."""
         self._t = np.empty(1024)
         self._y = np.empty(1024)
         self._order = np.empty(1024, dtype=np.int64)
         self._size = 0
         self._keep_from_s = -np.inf
+        self._status: ChannelStatus | None = None
 
     def append(self, t: FloatArray, y: FloatArray, order: IntArray) -> None:
         """Take samples in order of arrival."""
         if len(t) == 0:
             return
-        before = self.newest_s if self._size else float(t[0])
-        newest = np.maximum.accumulate(np.concatenate(([before], t)))
-        self.largest_gap_s = max(self.largest_gap_s, float((newest[1:] - newest[:-1]).max()))
-        latest = int(np.argmax(t))
+        self._status = None
+        latest = int(t.argmax())
         if t[latest] > self.newest_s:
-            self.newest = float(y[latest])
-        self.newest_s = float(newest[-1])
-        self._best.add(t)
-        self.extremes.add(t, y)
-        self.lowest = min(self.lowest, float(y.min()))
-        self.highest = max(self.highest, float(y.max()))
+            self.newest_s, self.newest = float(t[latest]), float(y[latest])
         self._make_room(len(t))
         new = slice(self._size, self._size + len(t))
         self._t[new], self._y[new], self._order[new] = t, y, order
         self._size = new.stop
+
+    @property
+    def lowest(self) -> float:
+        """Smallest value since boot, SI."""
+        self._count()
+        return self._lowest
+
+    @property
+    def highest(self) -> float:
+        """Largest value since boot, SI."""
+        self._count()
+        return self._highest
+
+    @property
+    def extremes(self) -> Extremes:
+        """Extremes of the whole power-on, in bounded memory."""
+        self._count()
+        return self._extremes
 
     def forget(self, before_s: float) -> None:
         """Drop samples older than ``before_s`` when room is needed."""
@@ -157,25 +170,43 @@ class Track:
     @property
     def status(self) -> ChannelStatus:
         """Arrival status of the channel."""
+        if self._status is not None:
+            return self._status
+        self._count()
         recent = self.cut(self.newest_s - 10.0, self.newest_s)
-        gap = self.largest_gap_s if self._size > 1 else float("inf")
+        gap = self._largest_gap_s if self._size > 1 else float("inf")
         span = float(recent.t[-1] - recent.t[0]) if len(recent) > 1 else 0.0
         rate = (len(recent) - 1) / span if span > 0.0 else float("nan")
-        return ChannelStatus(
+        self._status = ChannelStatus(
             self.source,
             self.provenance,
             rate,
             gap,
             self.newest_s,
             self._best.rate_hz,
-            self.lowest,
-            self.highest,
+            self._lowest,
+            self._highest,
             self.newest,
         )
+        return self._status
+
+    def _count(self) -> None:
+        """Count the samples since the last call."""
+        t, y = self._t[self._counted : self._size], self._y[self._counted : self._size]
+        if len(t) == 0:
+            return
+        before = t[0] if np.isnan(self._counted_s) else self._counted_s
+        newest = np.maximum.accumulate(np.concatenate(([before], t)))
+        self._largest_gap_s = max(self._largest_gap_s, float((newest[1:] - newest[:-1]).max()))
+        self._counted, self._counted_s = self._size, float(newest[-1])
+        self._best.add(t)
+        self._extremes.add(t, y)
+        self._lowest, self._highest = min(self._lowest, float(y.min())), max(self._highest, float(y.max()))
 
     def _make_room(self, n: int) -> None:
         if self._size + n <= len(self._t):
             return
+        self._count()
         kept = self._t[: self._size] >= self._keep_from_s
         size = int(np.count_nonzero(kept))
         capacity = max(1024, 2 * (size + n))
@@ -184,4 +215,5 @@ class Track:
             grown = np.empty(capacity, dtype=old.dtype)
             grown[:size] = old[: self._size][kept]
             setattr(self, name, grown)
-        self._size = size
+        self._size = self._counted = size
+        self._counted_s = self._counted_s if size else np.nan

@@ -35,7 +35,20 @@ def test_a_duplicate_counts_once_and_a_late_sample_in_its_place():
     track.append(np.array([0.0, 0.2, 0.1, 0.2]), np.array([1.0, 3.0, 2.0, 9.0]), np.arange(4))
     assert track.cut(0.0, 1.0).y.tolist() == [1.0, 2.0, 3.0]
     assert track.cut(0.0, 1.0, up_to_order=1).y.tolist() == [1.0, 3.0]
-    assert track.largest_gap_s == pytest.approx(0.2)
+    assert track.status.largest_gap_s == pytest.approx(0.2)
+
+
+def test_the_status_does_not_depend_on_how_often_somebody_asks():
+    asked, silent = (Track("bank", "ATTITUDE.roll", "measured") for _ in range(2))
+    t = np.cumsum(np.random.default_rng(1).exponential(0.1, 5000)) - 0.3 * (np.arange(5000) % 7 == 0)
+    for k in range(0, 5000, 3):
+        part = slice(k, k + 3)
+        for track in (asked, silent):
+            track.append(t[part], np.sin(t[part]), np.arange(5000)[part])
+            track.forget(t[k] - 30.0)
+        assert asked.status.last_s == t[: k + 3].max()
+    assert asked.status == silent.status
+    assert np.array_equal(asked.extremes.course.low, silent.extremes.course.low)
 
 
 def test_the_better_rate_and_the_wider_range_of_two_boots_stand_for_one_source():
