@@ -203,8 +203,11 @@ def _tell(link: "KeptLink", announce: bool, uplink: bool, event: object) -> None
     if uplink:
         from advisor.scripts.next_order import next_order
 
-        advised = event.flight_test.next if event.plan is None else event.plan.next
-        if advised is not None and advised.input is not None:
+        test, plan = event.flight_test, event.plan
+        advised, is_open = (
+            (test.next, test.decision != "stop") if plan is None else (plan.next, not plan.is_complete)
+        )
+        if is_open and advised is not None and advised.input is not None:
             link.advise(*next_order(advised.input))
     if announce:
         _announce(link, event)

@@ -10,7 +10,7 @@ from advisor.decision.heard import Heard, first_stop, spoken_after, stays
 from advisor.decision.verdict import FlightTestVerdict, NextInput, Remaining, RuleProgress
 
 ENOUGH = NextInput("no further manoeuvre needed", Remaining(0, 0))
-"""Advice after the stop."""
+"""Advice after a stop that no later data deny."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +46,7 @@ def concluded(
 
     A test stops if the criterion of the chosen rule holds now. A stop that the crew has heard remains valid.
     The stop is withdrawn after a change of the aircraft, or if one of its manoeuvres is no longer usable.
+    If later data deny the stop, the verdict names the input that closes the criterion again.
     """
     chosen = criterion.chosen
     changed = change.sentence if change is not None and change.confirmed else ""
@@ -58,7 +59,8 @@ def concluded(
         said = f"CONTINUE: {changed}"
     else:
         said = f"CONTINUE: {_denied(criterion, heard)}; {_open_now(criterion)}"
-    following = ENOUGH if stop else criterion.next()
+    is_denied = stop and not chosen.holds and chosen.now_percent is not None
+    following = criterion.next() if is_denied or not stop else ENOUGH
     before = heard[criterion.flown - 2] if 1 < criterion.flown <= len(heard) + 1 else None
     return FlightTestVerdict(
         rule=criterion.rule,

@@ -31,6 +31,7 @@ from advisor.gap.verdict.notes import left_out
 from advisor.gap.verdict.one_maneuver import answer_of_one
 from advisor.gap.verdict.text import answers_of
 from advisor.words.certainty import as_sure
+from advisor.words.digits import decimals_for, with_half
 from advisor.words.problems import UnusableInputError
 from advisor.words.quantiles import NORMAL_95
 
@@ -227,8 +228,8 @@ def _key_said(cause: Cause, aircraft: Aircraft) -> str:
     says = "states no" if stated is None else "says"
     given = "" if stated is None else f" {stated:g}"
     return (
-        f"Your file {says} {section}.{key}{given}; this flight says {value:.3f} ± {half:.3f} {unit}. "
-        f"Change: {section}: {{{key}: {value:.3f}}}."
+        f"Your file {says} {section}.{key}{given}; this flight says {with_half(value, half)} {unit}. "
+        f"Change: {section}: {{{key}: {value:.{decimals_for(half)}f}}}."
     )
 
 

@@ -19,6 +19,8 @@ from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 
 N = len(PARAMETERS)
+FOR_THE_FILE = " For the aircraft file: "
+"""Words before the line for the aircraft file at the end of a note."""
 NOTED_LAG_S = 0.05
 NOTED_SCALE = 0.02
 
@@ -109,7 +111,7 @@ def _instrument(identified: Identified) -> str:
     x = identified.found
     text = value_in_words(x.name, x.value, x.std)
     line = line_of(x.name, x.value) if x.std < KNOWN_TO * abs(x.value) else ""
-    advice = f" For the aircraft file: {line}" if line else ""
+    advice = f"{FOR_THE_FILE}{line}" if line else ""
     used = (
         ", by which the estimate lags the command"
         if x.name == "servo_lag_s"

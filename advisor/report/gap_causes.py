@@ -36,7 +36,9 @@ def ranking(causes: Sequence[Cause], before: float, what: str = "simulator") -> 
     if likely:
         yield _table(likely, before)
         kept = f"{PRESENT} part of the improved {what}; " if any(c.present for c in likely) else ""
-        yield Text(f"{kept}prob.: that it is the main cause; ±: 95 %", style="dim")
+        several = sum(c.present for c in likely) > 1
+        asked = "that it acts with the causes above it" if several else "that it is the main cause"
+        yield Text(f"{kept}prob.: {asked}; ±: 95 %", style="dim")
     unlikely = [called(c) for c in causes if c not in likely]
     if unlikely:
         yield Text(f"Below 1 %: {', '.join(unlikely)}.", style="dim")

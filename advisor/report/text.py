@@ -40,6 +40,14 @@ def caution_lines(maneuvers: Sequence[JudgedManeuver]) -> list[str]:
     return [f"[{counted(on)}] {caution}" for caution, on in numbers.items()]
 
 
+def _apart(lines: Iterable[Text]) -> Iterator[Text]:
+    """Yield an empty line before lines; nothing without lines."""
+    for number, line in enumerate(lines):
+        if number == 0:
+            yield Text()
+        yield line
+
+
 class AnalysisText:
     """Text of the whole analysis, printed at the width of the terminal, without unwanted colour."""
 
@@ -70,27 +78,23 @@ class AnalysisText:
             for note in (*self.state.elevator_notes, *self.state.reader_notes, *self.state.mark_notes)
         )
         yield from (Text(line, style="yellow") for line in instrument_lines(self.state.instruments))
-        yield Text()
         if self.pitch:
             yield from self._short_period()
         yield from self._lateral()
 
     def _short_period(self) -> RenderResult:
         """Yield manoeuvres, parameters and decision of the elevator's axis."""
-        yield from self._movements()
-        yield Text()
-        yield from (Text(line, style="dim") for line in caution_lines(self.state.maneuvers))
-        yield Text()
+        yield from _apart(self._movements())
+        yield from _apart(Text(line, style="dim") for line in caution_lines(self.state.maneuvers))
         joint = joint_table(self.state, self.aircraft.model)
         if self.state.model is not None and joint is not None:
+            yield Text()
             yield joint.on_console(joint.caption)
             yield from map(Text, (*structure_lines(self.state.model), *untold(self.state.model)))
             yield from self._regressed(self.state.model)
             yield from (Text(f"note: {note}") for note in self.state.model.notes)
-            yield Text()
-            yield from self._qualities()
-            yield Text()
-        yield from self._rules()
+            yield from _apart(self._qualities())
+        yield from _apart(self._rules())
 
     def _lateral(self) -> RenderResult:
         """Yield the lateral half, where it was asked for and flown."""

@@ -47,6 +47,7 @@ def test_a_stop_that_was_heard_stays_while_its_manoeuvres_are_usable():
     stays = concluded(criterion(False, stopped_at=2), before)
     assert stays.decision == "stop"
     assert stays.sentence == "TEST COMPLETE since manoeuvre 2; later data open it again: stop is False"
+    assert stays.next.advice == "next: one more"
     ended = concluded(criterion(False, stopped_at=2, usable=(0, 2, 3)), before)
     assert ended.decision == "continue"
     assert ended.sentence == (
@@ -59,6 +60,7 @@ def test_a_stop_whose_criterion_is_not_computed_again_says_that_nothing_changed(
     untold = replace(kept.chosen, now_percent=None)
     stays = concluded(replace(kept, by_rule={"information": untold}), [heard(False), heard(True)])
     assert stays.sentence == "TEST COMPLETE since manoeuvre 2: no change of the aircraft was found since."
+    assert stays.next.advice == "no further manoeuvre needed"
 
 
 def test_a_stop_that_later_data_deny_is_said_as_that_with_what_is_open():

@@ -61,7 +61,7 @@ def test_a_stop_that_was_heard_stays_where_no_change_of_the_aircraft_is_found() 
         "TEST COMPLETE since manoeuvre 3; later data open it again: the last 3"
     )
     assert verdict.next is not None
-    assert verdict.next.advice == "no further manoeuvre needed"
+    assert verdict.next.advice.startswith("next: ")
 
 
 def test_a_change_of_the_aircraft_ends_a_stop_and_is_the_sentence() -> None:

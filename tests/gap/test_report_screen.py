@@ -155,10 +155,10 @@ def test_the_interval_of_the_shrink_encloses_it_as_printed():
 
 def test_a_shrink_of_other_gaps_than_those_above_it_states_its_own():
     shrunk = Shrink((2, 5), 16.3, 1.98, 87.8, (87.4, 88.3))
-    assert "manoeuvres: 2, 5, 1.98 left by the corrections alone" in " ".join(
+    assert "manoeuvres 2, 5; the corrections alone leave 1.98" in " ".join(
         printed(diagnosis(shrink=shrunk), 140)
     )
-    assert "by the corrections alone" not in " ".join(printed(diagnosis(), 140))
+    assert "the corrections alone" not in " ".join(printed(diagnosis(), 140))
 
 
 def test_the_error_says_that_its_size_is_shown_and_an_interval_that_it_holds_95_percent():

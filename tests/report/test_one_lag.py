@@ -1,12 +1,15 @@
-"""Two lags of a servo answer two questions, and only that of the estimate is for the aircraft file."""
+"""Two lags of a servo answer two questions, and a page names one number to enter."""
 
 from dataclasses import replace
 
 from advisor.gap.result import Value
 from advisor.gap.verdict.statements import what
 from advisor.oem.estimate import InstrumentEstimate
+from advisor.oem.notes import FOR_THE_FILE
 from advisor.report.facts.estimates import instrument_facts
+from advisor.report.gap_document import gap_document
 from advisor.report.gap_steps import next_steps
+from advisor.report.page.appendix import entered_once
 from tests.campaign.states import changed
 from tests.decision.campaigns import estimate
 from tests.gap.test_report_answer import DERIVATIVES
@@ -29,3 +32,14 @@ def test_the_lag_of_the_gap_is_what_the_simulator_lacks() -> None:
     assert said[0].endswith("it lacks 129 ms of servo lag")
     assert said[1].startswith("Put into the simulator what it lacks: actuator lag 129 ± 15 ms.")
     assert not any("aircraft file" in one for one in said)
+
+
+def test_a_page_with_a_gap_in_the_servo_names_one_number_to_enter() -> None:
+    note = f"The servo's lag is 0.143 s.{FOR_THE_FILE}elevator: {{lag_s: 0.143}}"
+    vane = f"Alpha reads like a vane.{FOR_THE_FILE}alpha: {{vane_arm_m: 0.2}}"
+    told = gap_document(diagnosis(causes=(replace(LAG, present=True),), derivatives=DERIVATIVES))
+    assert entered_once(note, None) == note
+    assert entered_once(vane, told) == vane
+    said = entered_once(note, told)
+    assert "lag_s: 0.143" not in said
+    assert said.endswith("The section on the gap names the number to enter in the aircraft file.")

@@ -7,6 +7,7 @@ import pytest
 from advisor.decision.arriving import Arriving
 from advisor.decision.inputs import StepInput
 from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.report.facts.decision import decisions
 from advisor.session.source import LinkHealth
 from advisor.session.view import View
 from advisor.tui.advice import advise
@@ -81,6 +82,7 @@ def test_trimming_of_the_elevator_takes_no_part_in_a_test_of_roll_and_yaw():
     assert advise(view(state)).word == "CONTINUE"
     assert advise(view(state)).sentence == side.flight_test.sentence
     assert for_the_pilot(trimming[-1], False) == ("✗", "NO TEST INPUT", "too gentle")
+    assert next(decisions(state)) == f"Roll and yaw: {side.flight_test.sentence}"
 
 
 def test_a_named_input_of_each_axis_puts_both_into_the_plan():

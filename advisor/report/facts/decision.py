@@ -26,11 +26,12 @@ def next_line(verdict: FlightTestVerdict) -> str:
 def decisions(state: CampaignState, *, pitch: bool = True) -> Iterator[str]:
     """Yield stop or continue of each axis, with one next input if both axes are tested."""
     plan = state.plan if pitch else None
-    if pitch:
+    side = state.lateral
+    # An axis that nobody flew is not judged next to an axis that was flown.
+    if pitch and state.tested_sideways is None:
         yield stop_line(state.flight_test)
         if plan is None:
             yield f"{INDENT}{next_line(state.flight_test)}"
-    side = state.lateral
     # Roll and yaw that nobody flew are said only where nothing else was flown, or an output is not known.
     if side is not None and (side.maneuvers or side.flight_test.next is None or not state.maneuvers):
         lead, *advice = lateral_decision(side)
@@ -46,4 +47,4 @@ def lateral_decision(state: LateralState) -> Iterator[str]:
     yield f"Roll and yaw: {state.flight_test.sentence}"
     yield from (f"{INDENT}warning: {warning}" for warning in state.flight_test.warnings)
     if state.maneuvers and state.flight_test.next is not None:
-        yield f"{INDENT}{state.flight_test.next.advice}"
+        yield f"{INDENT}{next_line(state.flight_test)}"

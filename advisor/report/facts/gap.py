@@ -32,12 +32,14 @@ def shrink_said(shrink: Shrink, gap: Gap) -> str:
     """Return the sentence about the gap's shrink, with the 95 % interval and the held-out manoeuvres.
 
     The gap after the corrections has the flight's nuisance parameters, and the shrink by an export has not.
+    The sentence states the second gap where the two differ in two digits.
     """
     low, high = shrink.ci95_percent
-    left = f", {short(shrink.after)} left by the corrections alone" if shrink.after != gap.after else ""
+    differ = f"{shrink.after:.2g}" != f"{gap.after:.2g}"
+    left = f"; the corrections alone leave {short(shrink.after)}" if differ else ""
     return (
         f"{shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out "
-        f"manoeuvres: {counted(shrink.holdout)}{left}"
+        f"manoeuvres {counted(shrink.holdout)}{left}"
     )
 
 

@@ -2,8 +2,10 @@
 
 from collections.abc import Iterator
 
+from advisor.gap.effects import EFFECTS
+from advisor.oem.notes import FOR_THE_FILE
 from advisor.report.page.blocks import Block, Paragraph, Section, Verbatim, listing, section
-from advisor.report.page.content import Content
+from advisor.report.page.content import Content, Document
 from advisor.report.result_rows import channel_table, message_table
 from advisor.report.table import Table
 
@@ -25,9 +27,20 @@ def assumptions(content: Content) -> Iterator[Block]:
     analysis = content.analysis
     model = analysis["model"]
     said = [*analysis.get("notes", ()), *analysis["log"]["notes"], *(model["notes"] if model else ())]
+    said = [entered_once(note, content.gap) for note in said]
     yield from listing(said) or (Paragraph("Neither the logs nor the joint estimate leave a note."),)
     for flight, (name, heard) in enumerate(zip(content.names, content.state.flights, strict=True)):
         yield channel_table(f"channels-{flight}", f"Channels of {name}.", heard.channels)
+
+
+def entered_once(note: str, gap: Document | None) -> str:
+    """Return a note without its line for the aircraft file where the diagnosis names the number to enter."""
+    said, line, entry = note.partition(FOR_THE_FILE)
+    causes = gap["causes"] if line and gap is not None and gap["usable"] else ()
+    stated = {EFFECTS[c["effect"]].stated for c in causes if c["in_model"] and c["effect"] in EFFECTS}
+    if all(at is None or not entry.startswith(f"{at[0]}: {{{at[1]}:") for at in stated):
+        return note
+    return f"{said} The section on the gap names the number to enter in the aircraft file."
 
 
 def provenance(content: Content) -> Section:

@@ -43,7 +43,8 @@ def gap(content: Content) -> Iterator[Block]:
     if found["parameters_changed"]:
         yield Paragraph("Derivatives that differ from the simulator's; the others agree within 95 %:")
         yield from listing([one["text"] for one in found["parameters_changed"]])
-    said = (size["text"], shrink and shrink["text"], size["grown"])
+    grown = size["grown"] and f"{size['grown'][0].upper()}{size['grown'][1:]}"
+    said = (size["text"], shrink and shrink["text"], grown)
     yield Paragraph(f"{_DEFINED}{'. '.join(filter(None, said))}.")
     yield Table(
         "gap-channels", f"Gap by channel. {WORSE}: larger than before.",
@@ -59,7 +60,7 @@ def gap(content: Content) -> Iterator[Block]:
         rows = [("as it is", size["before"]), *((f"+ {name}", after) for name, after in steps)]
         svg = picture("waterfall", 4.4, 0.8 + 0.28 * len(rows), _paint, rows)
         yield Gallery((Figure(svg, "Gap left as effects are added, one after another.", "half"),))
-    causes = shown_causes(found)
+    causes = shown_causes(found) if found["verdict"] != "none" else []
     if causes:
         yield Table(
             "causes", "Causes, the most probable first.",

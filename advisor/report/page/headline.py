@@ -18,14 +18,14 @@ def headline(content: Content) -> Iterator[Block]:
     accepted = [m["number"] for m in maneuvers if m["verdict"] == "accepted"]
     yield _flown(content)
     state = content.state
-    sideways = not maneuvers and state.lateral is not None and bool(state.lateral.maneuvers)
+    sideways = state.tested_sideways is not None
     yield from decided(state, pitch=not sideways)
     side = state.lateral_alone
     if side is not None and (glance_at := joint_table(side, content.aircraft.model, "lateral-glance")):
         yield glance_at
     if sideways:
         yield Paragraph(verdict["sentence"])
-    if maneuvers:
+    if maneuvers and not sideways:
         yield Paragraph(
             f"{len(accepted)} of {len(maneuvers)} manoeuvres are accepted. The rule {verdict['rule']} "
             f"decides: {_criterion(verdict['criterion_percent'], verdict['limit_percent'])}."
