@@ -3,22 +3,24 @@
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.log_series import LogSeries
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import CampaignState
-from advisor.mavlink.logs.whole import read_whole_log
 from advisor.report.follow import follow
+from advisor.report.text import AnalysisText
 from advisor.session.source import LinkHealth
 from advisor.session.view import View
 from advisor.tui.advice import advise
-from tests.printed import taken
+from tests.printed import printed_lines, taken
 
 GOOD = LinkHealth("good", "400 messages/s.")
 _WORDS_OF_VERDICT = re.compile(r"^\s*(\d+)\s.*?\s([✓✗]) ")
-_SAYS_WHY = re.compile(r"complete|denied|deny|open|no longer")
-"""Words of a sentence that says why a complete test goes on."""
+_FORECAST = re.compile(r"about (\d+) more(?:, (?:9 times in 10 )?at most (\d+))?")
+_LAG = re.compile(r"lag (?:is|of) (\d\.\d+)|lag_s: (\d\.\d+)")
 
 
 @dataclass(frozen=True)
@@ -40,21 +42,28 @@ class Story:
     aircraft: Aircraft
 
 
-def story_of(log: Path, aircraft: Aircraft) -> Story:
-    """Replay a log, and collect the lines of text and the words of the pilot's screen."""
-    campaign = Campaign(aircraft, lateral=True)
+def story_of(aircraft: Aircraft, *logs: Path) -> Story:
+    """Replay logs as one campaign, and collect the lines of text and the words of the pilot's screen.
+
+    The analysis at the end is a third face.
+    """
+    names = [log.name for log in logs]
+    campaign = Campaign(aircraft, names=names, lateral=True)
     found: list[Said] = []
 
     def batches() -> Iterator[Sequence[object]]:
-        for columns in read_whole_log(log):
+        for columns in LogSeries(list(logs), aircraft.columns).batches():
             yield columns
             state = campaign.state
-            advice = advise(View(state, GOOD, None, aircraft, log.name))
+            advice = advise(View(state, GOOD, None, aircraft, names[state.flight]))
             if not found or (advice.word, advice.sentence) != _newest(found, "pilot"):
                 found.append(Said(state.now_s, "pilot", f"{advice.word}: {advice.sentence}"))
 
     say: Callable[[str], object] = lambda text: found.append(Said(campaign.state.now_s, "text", text))  # noqa: E731
     state = follow(batches(), campaign, say, of_log=True)  # type: ignore[arg-type]
+    found += [
+        Said(state.now_s, "analyze", line) for line in printed_lines(AnalysisText(state, names, aircraft))
+    ]
     return Story(found, state, aircraft)
 
 
@@ -69,6 +78,9 @@ def faults(story: Story) -> Iterator[str]:
     yield from _taken_back(story)
     yield from _not_there(story)
     yield from _commands(story)
+    yield from _forecasts(story)
+    yield from _two_values(story)
+    yield from _at_odds(story)
 
 
 def _taken_back(story: Story) -> Iterator[str]:
@@ -108,6 +120,51 @@ def _not_there(story: Story) -> Iterator[str]:
         for number in map(int, re.findall(r"after manoeuvre (\d+)", one.text)):
             if number > flown:
                 yield f"{one.at_s:.0f} s: there is no manoeuvre {number}: {one.text}"
+
+
+def _forecasts(story: Story) -> Iterator[str]:
+    """Yield forecasts that vanish, or that rise without a reason, for each axis."""
+    axis, before = "", {}
+    for one in story.said:
+        if one.face != "text":
+            continue
+        if _WORDS_OF_VERDICT.match(one.text):
+            axis = "roll and yaw" if "(roll and yaw)" in one.text else "pitch"
+        if re.search(r"TEST COMPLETE|(?:is|are) complete", one.text):
+            before.pop(axis, None)
+        if not one.text.lstrip().startswith("next: "):
+            continue
+        told = _FORECAST.search(one.text)
+        if told is None and axis in before and "Both" not in one.text:
+            yield f"{one.at_s:.0f} s: the forecast of {axis} vanishes: {one.text}"
+        if told is None:
+            continue
+        most = int(told[2] or told[1])
+        if axis in before and most > max(before[axis] - 1, 1) and not one.text.endswith(")"):
+            yield f"{one.at_s:.0f} s: the forecast of {axis} rises without a reason: {one.text}"
+        before[axis] = most
+
+
+def _two_values(story: Story) -> Iterator[str]:
+    """Yield a servo's lag that the analysis at the end states twice, with different values."""
+    lines = [one.text for one in story.said if one.face == "analyze" and "elevator" in one.text.lower()]
+    lines += [one.text for one in story.said if one.face == "analyze" and "The servo" in one.text]
+    told = {first or second for line in set(lines) for first, second in _LAG.findall(line)}
+    if len(told) > 1:
+        yield f"the servo's lag has {len(told)} values: {', '.join(sorted(told))}"
+
+
+def _at_odds(story: Story) -> Iterator[str]:
+    """Yield an open test that asks for nothing, and a decision on an axis that nobody tested."""
+    analyzed = [one.text for one in story.said if one.face == "analyze"]
+    for decision, following in pairwise(analyzed):
+        is_open = "CONTINUE" in decision or "open it again" in decision
+        if is_open and "no further manoeuvre" in following:
+            yield f"an open test asks for nothing: {decision}"
+    if story.state.tested_sideways is not None:
+        yield from (
+            f"nobody tests the elevator: {one}" for one in analyzed if re.match(r"[▶■].*elevator", one)
+        )
 
 
 def _commands(story: Story) -> Iterator[str]:

@@ -7,6 +7,7 @@ from math import isfinite, nan
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate, TermEstimate
+from advisor.report.facts.gap import counted
 from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import DEG, symbol
@@ -121,7 +122,7 @@ def estimated_parameter(
 
 def joint_source(state: CampaignState | LateralState) -> str:
     """Return the name of an axis' joint estimate, for the head of a table."""
-    return f"Joint estimate from manoeuvres {', '.join(map(str, state.estimate_from))}"
+    return f"Joint estimate from manoeuvres {counted(state.estimate_from)}"
 
 
 def of_all(name: str, state: CampaignState | LateralState, prior: Mapping[str, float]) -> EstimatedParameter:

@@ -17,7 +17,7 @@ from advisor.report.page.gap_picture import caption, gap_picture
 from advisor.report.table import Table
 from advisor.words.quantities import CHANNELS, Quantity
 
-_DEFINED = "The gap is the mean square of the simulator's error over that of the noise floor, minus 1: "
+_DEFINED = "The gap is the mean square of the simulation's error over that of the noise floor, minus 1: "
 _GLANCE = 4
 """Number of channels side by side, so that the picture fits on the first page of A4."""
 _OVER = {**CHANNELS, "delta_e": CHANNELS["elevator"], "t": Quantity("time of flight", "s")}

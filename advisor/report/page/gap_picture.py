@@ -35,8 +35,8 @@ Trace = Mapping[str, Any]
 def caption(found: Document) -> str:
     """Return the description of the picture."""
     return (
-        f"Manoeuvre {worst(found)}, the one with the largest gap. Grey: measured. Orange dots: the simulator "
-        "as given. Dark dashes: with the findings. Below each: measured minus simulated; the band holds 95 % "
+        f"Manoeuvre {worst(found)}, the one with the largest gap. Grey: measured. Orange dots: simulated as "
+        "given. Dark dashes: with the findings. Below each: measured minus simulated; the band holds 95 % "
         f"of the noise. Last: {CHANNELS[_small(found)].symbol} of every manoeuvre."
     )
 
@@ -125,7 +125,7 @@ def _paint_channel(
     quantity = CHANNELS[trace["channel"]]
     t, measured, before, after = _arrays(trace, quantity.factor)
     curves.plot(t, measured, color=GREY, linewidth=1.8, label="measured")
-    curves.plot(t, before, color=ORANGE, linestyle=":", linewidth=1.2, label="simulator")
+    curves.plot(t, before, color=ORANGE, linestyle=":", linewidth=1.2, label="simulated as given")
     curves.plot(t, after, color=BLUE, linestyle=(0, (4, 1.5)), linewidth=1.0, label="with the findings")
     curves.set_ylabel(quantity.label)
     curves.tick_params(labelbottom=False)

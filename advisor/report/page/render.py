@@ -38,7 +38,9 @@ _OF_PITCH = frozenset({estimates, criterion, flying, maneuvers, fits, prediction
 
 def sections(content: Content) -> list[Section]:
     """Return all sections in the order of the page."""
-    found = (_made(part, content) for part in _PARTS if part not in _OF_PITCH or content.state.maneuvers)
+    state = content.state
+    is_tested = bool(state.maneuvers) and state.tested_sideways is None
+    found = (_made(part, content) for part in _PARTS if is_tested or part not in _OF_PITCH)
     return [section for section in found if section is not None]
 
 
