@@ -15,7 +15,7 @@ import click
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
-from advisor.analysis.gap import maneuvers_of, named_simulator
+from advisor.analysis.gap import maneuvers_of, opened_simulator
 from advisor.analysis.refused import without_refused
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.diagnose import diagnose
@@ -72,8 +72,7 @@ def answers(log: Path, aircraft: Aircraft) -> list[Answer]:
     usable = without_refused(maneuvers_of([log], aircraft).maneuvers, aircraft).maneuvers
     if len(usable) < FEWEST:
         return []
-    simulator = named_simulator(aircraft)
-    try:
+    with opened_simulator(aircraft) as simulator:
         return [
             answer_of(
                 diagnose(half, aircraft)
@@ -82,9 +81,6 @@ def answers(log: Path, aircraft: Aircraft) -> list[Answer]:
             )
             for half in halves_of(usable)
         ]
-    finally:
-        if simulator is not None:
-            simulator.close()
 
 
 @click.command

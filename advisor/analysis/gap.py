@@ -1,6 +1,7 @@
 """From logs to a diagnosis: every manoeuvre is used once, then ``advisor.gap`` diagnoses the gap."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -148,6 +149,29 @@ def diagnose_logs(
     return compare_logs(logs, aircraft, None, holdout, by_hand=by_hand).diagnosis
 
 
+def compare_named(
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    holdout: int | None = None,
+    target_system: int | None = None,
+    progress: Callable[[str, float], None] = lambda *_: None,
+    by_hand: Sequence[ByHand] = (),
+    prior: FieldPrior = FIELD,
+    flown: GapFlights | None = None,
+) -> Compared:
+    """Read logs and diagnose their gap to the simulator that the aircraft file names, or to the file's model.
+
+    Raises
+    ------
+    UnusableInputError
+        A log cannot be read or cannot serve, or the simulator does not fly.
+    """
+    with opened_simulator(aircraft, target_system) as simulator:
+        return compare_logs(
+            logs, aircraft, simulator, holdout, target_system, progress, by_hand, prior, flown
+        )
+
+
 def compare_logs(
     logs: Sequence[Path],
     aircraft: Aircraft,
@@ -236,6 +260,17 @@ def _structured(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estimate |
     if isinstance(fitted, NoEstimate):
         raise UnusableInputError(fitted.code, fitted.text, _WITHOUT_STRUCTURE)
     return fitted.structured
+
+
+@contextmanager
+def opened_simulator(aircraft: Aircraft, target_system: int | None = None) -> Iterator[Simulator | None]:
+    """Open the simulator of :func:`named_simulator`, and close it at the end."""
+    simulator = named_simulator(aircraft, target_system)
+    try:
+        yield simulator
+    finally:
+        if simulator is not None:
+            simulator.close()
 
 
 def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Simulator | None:

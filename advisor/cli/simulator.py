@@ -51,7 +51,7 @@ def check(
       advisor simulator check jsbsim:c172p --airspeed 50 --height 1000
       advisor simulator check python:my_simulator:make --aircraft my-aircraft.yaml
     """
-    from advisor.analysis.gap import named_simulator
+    from advisor.analysis.gap import opened_simulator
     from advisor.report.simulator_check import document, lines
     from advisor.simulators.check import check as checked
     from advisor.simulators.protocol import Condition
@@ -59,21 +59,16 @@ def check(
     aircraft = replace(read_aircraft(aircraft_file), simulator=specification)
     speed = airspeed or _speed_of(aircraft)
     high = height if height is not None else aircraft.reference.height_m or 0.0
-    simulator = None
-    try:
-        simulator = named_simulator(aircraft)
+    with opened_simulator(aircraft) as simulator:
         assert simulator is not None
-        found = checked(simulator, Condition(speed, high, 0.0, aircraft.reference.mass_kg), aircraft)
-    finally:
-        if simulator is not None:
-            simulator.close()
+        check = checked(simulator, Condition(speed, high, 0.0, aircraft.reference.mass_kg), aircraft)
     if as_json:
-        click.echo(json.dumps(document(found), allow_nan=False, indent=1))
+        click.echo(json.dumps(document(check), allow_nan=False, indent=1))
     else:
-        for line in lines(found):
+        for line in lines(check):
             click.echo(printable(line))
-    if found.fault is not None:
-        raise found.fault.refuse(found.simulator)
+    if check.fault is not None:
+        raise check.fault.refuse(check.simulator)
 
 
 @command.command

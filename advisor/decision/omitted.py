@@ -59,13 +59,13 @@ def objections_to(
     influences: Collection[Influence], linear: LinearMotion, estimate: Estimate, judged: Sequence[str]
 ) -> Iterator[Reason]:
     """Yield a reason for each influence that biases a judged derivative beyond its 95 % interval."""
-    for one in influences:
-        bias = bias_by(one.term, one.state, linear, estimate)
-        # The statistic is the likelihood ratio of the two models, one with the term.
-        if bias is None or not (one.at_most_one or abs(bias.ratio) >= sqrt(float(chdtri(1, OUTLIER_BELOW)))):
-            continue
-        moved = bias.of_one * (1.0 if one.at_most_one else bias.coefficient)
-        yield from _beyond(estimate, moved, one, judged)
+    # The statistic is the likelihood ratio of the two models, one with the term.
+    least = sqrt(float(chdtri(1, OUTLIER_BELOW)))
+    for influence in influences:
+        bias = bias_by(influence.term, influence.state, linear, estimate)
+        if bias is not None and (influence.at_most_one or abs(bias.ratio) >= least):
+            moved = bias.of_one * (1.0 if influence.at_most_one else bias.coefficient)
+            yield from _beyond(estimate, moved, influence, judged)
 
 
 def bias_by(term: FloatArray, state: str, linear: LinearMotion, estimate: Estimate) -> Bias | None:

@@ -7,13 +7,12 @@ from math import nan
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
 from advisor.analysis.axes.side_comparison import compare_side_flown
-from advisor.analysis.gap import compare_logs, named_simulator
+from advisor.analysis.gap import compare_named
 from advisor.analysis.whole_flights import WholeFlights
 from advisor.campaign.state import CampaignState, LateralState
 from advisor.decision.axes.lateral_requirements import GROUPS
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.expectations.expected import MODES
-from advisor.gap.result import Gap
 from advisor.model.axes.lateral import Trim
 from advisor.model.mil_f_8785c import LevelFound
 from advisor.oem.estimate import Estimate
@@ -151,21 +150,9 @@ def gap_of(
         if axis == "lateral":
             gap = compare_side_flown(flights.state, aircraft, progress=progress).gap.gap
         else:
-            gap = _pitch_gap(flights, aircraft, target_system, progress)
+            decided = [flights.by_hand.on_flight(flight) for flight in range(len(flights.logs))]
+            compared = compare_named(flights.logs, aircraft, None, target_system, progress, decided)
+            gap = compared.diagnosis.gap
     except UnusableInputError as error:
         return Measured(reason=str(error))
     return Measured(gap.before) if gap.by_channel else Measured(reason="the manoeuvres show no gap")
-
-
-def _pitch_gap(
-    flights: WholeFlights, aircraft: Aircraft, target_system: int | None, progress: Progress
-) -> Gap:
-    simulator = named_simulator(aircraft, target_system)
-    try:
-        decided = [flights.by_hand.on_flight(flight) for flight in range(len(flights.logs))]
-        return compare_logs(
-            flights.logs, aircraft, simulator, None, target_system, progress, decided
-        ).diagnosis.gap
-    finally:
-        if simulator is not None:
-            simulator.close()

@@ -58,25 +58,19 @@ def diagnosed(
     tell: Callable[[str, float], None] = lambda *_: None,
 ) -> Document:
     """Diagnose logs against the aircraft file's simulator; return ``advisor.gap/1`` with the next steps."""
-    from advisor.analysis.gap import compare_logs, named_simulator
+    from advisor.analysis.gap import compare_named
     from advisor.process.parts import FailedPart, attempt
     from advisor.report.gap_document import gap_document
     from advisor.report.gap_steps import next_steps
     from advisor.words.plain import plain
     from advisor.words.problems import UnusableInputError
 
-    simulator = None
     try:
-        simulator = named_simulator(aircraft, target_system)
         compared = attempt(
-            "pitch, diagnosis",
-            lambda: compare_logs(logs, aircraft, simulator, None, target_system, tell, by_hand),
+            "pitch, diagnosis", lambda: compare_named(logs, aircraft, None, target_system, tell, by_hand)
         )
     except UnusableInputError as error:
         return gap_document(None, error.problems)
-    finally:
-        if simulator is not None:
-            simulator.close()
     if isinstance(compared, FailedPart):
         return gap_document(None, failed=(compared,))
     file = str(aircraft_file) if aircraft_file else None

@@ -11,7 +11,7 @@ from typing import Protocol
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis.axes.side_comparison import accepted_of, compare_side_flown
-from advisor.analysis.gap import GapFlights, compare_flown, maneuvers_of, named_simulator
+from advisor.analysis.gap import GapFlights, compare_flown, maneuvers_of, opened_simulator
 from advisor.analysis.refused import without_refused
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
@@ -69,14 +69,12 @@ class PitchFlight:
 
     def answered(self, maneuvers: Sequence[Maneuver]) -> Answer:
         """Return the answer of ``advisor gap --axis pitch``."""
-        simulator = named_simulator(self.aircraft)
+        flown = replace(self.flown, maneuvers=list(maneuvers))
         try:
-            compared = compare_flown(replace(self.flown, maneuvers=list(maneuvers)), self.aircraft, simulator)
+            with opened_simulator(self.aircraft) as simulator:
+                compared = compare_flown(flown, self.aircraft, simulator)
         except UnusableInputError as error:
             return Answer({}, str(error))
-        finally:
-            if simulator is not None:
-                simulator.close()
         return answer_of(compared.diagnosis)
 
 

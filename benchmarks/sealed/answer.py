@@ -24,7 +24,7 @@ from advisor.cli.running import Progress, runner_of, running_options
 def answer(case: Path, axis: str = "pitch") -> tuple[dict[str, Any], float]:
     """Return the document of ``advisor gap --json`` (empty without one), and the CPU time in s."""
     from advisor.analysis.axes.side_comparison import compare_side_logs
-    from advisor.analysis.gap import compare_logs, named_simulator
+    from advisor.analysis.gap import compare_named
     from advisor.cli.options import read_aircraft
     from advisor.report.gap_document import axis_document, gap_document
     from advisor.words.problems import UnusableInputError
@@ -32,18 +32,14 @@ def answer(case: Path, axis: str = "pitch") -> tuple[dict[str, Any], float]:
 
     began = time.process_time()
     aircraft = read_aircraft(case / AIRCRAFT)
-    simulator = named_simulator(aircraft) if axis == "pitch" else None
     try:
         if axis == "pitch":
-            document = gap_document(compare_logs([case / LOG], aircraft, simulator).diagnosis)
+            document = gap_document(compare_named([case / LOG], aircraft).diagnosis)
         else:
             document = axis_document(compare_side_logs([case / LOG], aircraft).gap)
     except UnusableInputError as error:
         print(f"{case.name}: {error.problem}", file=sys.stderr)
         document = {}
-    finally:
-        if simulator is not None:
-            simulator.close()
     return document, time.process_time() - began
 
 

@@ -127,7 +127,7 @@ class Proved(Generic[C]):
             PlainConsole().print(GapScreen(diagnosis, name, asked.why, steps, everything))
             print_proof(proof)
 
-        return AxisAnswer(document, show, USAGE if any(one.problem for one in outcomes) else 0)
+        return AxisAnswer(document, show, USAGE if any(outcome.problem for outcome in outcomes) else 0)
 
 
 def answered(axes: Sequence[AxisGap[Any]], everything: bool) -> int:
@@ -137,12 +137,14 @@ def answered(axes: Sequence[AxisGap[Any]], everything: bool) -> int:
     """
     asked = axes[0].asked
     diagnosed = [(axis, axis.diagnosed()) for axis in axes]
-    silent = [(axis, one) for axis, one in diagnosed if isinstance(one, Unanswered)]
+    silent = [(axis, reason) for axis, reason in diagnosed if isinstance(reason, Unanswered)]
     if len(silent) == len(axes):
-        return asked.refused(*(one for _, one in silent))
+        return asked.refused(*(reason for _, reason in silent))
     for axis, reason in silent:
         click.echo(f"{axis.name}: {reason.said}", err=True)
-    first, *beside = (axis.proved(one) for axis, one in diagnosed if not isinstance(one, Unanswered))
+    first, *beside = (
+        axis.proved(compared) for axis, compared in diagnosed if not isinstance(compared, Unanswered)
+    )
     first.axis.beside = beside if len(axes) > 1 else None
     figure = asked.figure
     named = replace(asked, figure=figure and figure.with_stem(f"{figure.stem}-lateral"))
@@ -151,11 +153,11 @@ def answered(axes: Sequence[AxisGap[Any]], everything: bool) -> int:
     document: dict[str, Any] = {**main.document}
     for answer in others:
         document["lateral"] = answer.document["lateral"] | {"improved_model": document["improved_model"]}
-    problems = [*(a.document for a in answers), *(reason.document for _, reason in silent)]
-    document["problems"] = [problem for one in problems for problem in one["problems"]]
+    documents = [*(answer.document for answer in answers), *(reason.document for _, reason in silent)]
+    document["problems"] = [problem for part in documents for problem in part["problems"]]
     shown = [
-        replace(answer, show=partial(_show, one.axis.name, answer))
-        for one, answer in zip(beside, others, strict=True)
+        replace(answer, show=partial(_show, proved.axis.name, answer))
+        for proved, answer in zip(beside, others, strict=True)
     ]
     return asked.answered(replace(main, document=document), *shown)
 

@@ -47,15 +47,10 @@ class PitchGap(AxisGap[Compared]):
     def compare(self, tell: Tell) -> Compared:
         """Read the logs and compare the flight with the simulator."""
         asked, read = self.asked, self.asked.read
-        simulator = reading.named_simulator(asked.aircraft, read.target_system)
-        try:
-            return reading.compare_logs(
-                read.logs, asked.aircraft, simulator, self._holdout, read.target_system, tell,
-                self._by_hand, asked.prior, self._flown,
-            )  # fmt: skip
-        finally:
-            if simulator is not None:
-                simulator.close()
+        return reading.compare_named(
+            read.logs, asked.aircraft, self._holdout, read.target_system, tell,
+            self._by_hand, asked.prior, self._flown,
+        )  # fmt: skip
 
     def prove(self, compared: Compared, named: Sequence[Path], tell: Tell) -> Proof:
         """Fly the improved simulator on the manoeuvres of logs; without any, on the last third."""
@@ -85,7 +80,7 @@ class PitchGap(AxisGap[Compared]):
 
     def improves(self, diagnosis: Diagnosis) -> bool:
         """Return whether there is an improved simulator to write."""
-        return diagnosis.improves or any(one.diagnosis.verdict in IMPROVING for one in self.beside or ())
+        return diagnosis.improves or any(other.diagnosis.verdict in IMPROVING for other in self.beside or ())
 
     def steps(
         self, diagnosis: Diagnosis, written: Path | None, outcomes: Sequence[ExportOutcome]
@@ -99,7 +94,7 @@ class PitchGap(AxisGap[Compared]):
     def _side(self) -> SideModel | None:
         """Roll and yaw for the files, by their diagnosis or as the logs tell them; None without either."""
         if self.beside is not None:
-            return next((one.exported().side for one in self.beside), None)
+            return next((other.exported().side for other in self.beside), None)
         read = self.asked.read
         with Stages() as tell:
             tell("reading roll and yaw for the files", 0.0)
@@ -113,6 +108,6 @@ def _flown_next(
 ) -> str | None:
     """Return the written file of the improved simulator that the simulator of the diagnosis can fly."""
     kind, _, _ = (simulator or "linear").partition(":")
-    files = [one.order.file for one in outcomes if one.order.format == kind and not one.problem]
+    files = [other.order.file for other in outcomes if other.order.format == kind and not other.problem]
     file = next(iter(files), None) if kind != "linear" else improved
     return None if file is None else str(file)

@@ -35,10 +35,8 @@ def coupled(maneuver: Maneuver, estimate: Estimate, exceeded: Collection[str] = 
         their limits only.
     """
     linear = LinearMotion(PITCH, maneuver, estimate, estimate.fits[0]["q"].t)
-    beyond = {"throttle", *exceeded}
-    influences = [one for one in _on_pitch(linear) if one.code == "coupling" or one.code in beyond]
-    if not carries_speed(estimate):
-        influences = [one for one in influences if one.code != "airspeed"]
+    examined = {"coupling", "throttle", *exceeded} - (set() if carries_speed(estimate) else {"airspeed"})
+    influences = [influence for influence in _on_pitch(linear) if influence.code in examined]
     return list(objections_to(influences, linear, estimate, PITCH_JUDGED))
 
 
@@ -54,9 +52,8 @@ def side_coupled(maneuver: Maneuver, estimate: LateralEstimate, exceeded: Collec
     if not exceeded:
         return []
     linear = LinearMotion(SIDE, maneuver, estimate, estimate.fits[0]["p"].t)
-    influences = [
-        one for one in _on_the_sides(linear) if one.code != "airspeed" or estimate.scales_with_speed
-    ]
+    left_out = () if estimate.scales_with_speed else ("airspeed",)
+    influences = [influence for influence in _on_the_sides(linear) if influence.code not in left_out]
     judged = [name for name in SIDE_JUDGED if SIDE.controls.get(name[2:], "") in ("", *estimate.flown)]
     return list(objections_to(influences, linear, estimate, judged))
 

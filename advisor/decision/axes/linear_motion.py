@@ -91,14 +91,14 @@ class LinearMotion:
             State whose derivative has the omitted part.
         """
         motion, count = self.motion, len(self.motion.states)
-        known = len(self._names)
-        inputs = np.zeros((count, len(self.t), known + count + 1))
+        parameters = len(self._names)
+        inputs = np.zeros((count, len(self.t), parameters + count + 1))
         for k, name in enumerate(self._names):
             letter, _, factor = name.partition("_")
             inputs[motion.equations.index(letter), :, k] = self._factor(factor)
         inputs[motion.states.index(state), :, -1] = term
         initial = np.zeros((count, inputs.shape[2]))
-        initial[range(count), range(known, known + count)] = 1.0
+        initial[range(count), range(parameters, parameters + count)] = 1.0
         by_state = [self._theta.get(f"{motion.equations[0]}_{name}", 0.0) for name in motion.states]
         with np.errstate(over="ignore", invalid="ignore"):
             states = driven(self._system, self.t, inputs, initial)
@@ -149,10 +149,10 @@ def driven(
     if initial is not None:
         states[:, 0] = initial
     step_s = float(np.median(np.diff(t)))
-    one = expm(system * step_s)
+    step = expm(system * step_s)
     for k in range(1, len(t)):
         held = states[:, k - 1] + 0.5 * step_s * inputs[:, k - 1]
-        states[:, k] = one @ held + 0.5 * step_s * inputs[:, k]
+        states[:, k] = step @ held + 0.5 * step_s * inputs[:, k]
     return states
 
 

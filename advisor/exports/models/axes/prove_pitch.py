@@ -9,7 +9,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import parse_aircraft
-from advisor.analysis.gap import GapFlights, compare_flown, named_simulator
+from advisor.analysis.gap import GapFlights, compare_flown, opened_simulator
 from advisor.exports.models.flown import FlownModel, file_of, improved_model
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
 from advisor.exports.models.proof import NUMBERS, ImprovedAxis, Kept, Proof, parted, proved, refuse_unimproved
@@ -56,28 +56,24 @@ def prove(
 
     def compared(some: GapFlights, simulator: Aircraft, k: int) -> Compared:
         """Return one of the three comparisons of a proof."""
-        opened = named_simulator(simulator, target_system)
-        try:
+        with opened_simulator(simulator, target_system) as opened:
             return compare_flown(
                 some, simulator, opened, None, lambda what, x: progress(what, (k + x) / 3.0), prior
             )
-        finally:
-            if opened is not None:
-                opened.close()
 
     first = compared(fitted, aircraft, 0)
-    found, alone = first.diagnosis, ""
-    if fresh is None and not found.improves and whole is not None and whole.findings is not None:
-        alone = found.sentence
+    diagnosis, alone = first.diagnosis, ""
+    if fresh is None and not diagnosis.improves and whole is not None and whole.findings is not None:
+        alone = diagnosis.sentence
         examined = Examined(whole.diagnosis, whole.findings)
-        found = sized_without(examined, [m.number for m in kept.maneuvers]).diagnosis
-    refuse_unimproved(found.improves, alone or found.sentence, len(fitted.maneuvers))
+        diagnosis = sized_without(examined, [m.number for m in kept.maneuvers]).diagnosis
+    refuse_unimproved(diagnosis.improves, alone or diagnosis.sentence, len(fitted.maneuvers))
     if fresh is None:
-        found = as_it_ended(found, fitted.maneuvers, first.aircraft)
-    parts = (*found.effects, NUMBERS)
+        diagnosis = as_it_ended(diagnosis, fitted.maneuvers, first.aircraft)
+    parts = (*diagnosis.effects, NUMBERS)
 
     def flown_without(gone: tuple[str, ...]) -> Kept:
-        stays = found
+        stays = diagnosis
         left: tuple[str, ...] = ()
         for part in gone:
             stays = without(stays, part, first.aircraft.model)
@@ -85,79 +81,79 @@ def prove(
             better = aircraft
             if gone != parts:
                 better, left = _improved(stays, first.aircraft, aircraft, Path(folder))
-            told = compared(kept, better, 1 if better is aircraft else 2).diagnosis
-        gaps = {number: gap for number, gap, _ in told.gap.by_maneuver}
-        return Kept(told.gap.before, gaps, told.gap.floor, lambda: (told.verdict, told.sentence), left)
+            again = compared(kept, better, 1 if better is aircraft else 2).diagnosis
+        gaps = {number: gap for number, gap, _ in again.gap.by_maneuver}
+        return Kept(again.gap.before, gaps, again.gap.floor, lambda: (again.verdict, again.sentence), left)
 
     fewer = [(part,) for part in parts if len(parts) > 1]
-    return proved(
-        ImprovedAxis(" + ".join(named(found)) or str(found.verdict), parts, fewer, flown_without, alone)
-    )
+    answer = " + ".join(named(diagnosis)) or str(diagnosis.verdict)
+    return proved(ImprovedAxis(answer, parts, fewer, flown_without, alone))
 
 
-def stays_of(proof: Proof, found: Diagnosis, given: Mapping[str, float]) -> Diagnosis:
+def stays_of(proof: Proof, diagnosis: Diagnosis, given: Mapping[str, float]) -> Diagnosis:
     """Return a diagnosis whose improved simulator lacks the withdrawn parts, which its sentence names.
 
     The posterior stays: a proof moves no probability.
     """
     said = proof.taken_back_said
     if not said:
-        return found
+        return diagnosis
     for part in proof.taken_back:
-        found = without(found, part, given)
-    corrects = found.corrects and len(proof.taken_back) < len(proof.parts)
-    taken = (*found.taken_back, said)
-    return replace(found, taken_back=taken, sentence=f"{found.sentence} {said}", corrects=corrects)
+        diagnosis = without(diagnosis, part, given)
+    corrects = diagnosis.corrects and len(proof.taken_back) < len(proof.parts)
+    taken = (*diagnosis.taken_back, said)
+    return replace(diagnosis, taken_back=taken, sentence=f"{diagnosis.sentence} {said}", corrects=corrects)
 
 
-def as_it_ended(found: Diagnosis, maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Diagnosis:
+def as_it_ended(diagnosis: Diagnosis, maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Diagnosis:
     """Return a diagnosis with changes in flight replaced by the derivatives of its last fitted manoeuvre.
 
     Later manoeuvres of the flight begin with the changed aircraft.
     """
-    if lasting(found.effects) == found.effects:
-        return found
-    flights = prepare([as_stamped(m) for m in maneuvers if m.number in found.maneuvers], aircraft)
+    if lasting(diagnosis.effects) == diagnosis.effects:
+        return diagnosis
+    flights = prepare([as_stamped(m) for m in maneuvers if m.number in diagnosis.maneuvers], aircraft)
     p = np.zeros((len(flights), len(ENTRIES)))
-    p[:, : len(DERIVATIVES)] = [found.model[name].value for name in DERIVATIVES]
-    effects = dict(found.effects)
+    p[:, : len(DERIVATIVES)] = [diagnosis.model[name].value for name in DERIVATIVES]
+    effects = dict(diagnosis.effects)
     for change, values in changes_in(effects, variants_for(flights)):
         change.apply(p, values, flights)
         del effects[change.effect]
-    ended = {name: replace(found.model[name], value=float(p[-1, INDEX[name]])) for name in DERIVATIVES}
-    return replace(found, model={**found.model, **ended}, effects=effects)
+    ended = {name: replace(diagnosis.model[name], value=float(p[-1, INDEX[name]])) for name in DERIVATIVES}
+    return replace(diagnosis, model={**diagnosis.model, **ended}, effects=effects)
 
 
-def without(found: Diagnosis, part: str, given: Mapping[str, float]) -> Diagnosis:
+def without(diagnosis: Diagnosis, part: str, given: Mapping[str, float]) -> Diagnosis:
     """Return a diagnosis whose improved simulator lacks one effect, or has the derivatives as given."""
     if part == NUMBERS:
-        own = {name: replace(one, value=given.get(name, one.value)) for name, one in found.model.items()}
-        return replace(found, model=own, derivatives=())
-    return replace(found, effects={effect: size for effect, size in found.effects.items() if effect != part})
+        own = {name: replace(x, value=given.get(name, x.value)) for name, x in diagnosis.model.items()}
+        return replace(diagnosis, model=own, derivatives=())
+    effects = {effect: size for effect, size in diagnosis.effects.items() if effect != part}
+    return replace(diagnosis, effects=effects)
 
 
-def named(found: Diagnosis) -> list[str]:
+def named(diagnosis: Diagnosis) -> list[str]:
     """Return the names of the effects of an answer."""
-    return [cause.effect for cause in found.causes if cause.present]
+    return [cause.effect for cause in diagnosis.causes if cause.present]
 
 
 def _improved(
-    found: Diagnosis, against: Aircraft, aircraft: Aircraft, folder: Path
+    diagnosis: Diagnosis, against: Aircraft, aircraft: Aircraft, folder: Path
 ) -> tuple[Aircraft, tuple[str, ...]]:
     """Return the aircraft file with the improved simulator, and the parts that it does not support."""
     kind, _, _ = (aircraft.simulator or "linear").partition(":")
     if kind == "linear":
-        better = parse_aircraft(file_of(FlownModel(against, None, None, found)))
+        better = parse_aircraft(file_of(FlownModel(against, None, None, diagnosis)))
         return replace(better, simulator=aircraft.simulator), ()
-    flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, found.effects))
+    flown, effects = less_of_the_servo(aircraft, together(aircraft.effects, diagnosis.effects))
     if kind != "jsbsim":
-        numbers = [derivative.name for derivative in found.derivatives if derivative.differs]
+        numbers = [derivative.name for derivative in diagnosis.derivatives if derivative.differs]
         return replace(flown, effects=effects), tuple(numbers)
     given = replace(against, simulator=aircraft.simulator, elevator=aircraft.elevator)
     name = Path(str(aircraft.simulator).partition(":")[2]).stem
     file = folder / name / f"{name}.xml"
     file.parent.mkdir()
-    made = JSBSIM.made(improved_model(found, given, None), file)
+    made = JSBSIM.made(improved_model(diagnosis, given, None), file)
     file.write_text(made.text, encoding="utf-8")
     around = {effect: sizes for effect, sizes in effects.items() if spelled(effect) in made.left_out}
     own = replace(aircraft.elevator, lag_s=0.0, delay_s=0.0)
