@@ -14,11 +14,14 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.nuisances import latency
 from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.inference import pitch
+from advisor.gap.inference.evidence import FlightProblem
+from advisor.gap.inference.pitch import PitchFlight
 from advisor.gap.noise.shown_gust import largest_gust
 from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion
 from advisor.gap.records.usable import outputs_of
-from advisor.gap.search.baseline import base_entries, fit_unfiltered
+from advisor.gap.search.baseline import base_entries, fit_baseline, fit_unfiltered
 from advisor.gap.simulator.layout import SPEED
 from advisor.oem.instruments import COMMAND_DELAY
 from advisor.oem.prepare import prepare as prepare_estimate
@@ -68,6 +71,20 @@ def test_a_filter_of_the_imu_that_no_parameter_states_is_part_of_the_plain_model
     found = there.point.values[there.point.index_of("imu_late")]
     assert found == pytest.approx(0.011, abs=1e-3)
     assert there.noise == pytest.approx(due.noise, rel=0.01)
+
+
+def test_a_plain_model_from_where_an_effect_ended_is_searched_no_further(monkeypatch):
+    """A fit that begins at this model ends above it, because edges of the command are found anew."""
+    problem, fitted = fit_baseline(prepare(FLOWN, Aircraft()), Aircraft())
+    lower, begun = replace(fitted, cost=fitted.cost - 100.0), []
+
+    def searched(loose, plain, fits):
+        begun.append(plain.cost)
+        return lower
+
+    monkeypatch.setattr(pitch, "_without_the_effect", searched)
+    PitchFlight(FlightProblem.of(problem, fitted), fitted, [], []).explained(None, 0)
+    assert begun[1:] == [lower.cost]
 
 
 def test_a_delay_that_the_examination_removed_is_put_back_once():

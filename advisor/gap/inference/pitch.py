@@ -62,6 +62,8 @@ class PitchFlight:
     looked: dict[int, list[Screened]] = field(default_factory=dict)
     """Quick fits of a second effect, by the identity of the fit with the first effect."""
     parts: Parts = field(default_factory=Parts)
+    is_optimum: bool = False
+    """Whether the search of the plain model ended at ``plain``; a second search may end elsewhere."""
 
     @property
     def tried(self) -> tuple[int, int]:
@@ -79,7 +81,7 @@ class PitchFlight:
         problem, begin = (self.problem, self.plain) if base is None else (base.problem, base.fitted)
         table = self._beside(base)
         loose = problem.within(ERROR_IF_WRONG)
-        plain = fit(loose, begin.point, begin.noise, iterations=4)
+        plain = begin if self.is_optimum and begin is self.plain else fit(loose, begin.point, begin.noise, 4)
         screen = Screen(loose, plain)
         quick = screen.quick_fits(table) if base is None else self._looks(base)
         chosen = [*likeliest(quick, most), *likeliest(screen.quick_fits(self.laws), LAWS)]
@@ -96,7 +98,7 @@ class PitchFlight:
         without = _without_the_effect(loose, plain, [made for _, made in fits])
         if base is None and without.cost < plain.cost - 2.0 * SAME_OPTIMUM:
             # The plain model had ended in a local minimum, and so had all that began there.
-            return replace(self, plain=without, looked={}).explained(base, most)
+            return replace(self, plain=without, looked={}, is_optimum=True).explained(base, most)
         heat = temperature(problem, min((plain, *(made for _, made in fits)), key=lambda made: made.cost))
         model = partial(self._model, loose, plain=plain, heat=heat)
         models = [kept(part(v.effect), partial(model, v, made)) for v, made in fits]

@@ -122,9 +122,8 @@ def stage_of(flight: Flight[E], base: E | None, most: int) -> Stage[E]:
     everyone = [_at_the_files(flight, one, everyone[0], heat, best) for one in everyone]
     plain, *added = within_model_error(flight, everyone, 0.0 if base is None else base.form_error)
     effects = tuple(one for one in added if one.alternative is not None and one.alternative.is_effect)
-    return Stage(
-        plain, effects, tuple(one for one in added if not any(one is other for other in effects)), heat
-    )
+    laws = tuple(one for one in added if one.alternative is None or not one.alternative.is_effect)
+    return Stage(plain, effects, laws, heat)
 
 
 def _at_the_files(flight: Flight[E], one: E, plain: E, heat: float, best: float) -> E:
