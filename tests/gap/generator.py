@@ -57,7 +57,7 @@ SWITCHES = {
     "bends_about": -9.0, "slosh": 0.0, "slosh_hz": 0.9, "stop_low": -9.0, "stop_high": 9.0,
     "ring_hz": 0.0, "ring_zeta": 0.2, "stall_at": 9.0, "stall_sharpness": 40.0,
     "lets_go_at": 9.0, "holds_below": -9.0, "lost_cl": 0.0, "bank": 0.0,
-    "breaks_at": 0.0, "drags": 0.0, "moment_power": 0.0, "mode_attitude": 0.0,
+    "breaks_at": 0.0, "drags": 0.0, "moment_power": 0.0, "mode_attitude": 0.0, "cl_q_abs": 0.0,
 }  # fmt: skip
 _K = {name: i for i, name in enumerate(SWITCHES)}
 (LAG, RATE, PLAY, DEAD, DELAY, DE2, DE3, CMA2, CMA3, TARM, CMAD, CLA2, CLA3, LLAG, LSHARE, MLAGS, ICET,
@@ -65,7 +65,7 @@ _K = {name: i for i, name in enumerate(SWITCHES)}
  KINK, KWIDTH, WASH, BEFORE, POWER, FROM, BEAT, BEATHZ, QABS, CMAQ, TAIL, CHANGET, CGAFTER,
  MASSAFTER, ABOUT, SLOSH, SLOSHHZ, LOWEST, HIGHEST, RINGHZ,
  RINGZETA, STALLAT, STALLS, LETSGO, HOLDS, LOST, BANK,
- BREAKS, DRAGS, MPOWER, MATT) = range(len(SWITCHES))  # fmt: skip
+ BREAKS, DRAGS, MPOWER, MATT, CLQABS) = range(len(SWITCHES))  # fmt: skip
 
 
 @kernel()
@@ -155,6 +155,7 @@ def _integrate(n, command, gust, thrust_wave, body, sw, phase, out):
             + sw[CLA2] * (da * da - d0 * d0)
             + sw[CLA3] * (da**3 - d0**3)
             + clq * q * chord / (2 * V)
+            + sw[CLQABS] * abs(q)
             + clde * (1 - 0.5 * ice) * de
             - 0.7 * cla * sw[KWIDTH] * np.log1p(np.exp((a - sw[KINK]) / sw[KWIDTH]))
         )

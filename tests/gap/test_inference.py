@@ -304,12 +304,13 @@ def test_the_effect_that_explains_most_with_a_second_one_leads():
     assert _lead(flight, stage_of(flight, None, 6)).name == "transport_delay"
 
 
-def staged(plain, effects=(), laws=(), best=None):
-    """Return a stage of explanations with their log evidence by name."""
+def staged(plain, effects=(), laws=(), best=None, small=-50.0):
+    """Return a stage of explanations with their log evidence by name, by ``small`` more if natural."""
 
     def made(name, nats):
         alternative = MOMENT if (name, nats) in laws else stated_as(name) if name else None
-        return SimpleNamespace(name=name, alternative=alternative, evidence=SimpleNamespace(either=nats))
+        told = Evidence(nats, nats)
+        return SimpleNamespace(name=name, alternative=alternative, evidence=told, natural=told.more(small))
 
     nothing, some, others = made("", plain), [made(*e) for e in effects], [made(*e) for e in laws]
     return SimpleNamespace(plain=nothing, effects=some, laws=others, best=some[0] if some else nothing)
@@ -321,12 +322,12 @@ def pairs(first_nats, second, natural=-50.0, alone=()):
     way = Row(DELAY, stage_1.best, {"fit": first_nats})
     prior = FieldPrior(none=0.4, parameters=0.2, effect=0.3, unknown=0.1)
     ways = [way, *(Row(one, SimpleNamespace(), {}) for one in alone)]
-    flight = SimpleNamespace(tried=(26, 18), natural_nats=lambda lead, pair: natural)
+    flight = SimpleNamespace(tried=(26, 18), is_stated=True, natural_nats=lambda lead, pair: natural)
     return list(_pairs(flight, ways, stage_1.plain, stage_1.best, second, prior))
 
 
 def test_a_second_cause_keeps_the_first_one_as_the_answer():
-    (way,) = pairs(50.0, staged(0.0, [("actuator_lag", 20.0)]))
+    way = max(pairs(50.0, staged(0.0, [("actuator_lag", 20.0)])), key=lambda way: way.weight)
     assert way.alternative == DELAY
     assert way.model.name == "actuator_lag"
     assert way.terms["second"] == pytest.approx(20.0 + np.log(0.3 / 25 / 0.6))
@@ -338,6 +339,18 @@ def test_a_pair_whose_first_effect_is_as_small_as_on_every_aircraft_has_the_name
 ):
     told = posterior_of(pairs(50.0, staged(0.0, [("actuator_lag", 20.0)]), natural, [LAG]))
     assert told.answer == named
+
+
+@pytest.mark.parametrize(("small", "named"), [(10.0, NONE), (-10.0, LAG)])
+def test_two_effects_that_are_both_as_small_as_on_every_aircraft_are_no_finding(small, named):
+    told = posterior_of(pairs(50.0, staged(0.0, [("actuator_lag", 20.0)], small=small), 10.0, [LAG]))
+    assert told.answer == named
+
+
+@pytest.mark.parametrize(("natural", "unknown"), [(20.0, True), (-20.0, False)])
+def test_a_law_next_to_an_effect_as_small_as_on_every_aircraft_is_the_answer(natural, unknown):
+    told = posterior_of(pairs(990.0, staged(0.0, laws=[("damping_curve", 10.0)]), natural))
+    assert (told.answer.kind == "unknown") is unknown
 
 
 @given(st.floats(0.02, 0.5), st.floats(0.0, 3.0))

@@ -198,6 +198,12 @@ def test_damping_that_bends_is_no_sum_of_bent_moments(setup, switches, says):
     assert any(says in note for note in found.notes)
 
 
+def test_lift_that_is_lost_with_the_pitch_rate_is_no_lift_that_bends():
+    found = diagnose(fly(replace(HARD, switches={"cl_q_abs": -0.25})), Aircraft())
+    assert (found.verdict, found.where.block) == ("unknown", "force_equation")
+    assert any("The lift changes with the pitch rate" in note for note in found.notes)
+
+
 @pytest.mark.study
 def test_an_accelerometer_that_does_not_carry_the_weight_is_unknown_where_the_dynamics_tell_nothing():
     stormy = Setup(gust_std=2.0, coloured=0.5, jitter=0.004, seed=37)

@@ -16,6 +16,7 @@ from advisor.gap.inference.with_motion import WITNESSES
 
 _ALWAYS = frozenset({"air"})
 """Blocks with a disturbance in most flights, whose residual indicates no missing law."""
+_NO_RESIDUAL = Residual(0.0, {})
 
 
 @dataclass(frozen=True)
@@ -83,9 +84,9 @@ def rows_of(
             for way in _ways(flight, moving, prior)
         ]
     ways.sort(key=lambda way: -way.weight)
-    if flight.maneuvers < WITNESSES:
-        # An effect without a name must repeat, which fewer manoeuvres do not show.
-        ways = [way for way in ways if way.alternative.kind != "unknown"]
+    # An effect without a name must repeat, which fewer manoeuvres do not show.
+    repeats = flight.maneuvers >= WITNESSES
+    ways = [way for way in ways if repeats or way.alternative.kind != "unknown"]
     rows: list[Row[E]] = []
     searched: dict[int, Residual] = {}
     named: dict[tuple[Alternative, bool], Residual] = {}
@@ -94,39 +95,38 @@ def rows_of(
         if name not in named:
             best = max((row.weight for row in rows), default=-np.inf)
             if model not in searched and way.weight + MOST_NATS > best:
-                searched[model] = _repeating(flight, flight.residual(way.model, stage.heat))
+                searched[model] = flight.residual(way.model, stage.heat) if repeats else _NO_RESIDUAL
             # An alternative that no residual makes the answer gets the residual of the likeliest model.
             named[name] = searched.get(model, next(iter(searched.values())))
         rows += _with_residual(way, named[name], prior)
     return rows
 
 
-def _repeating(flight: Flight[E], residual: Residual) -> Residual:
-    """Return the residual with the size zero, if too few manoeuvres show whether the residual repeats."""
-    return residual if flight.maneuvers >= WITNESSES else replace(residual, size=0.0, size_beside_air=None)
-
-
 def _ways(flight: Flight[E], stage: Stage[E], prior: FieldPrior) -> Iterator[Row[E]]:
     """Yield the models of each alternative, without evidence from the residual."""
-    stated, (names, laws) = flight.is_stated, flight.tried
+    names, laws = flight.tried
     plain, each = stage.plain, prior.effect / max(names, 1)
-    none = prior.none + (0.0 if stated else prior.parameters)
     natural = 0.5 / max(names, len(stage.effects), 1)
     without = 1.0 - natural * len(stage.effects)
-    yield _row(NONE, plain, plain.evidence.right, without * none)
-    if stated:
-        yield _row(PARAMETERS, plain, plain.evidence.wrong, without * prior.parameters)
+    for answer, side, chance in _without_effect(flight, prior):
+        yield _row(answer, plain, getattr(plain.evidence, side), without * chance)
+        # As little of an effect as every aircraft has is no finding.
+        for one in stage.effects:
+            yield _row(answer, one, getattr(one.natural, side), natural * chance)
     for one in stage.effects:
         assert one.alternative is not None
-        # As little of an effect as every aircraft has is no finding.
-        yield _row(NONE, one, one.natural.right, natural * none)
-        if stated:
-            yield _row(PARAMETERS, one, one.natural.wrong, natural * prior.parameters)
         forms = sum(other.name == one.name for other in stage.effects)
         yield _row(one.alternative, one, one.evidence.either, each / forms)
     for one in stage.laws:
         assert one.alternative is not None
         yield _row(one.alternative, one, one.evidence.either, 0.5 * prior.unknown / laws)
+
+
+def _without_effect(flight: Flight[E], prior: FieldPrior) -> list[tuple[Alternative, str, float]]:
+    """Return each answer without an effect, the evidence that it needs, and its prior probability."""
+    if not flight.is_stated:
+        return [(NONE, "right", prior.none + prior.parameters)]
+    return [(NONE, "right", prior.none), (PARAMETERS, "wrong", prior.parameters)]
 
 
 def _pairs(
@@ -146,13 +146,20 @@ def _pairs(
         if left > 0.0 and one.alternative is not None:
             terms = {**way.terms, "second": more + float(np.log(left))}
             yield replace(way, alternative=one.alternative, terms=terms)
-        alone = next((w.explanation for w in ways if w.alternative == one.alternative), None)
-        if not outside and one.alternative is not None and alone is not None:
-            # As little of the first effect as every aircraft has is no finding: the second effect is.
-            natural = 0.5 / max(flight.tried[0], 1) * (prior.none + prior.parameters)
-            own = flight.natural_nats(lead, one)
-            terms = {**first.terms, "prior": float(np.log(natural)), "natural": own, "second": more}
+        # As little of the first effect as every aircraft has is no finding: the second effect is.
+        small = {**first.terms, "natural": flight.natural_nats(lead, one)}
+        natural = 0.5 / max(tried[0], 1)
+        same = (w.explanation for w in ways if w.alternative == one.alternative)
+        alone = one if outside else next(same, None)
+        if one.alternative is not None and alone is not None:
+            odds = float(np.log(natural * (prior.none + prior.parameters)))
+            terms = {**small, "prior": odds, "second": more}
             yield replace(way, alternative=one.alternative, explanation=alone, terms=terms)
+        # Natural amounts of both are no finding either.
+        for answer, side, chance in () if outside else _without_effect(flight, prior):
+            as_small = getattr(one.natural, side) - second.plain.evidence.either
+            terms = small | {"prior": float(np.log(natural**2 * chance)), "second": as_small}
+            yield replace(way, alternative=answer, terms=terms)
         if left < 1.0:
             yield replace(way, terms={**way.terms, "second": more + float(np.log1p(-left))})
 

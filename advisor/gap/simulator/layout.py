@@ -27,8 +27,8 @@ EFFECT_ENTRIES = (
     # moment equation
     "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_alpha_dot", "M_h",
     "M_throttle", "engine_lag_s", "M_thrust", "washed_share", "blown_share",
-    # moment laws outside the catalogue
-    "M_q_abs", "M_q_q", "M_alpha_q", "M_alpha_delta_e",
+    # laws outside the catalogue, of the moment and of the force
+    "M_q_abs", "M_q_q", "M_alpha_q", "M_alpha_delta_e", "Z_q_abs", "Z_q_q",
     # force equation
     "Z_alpha2", "Z_alpha3", "stall_rad", "stall_sharpness", "lift_share", "lift_lag_s", "moment_share",
     "Z_memory", "memory_rad", "Z_separated", "separation_rad", "attachment_rad",

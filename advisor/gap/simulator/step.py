@@ -156,7 +156,8 @@ def normal_force(x: FloatArray, m: int, a: float, q: float, da: float, behind: f
         + (x[AT.Z_alpha, m] + (x[AT.Z_alpha2, m] + x[AT.Z_alpha3, m] * lagged) * lagged) * lagged
     )
     wing += x[AT.Z_memory, m] * (a - x[row.FOLLOWED, m]) + x[AT.Z_separated, m] * x[row.MISSING, m]
-    normal: float = x[row.Z_REST, m] + x[row.LIFTING, m] * x[row.ATTACHED, m] * wing + x[AT.Z_q, m] * q
+    turned = (x[AT.Z_q, m] + x[AT.Z_q_q, m] * abs(q)) * q + x[AT.Z_q_abs, m] * abs(q)
+    normal: float = x[row.Z_REST, m] + x[row.LIFTING, m] * x[row.ATTACHED, m] * wing + turned
     return normal
 
 

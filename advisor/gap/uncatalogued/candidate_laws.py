@@ -160,16 +160,21 @@ _READINGS = {
         ),
     ),
 }  # fmt: skip
-_MOMENTS = (
-    Variant(
-        "damping_curve", "moment_equation", ("M_q_abs", "M_q_q"), ((0.0, 0.0),), (0.05, 0.1),
-        ((-50.0, 50.0), (-200.0, 200.0)), 0.0, entries=("M_q_abs", "M_q_q"),
-    ),
-    Variant(
-        "crossed_moment", "moment_equation", ("M_alpha_q", "M_alpha_delta_e"), ((0.0, 0.0),), (0.5, 1.0),
-        ((-300.0, 300.0), (-2000.0, 2000.0)), 0.0, entries=("M_alpha_q", "M_alpha_delta_e"),
-    ),
-)  # fmt: skip
+
+
+def _terms(
+    name: str, block: str, entries: tuple[str, str], steps: tuple[float, float], most: tuple[float, float]
+) -> Variant:
+    """Return two terms of an equation, each within ``most`` of zero."""
+    bounds = tuple((-furthest, furthest) for furthest in most)
+    return Variant(name, block, entries, ((0.0, 0.0),), steps, bounds, 0.0, entries=entries)
+
+
+_EQUATIONS = (
+    _terms("damping_curve", "moment_equation", ("M_q_abs", "M_q_q"), (0.05, 0.1), (50.0, 200.0)),
+    _terms("crossed_moment", "moment_equation", ("M_alpha_q", "M_alpha_delta_e"), (0.5, 1.0), (300.0, 2e3)),
+    _terms("lift_of_turning", "force_equation", ("Z_q_abs", "Z_q_q"), (0.005, 0.01), (5.0, 20.0)),
+)
 
 
 def _rings(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
@@ -202,6 +207,7 @@ _SENTENCES = {
         for channel, what in (("q", "The pitch rate"), ("a_z", "The acceleration"), ("theta", "The attitude"))
     },
     "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
+    "lift_of_turning": "The lift changes with the pitch rate, and not in proportion.",
     "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
 }
 
@@ -241,7 +247,7 @@ def laws_for(flights: PreparedManeuvers) -> list[Variant]:
     of_lift = [lift_memory(flights), flow_lets_go(flights)] if "alpha" in flights.channels else []
     most = float(np.median([np.max(np.abs(flight.u - flight.u_trim)) for flight in flights.flights]))
     of_input = [*surface_stops(flights), RINGING, sticking(most), *_weaker(flights)]
-    return [*of_readings, *_MOMENTS, *of_input, *of_lift]
+    return [*of_readings, *_EQUATIONS, *of_input, *of_lift]
 
 
 def sentence_of(law: str, values: FloatArray) -> str:
