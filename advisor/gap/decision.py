@@ -9,12 +9,15 @@ explanations that differ by less than this gain are equivalent."""
 CERTAIN = 30.0
 """Gain in log likelihood, nats, above which something like an effect, or moving air, is certainly
 present. On 40 flights of two generators no gain of moving air lies between 21 and 64."""
-LEAST_SIGMA = 3.0
-"""Least number of standard deviations by which a parameter of an effect differs from zero."""
 SIGMAS = 5.0
 """Least number of standard deviations of a difference that a check without a model reports. Checked are air
 speed, weight, offset of α, wind, and speeds of manoeuvres. Errors of such checks are not Gaussian, so three
 would not do."""
+
+
+def differs_from_zero(value: float, std: float) -> bool:
+    """Return whether a parameter with a Gaussian error gains at least ``LEAST_GAIN`` over zero."""
+    return 0.5 * value**2 > LEAST_GAIN * std**2
 
 
 @dataclass(frozen=True, slots=True)

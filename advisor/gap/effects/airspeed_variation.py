@@ -4,8 +4,9 @@ from collections.abc import Sequence
 
 from advisor.gap.kit.effect import ANY, Effect, Need
 from advisor.gap.kit.variant import Values, Variant
-from advisor.gap.records.flights import SPEED_CHANGE, PreparedManeuvers
+from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
+from advisor.oem.prepare import SPEED_CHANGE
 from advisor.process.arrays import FloatArray
 
 _TWO_POWERS = 0.1

@@ -9,14 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.gap.candidates.distinguish import ONE_IMU, OTHERWISE, hidden_from, need_of, way_to_distinguish
-from advisor.gap.decision import LEAST_GAIN, LEAST_SIGMA
+from advisor.gap.decision import LEAST_GAIN
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.inference.explanation import least_apart
 from advisor.gap.kit.variant import Variant
-from advisor.gap.records.floor import floor_margins
 from advisor.gap.result import VISIBLE, Unseen, spelled
 from advisor.gap.simulator.layout import INDEX
 from advisor.process.arrays import FloatArray
@@ -200,9 +199,8 @@ def _needed(signatures: Signatures, numbers: int) -> float:
     """Return the least power of a signature for near-sure detection and enough change of the outputs."""
     price = numbers * float(np.log(signatures.rows))
     # A filter of moving air leaves far less of a change than the outputs show.
-    least = _least_change(signatures.problem) * float(np.mean(floor_margins(signatures.problem.flights) ** 2))
-    change = 0.0 if signatures.filtered else least * signatures.rows
-    return max(float(LEAST_SIGMA + NORMAL_95) ** 2, 2.0 * LEAST_GAIN + price, change)
+    change = 0.0 if signatures.filtered else _least_change(signatures.problem) * signatures.rows
+    return max(float(np.sqrt(2.0 * LEAST_GAIN) + NORMAL_95) ** 2, 2.0 * LEAST_GAIN + price, change)
 
 
 def _foreseen(

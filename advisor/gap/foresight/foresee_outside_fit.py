@@ -23,9 +23,10 @@ from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.foresight.foresee import Foreseen, Signature
 from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.noise.probes import disturbance_columns
-from advisor.gap.records.flights import SPEED_CHANGE, PreparedManeuver, PreparedManeuvers
+from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.search.air import AIR_MANEUVERS, LEAST_GUST_ANGLE
 from advisor.gap.simulator.layout import DISTURB_AIR, REFERENCE, SPEED
+from advisor.oem.prepare import SPEED_CHANGE
 from advisor.process.arrays import FloatArray
 
 CLIMB_RATE_STD_M_S = 0.1

@@ -10,8 +10,6 @@ from advisor.gap.simulator.layout import ALPHA_TRIM, REFERENCE, SCALED, SPEED
 from advisor.oem.rows import Signal
 from advisor.process.arrays import FloatArray
 
-SPEED_CHANGE = 0.03
-"""Relative change of air speed over all manoeuvres above which the speed's effect is examined."""
 _QUIET_AFTER = 0.6
 """Record: share of the free response after which the motion has decayed."""
 _QUIET_AFTER_S = 1.5

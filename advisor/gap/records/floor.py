@@ -11,9 +11,6 @@ from advisor.process.arrays import FloatArray
 
 TOLERANCE = 0.02
 """Prior: noise that is assumed in a record filtered before storage, as a share of the channel's peak."""
-STATED_FLOOR_MARGIN = 2.5
-"""Factor by which a residual must exceed a stated floor to be significant. A stated floor is an assumption,
-not a measurement."""
 _SMOOTH = 1e-3
 """White noise over the channel's peak below which a channel was filtered, because no instrument is so
 quiet."""
@@ -28,11 +25,6 @@ def prefiltered(flights: PreparedManeuvers) -> dict[str, bool]:
     smooth = flights.white < (_RAW if filtered else _SMOOTH) * flights.peaks
     smooth |= flights.alpha_is_smoothed & (np.array(flights.channels) == "alpha")
     return dict(zip(flights.channels, smooth.tolist(), strict=True))
-
-
-def floor_margins(flights: PreparedManeuvers) -> FloatArray:
-    """Return the factor by which each channel's residual must exceed its floor, shape (channels,)."""
-    return np.where(list(prefiltered(flights).values()), STATED_FLOOR_MARGIN, 1.0)
 
 
 def stated_floor(flights: PreparedManeuvers) -> FloatArray:

@@ -17,12 +17,6 @@ from advisor.gap.fitting.uncertainty import colour_of, covariance_of
 from advisor.gap.uncatalogued.weight_check import WeightReading
 from advisor.words.quantiles import NORMAL_95
 
-_REPORTED = 0.03
-"""Least relative difference of air speed and accelerometer that is reported. A larger difference may come
-from an indicated air speed."""
-_ITS_OWN = 0.5
-"""Largest weight error of the accelerometer, as a share of the difference, for an indicated air speed."""
-
 
 @dataclass(frozen=True)
 class AirspeedScale:
@@ -32,9 +26,11 @@ class AirspeedScale:
     std: float
 
     def is_indicated(self, weight: WeightReading | None) -> bool:
-        """Return whether the air speed may be an indicated one in thin air, because the accelerometer reads
-        the right weight."""
-        return weight is not None and self.scale > max(0.0, (weight.share - 1.0) / _ITS_OWN)
+        """Return whether the air speed may be an indicated one in thin air.
+
+        The accelerometer then reads nearly the right weight, and not as much too high as the difference.
+        """
+        return weight is not None and self.scale > max(0.0, 2.0 * (weight.share - 1.0))
 
     @property
     def sentence(self) -> str:
@@ -69,4 +65,6 @@ def airspeed_scale_of(problem: EffectProblem, fitted: EffectFit) -> AirspeedScal
     at = point.place(point.effects.index(TRUE_AIR_SPEED)).start
     known = covariance_of(problem, fitted, colour_of(problem, fitted))
     std = float(np.sqrt(known[at, at]))
-    return AirspeedScale(scale, std) if abs(scale) > max(_REPORTED, SIGMAS * std) else None
+    # A difference within the nuisance parameter's prior is that of any static port.
+    natural = NORMAL_95 * TRUE_AIR_SPEED.prior_std[0]
+    return AirspeedScale(scale, std) if abs(scale) > max(natural, SIGMAS * std) else None

@@ -11,7 +11,7 @@ from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.nuisances import PROPELLER
-from advisor.gap.decision import CERTAIN, LEAST_SIGMA, Decision
+from advisor.gap.decision import CERTAIN, Decision, differs_from_zero
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import sole_informative_maneuver
@@ -235,7 +235,7 @@ def _improvements(
     point = fitted.point
     if PROPELLER in point.effects:
         k = point.effects.index(PROPELLER)
-        if np.any(np.abs(point.values[k]) > LEAST_SIGMA * std[point.place(k)]):
+        if any(map(differs_from_zero, point.values[k], std[point.place(k)])):
             thrust = effects.setdefault("thrust_moment", {})
             thrust.update(zip(PROPELLER.names, map(float, point.values[k]), strict=True))
     return effects

@@ -9,8 +9,8 @@ from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut, folds_for, held_out, hold_out, mean_squares, measured_in
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.findings import Findings, Model
-from advisor.gap.records.flights import SPEED_CHANGE
 from advisor.gap.search.air import MovingAir
+from advisor.oem.prepare import SPEED_CHANGE
 from advisor.oem.rows import Signal
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.known import stated_in
-from advisor.gap.decision import LEAST_SIGMA
+from advisor.gap.decision import differs_from_zero
 from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Cause
 
@@ -21,7 +21,7 @@ def what(cause: Cause, in_simulator: frozenset[str] = frozenset()) -> str:
     telling = (
         name
         for name, value in cause.parameters.items()
-        if name != "lag_s" or abs(value.value) > LEAST_SIGMA * value.std
+        if name != "lag_s" or differs_from_zero(value.value, value.std)
     )
     put = next((effect.said_with[name] for name in telling if name in effect.said_with), effect.said)
     below = next(iter(sizes.values()), 0.0) < 0.0
