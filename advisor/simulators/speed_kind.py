@@ -14,7 +14,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.true_airspeed import SEA_LEVEL_DENSITY_KG_M3
-from advisor.gap.candidates.nuisances import TRUE_AIR_SPEED
+from advisor.gap.candidates.nuisances import STATIC_PORT
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion
@@ -24,9 +24,6 @@ from advisor.words.quantiles import NORMAL_95
 
 _ODDS = 10.0
 """Prior odds that a log follows MAVLink's convention."""
-_MATTERS = 0.02
-"""Least relative difference between true and indicated air speed that is examined: that at 400 m. A static
-port has errors of this size (the prior of ``TRUE_AIR_SPEED``)."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +40,7 @@ def by_the_motion(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SpeedKin
     if not maneuvers or not all(map(measures_speed, maneuvers)):
         return unchanged
     factor = _other_kind(maneuvers, aircraft)
-    if abs(factor - 1.0) < _MATTERS:
+    if abs(factor - 1.0) < STATIC_PORT:
         return unchanged
     unmodelled = replace(aircraft, model={}, effects={}, simulator=None)
     flights = prepare(alpha_by_motion(maneuvers, unmodelled), unmodelled)
@@ -75,7 +72,7 @@ def _other_kind(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> float:
 
 def _is_likelier(scale: float, std: float, other: float) -> bool:
     """Return whether a measured relative excess is likelier under the other kind, despite its prior."""
-    spread = TRUE_AIR_SPEED.prior_std[0] ** 2 + std**2
+    spread = STATIC_PORT**2 + std**2
     return scale**2 - (scale - other) ** 2 > 2.0 * spread * log(_ODDS)
 
 

@@ -87,6 +87,18 @@ def test_a_plain_model_from_where_an_effect_ended_is_searched_no_further(monkeyp
     assert begun[1:] == [lower.cost]
 
 
+def test_an_air_speed_that_is_read_low_is_part_of_the_plain_model_without_an_angle_of_attack():
+    low = []
+    for m in FLOWN:
+        read = replace(m.channels["airspeed"], y=0.95 * m.channels["airspeed"].y)
+        seen = {name: one for name, one in m.channels.items() if name != "alpha"}
+        low.append(replace(m, channels={**seen, "airspeed": read}))
+    flights = prepare(low, Aircraft())
+    assert "alpha" not in flights.channels
+    point = fit_unfiltered(flights, Aircraft())[1].point
+    assert point.values[point.index_of("true_air_speed")] == pytest.approx(1.0 / 0.95 - 1.0, abs=0.01)
+
+
 def test_a_delay_that_the_examination_removed_is_put_back_once():
     late = InstrumentFinding("a_z", "delay_s", None, 0.1, 0.01, True, used=True, removed_s=0.1)
     once = as_stamped(replace(FLOWN[0], findings=(late,)))

@@ -81,7 +81,7 @@ def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float 
         late = late.with_effect(OWN_ALPHA, (0.0, 0.0))
     elif {"alpha", "theta"} & set(flights.channels):
         late = late.with_effect(IMU, (0.0,))
-    if {"alpha", "a_z"} <= set(flights.channels):
+    if "a_z" in flights.channels:
         late = late.with_effect(TRUE_AIR_SPEED, (0.0,))
     return late.with_effect(PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
 

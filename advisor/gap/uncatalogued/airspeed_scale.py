@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.gap.candidates.nuisances import TRUE_AIR_SPEED
+from advisor.gap.candidates.nuisances import STATIC_PORT, TRUE_AIR_SPEED
 from advisor.gap.decision import SIGMAS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
@@ -65,6 +65,4 @@ def airspeed_scale_of(problem: EffectProblem, fitted: EffectFit) -> AirspeedScal
     at = point.place(point.effects.index(TRUE_AIR_SPEED)).start
     known = covariance_of(problem, fitted, colour_of(problem, fitted))
     std = float(np.sqrt(known[at, at]))
-    # A difference within the nuisance parameter's prior is that of any static port.
-    natural = NORMAL_95 * TRUE_AIR_SPEED.prior_std[0]
-    return AirspeedScale(scale, std) if abs(scale) > max(natural, SIGMAS * std) else None
+    return AirspeedScale(scale, std) if abs(scale) > max(NORMAL_95 * STATIC_PORT, SIGMAS * std) else None
