@@ -96,7 +96,7 @@ class PitchFlight:
         tried = [(q, kept(part(q.name), partial(full, q.point, q.noise))) for q in chosen]
         fits = [(q.variant, made) for q, made in tried if made is not None and np.isfinite(made.cost)]
         without = _without_the_effect(loose, plain, [made for _, made in fits])
-        if base is None and without.cost < plain.cost - 2.0 * SAME_OPTIMUM:
+        if base is None and without.cost < plain.cost - 2.0 * SAME_OPTIMUM * temperature(problem, plain):
             # The plain model had ended in a local minimum, and so had all that began there.
             return replace(self, plain=without, looked={}, is_optimum=True).explained(base, most)
         heat = temperature(problem, min((plain, *(made for _, made in fits)), key=lambda made: made.cost))

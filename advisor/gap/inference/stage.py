@@ -16,8 +16,8 @@ derivatives. A wrong derivative hides such an effect in a fit with free derivati
 _FORMS = 2
 """Numerical: number of variants of one effect that are fully fitted."""
 SAME_OPTIMUM = 1.0
-"""Numerical: difference of the log posterior density, nats of white noise, of two searches that ended in one
-optimum."""
+"""Numerical: difference of the log posterior density, nats, of two searches that ended in one optimum. In
+roll and yaw these are nats of white noise."""
 REFINED = 120.0
 """Numerical: evidence deficit to the best explanation, nats, beyond which no explanation is fitted
 further."""

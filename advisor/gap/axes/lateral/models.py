@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from operator import attrgetter
 
 import numpy as np
 
@@ -108,8 +107,7 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
     given = np.array([aircraft.model.get(n, v) for n, v in zip(SIDE_PARAMETERS, theta, strict=True)])
     begin = Point(theta, lateral_start(problem)[1], setting)
     flown = Flown(problem, throttle, beta_arm_m(aircraft) is not None)
-    numbers = tuple(map(attrgetter("number"), maneuvers))
-    return Case(flown, given, stated, tuple(natural), begin, numbers, fixed)
+    return Case(flown, given, stated, tuple(natural), begin, tuple(m.number for m in maneuvers), fixed)
 
 
 def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
