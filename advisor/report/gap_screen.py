@@ -73,6 +73,7 @@ class GapScreen:
 
     def _parts(self, width: int) -> Iterator[RenderableType]:
         d = self.diagnosis
+        tested = d.verdict != "untested"
         yield Panel(Group(*_answer(d)), title=title_of(d), title_align="left")
         if d.gap.by_channel:
             yield _numbers(d)
@@ -81,23 +82,23 @@ class GapScreen:
             yield from (Text(f"  {named(name)} {with_error(name, x)}") for name, x in d.instruments.items())
         if d.structured is not None:
             yield from map(Text, structure_lines(d.structured))
-        if d.verdict not in ("none", "untested"):
+        if tested and d.verdict != "none":
             where = (
                 f"where: {where_said(d.where, d.shrink)}" if d.verdict in ("effect", "unknown") else "where"
             )
             yield Panel(Group(*_picture(d)), title=where, title_align="left")
-        if self.everything and d.gap.by_maneuver:
+        if self.everything and tested:
             yield from self._course()
-        if d.causes and (d.verdict != "none" or self.everything):
+        if tested and d.causes and (d.verdict != "none" or self.everything):
             yield ""
             yield from ranking(d.causes, d.gap.before, _improved(d))
-        if self.why:
+        if self.why and tested:
             yield from why_of(d)
         if d.in_simulator is not None:
             yield ""
             yield from simulated(d.in_simulator, self.everything)
         if self.everything:
-            yield from self._errors(width) if d.gap.by_maneuver else ()
+            yield from self._errors(width) if tested else ()
             yield from self._limits(width)
         if self.improved is not None:
             yield ""
@@ -203,11 +204,11 @@ def _hanging(mark: str, text: str, width: int) -> Text:
 
 def _numbers(d: Diagnosis) -> Text:
     lines = [size_of_gap(d.verdict, d.gap)]
-    if d.shrink is not None and d.verdict != "none":
+    if d.shrink is not None and d.verdict not in ("none", "untested"):
         lines.append(shrink_said(d.shrink, d.gap))
         if d.shrink.beyond_air_percent is not None:
             lines.append(f"without the air's own course: {d.shrink.beyond_air_percent:.0f} % less")
-    if grown := grown_said(d.verdict, d.gap):
+    if d.verdict != "untested" and (grown := grown_said(d.verdict, d.gap)):
         lines.append(f"{WORSE} {grown}")
     return Text("\n".join(lines))
 

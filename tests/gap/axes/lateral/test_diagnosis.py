@@ -94,16 +94,18 @@ def test_the_screen_says_the_cause_with_its_control_its_size_and_its_place():
     assert "nothing to correct 20" in text
 
 
-def test_without_a_simulator_the_screen_has_neither_probabilities_nor_the_size_of_a_gap():
+def test_without_a_simulator_the_screen_has_neither_probabilities_nor_a_gap_before_and_after():
     instruments = {"rudder_lag_s": Value(0.06, 0.003), "airspeed_excess": Value(0.03, 0.01)}
-    alone = replace(FOUND, verdict="untested", gap=Gap(), shrink=None, causes=(), instruments=instruments)
-    text = "\n".join(printed(alone, 100))
+    worse = replace(FOUND.gap, before=0.2)
+    alone = replace(FOUND, verdict="untested", gap=worse, instruments=instruments)
+    text = "\n".join(printed(alone, 100, why=True))
     assert axis_document(alone)["how_sure"] == ""
     assert axis_document(FOUND)["how_sure"]
     assert "NOTHING TO COMPARE WITH" in text
     assert "wrong numbers" not in text
     assert "aileron actuator backlash" not in text
-    assert "noise floor" not in text
+    assert "before" not in text
+    assert "▲" not in text
     assert "Nuisance parameters of the fit, no part of the answer:" in text
     assert "rudder lag 60.0 ± 5.9 ms" in text
     assert "airspeed excess 3.0 ± 2.0 %" in text
