@@ -77,7 +77,7 @@ def read_whole(
     no_marks
         Whether to ignore earlier decisions by hand on the logs.
     untested
-        Whether flights without a test input are an answer of their own.
+        Whether logs without a test input are returned; False: such logs are refused.
 
     Raises
     ------

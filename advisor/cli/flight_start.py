@@ -45,7 +45,7 @@ def start_of(
     resume
         Recording whose flight test continues, or ``NEWEST``. None: a new flight test.
     further
-        Later recordings of the flight test of ``resume``.
+        Recordings that the flight test of ``resume`` made after its first one.
     record_to
         File or folder of the recording. None: the user's own folder, or the flight test's last recording.
 

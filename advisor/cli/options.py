@@ -192,7 +192,7 @@ def refuse_unwritable(option: str, path: Path) -> None:
     Raises
     ------
     ConfigurationError
-        The path is a folder, or lies in none, or may not be written.
+        The path is a folder, its folder does not exist, or the user may not write there.
     """
     if path.is_dir():
         raise ConfigurationError(f"{option}: {path} is a folder; name a file in it.")

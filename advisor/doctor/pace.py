@@ -67,8 +67,8 @@ def rate_limits(
     Parameters
     ----------
     paced
-        Elevator and q, with alpha and a_z where measured. A slow alpha prevents nothing where a_z and air
-        speed are measured.
+        Rates of elevator and q, and of alpha and a_z where these are measured. A slow alpha prevents nothing
+        where a_z and air speed are measured.
     """
     period_s = 2.0 * np.pi / frequency(assumed.model)
     fewest_hz = max(SLOWEST_HZ, needed_hz(period_s))

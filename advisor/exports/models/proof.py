@@ -157,7 +157,7 @@ def refuse_unimproved(improves: bool, sentence: str, count: int) -> None:
         raise UnusableInputError(
             "nothing_to_prove",
             f"--prove has no improved simulator to fly. The {count} manoeuvres of its fit say: {sentence}",
-            "Leave out --prove, or name the manoeuvres' other half by --prove LOG.",
+            "Leave out --prove, or give a log with other manoeuvres: --prove LOG.",
         )
 
 

@@ -38,8 +38,8 @@ from advisor.flight.instruments.measured import ANY, Evidence, Measured, Weighed
 from advisor.flight.signals.record import Channel
 
 _GYRO_WIDTH = 0.05
-"""Prior standard deviation of the ratio of an angle to its integrated rate, as a share. Recorded manoeuvres
-have ratios of 0.92 to 1.05 in pitch."""
+"""Prior standard deviation of the ratio of an angle to its integrated rate, as a share. In recorded
+manoeuvres the pitch angle is 0.92 to 1.05 times the integrated pitch rate."""
 _FORCE_WIDTH = 0.05
 """Prior standard deviation of an accelerometer's scale, as a share: calibration of 2 to 3 %, and mounting."""
 _AIRSPEED_WIDTH, _AIRSPEED_MEAN = 0.12, 0.95

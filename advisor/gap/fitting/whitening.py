@@ -88,8 +88,8 @@ def rows_in_time(
 ) -> tuple[FloatArray, np.ndarray, np.ndarray]:
     """Return times and channels (indices into ``OUTPUTS``) of one manoeuvre in order of time, and that order.
 
-    A vane delayed in ``p``, shape (entries,), saw the air before its stamp, so its rows have that earlier
-    time.
+    ``p``, shape (entries,), may delay the vane. The rows of a delayed vane have the time of the measurement,
+    which lies before the stamp.
     """
     flight = flights.flights[i]
     late_s = 0.0 if flights.alpha_is_derived else float(p[INDEX["alpha_skew_s"]] + p[INDEX["alpha_lag_s"]])

@@ -173,5 +173,5 @@ def within_model_error(flight: Flight[E], everyone: Sequence[E], error: float) -
 
 
 def _told(one: E) -> float:
-    """Return what the residuals of the fit and of held-out manoeuvres say of a model, nats."""
+    """Return a model's log likelihood in the fit and on held-out manoeuvres, nats."""
     return one.likelihood + one.unseen

@@ -37,7 +37,7 @@ class Curve:
 
 
 def bending(variant: Variant, curve: Curve) -> Callable[[PreparedManeuvers], Sequence[Variant]]:
-    """Return a function that describes a curve as the only form of an effect."""
+    """Return a function that makes the variant of an effect whose only form is a curve."""
     return partial(_only_bent, variant, curve)
 
 

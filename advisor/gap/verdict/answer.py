@@ -126,7 +126,7 @@ def _added(one: PitchModel) -> Added:
 def _unexplained(
     posterior: Posterior[PitchModel], answer: Alternative, law: PitchModel | None
 ) -> Unexplained | None:
-    """Return the residual without a name, if the residual is the answer."""
+    """Return the block and the share of a law without a name; None for another answer."""
     if answer.kind != "unknown":
         return None
     blocks = {a.block: p for a, p in posterior.by_alternative.items() if a.kind == "unknown"}

@@ -1,6 +1,6 @@
 """PX4's log before ULog (``.px4log``, "sdlog2"): DataFlash's container with PX4's own records.
 
-Records of this log have no time. A TIME record precedes all records of one round of the logger (PX4,
+A record of sdlog2 has no time of its own. A TIME record precedes all records of one round of the logger (PX4,
 sdlog2_messages.h of 2013 to 2016). Angles and rates are in rad, accelerations in m/s².
 """
 

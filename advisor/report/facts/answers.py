@@ -36,7 +36,7 @@ def by_flight_alone(evidence: Sequence[AlternativeEvidence]) -> Answers:
 
 
 def is_turned(evidence: Sequence[AlternativeEvidence]) -> bool:
-    """Return whether the answer is the likeliest by its frequency before the flight alone."""
+    """Return whether another answer is likeliest without the frequency of each answer before the flight."""
     answers, alone = answers_of(evidence), by_flight_alone(evidence)
     return bool(answers) and answers[0][0] != alone[0][0]
 

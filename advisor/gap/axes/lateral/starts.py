@@ -95,7 +95,7 @@ class Starts:
         self.of_each = [self._best(effect) for effect in table]
 
     def together(self, start: Start, other: Start) -> float:
-        """Return the price of two effects together, from the output changes of their starts."""
+        """Return the price of a pair of effects, from the outputs' changes at both starts."""
         from scipy.optimize import nnls  # not on the start path
 
         left = nnls(np.column_stack([start.way, other.way]), self._begin)[1] ** 2
