@@ -30,11 +30,16 @@ _OLD = "the verdicts below are that old, and the link and its recording go on."
 def advise(view: View) -> Advice:
     """Return the most important advice: unusable data, the manoeuvre in flight, or the verdicts.
 
-    The last word stays while the link is lost or this computer is behind, and its age stands below. Once
-    the flight test says stop on each axis that is tested, no further data are needed.
+    The last word stays while the link is lost or this computer is behind, and its age stands below. Of an
+    estimator that does not answer, only RECOVER and TEST COMPLETE stay. Once the flight test says stop on
+    each axis that is tested, no further data are needed.
     """
     if view.health.condition == "stale":
-        return Advice("WAIT", view.health.sentence, "bad")
+        word = _by_verdicts(view, True)
+        stays = word.word in ("RECOVER", "TEST COMPLETE")
+        return (
+            replace(word, age=view.health.sentence) if stays else Advice("WAIT", view.health.sentence, "bad")
+        )
     is_old = bool(view.health.behind) or view.health.condition == "lost"
     word = _by_verdicts(view, is_old)
     if not is_old:

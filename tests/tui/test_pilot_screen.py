@@ -258,3 +258,12 @@ def test_the_stick_is_drawn_step_by_step_with_seconds():
     ]
     assert stick_drawing(flown.steps, 40) == ""
     assert stick_line(flown.steps) == "▁▁▁▁▁▁▔▔▔▔▁▁▔▔"
+
+
+STALE = LinkHealth("stale", "ESTIMATOR NOT ANSWERING for 5 s: what stands below is old")
+
+
+def test_an_estimator_that_does_not_answer_leaves_a_complete_test_complete() -> None:
+    complete = advise(view(flights.state(7), STALE))
+    assert (complete.word, complete.age) == ("TEST COMPLETE", STALE.sentence)
+    assert advise(view(flights.state(3), STALE)).word == "WAIT"
