@@ -140,6 +140,8 @@ class Campaign:
         }
         self._engineer = Engineer(self._flights, self._journal, axes, by_hand)
         self._aside: Aside[ManeuverJudged] = Aside(aside)
+        self._arriving: Aside[Arriving | None] = Aside(aside)
+        self._newest_arrived: Arriving | None = None
         self._activity: tuple[Activity, ...] = ()
         self._whole_flights = WholeFlights()
         self._ended = False
@@ -273,13 +275,17 @@ class Campaign:
         information = self._information
         if information is None or self._aside.is_busy:
             return None
-        shown = self._so_far()
-        pitch, lateral = shown.axes["pitch"], shown.axes.get("lateral")
-        return self._parts.make(
-            "information of the manoeuvre being flown",
-            lambda: information.follow(flying, pitch.model, pitch.flight_test, lateral),
-            lambda _: None,
-        )
+        if not self._arriving.is_busy and (flying is None or information.is_due(self._stream.now_s)):
+            shown = self._so_far()
+            pitch, lateral = shown.axes["pitch"], shown.axes.get("lateral")
+            follow = partial(information.follow, flying, pitch.model, pitch.flight_test, lateral)
+            part = "information of the manoeuvre being flown"
+            self._arriving.do(lambda: self._parts.make(part, follow, lambda _: None))
+        for arrived in self._arriving.made():
+            self._newest_arrived = arrived
+        newest = self._newest_arrived
+        of_earlier = newest is None or flying is None or newest.until_s < flying.span.start_s
+        return None if of_earlier else newest
 
     def _enough(self) -> InputEnough | None:
         """Return the event of a multisine of a script whose data have become enough; None else."""

@@ -1,12 +1,15 @@
 """Manoeuvres are judged while the stream is read, with the same verdicts as in turn."""
 
 from threading import Event, get_ident
+from time import monotonic
 
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.campaign.arriving_information import ArrivingInformation
 from advisor.campaign.axes.elevator_campaign import ElevatorCampaign
 from advisor.campaign.campaign import Campaign, ManeuverJudged
+from advisor.decision.arriving import Arriving
 from advisor.mavlink.logs.logs import open_log
 from advisor.process.aside import Aside
 from advisor.session.timeline import Timeline
@@ -99,3 +102,20 @@ def test_a_decision_by_hand_waits_for_the_verdict() -> None:
         campaign.feed(timeline.up_to(at_s := at_s + 0.5))
     campaign.engineer.exclude(1, "bird strike")
     assert campaign.state.maneuvers[0].excluded_because == "bird strike"
+
+
+def test_the_information_of_the_input_in_the_air_delays_no_state(monkeypatch: pytest.MonkeyPatch) -> None:
+    gate = Event()
+    found = Arriving(1e6, {"M_alpha": 90.0})
+    monkeypatch.setattr(ArrivingInformation, "follow", lambda *_: found if gate.wait(60.0) else None)
+    timeline = timeline_of_two()
+    campaign = Campaign(Aircraft(), settle=True, lateral=True, aside=True)
+    at_s = 0.0
+    while campaign.state.flying is None:
+        campaign.feed(timeline.up_to(at_s := at_s + 0.5))
+    assert campaign.state.arriving is None
+    gate.set()
+    deadline_s = monotonic() + 60.0
+    while campaign.state.arriving is None:
+        assert monotonic() < deadline_s
+    assert campaign.state.arriving is found

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from math import ceil
 
 import numpy as np
 
@@ -72,6 +73,8 @@ class Cutting:
         """Stretches whose record of aileron and rudder is not yet cut, in the order of their completion."""
         self._claimed: list[SideStretch] = []
         self._tests: dict[str, list[Span]] = {}
+        self._passed_over: tuple[tuple[float, ...], bool] = ((), False)
+        """Finished input that is being flown, with the second of its newest sample; whether it is no test."""
 
     @property
     def is_backwards(self) -> bool:
@@ -94,8 +97,12 @@ class Cutting:
     def so_far(self, span: Span, boot: int) -> Maneuver | None:
         """Return the manoeuvre if the movement ended now; None if its finished input is no test input."""
         maneuver, _ = self._cut(span, boot, None, grows=True)
-        if span.input_is_over and self._not_an_input(maneuver, None) is not None:
-            return None
+        if span.input_is_over:
+            at = (boot, span.start_s, span.last_step_s, ceil(span.end_s))
+            if self._passed_over[0] != at:
+                self._passed_over = at, self._not_an_input(maneuver, None) is not None
+            if self._passed_over[1]:
+                return None
         return turned(maneuver) if self.is_backwards else maneuver
 
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
