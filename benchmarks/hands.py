@@ -1,6 +1,6 @@
 """Manoeuvres found in flights with hands between the tests.
 
-    python -m benchmarks.hands [--flights 20] [--seed 29113007]
+    python -m benchmarks.hands [--flights 20] [--seed 29113007] [--rate 10] [--stabilize]
 
 Counts the tests that are found whole, and what else is found as a test. The flights are of the second
 generator, whose pilot is a loop without noise, and of the third, with hands of a delay and a remnant.
@@ -19,6 +19,7 @@ import yaml
 
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.library import read
+from benchmarks.endure import packets
 from benchmarks.second_generator.cases import cases as second
 from benchmarks.second_generator.maneuvers import STEPPED
 from benchmarks.third_generator.cases import assignments, draw_case
@@ -30,6 +31,10 @@ BEGINS_S, ENDS_S = 0.5, 0.8
 """Largest distance of a found test's first and last step from those flown, s."""
 MULTISINE_UNITS = 14.0
 """Duration of the second generator's multisine, in its units."""
+WHOLE = ("HEARTBEAT", "PARAM_VALUE", "STATUSTEXT")
+"""Messages that stay complete at a lower rate."""
+STABILIZE = 2
+"""Number of the mode in a heartbeat of ArduPlane."""
 FOUND, OTHERS = 0.98, 0.02
 """Least share of the tests that is found whole, and largest share of others among what is found."""
 
@@ -99,6 +104,29 @@ def _third(count: int, seed: int) -> Iterator[Flight]:
         yield Flight(f"third/{index:04d}", log, file, flown, case.wiring.boot_s)
 
 
+def at_rate(log: bytes, rate_hz: float) -> bytes:
+    """Return a log with every message at most at a rate, Hz."""
+    newest: dict[int, int] = {}
+    kept = []
+    for packet in packets.read(log):
+        if packets.name(packet.number) not in WHOLE:
+            since_us = packet.arrival_us - newest.get(packet.number, -(10**9))
+            if since_us < 0.95e6 / rate_hz:
+                continue
+            newest[packet.number] = packet.arrival_us
+        kept.append(packet)
+    return packets.written(kept)
+
+
+def stabilized(log: bytes) -> bytes:
+    """Return a log in which the vehicle states STABILIZE throughout."""
+    mode = STABILIZE.to_bytes(4, "little")
+    return packets.written(
+        p._replace(payload=mode + p.payload[4:]) if packets.name(p.number) == "HEARTBEAT" else p
+        for p in packets.read(log)
+    )
+
+
 def extents(found: Sequence[Maneuver], flight: Flight) -> list[tuple[float, float]]:
     """Return first and last step of what was found, s since the log began."""
     return [(m.span.start_s - flight.boot_s, m.span.last_step_s - flight.boot_s) for m in found]
@@ -119,14 +147,17 @@ def counted(found: Sequence[Maneuver], flight: Flight) -> Count:
 @click.command()
 @click.option("--flights", "count", default=20, show_default=True, help="Flights of each generator.")
 @click.option("--seed", default=29113007, show_default=True)
+@click.option("--rate", "rate_hz", type=float, help="Largest rate of every message, Hz.")
+@click.option("--stabilize", is_flag=True, help="State STABILIZE as the flight mode.")
 @click.option("--show", is_flag=True, help="Print what was flown and found.")
-def main(count: int, seed: int, show: bool) -> None:
+def main(count: int, seed: int, rate_hz: float | None, stabilize: bool, show: bool) -> None:
     """Print a line for each flight, and the shares."""
     totals: dict[str, Count] = {}
     with tempfile.TemporaryDirectory() as folder:
         log, file = Path(folder, "flight.tlog"), Path(folder, "aircraft.yaml")
         for flight in flights(count, seed):
-            log.write_bytes(flight.log)
+            written = flight.log if rate_hz is None else at_rate(flight.log, rate_hz)
+            log.write_bytes(stabilized(written) if stabilize else written)
             file.write_text(yaml.safe_dump(flight.file))
             found = read(log, file).maneuvers
             one = counted(found, flight)
