@@ -16,8 +16,8 @@ from advisor.tui.plot.widget import Plot
 
 _COLUMNS = (
     ("parameter", 11),
-    ("estimate ± 95 %", 18),
-    ("selected ± 95 %", 18),
+    ("joint ± 95 %", 18),
+    ("alone ± 95 %", 18),
     ("simulator", 10),
     ("off by", 6),
 )
@@ -38,9 +38,9 @@ class ParametersPane(Pane):
     HELP = """\
 # Parameters
 
-*estimate*: the joint estimate over the accepted manoeuvres; *selected*: the selected manoeuvre alone; both
-with 95 % intervals (1.96 σ, corrected for coloured residuals). *simulator*: the aircraft file's model; *off
-by*: how many σ it lies from the estimate. A column without room is left out.
+*joint*: the joint estimate over the accepted manoeuvres; *alone*: the selected manoeuvre alone; both with
+95 % intervals (1.96 σ, corrected for coloured residuals). *simulator*: the aircraft file's model; *off by*:
+how many σ it lies from the joint estimate. A column without room is left out.
 
 **up/down** chooses the parameter whose history is drawn: each manoeuvre's value with its interval, the
 simulator's value as a dashed line. *not identifiable*: the input did not separate this parameter from the
