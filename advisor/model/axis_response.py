@@ -48,10 +48,11 @@ class AxisGrid(NamedTuple):
     forced: FloatArray
     """(E, n) further known part of the rates on the step, which the outputs see too; (0, n) for none."""
     turning: Index
-    """(a, 3) row, column and known factor of each known term of the rates."""
+    """(a, 5) row, column, known factor, open number and sign of each known term of the rates. A term with an
+    open number (-1: none) is the derivative of the rates by that number."""
     seen: Index
-    """(b, 3) output, state and known factor of each term of the outputs. State n + i is the parameters' part
-    of the rate of state i."""
+    """(b, 5) output, state, known factor, open number and sign of each term of the outputs. State n + i is
+    the parameters' part of the rate of state i."""
     scale: FloatArray
     """(C,) factor on each output without its bias."""
     row: Index
@@ -79,8 +80,8 @@ def respond_axis(
     shared : (s,) derivatives.
     local : (m, l) constants, initial states and biases of each manoeuvre.
     y : (N,), which receives the outputs.
-    g : (N, s + l + k) receives their derivatives by the parameters of the row's manoeuvre, then by the k
-        causes; with shape (0, s + l + k) only the outputs are computed.
+    g : (N, s + l + o + k) receives their derivatives by the parameters of the row's manoeuvre, then by the o
+        open numbers and by the k causes; with shape (0, s + l + o + k) only the outputs are computed.
     motion : (E, 2, n) receives the states and their rates at the events; with shape (0, 2, n) it does not.
 
     Returns
@@ -123,7 +124,7 @@ def _respond_in(
         for k in range(len(seen)):
             r, factor = row[seen[k, 0], e], scale[seen[k, 0]] * known[e, seen[k, 2]]
             if r >= 0 and factor != 0.0:
-                _read(factor, seen[k, 1], initial, place, changed, e, powers, matrix, z, by, r, y, g)
+                _read(factor, seen, k, initial, place, changed, e, powers, matrix, z, by, r, y, g)
         h = step_s[e]
         for j in range(u):
             z[0, n + j], z[1, n + j] = start[e, j], h * slope[e, j]
@@ -137,8 +138,9 @@ def _respond_in(
         if len(g) > 0:
             bend(order, bank, yaw, z, whole)
             carry(
-                h, order, initial, whole, matrix, place, powers, z, changed_start, changed_slope, e, by, terms
-            )
+                h, order, initial, whole, matrix, place, powers, turning, known, z, changed_start,
+                changed_slope, e, by, terms,
+            )  # fmt: skip
         size = 0.0
         for i in range(n):
             for k in range(1, order + 1):
@@ -185,7 +187,8 @@ def _know(turning: Index, known: FloatArray, e: int, matrix: FloatArray, whole: 
         for j in range(matrix.shape[1], whole.shape[1]):
             whole[i, j] = 0.0
     for k in range(len(turning)):
-        whole[turning[k, 0], turning[k, 1]] += known[e, turning[k, 2]]
+        if turning[k, 3] < 0:
+            whole[turning[k, 0], turning[k, 1]] += known[e, turning[k, 2]]
 
 
 @kernel()
@@ -204,23 +207,32 @@ def _begin(row: Index, bias: Index, e: int, theta: FloatArray, y: FloatArray, g:
 
 @kernel()
 def _read(
-    factor: float, i: int, initial: tuple[int, ...], place: Index, changed: FloatArray, e: int,
-    powers: FloatArray, matrix: FloatArray, z: FloatArray, by: FloatArray, r: int, y: FloatArray,
+    factor: float, seen: Index, term: int, initial: tuple[int, ...], place: Index, changed: FloatArray,
+    e: int, powers: FloatArray, matrix: FloatArray, z: FloatArray, by: FloatArray, r: int, y: FloatArray,
     g: FloatArray,
 ) -> None:  # fmt: skip
-    """Add state ``i``, or beyond n the parameters' part of a rate, to output row ``r``."""
+    """Add a term of the outputs, a state or the parameters' part of a rate, to output row ``r``.
+
+    With an open number the term is a derivative by that number, and no part of the output.
+    """
+    i, number = seen[term, 1], seen[term, 3]
     n, width, causes = len(initial), by.shape[1], changed.shape[1]
-    if i < n:
-        y[r] += factor * z[0, i]
-        if len(g) > 0:
-            for k in range(width):
-                g[r, k] += factor * by[i, k]
-        return
-    i -= n
-    for j in range(matrix.shape[1]):
-        y[r] += factor * matrix[i, j] * z[0, j]
+    part = z[0, i] if i < n else 0.0
+    if i >= n:
+        for j in range(matrix.shape[1]):
+            part += matrix[i - n, j] * z[0, j]
+    if number < 0:
+        y[r] += factor * part
     if len(g) == 0:
         return
+    if number >= 0:
+        g[r, number] += seen[term, 4] * factor * part
+        return
+    if i < n:
+        for k in range(width):
+            g[r, k] += factor * by[i, k]
+        return
+    i -= n
     for j in range(n):
         for k in range(width):
             g[r, k] += factor * matrix[i, j] * by[j, k]

@@ -108,8 +108,8 @@ def bend(order: int, bank: int, yaw: int, z: FloatArray, whole: FloatArray) -> N
 @kernel()
 def carry(
     h: float, order: int, initial: tuple[int, ...], whole: FloatArray, matrix: FloatArray, place: Index,
-    powers: FloatArray, z: FloatArray, changed_start: FloatArray, changed_slope: FloatArray, e: int,
-    by: FloatArray, terms: FloatArray,
+    powers: FloatArray, turning: Index, known: FloatArray, z: FloatArray, changed_start: FloatArray,
+    changed_slope: FloatArray, e: int, by: FloatArray, terms: FloatArray,
 ) -> None:  # fmt: skip
     """Advance the sensitivities ``by`` (n, w) of the states over one step."""
     n, width, causes, inputs = len(initial), by.shape[1], changed_start.shape[1], changed_start.shape[2]
@@ -126,6 +126,7 @@ def carry(
                 terms[then, i, k] = factor * value
         for k in range(len(place)):
             terms[then, place[k, 0], k] += factor * powers[k] * z[m, place[k, 1]]
+        _open(factor, turning, known, z, e, m, terms, then)
         if m < 2:
             for k in range(causes):
                 for j in range(inputs):
@@ -135,3 +136,15 @@ def carry(
         for i in range(n):
             for k in range(width):
                 by[i, k] += terms[then, i, k]
+
+
+@kernel()
+def _open(
+    factor: float, turning: Index, known: FloatArray, z: FloatArray, e: int, m: int, terms: FloatArray,
+    then: int,
+) -> None:  # fmt: skip
+    """Add ``factor`` times the derivatives of the rates by open numbers, of order ``m``."""
+    for k in range(len(turning)):
+        if turning[k, 3] >= 0:
+            rate = turning[k, 4] * known[e, turning[k, 2]] * z[m, turning[k, 1]]
+            terms[then, turning[k, 0], turning[k, 3]] += factor * rate

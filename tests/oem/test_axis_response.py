@@ -5,19 +5,22 @@ from scipy.linalg import expm, expm_frechet
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.axis_response import AxisGrid, respond_axis
 from advisor.model.response import respond
-from advisor.oem.axes.lateral.problem import CAUSES, LateralProblem, assemble_lateral
+from advisor.oem.axes.lateral.instruments import Nuisance
+from advisor.oem.axes.lateral.motion import LateralMotion
+from advisor.oem.axes.lateral.problem import ALL, CAUSES, OPEN, LateralProblem, assemble_lateral
+from advisor.oem.extra import Prior
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
 from tests.oem.axes.lateral.builders import JET, TRIM, aileron_doublet, flown, rudder_doublet, vector
 
 T = np.arange(0.0, 8.0, 0.025)
 INITIAL = (0.002, 0.01, -0.004, 0.05)
+KINDS = {"airspeed_excess": ("air", ""), "alpha_excess_rad": ("alpha", "")}
 UNSEEN = np.empty((0, 2, 4))
 
 
 def responding(assembly, shared, local, sensitivities=False):
-    rows = len(assembly.z)
-    width = len(shared) + local.shape[1] + len(CAUSES)
+    rows, width = len(assembly.z), ALL + len(OPEN) + len(CAUSES)
     y, g = np.empty(rows), np.empty((rows if sensitivities else 0, width))
     assert respond_axis(assembly.grid, shared, local, y, g, UNSEEN)
     return y, g
@@ -54,6 +57,23 @@ def test_sensitivities_are_the_derivatives_of_the_outputs(lateral):
         assert np.max(np.abs(by_difference - g[:, j])) < 1e-5 * scale, j
 
 
+@pytest.mark.parametrize("name", OPEN)
+def test_the_column_of_an_excess_is_the_slope_of_the_outputs(lateral, name):
+    local = lateral[1]
+    record = flown(JET, aileron=aileron_doublet(T), rudder=rudder_doublet(T), seconds=8.0, initial=INITIAL)
+    at = {"airspeed_excess": 0.03, "alpha_excess_rad": 0.02, "beta_arm_m": 1.5, "accelerometer_arm_m": 0.4}
+
+    def outputs(step):
+        problem = LateralProblem((record,), **{**at, name: at[name] + step})
+        return responding(assemble_lateral(problem), vector(JET), local)[0]
+
+    problem, excess = LateralProblem((record,), **at), Nuisance(*KINDS[name], Prior(0.0, 1.0))
+    answer = LateralMotion.respond(problem, assemble_lateral(problem), vector(JET), local, [excess])
+    slope = (outputs(1e-5) - outputs(-1e-5)) / 2e-5
+    column = answer.columns()[:, 0]
+    assert np.max(np.abs(column - slope)) < 1e-5 * np.max(np.abs(slope))
+
+
 def test_the_motion_has_the_states_and_their_rates(lateral):
     assembly, local = lateral
     events = len(assembly.grid.step_s)
@@ -75,8 +95,8 @@ def test_the_short_period_described_as_an_axis_is_its_closed_form():
     expected = np.empty(len(closed.z))
     assert respond(closed.grid, shared, local, expected, np.empty((0, 14)))
     n, events = 4, len(t)  # one state stands still
-    turning = np.array([(0, 1, 0), (2, 1, 0)])
-    seen = np.array([(k, k, 0) for k in range(3)])
+    turning = np.array([(0, 1, 0, -1, 1), (2, 1, 0, -1, 1)])
+    seen = np.array([(k, k, 0, -1, 1) for k in range(3)])
     still_causes = np.zeros((events, 0, 1))
     # α̇ by α, q, δe; q̇ by α, q, δe; then the constants of both.
     place = np.array([(0, 0, 1), (0, 1, 0), (0, 4, 1), (1, 0, 2), (1, 1, 1), (1, 4, 2), (0, 5, 1), (1, 5, 2)])
@@ -103,8 +123,8 @@ def test_a_step_of_any_length_is_the_exponential_of_its_matrix(step_s):
         forced=np.empty((0, 4)),
         first=np.array([0, 2]), step_s=np.full(2, step_s), ratio=np.ones(2), inputs=np.ones((2, 1)),
         start=np.ones((2, 1)), slope=np.zeros((2, 1)), changed=none, changed_start=none, changed_slope=none,
-        known=np.ones((2, 1)), turning=np.zeros((0, 3), np.int64),
-        seen=np.array([(k, k, 0) for k in range(4)]), scale=np.ones(4),
+        known=np.ones((2, 1)), turning=np.zeros((0, 5), np.int64),
+        seen=np.array([(k, k, 0, -1, 1) for k in range(4)]), scale=np.ones(4),
         row=np.array([(-1, k) for k in range(4)]),
         place=np.array([(i, j, 0) for i in range(4) for j in range(4)]), bias=np.full(4, -1),
         initial=(16, 17, 18, 19), bank=-1, yaw=0,

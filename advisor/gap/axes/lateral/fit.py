@@ -17,7 +17,7 @@ from advisor.model.axes.lateral import LATERAL
 from advisor.oem.arrow import unabsorbed
 from advisor.oem.axes.lateral.disturbance import Linear
 from advisor.oem.axes.lateral.motion import FLOOR, LateralMotion, outputs_of, simulate
-from advisor.oem.axes.lateral.problem import LateralAssembly
+from advisor.oem.axes.lateral.problem import ALL, LateralAssembly
 from advisor.oem.descent import Response, descended
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.extra import Prior as Width
@@ -201,7 +201,7 @@ class _Motion:
         y, g, motion = found
         y += _added(problem, free)
         columns = partial(_slopes, problem, theta, local, free, y)
-        return Response(y, g, columns, motion[laid.grid.first[:-1], 1])
+        return Response(y, g[:, :ALL], columns, motion[laid.grid.first[:-1], 1])
 
 
 _MOTION = _Motion()

@@ -8,7 +8,7 @@ by -N_β·x/V. The true air speed differs from the air speed that the sensor rea
 quantity is an additional parameter, whose error is part of every interval.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -17,7 +17,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axes.lateral.problem import CAUSES, SEEN, SPEED, LateralAssembly, LateralProblem
+from advisor.oem.axes.lateral.problem import SEEN, SPEED, LateralAssembly, LateralProblem
 from advisor.oem.extra import Prior
 from advisor.oem.instruments import FLAT, KNOWN_TO, PLACE_S, USUAL_LAG
 from advisor.process.arrays import FloatArray
@@ -143,24 +143,15 @@ def begun(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProb
 
 
 def columns_of(
-    assembly: LateralAssembly,
-    by_cause: FloatArray,
-    motion: FloatArray,
-    nuisances: Sequence[Nuisance],
-    by_excess: Callable[[str], FloatArray],
-    by_term: Callable[[str], FloatArray],
-    y: FloatArray,
-) -> FloatArray:
+    assembly: LateralAssembly, by: Mapping[str, FloatArray], motion: FloatArray,
+    nuisances: Sequence[Nuisance], y: FloatArray,
+) -> FloatArray:  # fmt: skip
     """Return the derivatives of the outputs by the nuisance parameters, shape (N, k).
 
     Parameters
     ----------
-    by_excess
-        Function that returns the derivative (N,) of the outputs by an excess of a true over a read value.
-    by_term
-        Function that returns the derivative (N,) of the outputs by the coefficient of one added term.
-    by_cause
-        Shape (N, 3): derivatives of the outputs by ``CAUSES``, which change the motion.
+    by
+        Derivatives (N,) of the outputs by ``OPEN``, ``CAUSES`` and added terms, which change the motion.
     motion
         Shape (E, 2, 4): states and their rates at the events, for the instruments of the outputs.
     y
@@ -168,14 +159,8 @@ def columns_of(
     """
     columns, known = np.zeros((len(assembly.z), len(nuisances))), assembly.grid.known
     for k, x in enumerate(nuisances):
-        if x.kind in ("command", "lag"):
-            columns[:, k] = by_cause[:, CAUSES.index(x.of or "command")]
-            continue
-        if x.kind in EXCESSES:
-            columns[:, k] = by_excess(x.name)
-            continue
-        if x.kind == "term":
-            columns[:, k] = by_term(x.of)
+        if x.kind in ("command", "lag", "term", *EXCESSES):
+            columns[:, k] = by[x.name if x.kind in EXCESSES else x.of or "command"]
             continue
         output = LATERAL.outputs.index(x.of)
         row = assembly.grid.row[output]
@@ -184,7 +169,7 @@ def columns_of(
             for rows in (named["a_y"] for named in assembly.rows if "a_y" in named):
                 columns[rows, k] = -np.gradient(y[rows], assembly.t[rows], edge_order=2)
         elif x.kind == "delay":
-            terms = [(state, factor) for of, state, factor in SEEN if of == output]
+            terms = [(state, factor) for of, state, factor, number, _ in SEEN if of == output and number < 0]
             columns[row, k] = -sum(known[at, factor] * motion[at, 1, state] for state, factor in terms)
         else:
             columns[row, k] = motion[at, 0, LATERAL.states.index("r")] / known[at, SPEED]

@@ -9,9 +9,9 @@ from advisor.model.axes.lateral import LATERAL, Trim, state_matrix
 from advisor.model.axis_response import respond_axis
 from advisor.oem.axes.lateral.instruments import Nuisance, columns_of
 from advisor.oem.axes.lateral.problem import (
-    COSINE,
-    SINE,
-    SPEED_POWERS,
+    ALL,
+    CAUSES,
+    OPEN,
     LateralAssembly,
     LateralProblem,
     assemble_lateral,
@@ -29,9 +29,6 @@ model's errors are as large."""
 FORCED = "beta", "p", "r"
 """States whose rates contain a force or a moment."""
 FLOOR = np.array([LEAST_NOISE[name] for name in LATERAL.outputs])
-_EXCESS_STEP = 1e-3
-"""Numerical: step of an excess, 1 or rad, for the finite-difference derivative of the outputs."""
-_ALL = len(LATERAL.names.shared) + len(LATERAL.names.local)
 
 
 class LateralMotion:
@@ -97,16 +94,6 @@ class LateralMotion:
             return None
         y, g, motion = found
 
-        def by_excess(name: str) -> FloatArray:
-            known = laid.grid.known.copy()
-            if name == "airspeed_excess":
-                known *= (1.0 + _EXCESS_STEP / (1.0 + problem.airspeed_excess)) ** SPEED_POWERS
-            else:
-                turned = np.exp(1j * _EXCESS_STEP) * (-known[:, COSINE] + 1j * known[:, SINE])
-                known[:, SINE], known[:, COSINE] = turned.imag, -turned.real
-            grid = laid.grid._replace(known=known)
-            return (outputs_of(replace(laid, grid=grid), shared, local) - y) / _EXCESS_STEP
-
         def by_term(term: str) -> FloatArray:
             alone = replace(problem, terms={**dict.fromkeys(problem.terms, 0.0), term: 1.0})
             forced = assemble_lateral(alone, ()).grid.forced
@@ -116,17 +103,19 @@ class LateralMotion:
             return (up - down) / (2.0 * step)
 
         def columns() -> FloatArray:
-            return columns_of(laid, g[:, _ALL:], motion, nuisances, by_excess, by_term, y)
+            by = dict(zip((*OPEN, *CAUSES), g[:, ALL:].T, strict=True))
+            by["airspeed_excess"] = by["airspeed_excess"] / (1.0 + problem.airspeed_excess)
+            by |= {term: by_term(term) for term in problem.terms}
+            return columns_of(laid, by, motion, nuisances, y)
 
-        return Response(y, g[:, :_ALL], columns, motion[laid.grid.first[:-1], 1])
+        return Response(y, g[:, :ALL], columns, motion[laid.grid.first[:-1], 1])
 
 
-def simulate(
-    laid: LateralAssembly, shared: FloatArray, local: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray] | None:
-    """Return the simulated outputs (N,), their derivatives (N, 15 + l + k) by all parameters and causes, and
-    the motion (E, 2, 4) of ``respond_axis``; None where the simulation diverges."""
-    y, g = np.empty(len(laid.z)), np.empty((len(laid.z), _ALL + laid.grid.changed.shape[1]))
+def simulate(laid: LateralAssembly, shared: FloatArray, local: FloatArray) -> tuple[FloatArray, ...] | None:
+    """Return the simulated outputs (N,), their derivatives (N, w) by all parameters, open numbers and causes,
+    and the motion (E, 2, 4) of ``respond_axis``; None where the simulation diverges."""
+    y, width = np.empty(len(laid.z)), ALL + len(OPEN) + laid.grid.changed.shape[1]
+    g = np.empty((len(y), width))
     motion = np.empty((len(laid.grid.step_s), 2, len(LATERAL.states)))
     return (y, g, motion) if respond_axis(laid.grid, shared, local, y, g, motion) else None
 
@@ -134,7 +123,7 @@ def simulate(
 def outputs_of(laid: LateralAssembly, shared: FloatArray, local: FloatArray) -> FloatArray:
     """Return the simulated outputs (N,) without their derivatives."""
     y = np.empty(len(laid.z))
-    respond_axis(laid.grid, shared, local, y, np.empty((0, _ALL)), np.empty((0, 2, len(LATERAL.states))))
+    respond_axis(laid.grid, shared, local, y, np.empty((0, ALL)), np.empty((0, 2, len(LATERAL.states))))
     return y
 
 

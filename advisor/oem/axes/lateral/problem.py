@@ -34,30 +34,32 @@ NEEDED = ("p", "r", "bank")
 """Outputs that every record has."""
 CAUSES = ("command", *LATERAL.inputs)
 """Causes of changed inputs: the delay of all commands, and the lag of each servo."""
-SINE, COSINE, SPEED = 1, 2, 7
-"""Indices of sin α, -cos α and the air speed among the known factors."""
-SPEED_POWERS = np.array([0, 0, 0, -1, 0, 0, -1, 1, 0])
-"""Power of the true air speed in each known factor: 1, sin α, -cos α, (g/V)·cos θ, q·tan θ, tan θ, x_β/V, V,
-x_a."""
+SPEED = 7
+"""Index of the air speed among the known factors."""
+OPEN = ("airspeed_excess", "alpha_excess_rad")
+"""Open numbers: the logarithm of the true over the read air speed, and the excess of the angle of attack.
+Their columns follow those of all parameters."""
+ALL = len(LATERAL.names.shared) + len(LATERAL.names.local)
+"""Number of parameters of a manoeuvre."""
+_AIR, _ALPHA = range(ALL, ALL + len(OPEN))
 _SINE = len(LATERAL.states) + len(LATERAL.inputs) + 1
 TURNING = np.array(
     [
-        (_BETA, _P, 1),
-        (_BETA, _R, 2),
-        (_BETA, _SINE, 3),
-        (_BANK, _P, 0),
-        (_BANK, _SINE, 4),
-        (_BANK, _SINE + 1, 5),
+        (_BETA, _P, 1, -1, 1), (_BETA, _R, 2, -1, 1), (_BETA, _SINE, 3, -1, 1), (_BANK, _P, 0, -1, 1),
+        (_BANK, _SINE, 4, -1, 1), (_BANK, _SINE + 1, 5, -1, 1),
+        (_BETA, _SINE, 3, _AIR, -1), (_BETA, _P, 2, _ALPHA, -1), (_BETA, _R, 1, _ALPHA, 1),
     ]
-)
-"""Known terms of the rates, for ``AxisGrid``."""
+)  # fmt: skip
+"""Known terms of the rates, for ``AxisGrid``, by the factors 1, sin α, -cos α, (g/V)·cos θ, q·tan θ, tan θ,
+x_β/V, V and x_a."""
 _RATE = len(LATERAL.states)
 SEEN = np.array(
     [
-        (LATERAL.outputs.index(output), state, factor)
-        for output, state, factor in (
-            ("p", _P, 0), ("r", _R, 0), ("bank", _BANK, 0), ("beta", _BETA, 0), ("beta", _R, 6),
-            ("a_y", _RATE + _BETA, SPEED), ("a_y", _RATE + _R, 8),
+        (LATERAL.outputs.index(output), state, factor, number, sign)
+        for output, state, factor, number, sign in (
+            ("p", _P, 0, -1, 1), ("r", _R, 0, -1, 1), ("bank", _BANK, 0, -1, 1), ("beta", _BETA, 0, -1, 1),
+            ("beta", _R, 6, -1, 1), ("a_y", _RATE + _BETA, SPEED, -1, 1), ("a_y", _RATE + _R, 8, -1, 1),
+            ("beta", _R, 6, _AIR, -1), ("a_y", _RATE + _BETA, SPEED, _AIR, 1),
         )
     ]
 )  # fmt: skip
