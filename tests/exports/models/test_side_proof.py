@@ -13,6 +13,7 @@ from advisor.exports.models.axes import prove_side as side_proof
 from advisor.exports.models.axes.prove_side import _ahead, prove_side, stays_of_side
 from advisor.exports.models.proof import NUMBERS, Proof
 from advisor.gap.result import Diagnosis, Gap
+from advisor.oem.estimate import ChannelFit
 from tests.gap.axes.lateral.test_comparison import AIRCRAFT, TRUE, maneuvers
 from tests.gap.axes.lateral.test_diagnosis import FOUND
 from tests.oem.axes.lateral.builders import JET
@@ -78,6 +79,15 @@ def test_the_servo_ahead_of_a_simulator_leaves_out_the_lag_of_the_simulator_itse
     assert (ahead.lag_s, ahead.delay_s) == (pytest.approx(0.09), 0.04)
     # No servo ahead of a simulator makes the simulator quicker.
     assert _ahead(SideControl(lag_s=0.0), SideControl(lag_s=0.15), SideControl(lag_s=0.05)).lag_s == 0.0
+
+
+def test_the_gap_of_a_prediction_is_relative_to_the_noise_of_the_fit(monkeypatch):
+    """A prediction that is wrong by three times the noise states its own error as its noise."""
+    t = np.arange(200.0)
+    wrong = ChannelFit("p", t, 0.03 * (-1.0) ** t, np.zeros(200), 0.03)
+    fitted = SimpleNamespace(fits=({"p": replace(wrong, noise=0.01)},))
+    monkeypatch.setattr(side_proof, "predicted_lateral", lambda *_: {"p": wrong})
+    assert side_proof._gap(None, fitted, AIRCRAFT, np.ones(15)) == pytest.approx(8.0)
 
 
 @pytest.fixture(scope="module")

@@ -145,7 +145,9 @@ def _gap(maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: 
     fits = predicted_lateral(maneuver, model, aircraft, theta)
     if isinstance(fits, NoEstimate):
         return 0.0
-    return float(np.mean([max(0.0, (fit.rms / fit.noise) ** 2 - 1.0) for fit in fits.values()]))
+    # The noise of a prediction is its own error, and tells no gap.
+    noise = {name: fit.noise for name, fit in model.fits[0].items()}
+    return float(np.mean([max(0.0, (fit.rms / noise[name]) ** 2 - 1.0) for name, fit in fits.items()]))
 
 
 def _flown(found: _Found | NoEstimate) -> _Found:
