@@ -26,7 +26,7 @@ from advisor.model.outputs import N_PARAMETERS, SHARED
 from advisor.model.response import respond
 from advisor.model.short_period import NAMES
 from advisor.oem.descent import Fit, Response, descended
-from advisor.oem.driven import Linear
+from advisor.oem.driven_motion.linear import Linear
 from advisor.oem.estimate import InstrumentEstimate, NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.extra import Prior, penalty

@@ -13,7 +13,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.model.outputs import SHARED
 from advisor.oem.axes.lateral.estimator import estimate_lateral
-from advisor.oem.driven import driven
+from advisor.oem.driven_motion.estimate import driven
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.following import Follower

@@ -12,8 +12,8 @@ from advisor.aircraft.controls import Elevator
 from advisor.campaign.single_maneuver import assess, cautions_of
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem import estimator
-from advisor.oem.driven import Driven, driven
-from advisor.oem.driven_kernel import driven_filter
+from advisor.oem.driven_motion.estimate import Driven, driven
+from advisor.oem.driven_motion.kalman_filter import driven_filter
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
 from advisor.oem.instrument_fit import PITCH

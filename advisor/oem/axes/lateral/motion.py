@@ -17,7 +17,7 @@ from advisor.oem.axes.lateral.problem import (
     assemble_lateral,
 )
 from advisor.oem.descent import Response
-from advisor.oem.driven import Linear
+from advisor.oem.driven_motion.linear import Linear
 from advisor.oem.instrument_columns import STEP
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution

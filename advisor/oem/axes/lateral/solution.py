@@ -18,7 +18,7 @@ from advisor.oem.axes.lateral.motion import FLOOR, LateralMotion
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.axes.lateral.start import lateral_start
 from advisor.oem.descent import Fit, descended
-from advisor.oem.driven import driven
+from advisor.oem.driven_motion.estimate import driven
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.identifiability import LARGEST_ERROR

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem import driven
 from advisor.oem.axes.lateral import solution as lateral_solution
 from advisor.oem.axes.lateral.disturbance import Course, Linear, courses_of
 from advisor.oem.axes.lateral.gusts import Air, Integrated, Sums, likeliest
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.axes.lateral.solution import solve_lateral
+from advisor.oem.driven_motion import errors
 from advisor.oem.rows import Signal
 from tests.oem.axes.lateral.builders import JET, aileron_doublet, flown, vector
 
@@ -74,10 +74,10 @@ def test_errors_of_one_test_contain_its_gusts(coloured):
 def test_a_scale_that_residuals_show_counts_less_than_one_that_the_aileron_absorbs(monkeypatch):
     rng = np.random.default_rng(2)
     problem = in_gusts(rng, solve_lateral(problem_of(rng)))
-    monkeypatch.setattr(driven, "SCALE", 0.1)
-    errors = std_of(solve_lateral(problem))
-    monkeypatch.setattr(driven, "SCALE", 1.0)
-    L_beta, L_p, L_delta_a, *_ = std_of(solve_lateral(problem)) / errors
+    monkeypatch.setattr(errors, "SCALE", 0.1)
+    widths = std_of(solve_lateral(problem))
+    monkeypatch.setattr(errors, "SCALE", 1.0)
+    L_beta, L_p, L_delta_a, *_ = std_of(solve_lateral(problem)) / widths
     assert max(L_beta, L_p) < 2.0
     assert L_delta_a > 5.0
 

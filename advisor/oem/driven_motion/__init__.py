@@ -1,0 +1,1 @@
+"""Estimation of a motion that unknown forces drive."""

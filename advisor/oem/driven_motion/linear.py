@@ -1,0 +1,33 @@
+"""Linear motion near a fitted one, which unknown forces drive."""
+
+from typing import Any, NamedTuple, Protocol
+
+from advisor.model.response import Index
+from advisor.oem.descent import Motion
+from advisor.process.arrays import FloatArray
+
+
+class Linear(NamedTuple):
+    """Motion near a fitted one, of s states and o outputs."""
+
+    matrix: FloatArray
+    """Shape (s, s): rates of the states by the states."""
+    seen: FloatArray
+    """Shape (o, s): outputs by the states."""
+    air: FloatArray
+    """Shape (s,): rates of the states by the gust's angle of incidence, 1/s."""
+    air_seen: FloatArray
+    """Shape (o,): outputs by the gust's angle of incidence."""
+    forced: Index
+    """Indices of the states whose rates contain a force."""
+
+
+class DrivenMotion(Motion, Protocol):
+    """Interface of an axis whose motion unknown forces drive."""
+
+    def linear(self, problem: Any, shared: FloatArray, m: int, /) -> Linear:
+        """Return the linear motion of manoeuvre ``m`` at its mean air speed."""
+
+    def unsure(self, laid: Any, y: FloatArray, /) -> FloatArray:
+        """Return the change (N, k) of the outputs ``y`` by a standard deviation of each instrument quantity
+        that is not estimated."""
