@@ -53,7 +53,7 @@ LIMITS = {
     "constants that decide": 25,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 16680,
+    "lines of estimation": 16640,
     "files naming an axis": 116,
 }
 """Upper bound of each count."""

@@ -135,7 +135,7 @@ class Estimate:
     """Sentences that inform the user about these values."""
     theta_of_lowest_cost: FloatArray | None = None
     """Shape (8,): parameters at the lowest cost, if they differ from ``theta``. With coloured noise or in
-    moving air the smallest error lies at another point (``efficient``, ``filter_error``)."""
+    moving air the smallest error lies at another point (``efficient``, ``driven_motion``)."""
     instruments: tuple[InstrumentEstimate, ...] = ()
     """Instrument parameters that the data determine, with the values of this estimate."""
     found: FoundInstruments | None = None

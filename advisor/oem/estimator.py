@@ -2,19 +2,17 @@
 
 from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.driven_motion.estimate import driven
+from advisor.oem.driven_motion.estimate import Driven, driven, driven_without_alpha
 from advisor.oem.edges import large_steps, with_edges
 from advisor.oem.efficient import efficient
 from advisor.oem.equation_error import equation_error
 from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
-from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.gained import told, without_term
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.identifiability import correlated, not_identifiable
@@ -64,14 +62,6 @@ def fit_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> "Fit | NoE
     return Fit(maneuvers, aircraft, prepared, plain, _with_instruments(plain, aircraft))
 
 
-class Forces(NamedTuple):
-    """An estimate with unknown forces."""
-
-    solution: Solution
-    gust_rad: float | None
-    """Standard deviation of the gust angle, rad; None in still air."""
-
-
 @dataclass(frozen=True, slots=True)
 class Fit:
     """Output-error fit with the log's instruments, before corrections for step times and moving air."""
@@ -89,18 +79,12 @@ class Fit:
         return any(knows_the_lag(x.found) for x in self.fitted.identified)
 
     def estimate(self) -> Estimate:
-        """Return the estimate with step times, and by filter error in moving air."""
+        """Return the estimate with step times, and with unknown forces."""
         solution = with_edges(self.fitted.solution)
         identified = refreshed(self.fitted.identified, solution)
-        names = [x.instrument for x in identified]
-        forces = self._without_alpha(solution, names) if self.prepared.alpha_left_out else None
-        if not self.prepared.alpha_left_out and self._shows_forces(solution):
-            # Gusts can draw output error's instruments so far that the search from there diverges.
-            starts = (solution, self.plain)
-            found_forces = next(filter(None, (driven(one, PITCH, names, _priors) for one in starts)), None)
-            forces = found_forces and Forces(found_forces.solution, found_forces.gust_rad)
+        forces = self._forces(solution, [x.instrument for x in identified])
         if forces is not None:
-            # The lag's ridge is a property of the input, which moving air does not change.
+            # The lag's ridge is a property of the input, which unknown forces do not change.
             corrected = replace(forces.solution, modes=solution.modes, profile=solution.profile)
             forces = forces._replace(solution=corrected)
             identified = refreshed(identified, corrected)
@@ -119,15 +103,17 @@ class Fit:
         other = fit_jointly(self.maneuvers, without_term(self.aircraft, term))
         return None if isinstance(other, NoEstimate) else other.fitted.solution
 
-    def _without_alpha(self, solution: Solution, names: Sequence[Instrument]) -> Forces | None:
-        """Return the estimate by filter error without an angle of attack, where only the specific force shows
-        gusts; None where the search diverges."""
-        found = moving_air(solution, seen_by_alpha=False)
-        if not found.is_air:
+    def _forces(self, solution: Solution, instruments: Sequence[Instrument]) -> Driven | None:
+        """Return the estimate with unknown forces; None where none are, or where the search diverges."""
+        if not (self.prepared.alpha_left_out or self._shows_forces(solution)):
             return None
-        corrected = filter_error(solution, found.air, names) or filter_error(self.plain, found.air, names)
-        gust_rad = found.gust_angle if found.present else None
-        return None if corrected is None else Forces(corrected, gust_rad)
+        estimate = driven_without_alpha if self.prepared.alpha_left_out else driven
+        # Gusts can draw output error's instruments so far that the search from there diverges.
+        for start in (solution, self.plain):
+            forces = estimate(start, PITCH, instruments, _priors)
+            if forces is not None:
+                return forces
+        return None
 
     @staticmethod
     def _shows_forces(solution: Solution) -> bool:
@@ -216,7 +202,7 @@ def report(
     aircraft: Aircraft,
     *,
     identified: Sequence[Identified] = (),
-    forces: Forces | None = None,
+    forces: Driven | None = None,
     quick: bool = False,
 ) -> Estimate:
     """Return a solution as a reported estimate.

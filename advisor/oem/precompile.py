@@ -15,7 +15,6 @@ from advisor.model.outputs import SHARED
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.driven_motion.estimate import driven
 from advisor.oem.estimator import estimate_jointly
-from advisor.oem.filter_error import filter_error, moving_air
 from advisor.oem.following import Follower
 from advisor.oem.instrument_fit import PITCH
 from advisor.oem.prepare import Prepared, prepare
@@ -29,7 +28,6 @@ def warm() -> None:
     prepared = prepare([maneuver], Aircraft())
     solution = solve(prepared.problem) if isinstance(prepared, Prepared) else None
     if isinstance(solution, Solution):
-        filter_error(solution, moving_air(solution, seen_by_alpha=True).air, ())
         driven(solution, PITCH, (), lambda *_: about_zero(np.zeros(len(SHARED))))
     estimate_jointly([maneuver, maneuver], Aircraft())
     Follower(Aircraft()).refresh(maneuver)

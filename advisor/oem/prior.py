@@ -91,21 +91,21 @@ class Priors:
     """(15,)."""
     std: FloatArray
     """Shape (15,): prior standard deviations, infinite without a prior."""
-    share: float = 1.0
-    """Factor on ``std`` in a white-noise fit, as in ``extra.Prior``."""
+    share: float | None = 1.0
+    """Factor on ``std`` in a white-noise fit, as in ``extra.Prior``; None if the prior has no error."""
 
     @property
     def precision(self) -> FloatArray:
         """Shape (15,): inverse variances of the priors in a white-noise fit."""
-        return np.asarray((self.std * self.share) ** -2)
+        return np.asarray((self.std * (self.share or 1.0)) ** -2)
 
 
 def about_zero(precision: FloatArray) -> Priors:
-    """Return priors about zero with the inverse variances ``precision`` (k,)."""
+    """Return priors about zero with the inverse variances ``precision`` (k,), and without an error."""
     std = np.full(len(precision), np.inf)
     known = precision > 0.0
     std[known] = precision[known] ** -0.5
-    return Priors(np.zeros(len(precision)), std)
+    return Priors(np.zeros(len(precision)), std, None)
 
 
 def guessed_y_beta(problem: LateralProblem) -> float:

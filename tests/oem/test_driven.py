@@ -14,6 +14,8 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem import estimator
 from advisor.oem.driven_motion.estimate import Driven, driven
 from advisor.oem.driven_motion.kalman_filter import driven_filter
+from advisor.oem.driven_motion.likeliest_noise import first_noise
+from advisor.oem.driven_motion.setting import Model
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
 from advisor.oem.instrument_fit import PITCH
@@ -126,6 +128,17 @@ def test_the_size_of_jolts_is_found() -> None:
     assert found is not None
     assert found.noise.drive[1] == pytest.approx(0.05, rel=0.3)
     assert found.gust_rad is None
+
+
+def test_no_other_size_of_one_noise_is_clearly_likelier() -> None:
+    start = solved(flown(0.01, 4))
+    model = Model(PITCH, (), lambda problem, shared: about_zero(precision(problem, shared)))
+    setting = model.at(start.problem, start.optimum.shared, start.optimum.local)
+    assert setting is not None
+    noise = first_noise(setting)
+    moves = 0.3 * np.concatenate([np.eye(len(noise.logarithms)), -np.eye(len(noise.logarithms))])
+    costs = [setting.cost(noise.at(noise.logarithms + move)) for move in moves]
+    assert min(costs) > setting.cost(noise) - 4.0
 
 
 def test_innovations_of_a_driven_motion_are_white() -> None:

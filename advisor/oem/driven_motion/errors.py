@@ -44,7 +44,7 @@ def solution_at(model: Model, start: Solution, setting: Setting, noise: Noise) -
         np.ones(len(laid.names.outputs)),
         setting.extra.whitened(extra),
         np.asarray(prior.std**-2.0),
-        prior_share=1.0,
+        prior_share=prior.share,
     )
     if errors is None:
         return None

@@ -107,8 +107,8 @@ def driven_filter(
     coloured: FloatArray,
     memory_s: float,
     columns: FloatArray,
-) -> tuple[FloatArray, float]:
-    """Return the innovations of ``columns`` (n, k) over their standard deviations, and the log determinant.
+) -> tuple[FloatArray, FloatArray]:
+    """Return the innovations of ``columns`` (n, k) over their standard deviations (n,), and these.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def driven_filter(
     """
     s, o, k = len(drive), len(seen), columns.shape[1]
     n = s + o
-    P, X, out = np.zeros((n, n)), np.zeros((n, k)), np.empty(columns.shape)
+    P, X, out, std = np.zeros((n, n)), np.zeros((n, k)), np.empty(columns.shape), np.empty(len(columns))
     moved, gain, turned = np.empty((s, n)), np.empty(n), np.empty((s, k))
     steps, fresh, keep = (
         np.empty((len(lengths), s, s)),
@@ -141,7 +141,6 @@ def driven_filter(
         P[a, a] = begun[a]
     for c in range(o):
         P[s + c, s + c] = coloured[c] ** 2
-    volume = 0.0
     for i in range(len(channel)):
         u = kind[i]
         if lengths[u] > 0.0:
@@ -149,8 +148,7 @@ def driven_filter(
             _advance(X, turned, steps[u], keep[u])
         c = channel[i]
         variance = white[c] ** 2 + _seen(P, gain, seen[c], s + c)
-        root = np.sqrt(variance)
-        volume += 2.0 * np.log(root)
+        std[i] = np.sqrt(variance)
         for j in range(k):
             innovation = columns[i, j] - X[s + c, j]
             for b in range(s):
@@ -158,9 +156,9 @@ def driven_filter(
             share = innovation / variance
             for a in range(n):
                 X[a, j] += gain[a] * share
-            out[i, j] = innovation / root
+            out[i, j] = innovation / std[i]
         for a in range(n):
             share = gain[a] / variance
             for b in range(n):
                 P[a, b] -= share * gain[b]
-    return out, volume
+    return out, std

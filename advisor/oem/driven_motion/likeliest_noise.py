@@ -1,26 +1,43 @@
 """Search for the likeliest noise at one setting of all parameters."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
 from advisor.flight.signals.robust import robust_std
-from advisor.oem.coordinate_search import coordinate_search
+from advisor.oem.arrow import solved_within
 from advisor.oem.driven_motion.noise import Noise
 from advisor.oem.driven_motion.setting import Setting
 
-MOST_MANEUVERS = 7
+MOST_MANEUVERS = 4
 """Number of the newest manoeuvres for the noise estimate. More manoeuvres would change the noise estimate
 little."""
-STEPS = (1.0, 0.5, 0.2)
-"""Numerical: steps of the first noise search in the logarithms of the noise parameters."""
-FINE = (0.2,)
-"""Numerical: steps of a noise search that goes on from another one."""
+_FEW_MANEUVERS = 2
+"""Numerical: number of the newest manoeuvres with which a noise search begins."""
+_COARSE, _FINE = 20.0, 2.0
+"""Numerical: decrease of -2 log likelihood by a step below which a search from one start, and the last one,
+ends."""
+_ROUNDS = 20
+"""Numerical: largest number of steps."""
+_DIFFERENCE = 0.02
+"""Numerical: difference in the logarithms of the noise parameters for slopes."""
+_LONGEST = 2.0
+"""Numerical: longest step in a logarithm."""
+_FLAT = 0.01
+"""Numerical: information that is added for each logarithm, so that parameters without effect stay."""
+_DAMPINGS = (0.0, 0.3, 3.0, 30.0)
+"""Numerical: tried dampings of a step, as shares of the information's diagonal."""
 _MOST = 0.1
 """Numerical: largest start of an intensity's root, which a state that no output shows begins with, SI."""
 
 
-def starts(setting: Setting) -> Iterator[Noise]:
+def first_noise(setting: Setting) -> Noise:
+    """Return the likeliest noise, from the better of two starts."""
+    few = [likeliest(setting, noise, _FEW_MANEUVERS, _COARSE) for noise in _starts(setting)]
+    return likeliest(setting, min(few, key=setting.cost))
+
+
+def _starts(setting: Setting) -> Iterator[Noise]:
     """Yield the starts of the noise search: one with large jolts, and one with large gusts.
 
     The white noise is that of the residuals' differences.
@@ -33,7 +50,7 @@ def starts(setting: Setting) -> Iterator[Noise]:
             float(np.std(np.concatenate([part - part.mean() for part in parts if len(part)]))), 1e-9
         )
         white[c] = robust_std(np.concatenate([np.diff(part) for part in parts])) / 2.0**0.5
-    seen, forced = np.abs(setting.motions[0].seen), setting.motions[0].forced
+    seen, forced = np.abs(setting.records[0].motion.seen), setting.records[0].motion.forced
     measured = np.isin(np.arange(outputs), channel)
     sizes = size[measured, None] / np.maximum(seen[measured][:, forced], 1e-9)
     moved = np.min(sizes, axis=0, initial=_MOST)
@@ -42,10 +59,46 @@ def starts(setting: Setting) -> Iterator[Noise]:
         yield Noise(white, 0.5 * size, 0.3, jolts * moved, gusts * float(moved[0]), 1.0)
 
 
-def likeliest(setting: Setting, noise: Noise, steps: Sequence[float]) -> Noise:
-    """Return the likeliest noise, by a coordinate search in the logarithms with decreasing steps."""
-    outputs = len(noise.white)
-    free = [*setting.measured, *(outputs + setting.measured), *range(2 * outputs, len(noise.logarithms))]
-    start = noise.logarithms
-    x, _ = coordinate_search(lambda y: setting.cost(noise.at(y), MOST_MANEUVERS), start, free, steps)
-    return noise.at(x)
+def likeliest(setting: Setting, noise: Noise, newest: int = MOST_MANEUVERS, settled: float = _FINE) -> Noise:
+    """Return the likeliest noise, by Fisher scoring in the logarithms from another one.
+
+    Innovations e with variances F have the information Σ (∂F ∂F/(2·F²) + ∂e ∂e/F). Source: Harvey,
+    *Forecasting, Structural Time Series Models and the Kalman Filter*, section 3.4.
+
+    Parameters
+    ----------
+    newest
+        Number of the newest manoeuvres whose residuals decide.
+    settled
+        Decrease of -2 log likelihood by a step below which the search ends.
+    """
+    outputs, x = len(noise.white), noise.logarithms
+    free = np.array([*setting.measured, *(outputs + setting.measured), *range(2 * outputs, len(x))])
+    white, volume = setting.terms(noise, newest)
+    cost = float(np.sum(volume) + white @ white)
+    for _ in range(_ROUNDS):
+        moved = [setting.terms(noise.at(x + move), newest) for move in _DIFFERENCE * np.eye(len(x))[free]]
+        by_white, by_volume = np.array(moved).transpose(1, 2, 0)
+        by_white = (by_white - white[:, None]) / _DIFFERENCE
+        by_volume = (by_volume - volume[:, None]) / _DIFFERENCE
+        gradient = by_volume.sum(axis=0) + 2.0 * by_white.T @ white
+        innovation = by_white + 0.5 * white[:, None] * by_volume
+        information = by_volume.T @ by_volume + 2.0 * innovation.T @ innovation
+        least, most = noise.limits[:, free] - x[free]
+        for damping in _DAMPINGS:
+            damped = information + np.diag(damping * np.diag(information) + _FLAT)
+            step = solved_within(damped, -gradient, np.maximum(least, -_LONGEST), np.minimum(most, _LONGEST))
+            if damping == 0.0 and -0.5 * float(step @ gradient) < settled:
+                return noise
+            trial = x.copy()
+            trial[free] += step
+            white, volume = setting.terms(noise.at(trial), newest)
+            reached = float(np.sum(volume) + white @ white)
+            if reached < cost:
+                break
+        else:
+            return noise
+        noise, gained, cost, x = noise.at(trial), cost - reached, reached, trial
+        if gained < settled:
+            break
+    return noise

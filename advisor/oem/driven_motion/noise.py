@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.oem.driven_motion.linear import Linear
 from advisor.process.arrays import FloatArray
 
 RANGE = (1e-12, 1e3)
@@ -37,16 +38,30 @@ class Noise:
     def logarithms(self) -> FloatArray:
         """Shape (2·o + f + 3,): logarithms of all parameters."""
         every = [*self.white, *self.coloured, *self.drive, self.gust, self.memory_s, self.gust_memory_s]
-        return np.asarray(np.log(np.clip(every, *RANGE)))
+        return np.asarray(np.clip(np.log(np.maximum(every, RANGE[0])), *self.limits))
+
+    @property
+    def limits(self) -> FloatArray:
+        """Shape (2, 2·o + f + 3): least and largest logarithms."""
+        sizes = 2 * len(self.white) + len(self.drive) + 1
+        return np.asarray(np.log(np.array([*[RANGE] * sizes, _MEMORY_S, _GUST_MEMORY_S])).T)
 
     def at(self, logarithms: FloatArray) -> "Noise":
         """Return the noise with other parameters, each within its range."""
-        o, values = len(self.white), np.clip(np.exp(logarithms), *RANGE)
+        o, values = len(self.white), np.exp(np.clip(logarithms, *self.limits))
+        memories = float(values[-2]), float(values[-1])
         return Noise(
-            values[:o],
-            values[o : 2 * o],
-            float(np.clip(values[-2], *_MEMORY_S)),
-            values[2 * o : -3],
-            float(values[-3]),
-            float(np.clip(values[-1], *_GUST_MEMORY_S)),
+            values[:o], values[o : 2 * o], memories[0], values[2 * o : -3], float(values[-3]), memories[1]
         )
+
+    def driving(self, motion: Linear) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return rates, variances at the start and driving intensities of s states and of the gust's angle.
+
+        The rates are by the states and by the gust's angle, shape (s + 1, s + 1); the others have (s + 1,).
+        """
+        s = len(motion.matrix)
+        matrix, begun, drive = np.zeros((s + 1, s + 1)), np.zeros(s + 1), np.zeros(s + 1)
+        matrix[:s, :s], matrix[:s, s], matrix[s, s] = motion.matrix, motion.air, -1.0 / self.gust_memory_s
+        begun[s], drive[s] = self.gust**2, 2.0 * self.gust**2 / self.gust_memory_s
+        drive[motion.forced] = self.drive**2
+        return matrix, begun, drive

@@ -1,8 +1,9 @@
 """Residuals, sensitivities and linear motions of a problem at one setting of all parameters."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,6 +23,19 @@ _GRID_S = 1e-4
 half of it."""
 
 
+class Record(NamedTuple):
+    """Rows of a manoeuvre in order of time, with its linear motion."""
+
+    motion: Linear
+    seen: FloatArray
+    """Shape (c, s + 1): measured outputs by the states and by the gust's angle."""
+    order: Index
+    """Rows among those of all manoeuvres."""
+    steps: tuple[FloatArray, Index, Index]
+    """Distinct lengths of the time steps, s, and two indices of each row. They are those of the step before
+    the row, and of the row's output in ``measured``."""
+
+
 @dataclass(frozen=True, slots=True)
 class Setting:
     """One setting of all parameters, with its residuals, sensitivities and linear motions."""
@@ -32,17 +46,24 @@ class Setting:
     local: FloatArray
     residual: FloatArray
     sensitivities: FloatArray
-    extra: Extra
-    motions: Sequence[Linear]
-    orders: Sequence[Index]
-    """Rows of each manoeuvre in order of time."""
-    steps: Sequence[tuple[FloatArray, Index, Index]]
-    """Distinct lengths of each manoeuvre's time steps, s, and two indices of each row in order of time. They
-    are those of the step before the row, and of the row's output in ``measured``."""
+    columns_of: Callable[[], FloatArray]
+    """Function that returns the derivatives by servos and clocks, which a rejected trial step needs not."""
+    parameters: Sequence[Parameter]
+    records: Sequence[Record]
     measured: Index
     """Indices of the measured outputs."""
     floor: FloatArray
     """Shape (o,): least white noise of each output."""
+
+    @property
+    def extra(self) -> Extra:
+        """Servos and clocks at their present values."""
+        return Extra.of(self.columns_of(), self.problem, self.parameters)
+
+    @property
+    def penalty(self) -> float:
+        """-2 log of the density of the priors of servos and clocks, up to a constant."""
+        return Extra.of(np.empty((0, 0)), self.problem, self.parameters).penalty
 
     @property
     def columns(self) -> FloatArray:
@@ -51,39 +72,42 @@ class Setting:
         own, common = self.sensitivities[:, self.assembly.own], self.sensitivities[:, self.assembly.common]
         return np.column_stack([self.residual, own, common, self.extra.columns])
 
-    def whitened(self, columns: FloatArray, noise: Noise, newest: int = 0) -> tuple[FloatArray, float]:
-        """Return the whitened ``columns`` (N, k) and the log determinant, of the ``newest`` manoeuvres or of
-        all. Rows of other manoeuvres stay zero."""
-        white, volume = np.zeros(columns.shape), 0.0
-        measured = self.measured
-        instruments = np.maximum(noise.white, self.floor)[measured], noise.coloured[measured], noise.memory_s
-        for motion, order, steps in list(zip(self.motions, self.orders, self.steps, strict=True))[-newest:]:
-            s = len(motion.matrix)
-            matrix = np.zeros((s + 1, s + 1))
-            matrix[:s, :s], matrix[:s, s], matrix[s, s] = (
-                motion.matrix,
-                motion.air,
-                -1.0 / noise.gust_memory_s,
+    def innovations(
+        self, columns: FloatArray, noise: Noise, newest: int = 0
+    ) -> Iterator[tuple[Index, FloatArray, FloatArray]]:
+        """Yield rows, innovations over their standard deviations, and these, for each manoeuvre.
+
+        The innovations (n, k) are those of ``columns`` (N, k). Only the ``newest`` manoeuvres count; 0 means
+        all.
+        """
+        white = np.maximum(noise.white, self.floor)[self.measured]
+        instruments = white, noise.coloured[self.measured], noise.memory_s
+        for record in self.records[-newest:]:
+            matrix, begun, drive = noise.driving(record.motion)
+            rows = np.ascontiguousarray(columns[record.order])
+            yield (
+                record.order,
+                *driven_filter(*record.steps, matrix, record.seen, begun, drive, *instruments, rows),
             )
-            begun, drive = np.zeros(s + 1), np.zeros(s + 1)
-            begun[s], drive[s] = noise.gust**2, 2.0 * noise.gust**2 / noise.gust_memory_s
-            drive[motion.forced] = noise.drive**2
-            white[order], own = driven_filter(
-                *steps,
-                matrix,
-                np.column_stack([motion.seen, motion.air_seen])[measured],
-                begun,
-                drive,
-                *instruments,
-                np.ascontiguousarray(columns[order]),
-            )
-            volume += own
+
+    def whitened(self, columns: FloatArray, noise: Noise) -> tuple[FloatArray, float]:
+        """Return the whitened ``columns`` (N, k) and the log determinant."""
+        white, volume = np.empty(columns.shape), 0.0
+        for order, own, std in self.innovations(columns, noise):
+            white[order] = own
+            volume += 2.0 * float(np.sum(np.log(std)))
         return white, volume
+
+    def terms(self, noise: Noise, newest: int = 0) -> tuple[FloatArray, FloatArray]:
+        """Return the whitened residual and the log variance of its innovations, both of shape (n,)."""
+        parts = [(own[:, 0], std) for _, own, std in self.innovations(self.residual[:, None], noise, newest)]
+        white, std = (np.concatenate(part) for part in zip(*parts, strict=True))
+        return white, 2.0 * np.log(std)
 
     def cost(self, noise: Noise, newest: int = 0) -> float:
         """Return -2 log likelihood of the residual, up to a constant."""
-        white, volume = self.whitened(self.residual[:, None], noise, newest)
-        return volume + float(np.sum(white**2))
+        white, volume = self.terms(noise, newest)
+        return float(np.sum(volume) + white @ white)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,8 +130,13 @@ class Model:
         response = self.motion.respond(problem, laid, shared, local, self.parameters)
         if response is None:
             return None
-        measured = np.unique(laid.channel)
-        orders = [rows.start + np.argsort(laid.t[rows], kind="stable") for rows in laid.blocks]
+        measured, records = np.unique(laid.channel), []
+        for m, rows in enumerate(laid.blocks):
+            motion = self.motion.linear(problem, shared, m)
+            order = rows.start + np.argsort(laid.t[rows], kind="stable")
+            steps = *_distinct(laid.t[order]), np.searchsorted(measured, laid.channel[order])
+            seen = np.column_stack([motion.seen, motion.air_seen])[measured]
+            records.append(Record(motion, seen, order, steps))
         return Setting(
             problem,
             laid,
@@ -115,10 +144,9 @@ class Model:
             local,
             laid.z - response.y,
             response.g,
-            Extra.of(response.columns(), problem, self.parameters),
-            [self.motion.linear(problem, shared, m) for m in range(laid.maneuvers)],
-            orders,
-            [(*_distinct(laid.t[order]), np.searchsorted(measured, laid.channel[order])) for order in orders],
+            cache(response.columns),
+            self.parameters,
+            records,
             measured,
             _floor(laid, response.y),
         )

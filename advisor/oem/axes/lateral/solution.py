@@ -19,6 +19,7 @@ from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.axes.lateral.start import lateral_start
 from advisor.oem.descent import Fit, descended
 from advisor.oem.driven_motion.estimate import driven
+from advisor.oem.driven_motion.noise import Noise
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.identifiability import LARGEST_ERROR
@@ -44,6 +45,8 @@ class Searched(NamedTuple):
     solution: Solution
     still: Solution
     """Solution whose errors contain the instruments' noise alone."""
+    noise: Noise | None
+    """Noise of instruments and unknown forces; None without unknown forces."""
 
 
 class Near(NamedTuple):
@@ -84,8 +87,9 @@ def search_lateral(
     for final in (True,) if resumed else (False, True):
         if isinstance(solution, NoEstimate):
             return solution
-        prior = replace(prior, share=share_of(solution.covariance_cr[:N, :N], solution.scattered[:N, :N]))
-        weighed = [replace(x, prior=replace(x.prior, share=prior.share)) for x in nuisances]
+        share = share_of(solution.covariance_cr[:N, :N], solution.scattered[:N, :N])
+        prior = replace(prior, share=share)
+        weighed = [replace(x, prior=replace(x.prior, share=share)) for x in nuisances]
         fit = descended(_MOTION, problem, weighed, prior, start)
         if isinstance(fit, NoEstimate):
             return fit
@@ -95,8 +99,11 @@ def search_lateral(
         solution = _evaluated(fit, prior, final)
     if isinstance(solution, NoEstimate):
         return solution
-    found = driven(solution, _MOTION, nuisances, lambda *_: replace(prior, share=1.0))
-    return Searched(solution if found is None else _above_bound(found.solution), solution)
+    noise = None if near is None else near.searched.noise
+    forces = driven(solution, _MOTION, nuisances, lambda *_: replace(prior, share=1.0), near=noise)
+    if forces is None:
+        return Searched(solution, solution, None)
+    return Searched(_above_bound(forces.solution), solution, forces.noise)
 
 
 def _holding(problem: LateralProblem, place: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:

@@ -26,7 +26,9 @@ def coloured(monkeypatch):
     """Return the solutions before unknown forces are sought."""
     seen, sought = [], lateral_solution.driven
     monkeypatch.setattr(
-        lateral_solution, "driven", lambda one, *others: seen.append(one) or sought(one, *others)
+        lateral_solution,
+        "driven",
+        lambda first, *others, **more: seen.append(first) or sought(first, *others, **more),
     )
     return seen
 
