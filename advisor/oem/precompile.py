@@ -13,7 +13,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.model.outputs import SHARED
 from advisor.oem.axes.lateral.estimator import estimate_lateral
-from advisor.oem.driven_motion.estimate import driven
+from advisor.oem.driven_motion.estimate import driven, driven_without_alpha
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.following import Follower
 from advisor.oem.instrument_fit import PITCH
@@ -28,7 +28,8 @@ def warm() -> None:
     prepared = prepare([maneuver], Aircraft())
     solution = solve(prepared.problem) if isinstance(prepared, Prepared) else None
     if isinstance(solution, Solution):
-        driven(solution, PITCH, (), lambda *_: about_zero(np.zeros(len(SHARED))))
+        for estimate in (driven, driven_without_alpha):
+            estimate(solution, PITCH, (), lambda *_: about_zero(np.zeros(len(SHARED))))
     estimate_jointly([maneuver, maneuver], Aircraft())
     Follower(Aircraft()).refresh(maneuver)
     estimate_lateral([_rolled(maneuver)], Aircraft())
