@@ -18,7 +18,7 @@ from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.pitch import PitchModel
 from advisor.gap.inference.posterior import NONE, PARAMETERS
 from advisor.gap.inference.residual import NATURAL, Residual, if_lacking, if_right, residual_of
-from advisor.gap.inference.sizes import natural_share
+from advisor.gap.inference.sizes import natural_shares
 
 GRID = (0.25, 0.5, 1.0, 2.0, 4.0, 10.0)
 """Factors on the natural size of effects at which the evidence is kept."""
@@ -101,10 +101,9 @@ class Observer:
             return ()
         if not isinstance(model, PitchModel) or model.variant is None:
             return ()
-        share = natural_share(model.variant)
-        evidence = [
-            evidence_of(model.problem, model.fitted, self.heat, min(share * factor, 1.0)) for factor in GRID
-        ]
+        shares = natural_shares(model.variant)
+        at = (np.where(shares < 1.0, np.minimum(shares * factor, 1.0), 1.0) for factor in GRID)
+        evidence = [evidence_of(model.problem, model.fitted, self.heat, each) for each in at]
         nats = [one.right if row.alternative == NONE else one.wrong for one in evidence]
         return tuple(float(one - nats[GRID.index(1.0)]) for one in nats)
 

@@ -28,7 +28,7 @@ from advisor.gap.inference.posterior import (
 )
 from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.residual import Residual
-from advisor.gap.inference.sizes import natural_nats, natural_share, with_sizes
+from advisor.gap.inference.sizes import natural_nats, natural_shares, with_sizes
 from advisor.gap.inference.stage import Stage, stage_of, within_model_error
 from advisor.gap.records.prepare import prepare
 from advisor.gap.verdict.reasons import capped, weighed
@@ -357,7 +357,7 @@ def test_a_law_next_to_an_effect_as_small_as_on_every_aircraft_is_the_answer(nat
 def test_a_small_size_is_rather_natural_and_a_large_one_rather_an_effect(share, size):
     """Two Gaussian densities of widths 1 and ``share`` are equal at this size."""
     equal = np.sqrt(-2.0 * np.log(share) / (share**-2 - 1.0))
-    assert (natural_nats(np.array([size]), np.ones(1), share) > 0.0) == (size < equal)
+    assert (natural_nats(np.array([size]), np.ones(1), np.array([share])) > 0.0) == (size < equal)
 
 
 @pytest.mark.parametrize(("maneuvers", "unknown"), [(2, False), (3, True)])
@@ -394,7 +394,8 @@ def test_play_differs_from_servo_to_servo_three_times_as_much_as_other_effects()
     ],
 )
 def test_the_natural_size_of_servo_and_gyro_is_that_of_their_data_sheets(effect, share):
-    assert natural_share(SimpleNamespace(effect=effect)) == share
+    variant = SimpleNamespace(effect=effect, names=("size", "at_rad"), places=("at_rad",))
+    assert natural_shares(variant) == pytest.approx([share, 1.0])
 
 
 @pytest.mark.parametrize("gap", [2.0, 5.0, 40.0])

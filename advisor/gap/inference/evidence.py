@@ -99,7 +99,9 @@ def log_likelihood(problem: EffectProblem, fitted: EffectFit) -> float:
     return -0.5 * (fitted.cost - problem.prior_cost(fitted.point))
 
 
-def evidence_of(problem: FlightProblem, fitted: EffectFit, heat: float, narrower: float = 1.0) -> Evidence:
+def evidence_of(
+    problem: FlightProblem, fitted: EffectFit, heat: float, narrower: FloatArray | None = None
+) -> Evidence:
     """Return the evidence of a model; ``problem`` is the problem to which the model was fitted.
 
     At the fit the gradient of the log likelihood balances that of the fit's prior.
@@ -107,12 +109,13 @@ def evidence_of(problem: FlightProblem, fitted: EffectFit, heat: float, narrower
     Parameters
     ----------
     narrower
-        Factor on the prior widths of the effect that was added last.
+        Shape (numbers,): factors on the prior widths of the effect that was added last; None for the widths
+        themselves.
     """
     precision, pull = problem.prior_of(fitted.point)
     widths = (ERROR_IF_RIGHT, ERROR_IF_WRONG) if problem.is_stated else (_UNSTATED, _UNSTATED)
     priors = [Prior(*problem.prior_with(fitted.point, width)) for width in widths]
-    if narrower != 1.0:
+    if narrower is not None:
         for prior in priors:
             prior.precision[fitted.point.place(len(fitted.point.effects) - 1)] /= narrower**2
     return marginal(

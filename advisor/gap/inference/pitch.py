@@ -14,7 +14,7 @@ from advisor.gap.inference.evidence import FlightProblem, evidence_of, log_likel
 from advisor.gap.inference.explanation import Explanation
 from advisor.gap.inference.posterior import UNKNOWN, stated_as
 from advisor.gap.inference.residual import Residual, residual_of
-from advisor.gap.inference.sizes import natural_nats, natural_share
+from advisor.gap.inference.sizes import natural_nats, natural_shares
 from advisor.gap.inference.stage import AT_THE_FILE, LAWS, REFINED, SAME_OPTIMUM, Pairs, Stage, likeliest
 from advisor.gap.kit.variant import Variant
 from advisor.gap.search.screen import Screen, Screened
@@ -124,7 +124,7 @@ class PitchFlight:
         variant, point = lead.variant, pair.fitted.point
         assert variant is not None
         sizes = np.asarray(point.values[point.index_of(variant.effect)])
-        return natural_nats(sizes, np.array(variant.prior_std), natural_share(variant))
+        return natural_nats(sizes, np.array(variant.prior_std), natural_shares(variant))
 
     @property
     def maneuvers(self) -> int:
@@ -169,7 +169,7 @@ class PitchFlight:
             name=variant.effect, numbers=variant.names,
             variant=variant, problem=problem, fitted=made, held_out=held,
             evidence=told.more(extra),
-            natural=evidence_of(problem, made, heat, natural_share(variant)).more(extra),
+            natural=evidence_of(problem, made, heat, natural_shares(variant)).more(extra),
             likelihood=likelihood, unseen=unseen, change=change_of(problem, plain, made),
         )  # fmt: skip
 

@@ -92,12 +92,16 @@ def of_range(variant: Variant) -> tuple[float, ...]:
     return tuple(_OF_RANGE * max(map(abs, bounds)) for bounds in variant.bounds)
 
 
-def natural_share(variant: Variant) -> float:
-    """Return the size of an effect on every aircraft, as a share of the effect's prior width."""
-    return _OF_DATA_SHEETS.get(variant.effect, _NATURAL)
+def natural_shares(variant: Variant) -> FloatArray:
+    """Return the size of each parameter on every aircraft, as a share of its prior width, shape (numbers,).
+
+    A position, a time or a rate is as free on every aircraft as on an aircraft with the effect.
+    """
+    share = _OF_DATA_SHEETS.get(variant.effect, _NATURAL)
+    return np.array([1.0 if name in variant.places else share for name in variant.names])
 
 
-def natural_nats(sizes: FloatArray, std: FloatArray, share: float) -> float:
+def natural_nats(sizes: FloatArray, std: FloatArray, share: FloatArray) -> float:
     """Return the log density ratio, nats, of sizes natural to every aircraft to those of an effect.
 
     Parameters
@@ -105,9 +109,9 @@ def natural_nats(sizes: FloatArray, std: FloatArray, share: float) -> float:
     sizes, std
         Shape (k,): an effect's parameters, and their prior widths on an aircraft with the effect.
     share
-        Natural width, as a share of ``std``.
+        Shape (k,): natural widths, as shares of ``std``.
     """
-    return float(-0.5 * np.sum((sizes / std) ** 2) * (share**-2 - 1.0) - len(std) * np.log(share))
+    return float(-0.5 * np.sum((sizes / std) ** 2 * (share**-2 - 1.0)) - np.sum(np.log(share)))
 
 
 def _departures(flights: PreparedManeuvers) -> tuple[float, float]:

@@ -19,7 +19,7 @@ from advisor.gap.inference.explanation import Evidence, Explanation
 from advisor.gap.inference.marginal import marginal
 from advisor.gap.inference.posterior import UNKNOWN
 from advisor.gap.inference.residual import Residual
-from advisor.gap.inference.sizes import natural_nats, natural_share
+from advisor.gap.inference.sizes import natural_nats, natural_shares
 from advisor.gap.inference.stage import (
     AT_THE_FILE,
     LAWS,
@@ -185,7 +185,7 @@ class SideFlight:
         effect = lead.effect
         assert effect is not None
         sizes = [pair.fit.point.setting[place][0] for place in effect.places] - base_of(self.case, effect)
-        return natural_nats(sizes, np.array(effect.std), natural_share(effect.variant))
+        return natural_nats(sizes, np.array(effect.std), natural_shares(effect.variant))
 
     @property
     def maneuvers(self) -> int:
@@ -288,10 +288,8 @@ def _beside(base: SideModel | None, table: Sequence[SideEffect]) -> list[SideEff
 
 def _narrowed(free: Sequence[Free], effect: SideEffect | None) -> list[Free]:
     """Return the free parameters, with the effect's prior narrowed to the size natural to every aircraft."""
-    if effect is None:
-        return list(free)
-    share = natural_share(effect.variant)
-    return [one._replace(std=share * one.std) if one.place in effect.places else one for one in free]
+    shares = {} if effect is None else dict(zip(effect.places, natural_shares(effect.variant), strict=True))
+    return [one._replace(std=shares.get(one.place, 1.0) * one.std) for one in free]
 
 
 def change_of(one: Fit, other: Fit) -> float:
