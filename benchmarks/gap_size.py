@@ -50,7 +50,7 @@ NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"
 LIMITS = {
     "lines of code": 7066,
     "constants": 217,
-    "constants that decide": 25,
+    "constants that decide": 26,
     "names compared": 11,
     "complex functions": 0,
     "lines of estimation": 16640,

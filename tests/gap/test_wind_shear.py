@@ -7,7 +7,7 @@ from scipy.integrate import cumulative_trapezoid
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
-from advisor.gap.uncatalogued.wind_shear import wind_shear
+from advisor.gap.uncatalogued.wind_shear import Shear, wind_shear
 
 SPEED_M_S = 20.0
 T = np.arange(0.0, 10.0, 0.05)
@@ -66,3 +66,8 @@ def test_heights_must_explain_17_percent_in_a_layer(share, is_found):
     below = [climbing(1e-3 * air, height_m=100.0) for _ in range(3)]
     found = wind_shear(inside + below)
     assert (found is not None) == is_found
+
+
+@pytest.mark.parametrize(("gradient", "agreed"), [(0.079, False), (-0.081, True)])
+def test_a_gradient_below_a_knot_in_six_metres_does_not_matter(gradient, agreed):
+    assert Shear(gradient, 0.0, 0.5, maneuvers=5).is_agreed == agreed

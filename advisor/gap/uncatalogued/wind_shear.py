@@ -20,6 +20,8 @@ from advisor.process.arrays import FloatArray
 _NEEDED = ("airspeed", "a_x", "a_z", "theta", "alpha")
 _LEAST_SAMPLES = 10
 """Record: least number of air speed samples in a manoeuvre, beyond the parabola's three parameters."""
+_LEAST_PER_S = 0.08
+"""Least wind gradient, 1/s, that is reported: a knot in six metres."""
 _MOST_PER_S = 0.5
 """Prior: largest gradient of a wind, 1/s. Wind shear that airports call severe begins at 0.2 1/s (ICAO Doc
 9817)."""
@@ -59,8 +61,9 @@ class Shear:
 
     @property
     def is_agreed(self) -> bool:
-        """Whether the manoeuvres agree on a gradient that explains more of the air speed than chance does."""
-        return self.share >= _LEAST_SHARE and abs(self.gradient_per_s) >= SIGMAS * self.std
+        """Whether the manoeuvres agree on a gradient that matters."""
+        least = max(_LEAST_PER_S, SIGMAS * self.std)
+        return self.share >= _LEAST_SHARE and abs(self.gradient_per_s) >= least
 
 
 @dataclass(frozen=True)
