@@ -107,11 +107,7 @@ class SideFlight:
             )
         except UnusableInputError as error:
             return Answer({}, str(error))
-        return (
-            Answer({}, "no model fits")
-            if compared.gap.diagnosis is None
-            else answer_of(compared.gap.diagnosis)
-        )
+        return answer_of(compared.gap) if compared.gap.evidence else Answer({}, "no model fits")
 
 
 def answer_of(diagnosis: Weighed) -> Answer:
