@@ -84,9 +84,9 @@ def test_text_says_as_well_that_the_estimator_hangs_and_is_replaced(tmp_path: Pa
 
 async def test_the_pilot_reads_that_the_screen_is_old_instead_of_a_good_link():
     source = elsewhere.HandFedSource()
-    fresh = SessionReport(flights.state(7), source.condition, None, ())
+    fresh = SessionReport(flights.state(3), source.condition, None, ())
     source.condition = fresh.grown_old("ESTIMATOR", 7.0).health
-    async with stage(flights.state(7), source=source) as here:
+    async with stage(flights.state(3), source=source) as here:
         await here.until(lambda: "ESTIMATOR NOT ANSWERING for 7 s" in here.words("Alarm"))
         assert "✗ NOT ANSWERING" in here.words("StatusLine")
         assert here.app.screen.query_one(BigWord).word == "WAIT"
