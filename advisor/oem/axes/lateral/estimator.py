@@ -118,14 +118,15 @@ class LateralFit(NamedTuple):
     def estimate(self) -> LateralEstimate:
         """Derivatives, modes and errors as reported."""
         solution = self.searched.solution
-        terms = told([*solution.problem.terms], solution.nuisances, solution, self._without)
+        # Innovations have another colour than residuals, so that the fits before unknown forces are compared.
+        terms = told([*solution.problem.terms], solution.nuisances, self.searched.still, self._without)
         regressed = lateral_equation_error(solution.problem)
         return replace(_reported(solution), terms=terms, equation_error=regressed)
 
     def _without(self, term: str) -> Solution | None:
         """Return the solution without one of the user's terms; None without such a solution."""
         other = fit_lateral(self.maneuvers, without_term(self.aircraft, term))
-        return None if isinstance(other, NoEstimate) else other.searched.solution
+        return None if isinstance(other, NoEstimate) else other.searched.still
 
     def near(self, maneuvers: Sequence[Maneuver]) -> Near:
         """Return the search as the start for other manoeuvres."""
