@@ -89,9 +89,8 @@ class Fit:
             forces = forces._replace(solution=corrected)
             identified = refreshed(identified, corrected)
         found = report(solution, self.prepared, self.aircraft, identified=identified, forces=forces)
-        terms = self.prepared.problem.terms
         values = {x.instrument.name: (x.found.value, x.found.std) for x in identified}
-        open_terms = [name for name in terms if name in values]
+        open_terms = [term.name for term in self.aircraft.estimation.added if term.name in values]
         return replace(
             found,
             terms=told(open_terms, values, self.fitted.solution, self._without),

@@ -1,4 +1,4 @@
-"""Airframes of ArduPlane's simulator that fly the script: the light plane, and three that nobody tuned."""
+"""Airframes of ArduPlane's simulator that fly the script: the light plane, and five that nobody tuned."""
 
 from collections.abc import Callable, Mapping
 
@@ -59,6 +59,12 @@ def elevons() -> Airframe:
     )  # fmt: skip
 
 
+def flaperons() -> Airframe:
+    """Return the light plane with flaperons, of which the simulator moves the left one."""
+    return Airframe(light().coefficients, {"SERVO1_FUNCTION": 24, "SERVO5_FUNCTION": 25})
+
+
 AIRFRAMES: Mapping[str, Callable[[], Airframe]] = {
     "light": light, "stiff": stiff, "turned": turned, "v-tail": v_tail, "elevons": elevons,
+    "flaperons": flaperons,
 }  # fmt: skip

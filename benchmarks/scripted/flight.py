@@ -17,6 +17,10 @@ LOW_M = 70.0
 """Height below which the plane climbs before the next input, m."""
 LONGEST_S = 60.0
 """Longest time of one input with its wait for steady flight, s."""
+HELD_S, TRIM_S = 10.0, 4.0
+"""Time in which a height and an air speed settle, and the last part that gives the pulses of the trim, s."""
+STICK_US = 1000.0
+"""Travel of a stick, us."""
 SINKING_US, IDLE_US = 1250, 1300
 """Pitch stick and throttle with which the plane sinks in FBWA at a nearly constant air speed, us."""
 
@@ -147,6 +151,24 @@ def recover(pilot: Pilot) -> None:
         pilot.fly(6.0)
     pilot.link.set_mode("FBWA")
     pilot.fly(3.0)
+
+
+def level(pilot: Pilot, mode: str = "FBWA") -> None:
+    """Hold height and air speed, and then fly on with the pulses of that flight in another mode."""
+    pilot.link.set_mode("FBWB")
+    pilot.sticks[:4] = [1500, 1800 if pilot.height_m < LOW_M else 1500, 1500, 1500]
+    pilot.fly(30.0, lambda: pilot.height_m > LOW_M)
+    pilot.sticks[1] = 1500
+    pilot.fly(HELD_S)
+    t, us = pilot.pulses()
+    trims = np.median(us[t > pilot.t - TRIM_S], axis=0)
+    pilot.sticks[2] = round(trims[2])
+    if mode == "MANUAL":
+        travel = pilot.parameters["SERVO2_MAX"] - pilot.parameters["SERVO2_MIN"]
+        of_stick = STICK_US / travel
+        pilot.sticks[1] = round(1500 + of_stick * (trims[1] - pilot.parameters["SERVO2_TRIM"]))
+    pilot.link.set_mode(mode)
+    pilot.fly(1.0)
 
 
 def sink(pilot: Pilot, lowest_m: float) -> None:

@@ -61,7 +61,7 @@ class Pilot:
     sticks: list[int] = field(default_factory=lambda: [1500, 1500, 1000, 1500, 0, 0, 1000, 1800])
     texts: list[tuple[float, str]] = field(default_factory=list)
     outputs: list[tuple[float, tuple[int, ...]]] = field(default_factory=list)
-    """Times since boot, s, and pulses of outputs 1 to 4, us."""
+    """Times since boot, s, and pulses of outputs 1 to 8, us."""
     radio: list[tuple[float, tuple[int, ...]]] = field(default_factory=list)
     """Times since boot, s, and pulses of radio channels 1 to 8 as the vehicle received them, us."""
     heights: list[tuple[float, float]] = field(default_factory=list)
@@ -110,7 +110,7 @@ class Pilot:
         return next((text for _, text in self.texts if text.startswith(begin)), "")
 
     def pulses(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return times, s, and pulses of outputs 1 to 4, shape (n, 4)."""
+        """Return times, s, and pulses of outputs 1 to 8, shape (n, 8)."""
         return np.array([t for t, _ in self.outputs]), np.array([us for _, us in self.outputs], dtype=float)
 
     def _hear(self, message: Any) -> None:
@@ -127,7 +127,7 @@ class Pilot:
             case "PARAM_VALUE":
                 self.parameters[message.param_id] = message.param_value
             case "SERVO_OUTPUT_RAW":
-                raw = (message.servo1_raw, message.servo2_raw, message.servo3_raw, message.servo4_raw)
+                raw = tuple(getattr(message, f"servo{k}_raw") for k in range(1, 9))
                 self.outputs.append((message.time_usec / 1e6, raw))
             case "RC_CHANNELS":
                 received = tuple(getattr(message, f"chan{k}_raw") for k in range(1, 9))

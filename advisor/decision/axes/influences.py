@@ -36,6 +36,7 @@ def coupled(maneuver: Maneuver, estimate: Estimate, exceeded: Collection[str] = 
     """
     linear = LinearMotion(PITCH, maneuver, estimate, estimate.fits[0]["q"].t)
     examined = {"coupling", "throttle", *exceeded} - (set() if carries_speed(estimate) else {"airspeed"})
+    examined -= {"coupling"} if estimate.carries_coupling else set()
     influences = [influence for influence in _on_pitch(linear) if influence.code in examined]
     return list(objections_to(influences, linear, estimate, PITCH_JUDGED))
 

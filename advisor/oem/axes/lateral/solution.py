@@ -11,9 +11,10 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import expit
 
 from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
-from advisor.oem.axes.lateral.instruments import Nuisance, begun
+from advisor.oem.axes.lateral.instruments import FIRST_LAG_S, Nuisance, begun
 from advisor.oem.axes.lateral.motion import FLOOR, LateralMotion
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.axes.lateral.start import lateral_start
@@ -35,6 +36,9 @@ WITHOUT_FORCE = (
     "neither a lateral acceleration nor a sideslip was recorded, so that only the modes are told; record a_y"
 )
 N = len(LATERAL.shared)
+_L_P = LATERAL.names.shared.index("L_p")
+_L_0 = LATERAL.names.local.index("L_0")
+_OF_ROLL = [k for k, name in enumerate(LATERAL.names.shared) if name.startswith("L_")]
 _MOTION = LateralMotion()
 _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
 
@@ -96,14 +100,39 @@ def search_lateral(
         if (why := refused(fit.optimum)) is not None:
             return why
         problem, start = fit.problem, fit.place
-        solution = _evaluated(fit, prior, final)
+        best, modes = _of_both_hills(fit, weighed, prior) if final else (fit, None)
+        solution = _evaluated(best, prior, final)
     if isinstance(solution, NoEstimate):
         return solution
+    solution = replace(solution, modes=modes)
     noise = None if near is None else near.searched.noise
     forces = driven(solution, _MOTION, nuisances, lambda *_: replace(prior, share=1.0), near=noise)
     if forces is None:
         return Searched(solution, solution, None)
-    return Searched(_above_bound(forces.solution), solution, forces.noise)
+    return Searched(replace(_above_bound(forces.solution), modes=modes), solution, forces.noise)
+
+
+def _of_both_hills(fit: Fit, nuisances: Sequence[Nuisance], prior: Priors) -> tuple[Fit, FloatArray | None]:
+    """Return the likelier of two fits, with the other one's second moment times its probability.
+
+    An unknown lag of the aileron and the time constant of the roll mode act on the roll rate alike. With both
+    exchanged the roll rate after an aileron stays, and yawing and the rudder distinguish the two fits.
+    """
+    lag = next((x for x in nuisances if x.name == "aileron_lag_s"), None)
+    roll = -float(fit.optimum.shared[_L_P])
+    if lag is None or roll <= 0.0 or lag.read(fit.problem) <= FIRST_LAG_S:
+        return fit, None
+    shared, local = fit.optimum.shared.copy(), fit.optimum.local.copy()
+    shared[_OF_ROLL] /= roll * lag.read(fit.problem)
+    local[:, _L_0] /= roll * lag.read(fit.problem)
+    start = _holding(fit.problem, (shared, local))
+    rival = descended(_MOTION, lag.write(fit.problem, 1.0 / roll), nuisances, prior, start)
+    if isinstance(rival, NoEstimate) or refused(rival.optimum) is not None:
+        return fit, None
+    apart = 0.5 * prior.share**2 * (rival.cost - fit.cost)
+    moved = [x.read(rival.problem) - x.read(fit.problem) for x in nuisances]
+    step = np.array([*(rival.optimum.shared - fit.optimum.shared), *moved])
+    return fit if apart >= 0.0 else rival, float(expit(-abs(apart))) * np.outer(step, step)
 
 
 def _holding(problem: LateralProblem, place: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
