@@ -9,10 +9,7 @@ _GAIN = 0.5
 
 
 def coordinate_search(
-    cost: Callable[[FloatArray], float],
-    x: FloatArray,
-    free: Sequence[int],
-    steps: Sequence[float],
+    cost: Callable[[FloatArray], float], x: FloatArray, free: Sequence[int], steps: Sequence[float]
 ) -> tuple[FloatArray, float]:
     """Return the least point, shape (n,), and its cost in nats, from a start ``x``.
 

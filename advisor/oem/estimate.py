@@ -167,11 +167,6 @@ class Estimate:
         return self if self.fixed or self.terms else None
 
     @property
-    def carries_coupling(self) -> bool:
-        """Whether the model contains the moment of rolling with yawing."""
-        return self.found is not None and "M:p*r" in self.found.names
-
-    @property
     def outputs(self) -> tuple[str, ...]:
         """Names of the outputs that the fit uses."""
         return tuple(self.fits[0])

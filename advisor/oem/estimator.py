@@ -90,10 +90,9 @@ class Fit:
             identified = refreshed(identified, corrected)
         found = report(solution, self.prepared, self.aircraft, identified=identified, forces=forces)
         values = {x.instrument.name: (x.found.value, x.found.std) for x in identified}
-        open_terms = [term.name for term in self.aircraft.estimation.added if term.name in values]
         return replace(
             found,
-            terms=told(open_terms, values, self.fitted.solution, self._without),
+            terms=told(self.aircraft.estimation.added, values, self.fitted.solution, self._without),
             equation_error=equation_error(self.fitted.solution.problem),
         )
 

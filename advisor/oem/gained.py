@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from advisor.aircraft.added_term import AddedTerm
 from advisor.aircraft.aircraft import Aircraft
 from advisor.oem.estimate import TermEstimate
 from advisor.oem.solution import Solution
@@ -16,11 +17,10 @@ def log_likelihood(solution: Solution) -> float:
 
     The last step of all parameters, by generalised least squares, is part of the likelihood.
     """
-    laid, extra = solution.assembly, solution.extra
+    laid = solution.assembly
     weighing = Weighing.by(solution.noise.colours, laid)
-    shared = solution.sensitivities[:, laid.common]
-    if extra is not None:
-        shared = np.column_stack([shared, extra.columns])
+    extra = [] if solution.extra is None else [solution.extra.columns]
+    shared = np.column_stack([solution.sensitivities[:, laid.common], *extra])
     white = weighing.forward(np.column_stack([solution.residual, shared]))
     own = weighing.forward(solution.sensitivities[:, laid.own])
     for rows in laid.blocks:
@@ -32,10 +32,10 @@ def log_likelihood(solution: Solution) -> float:
 
 
 def told(
-    names: Sequence[str], values: Mapping[str, tuple[float, float]], with_it: Solution,
+    terms: Sequence[AddedTerm], values: Mapping[str, tuple[float, float]], with_it: Solution,
     without: Callable[[str], Solution | None],
 ) -> tuple[TermEstimate, ...]:  # fmt: skip
-    """Return the coefficients of terms, each with the log likelihood that it gains.
+    """Return the coefficients of the user's terms that a fit has, each with the log likelihood that it gains.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def told(
         Function that returns the solution without one term; None without such a solution.
     """
     most, found = log_likelihood(with_it), []
-    for name in names:
+    for name in (term.name for term in terms if term.name in values):
         other = without(name)
         gained = np.nan if other is None else most - log_likelihood(other)
         found.append(TermEstimate(name, *values[name], gained))

@@ -204,9 +204,8 @@ def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
     lag = next((x for x in names if x.name == SERVO_LAG.name and x.stated is None), None)
     if lag is None or len(best.problem.records) == 1 or lag.read(best.problem) < lag.resolution:
         return best
-    there = lag.write(best.problem, lag.read(best.problem) / 3.0)
     share = colour_share(best)
-    rival = _searched(there, _place(best), names, share)
+    rival = _searched(lag.write(best.problem, lag.read(best.problem) / 3.0), _place(best), names, share)
     if rival is None:
         return best
     apart = 0.5 * share**2 * (rival.cost - best.optimum.log_likelihood_cost)

@@ -13,7 +13,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.motion import channel_at, gravity_in_plane, integrated
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
-from advisor.flight.signals.sines import between_samples
+from advisor.flight.signals.sines import command_of
 from advisor.flight.signals.true_airspeed import SEA_LEVEL_DENSITY_KG_M3, true_over_read
 from advisor.oem.airspeed import Airspeed, airspeed
 from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, infer, lacking, why_left_out
@@ -171,9 +171,9 @@ def _structured(
     """Return the problem with held parameters, and with the terms of inputs at once and of the user."""
     fixed = aircraft.estimation.held(PARAMETERS)
     terms = [term for term in aircraft.estimation.added if term.is_of_pitch]
-    if any(m.span.kind == "multisine" for m in maneuvers) and COUPLING not in terms:
-        measured = all(_has(m.channels, name) for m in maneuvers for name in COUPLING.signals)
-        terms += [COUPLING] if measured else []
+    measured = all(_has(m.channels, name) for m in maneuvers for name in COUPLING.signals)
+    if measured and COUPLING not in terms and any(m.span.kind == "multisine" for m in maneuvers):
+        terms.append(COUPLING)
     if not terms:
         return replace(problem, fixed=fixed) if fixed else problem
     own = {"alpha", "q", "delta_e", *(["V"] if problem.records[0].airspeed is not None else [])}
@@ -243,7 +243,7 @@ def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Seq
         normal = Signal(theta.t, size / GRAVITY_M_S2 * np.cos(up - alpha.at(theta.t)))
         gravity = Signal(theta.t, GRAVITY_M_S2 * np.cos(theta.y) * np.cos(bank))
     return Record(
-        elevator=command_of(maneuver, "elevator"),
+        elevator=signal_of(command_of(maneuver, "elevator")),
         outputs=outputs,
         airspeed=speed,
         normal_gravity=normal,
@@ -314,9 +314,3 @@ def signal_of(channel: Channel) -> Signal:
     """Return the finite samples of a channel, each at the time of its measurement."""
     keep = np.isfinite(channel.y)
     return Signal(np.asarray(channel.t[keep], float) - channel.delay_s, np.asarray(channel.y[keep], float))
-
-
-def command_of(maneuver: Maneuver, control: str) -> Signal:
-    """Return the command of a control; sines have corners between their samples."""
-    command = signal_of(maneuver.channels[control])
-    return Signal(*between_samples(*command)) if maneuver.span.kind == "multisine" else command

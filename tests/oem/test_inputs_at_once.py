@@ -8,13 +8,13 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.sensors import Alpha, Beta
+from advisor.decision.axes.influences import carries_coupling
 from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
-from advisor.flight.signals.sines import between_samples
+from advisor.flight.signals.sines import between_samples, command_of
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
-from advisor.oem.prepare import command_of
 from advisor.oem.rows import Signal
 from advisor.scripts.table import Source, script_table
 from benchmarks.at_once.body import Body, draw_body
@@ -64,7 +64,7 @@ def test_the_moment_of_rolling_with_yawing_does_not_move_the_stiffness(flown: tu
     found = estimate(maneuver, replace(VANE, elevator=replace(VANE.elevator, lag_s=0.06)))
     assert isinstance(found, Estimate)
     assert found.airspeed_m_s is not None
-    assert found.carries_coupling
+    assert carries_coupling(found)
     truth = body.derivatives(found.airspeed_m_s)
     for name in ("M_alpha", "M_q", "M_delta_e"):
         off = abs(found.value(name) - truth[name])

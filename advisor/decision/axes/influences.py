@@ -17,6 +17,7 @@ from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate
+from advisor.oem.instruments import COUPLING
 from advisor.process.arrays import FloatArray
 
 PITCH_JUDGED = ("M_alpha", "M_q", "M_delta_e", "Z_alpha")
@@ -36,7 +37,7 @@ def coupled(maneuver: Maneuver, estimate: Estimate, exceeded: Collection[str] = 
     """
     linear = LinearMotion(PITCH, maneuver, estimate, estimate.fits[0]["q"].t)
     examined = {"coupling", "throttle", *exceeded} - (set() if carries_speed(estimate) else {"airspeed"})
-    examined -= {"coupling"} if estimate.carries_coupling else set()
+    examined -= {"coupling"} if carries_coupling(estimate) else set()
     influences = [influence for influence in _on_pitch(linear) if influence.code in examined]
     return list(objections_to(influences, linear, estimate, PITCH_JUDGED))
 
@@ -103,6 +104,11 @@ def _deviation(y: FloatArray | None) -> FloatArray | None:
 def has_banking(maneuver: Maneuver) -> bool:
     """Return whether a record contains all that a banked flight adds to the motion in pitch."""
     return {"p", "r", "bank", "beta", "theta"} <= maneuver.channels.keys()
+
+
+def carries_coupling(estimate: Estimate) -> bool:
+    """Return whether the model of an estimate contains the moment of rolling with yawing."""
+    return estimate.found is not None and COUPLING.name in estimate.found.names
 
 
 def carries_speed(estimate: Estimate) -> bool:

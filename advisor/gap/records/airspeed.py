@@ -75,9 +75,7 @@ def airspeed_on(
 
 
 def speed_error_factors(
-    stamps: Sequence[FloatArray],
-    residuals: Sequence[FloatArray],
-    durations_s: Sequence[float],
+    stamps: Sequence[FloatArray], residuals: Sequence[FloatArray], durations_s: Sequence[float]
 ) -> list[FloatArray]:
     """Return the uncertainty of level, slope and curvature of each manoeuvre's air speed due to sensor noise.
 

@@ -119,7 +119,7 @@ class LateralFit(NamedTuple):
         """Derivatives, modes and errors as reported."""
         solution = self.searched.solution
         # Innovations have another colour than residuals, so that the fits before unknown forces are compared.
-        terms = told([*solution.problem.terms], solution.nuisances, self.searched.still, self._without)
+        terms = told(self.aircraft.estimation.added, solution.nuisances, self.searched.still, self._without)
         regressed = lateral_equation_error(solution.problem)
         return replace(_reported(solution), terms=terms, equation_error=regressed)
 

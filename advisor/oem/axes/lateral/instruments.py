@@ -38,6 +38,8 @@ LARGEST_MOVE_S = 0.03
 
 EXCESSES: Mapping[str, str] = {"air": "airspeed_excess", "alpha": "alpha_excess_rad"}
 """Field of a problem with the excess of the true over the read value, by the kind of nuisance parameter."""
+_FIELDS = {"arm": "beta_arm_m", "command": "command_delay_s", **EXCESSES}
+"""Field of a problem with the parameter's value, by its kind."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,10 +59,8 @@ class Nuisance:
     @property
     def name(self) -> str:
         """Name of the nuisance parameter with its unit."""
-        if self.kind in EXCESSES:
-            return EXCESSES[self.kind]
-        if self.kind == "term":
-            return self.of
+        if self.kind in ("term", *EXCESSES):
+            return EXCESSES.get(self.kind, self.of)
         what = {"lag": "lag_s", "arm": "arm_m"}.get(self.kind, "delay_s")
         return f"{self.of or 'command'}_{what}"
 
@@ -68,29 +68,21 @@ class Nuisance:
         """Return the parameter's value in a problem, s or m."""
         if self.kind == "lag":
             return problem.servos[self.of].lag_s
-        if self.kind == "arm":
-            return problem.beta_arm_m
-        if self.kind in EXCESSES:
-            return float(getattr(problem, self.name))
-        if self.kind == "term":
-            return problem.terms[self.of]
-        return problem.delays_s.get(self.of, 0.0) if self.kind == "delay" else problem.command_delay_s
+        if self.kind in _FIELDS:
+            return float(getattr(problem, _FIELDS[self.kind]))
+        return (problem.terms if self.kind == "term" else problem.delays_s).get(self.of, 0.0)
 
     def write(self, problem: LateralProblem, value: float) -> LateralProblem:
         """Return the problem with another value of the parameter, s or m; a lag stays within its range."""
-        if self.kind == "command":
-            return replace(problem, command_delay_s=value)
-        if self.kind == "arm":
-            return replace(problem, beta_arm_m=value)
-        if self.kind in EXCESSES:
-            changed: dict[str, Any] = {self.name: value}
-            return replace(problem, **changed)
+        if self.kind == "lag":
+            servo = replace(problem.servos[self.of], lag_s=float(np.clip(value, 0.0, LONGEST_LAG_S)))
+            return replace(problem, servos={**problem.servos, self.of: servo})
         if self.kind == "term":
             return replace(problem, terms={**problem.terms, self.of: value})
         if self.kind == "delay":
             return replace(problem, delays_s={**problem.delays_s, self.of: value})
-        servo = replace(problem.servos[self.of], lag_s=float(np.clip(value, 0.0, LONGEST_LAG_S)))
-        return replace(problem, servos={**problem.servos, self.of: servo})
+        changed: dict[str, Any] = {_FIELDS[self.kind]: value}
+        return replace(problem, **changed)
 
     def moved(self, problem: LateralProblem, change: float) -> LateralProblem:
         """Return the problem with the parameter changed by at most ``LARGEST_MOVE_S``."""
@@ -112,10 +104,8 @@ def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance,
                 found.append(Nuisance("arm", name, Prior(0.0, PLACE_S * speed), speed))
     for name in moving:
         stated = getattr(aircraft, name).lag_s
-        if stated is None:
-            found.append(Nuisance("lag", name, USUAL_LAG))
-        elif stated > 0.0:
-            found.append(Nuisance("lag", name, Prior(stated, KNOWN_TO * stated)))
+        if stated != 0.0:
+            found.append(Nuisance("lag", name, Prior(stated, KNOWN_TO * stated) if stated else USUAL_LAG))
     if moving and problem.tells_force:
         found += [Nuisance("air", "", AIR_SPEED), Nuisance("alpha", "", ANGLE_OF_ATTACK)]
     found += [Nuisance("term", term, FLAT) for term in problem.terms]
@@ -161,16 +151,15 @@ def columns_of(
     for k, x in enumerate(nuisances):
         if x.kind in ("command", "lag", "term", *EXCESSES):
             columns[:, k] = by[x.name if x.kind in EXCESSES else x.of or "command"]
-            continue
-        output = LATERAL.outputs.index(x.of)
-        row = assembly.grid.row[output]
-        at, row = np.flatnonzero(row >= 0), row[row >= 0]
-        if x.of == "a_y":  # the outputs' rates have no rates of their own
+        elif x.of == "a_y":  # the outputs' rates have no rates of their own
             for rows in (named["a_y"] for named in assembly.rows if "a_y" in named):
                 columns[rows, k] = -np.gradient(y[rows], assembly.t[rows], edge_order=2)
-        elif x.kind == "delay":
-            terms = [(state, factor) for of, state, factor, number, _ in SEEN if of == output and number < 0]
-            columns[row, k] = -sum(known[at, factor] * motion[at, 1, state] for state, factor in terms)
         else:
-            columns[row, k] = motion[at, 0, LATERAL.states.index("r")] / known[at, SPEED]
+            output = LATERAL.outputs.index(x.of)
+            row = assembly.grid.row[output]
+            at, row = np.flatnonzero(row >= 0), row[row >= 0]
+            terms = [(state, factor) for of, state, factor, number, _ in SEEN if of == output and number < 0]
+            late = -sum(known[at, factor] * motion[at, 1, state] for state, factor in terms)
+            by_arm = motion[at, 0, LATERAL.states.index("r")] / known[at, SPEED]
+            columns[row, k] = late if x.kind == "delay" else by_arm
     return columns

@@ -11,20 +11,14 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.record import Channel
+from advisor.flight.signals.sines import command_of
 from advisor.model.axes.lateral import CONTROLS, LATERAL
 from advisor.oem.airspeed import airspeed
 from advisor.oem.alpha_use import can_do_without, has, infer, why_left_out
 from advisor.oem.axes.lateral.instruments import beta_arm_m
 from advisor.oem.axes.lateral.problem import NEEDED, LateralProblem, LateralRecord, measured_by
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.prepare import (
-    command_of,
-    constant_speed,
-    reference_speed,
-    signal_of,
-    stated_reference,
-    too_few,
-)
+from advisor.oem.prepare import constant_speed, reference_speed, signal_of, stated_reference, too_few
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 from advisor.oem.terms import means_of, recorded
@@ -59,7 +53,9 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
     problem = LateralProblem(
         records=tuple(
             LateralRecord(
-                inputs={name: command_of(m, name) for name in LATERAL.inputs if has(m.channels, name)},
+                inputs={
+                    name: signal_of(command_of(m, name)) for name in LATERAL.inputs if has(m.channels, name)
+                },
                 outputs={name: signal_of(m.channels[name]) for name in outputs},
                 airspeed=speed,
                 alpha=_alpha(m, aircraft, left_out),

@@ -36,8 +36,6 @@ WITHOUT_FORCE = (
     "neither a lateral acceleration nor a sideslip was recorded, so that only the modes are told; record a_y"
 )
 N = len(LATERAL.shared)
-_L_P = LATERAL.names.shared.index("L_p")
-_L_0 = LATERAL.names.local.index("L_0")
 _OF_ROLL = [k for k, name in enumerate(LATERAL.names.shared) if name.startswith("L_")]
 _MOTION = LateralMotion()
 _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
@@ -119,12 +117,12 @@ def _of_both_hills(fit: Fit, nuisances: Sequence[Nuisance], prior: Priors) -> tu
     exchanged the roll rate after an aileron stays, and yawing and the rudder distinguish the two fits.
     """
     lag = next((x for x in nuisances if x.name == "aileron_lag_s"), None)
-    roll = -float(fit.optimum.shared[_L_P])
+    roll = -float(fit.optimum.shared[LATERAL.names.shared.index("L_p")])
     if lag is None or roll <= 0.0 or lag.read(fit.problem) <= FIRST_LAG_S:
         return fit, None
     shared, local = fit.optimum.shared.copy(), fit.optimum.local.copy()
     shared[_OF_ROLL] /= roll * lag.read(fit.problem)
-    local[:, _L_0] /= roll * lag.read(fit.problem)
+    local[:, LATERAL.names.local.index("L_0")] /= roll * lag.read(fit.problem)
     start = _holding(fit.problem, (shared, local))
     rival = descended(_MOTION, lag.write(fit.problem, 1.0 / roll), nuisances, prior, start)
     if isinstance(rival, NoEstimate) or refused(rival.optimum) is not None:
