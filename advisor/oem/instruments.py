@@ -153,15 +153,14 @@ BY_NAME: Mapping[InstrumentName, Instrument] = {
 
 
 COUPLING = parse_term("M:p*r")
-"""Moment of rolling with yawing, (I_zz - I_xx)/I_yy·p·r. It belongs to the model of inputs at once."""
-_COUPLING = Prior(0.5, 12.0**-0.5)
-"""Prior of that factor. Every body has I_zz ≤ I_xx + I_yy, and an aircraft has I_xx ≤ I_zz. The factor
-therefore lies between 0 and 1 (Etkin & Reid, Dynamics of Flight, 1996, ch. 4)."""
+"""Moment of rolling with yawing, (I_zz - I_xx)/I_yy·p·r, in the model of inputs at once. Every body has
+I_zz ≤ I_xx + I_yy, and an aircraft has I_xx ≤ I_zz. The factor therefore lies between 0 and 1 (Etkin & Reid,
+Dynamics of Flight, 1996, ch. 4)."""
 
 
 def coefficient(term: str) -> Instrument:
     """Return the coefficient of a term, as one more parameter."""
-    prior = _COUPLING if term == COUPLING.name else FLAT
+    prior = Prior(0.5, 12.0**-0.5) if term == COUPLING.name else FLAT
     return Instrument(term, 0.0, -np.inf, np.inf, lambda _: prior, prior=prior)
 
 

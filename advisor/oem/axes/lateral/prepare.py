@@ -118,9 +118,8 @@ def _is_measured(beta: Channel, aircraft: Aircraft) -> bool:
     """
     if aircraft.beta.source != "auto":
         return aircraft.beta.source != "none"
-    if aircraft.alpha.source == "aoa_ssa" and aircraft.alpha.vane_arm_m is not None:
-        return True
-    return beta.provenance in ("vane", "simulated")
+    stated = aircraft.alpha.source == "aoa_ssa" and aircraft.alpha.vane_arm_m is not None
+    return stated or beta.provenance in ("vane", "simulated")
 
 
 def _moves(maneuver: Maneuver, name: str) -> bool:

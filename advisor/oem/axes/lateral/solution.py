@@ -36,7 +36,6 @@ WITHOUT_FORCE = (
     "neither a lateral acceleration nor a sideslip was recorded, so that only the modes are told; record a_y"
 )
 N = len(LATERAL.shared)
-_OF_ROLL = [k for k, name in enumerate(LATERAL.names.shared) if name.startswith("L_")]
 _MOTION = LateralMotion()
 _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
 
@@ -120,14 +119,13 @@ def _of_both_hills(fit: Fit, nuisances: Sequence[Nuisance], prior: Priors) -> tu
     roll = -float(fit.optimum.shared[LATERAL.names.shared.index("L_p")])
     if lag is None or roll <= 0.0 or lag.read(fit.problem) <= FIRST_LAG_S:
         return fit, None
-    shared, local = fit.optimum.shared.copy(), fit.optimum.local.copy()
-    shared[_OF_ROLL] /= roll * lag.read(fit.problem)
-    local[:, LATERAL.names.local.index("L_0")] /= roll * lag.read(fit.problem)
+    shared, local = fit.optimum.shared.copy(), fit.optimum.local
+    shared[[name.startswith("L_") for name in LATERAL.names.shared]] /= roll * lag.read(fit.problem)
     start = _holding(fit.problem, (shared, local))
     rival = descended(_MOTION, lag.write(fit.problem, 1.0 / roll), nuisances, prior, start)
     if isinstance(rival, NoEstimate) or refused(rival.optimum) is not None:
         return fit, None
-    apart = 0.5 * prior.share**2 * (rival.cost - fit.cost)
+    apart = 0.5 * lag.prior.share**2 * (rival.cost - fit.cost)
     moved = [x.read(rival.problem) - x.read(fit.problem) for x in nuisances]
     step = np.array([*(rival.optimum.shared - fit.optimum.shared), *moved])
     return fit if apart >= 0.0 else rival, float(expit(-abs(apart))) * np.outer(step, step)
