@@ -10,7 +10,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.sensors import Alpha, Beta
 from advisor.decision.axes.influences import carries_coupling
 from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
-from advisor.flight.signals.sines import between_samples, command_of
+from advisor.flight.maneuvers.sines import between_samples, command_of
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate

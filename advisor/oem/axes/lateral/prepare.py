@@ -9,9 +9,9 @@ from advisor.aircraft.added_term import AddedTerm
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.sines import command_of
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.record import Channel
-from advisor.flight.signals.sines import command_of
 from advisor.model.axes.lateral import CONTROLS, LATERAL
 from advisor.oem.airspeed import airspeed
 from advisor.oem.alpha_use import can_do_without, has, infer, why_left_out
