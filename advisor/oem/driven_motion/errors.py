@@ -59,10 +59,7 @@ def solution_at(model: Model, start: Solution, setting: Setting, noise: Noise) -
     systematic[:kept, :kept] += start.systematic[:kept, :kept]
     errors["systematic"] = systematic
     optimum = start.optimum._replace(
-        shared=setting.shared,
-        local=setting.local,
-        fitted=fitted,
-        sensitivities=setting.sensitivities,
+        shared=setting.shared, local=setting.local, fitted=fitted, sensitivities=setting.sensitivities
     )
     return replace(
         start,

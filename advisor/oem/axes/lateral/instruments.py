@@ -117,8 +117,7 @@ def beta_arm_m(aircraft: Aircraft) -> float | None:
 
     A boom that carries both vanes has one distance.
     """
-    stated = aircraft.beta.vane_arm_m
-    return aircraft.alpha.vane_arm_m if stated is None else stated
+    return aircraft.alpha.vane_arm_m if aircraft.beta.vane_arm_m is None else aircraft.beta.vane_arm_m
 
 
 def begun(problem: LateralProblem, nuisances: Sequence[Nuisance]) -> LateralProblem:

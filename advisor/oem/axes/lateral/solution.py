@@ -119,10 +119,10 @@ def _of_both_hills(fit: Fit, nuisances: Sequence[Nuisance], prior: Priors) -> tu
     roll = -float(fit.optimum.shared[LATERAL.names.shared.index("L_p")])
     if lag is None or roll <= 0.0 or lag.read(fit.problem) <= FIRST_LAG_S:
         return fit, None
-    shared, local = fit.optimum.shared.copy(), fit.optimum.local
+    shared = fit.optimum.shared.copy()
     shared[[name.startswith("L_") for name in LATERAL.names.shared]] /= roll * lag.read(fit.problem)
-    start = _holding(fit.problem, (shared, local))
-    rival = descended(_MOTION, lag.write(fit.problem, 1.0 / roll), nuisances, prior, start)
+    there, start = lag.write(fit.problem, 1.0 / roll), _holding(fit.problem, (shared, fit.optimum.local))
+    rival = descended(_MOTION, there, nuisances, prior, start)
     if isinstance(rival, NoEstimate) or refused(rival.optimum) is not None:
         return fit, None
     apart = 0.5 * lag.prior.share**2 * (rival.cost - fit.cost)
