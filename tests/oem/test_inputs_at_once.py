@@ -78,6 +78,7 @@ def test_the_moment_of_rolling_with_yawing_is_no_term_of_the_user(flown: tuple[B
     assert "M:p*r" not in [x.name for x in found.instruments]
 
 
+@pytest.mark.study
 def test_a_roll_faster_than_its_servo_is_not_exchanged_with_the_servo(tmp_path: Path) -> None:
     body, heard = _flown(0, 5101, 0.1, tmp_path / "flight.tlog")
     found = estimate_lateral(heard.sideways[:1], VANE)
