@@ -167,6 +167,11 @@ class Campaign:
         """Whether a manoeuvre has been flown whose verdict has not been told."""
         return self._aside.is_pending
 
+    @property
+    def judging_s(self) -> float:
+        """Time for which one manoeuvre is being judged, s."""
+        return self._aside.age_s
+
     def wait(self) -> None:
         """Return when every manoeuvre so far has been judged."""
         self._aside.wait()

@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable
 from threading import Thread
+from time import monotonic
 from typing import Generic, TypeVar
 
 Made = TypeVar("Made")
@@ -22,6 +23,13 @@ class Aside(Generic[Made]):
         self._made: deque[Made] = deque()
         self._newest: Thread | None = None
         self._failure: BaseException | None = None
+        self._begun_s: float | None = None
+
+    @property
+    def age_s(self) -> float:
+        """Time since the begin of the job that is being done, s; 0 where none is."""
+        begun_s = self._begun_s
+        return 0.0 if begun_s is None else monotonic() - begun_s
 
     @property
     def is_busy(self) -> bool:
@@ -64,7 +72,10 @@ class Aside(Generic[Made]):
             before.join()
         if self._failure is not None:
             return
+        self._begun_s = monotonic()
         try:
             self._made.append(job())
         except BaseException as failure:
             self._failure = failure
+        finally:
+            self._begun_s = None

@@ -12,6 +12,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from advisor.campaign.hand_decisions import NOTHING, ByHand, HandDecision
+from advisor.process.liveness import ENDED_AFTER_S
 from advisor.session.conducting import Conducting, SessionReport, Tell
 from advisor.session.replay import LogPlayer
 from advisor.session.source import LinkRequest, Source
@@ -104,7 +105,9 @@ class Conductor(Conducting):
                 # Before a long estimate, whoever waits learns how old the data are.
                 self._report_if_due(campaign)
                 campaign.feed(batch)
-                if self._player is not None and self._player.is_hurried:
+                hurried = self._player is not None and self._player.is_hurried
+                # Silence tells the watch of this process that an estimate hangs.
+                if hurried or campaign.judging_s > ENDED_AFTER_S:
                     campaign.wait()
             if self._pending:
                 self._decide_what_is_due(campaign)

@@ -36,6 +36,24 @@ def test_a_job_in_a_thread_delays_nobody() -> None:
     assert (aside.is_busy, aside.is_pending, aside.made()) == (False, True, ["done"])
 
 
+def test_the_age_of_a_job_grows_until_the_job_is_done() -> None:
+    aside: Aside[None] = Aside(in_thread=True)
+    begun, gate = Event(), Event()
+
+    def job() -> None:
+        begun.set()
+        gate.wait(60.0)
+
+    aside.do(job)
+    assert begun.wait(60.0)
+    first = aside.age_s
+    gate.wait(0.05)
+    assert aside.age_s >= first + 0.05
+    gate.set()
+    aside.wait()
+    assert aside.age_s == 0.0
+
+
 def test_what_a_job_raises_is_raised_for_the_one_who_asks() -> None:
     aside: Aside[int] = Aside(in_thread=True)
     aside.do(lambda: 1 // 0)

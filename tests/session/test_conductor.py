@@ -119,6 +119,16 @@ def test_a_log_that_is_played_faster_than_flown_waits_for_every_verdict(speed: f
     assert (flight.campaigns[0].waited > 0) is waits
 
 
+@pytest.mark.parametrize("judging_s", [1.0, 60.0])
+def test_the_conductor_falls_silent_behind_an_estimate_that_hangs(
+    judging_s: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(StagedCampaign, "judging_s", judging_s)
+    flight = Flown(speed=1.0)
+    flight.run()
+    assert (flight.campaigns[0].waited > 0) is (judging_s > 20.0)
+
+
 def test_jumping_ahead_keeps_the_campaign_and_the_pace():
     flight = Flown(speed=1.0)
     flight.when(always, lambda: flight.conductor.jump(2))

@@ -28,6 +28,8 @@ def columns(order: Sequence[int], arrival_s: Sequence[float], name: str = "ATTIT
 class StagedCampaign:
     """Shows the states it was given, one more for each batch it is fed; records what it is asked."""
 
+    judging_s = 0.0
+
     def __init__(
         self,
         states: Sequence[CampaignState],
