@@ -1,6 +1,6 @@
 """Estimation of parameters from manoeuvres, as called by other packages."""
 
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +17,7 @@ from advisor.oem.gained import told, without_term
 from advisor.oem.gauss_newton import CONVERGED, Optimum
 from advisor.oem.identifiability import correlated, not_identifiable
 from advisor.oem.instrument_fit import PITCH, Identified, InstrumentFit, fit_instruments, refreshed
-from advisor.oem.instruments import COMMAND_DELAY, Instrument, knows_the_lag, unknown_instruments
+from advisor.oem.instruments import BY_NAME, COMMAND_DELAY, Instrument, knows_the_lag, unknown_instruments
 from advisor.oem.known_instruments import FoundInstruments, found_of
 from advisor.oem.notes import notes
 from advisor.oem.prediction import prediction_band
@@ -236,7 +236,7 @@ def report(
         notes=notes(solution, prepared, aircraft, sound, best=best, priced=not quick),
         theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
         instruments=(
-            *_given(given, solution.problem.terms),
+            *_given(given),
             *(x.reported for x in sound if x.reported is not None),
         ),
         fixed=tuple(solution.problem.fixed),
@@ -256,10 +256,10 @@ def report(
     )
 
 
-def _given(found: FoundInstruments | None, terms: Container[str]) -> Iterator[InstrumentEstimate]:
-    """Yield the instruments that other manoeuvres have determined, without the user's terms."""
+def _given(found: FoundInstruments | None) -> Iterator[InstrumentEstimate]:
+    """Yield the instruments that other manoeuvres have determined, without the coefficients of terms."""
     for name, value, std in zip(found.names, found.values, found.std, strict=True) if found else ():
-        if name != "steady_moment_rad" and name not in terms:
+        if name != "steady_moment_rad" and name in BY_NAME:
             yield InstrumentEstimate(name, float(value), float(std))
 
 

@@ -15,6 +15,7 @@ from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
+from advisor.oem.known_instruments import with_found
 from advisor.oem.rows import Signal
 from advisor.scripts.table import Source, script_table
 from benchmarks.at_once.body import Body, draw_body
@@ -75,6 +76,18 @@ def test_the_moment_of_rolling_with_yawing_is_no_term_of_the_user(flown: tuple[B
     found = estimate(flown[1], VANE)
     assert isinstance(found, Estimate)
     assert found.terms == ()
+    assert "M:p*r" not in [x.name for x in found.instruments]
+
+
+def test_a_manoeuvre_of_steps_takes_what_inputs_at_once_have_told_of_its_instruments(
+    flown: tuple[Body, Maneuver],
+) -> None:
+    told = estimate(flown[1], VANE)
+    stepped = replace(flown[1], span=replace(flown[1].span, kind="3-2-1-1"))
+    assert isinstance(told, Estimate)
+    assert told.found is not None
+    found = estimate(stepped, with_found(VANE, told.found))
+    assert isinstance(found, Estimate)
     assert "M:p*r" not in [x.name for x in found.instruments]
 
 
