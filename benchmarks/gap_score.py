@@ -62,8 +62,9 @@ def _first(document: Mapping[str, Any]) -> dict[str, Any]:
 def is_right(one: Mapping[str, Any]) -> bool:
     """Return whether the first answer is right.
 
-    Of two effects either is right. Without an effect the air, where it moved, is right too. Without a name
-    "unknown" is right in any block.
+    Of two effects either is right. Without an effect the air, where it moved, is right too, and so is what
+    the log has because of its generation, as the lag of an angle of attack that an autopilot computes. Without
+    a name "unknown" is right in any block.
     """
     truth, name = one["truth"], one["answer"]["first"]["name"]
     kind = truth["kind"]
@@ -71,7 +72,12 @@ def is_right(one: Mapping[str, Any]) -> bool:
         return bool(name == "unknown")
     if kind in ("one", "two"):
         return name in truth["effects"]
-    return name == kind or (kind == "none" and name in truth["background"])
+    return name == kind or (kind == "none" and name in _natural(truth))
+
+
+def _natural(truth: Mapping[str, Any]) -> Sequence[str]:
+    """Return the effects that a log has although nothing is withheld."""
+    return (*truth["background"], *truth.get("also_true", ()))
 
 
 def is_alarm(one: Mapping[str, Any]) -> bool:
@@ -91,7 +97,8 @@ def log_score(one: Mapping[str, Any]) -> float:
     elif kind == "outside":
         p = sum(told["unknown"].values())
     else:
-        p = told[kind] + sum(effects.get(name, 0.0) for name in one["truth"]["background"] if kind == "none")
+        natural = _natural(one["truth"]) if kind == "none" else ()
+        p = told[kind] + sum(effects.get(name, 0.0) for name in natural)
     return float(np.log(max(p, LEAST_SHARE)))
 
 

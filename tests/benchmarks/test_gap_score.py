@@ -29,6 +29,8 @@ def test_an_alarm_is_an_effect_or_an_unknown_where_nothing_is_withheld() -> None
     assert is_alarm(flight("none", "unknown", {"unknown": 0.9}))
     assert not is_alarm(flight("none", "parameters", {"parameters": 0.9}))
     assert not is_alarm(flight("none", "turbulence", {"turbulence": 0.9}, background=["turbulence"]))
+    assert not is_alarm(flight("none", "alpha_skew", {"alpha_skew": 0.9}, also_true=["alpha_skew"]))
+    assert not is_right(flight("outside", "alpha_skew", {"alpha_skew": 0.9}, also_true=["alpha_skew"]))
 
 
 @pytest.mark.parametrize(
