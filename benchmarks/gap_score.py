@@ -63,8 +63,8 @@ def is_right(one: Mapping[str, Any]) -> bool:
     """Return whether the first answer is right.
 
     Of two effects either is right. Without an effect the air, where it moved, is right too, and so is what
-    the log has because of its generation, as the lag of an angle of attack that an autopilot computes. Without
-    a name "unknown" is right in any block.
+    the log has because of its generation, as the lag of an angle of attack that an autopilot computes.
+    Without a name "unknown" is right in any block.
     """
     truth, name = one["truth"], one["answer"]["first"]["name"]
     kind = truth["kind"]
