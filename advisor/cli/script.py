@@ -172,7 +172,8 @@ def _left_out(names: tuple[str, ...], table: "ScriptTable", source: "Source") ->
 def _print(table: "ScriptTable", out: Path) -> None:
     from advisor.scripts.document import lines_of
 
-    click.echo(f"Wrote {printable(str(out))} for {table.name} (calibration {table.calibration_hash}).")
+    identity = table.identity
+    click.echo(f"Wrote {printable(str(out))} for {identity.name} (calibration {identity.calibration}).")
     for line in lines_of(table):
         click.echo(f"  {line}")
     switch = f"channel {table.switch}" if table.switch < 300 else f"the channel of RCn_OPTION {table.switch}"

@@ -30,15 +30,15 @@ def _head(table: ScriptTable) -> list[str]:
     limits, pace, why = table.limits, table.pace, table.pace.why
     switch = f"radio channel {table.switch}" if table.switch < 300 else f"RCn_OPTION {table.switch}"
     return [
-        f"-- Test inputs of {table.name}, for ArduPlane. Written by: advisor script ardupilot.",
+        f"-- Test inputs of {table.identity.name}, for ArduPlane. Written by: advisor script ardupilot.",
         "-- Safety: try the switch on the ground with the propeller off, then fly high for the first time.",
         f"-- The switch ({switch}) up starts the next input, down ends it at once.",
         f"-- Short period {pace.period_s:.3g} s ({why['period_s']}).",
         f"-- Roll time constant {pace.roll_s:.3g} s ({why['roll_s']}).",
         f"-- Dutch roll {pace.dutch_roll_s:.3g} s ({why['dutch_roll_s']}).",
         "",
-        f"local AIRCRAFT = {_text(table.name)}",
-        f'local HASH = "{table.calibration_hash}"     -- of the calibrations and stated outputs',
+        f"local AIRCRAFT = {_text(table.identity.name)}",
+        f'local HASH = "{table.identity.calibration}"     -- of the calibrations and stated outputs',
         _number("SWITCH", table.switch, switch),
         _number("BANK_DEG", limits.bank_deg, "deg, largest bank: limits.bank_deg of the aircraft file"),
         _number("PITCH_DEG", limits.pitch_deg, "deg, largest change of the pitch angle in an input"),

@@ -26,7 +26,7 @@ def script_document(table: ScriptTable | None, file: str, problems: Sequence[Pro
     return document | {
         "autopilot": "ardupilot",
         "aircraft": table.aircraft.name,
-        "hash": table.calibration_hash,
+        "hash": table.identity.calibration,
         "switch": table.switch,
         "period_s": pace.period_s,
         "roll_s": pace.roll_s,

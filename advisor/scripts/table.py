@@ -1,17 +1,15 @@
 """The table of a script: its inputs with their sizes, for one aircraft."""
 
-import hashlib
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.script_identity import ScriptIdentity
 from advisor.scripts.flight_limits import FlightLimits
 from advisor.scripts.inputs import CONTROLS, NAMES, Control, ScriptInput, input_of
 from advisor.scripts.outputs import StatedOutput, stated_outputs
 from advisor.scripts.pace import Pace, pace_of
 from advisor.scripts.sizes import Size, size_of, travel_of
-from advisor.words.printable import printable
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,21 +50,13 @@ class ScriptTable:
     parameters: Mapping[str, float]
 
     @property
-    def name(self) -> str:
-        """Name of the aircraft, short enough for a text of 50 bytes."""
-        return printable(self.aircraft.name).encode("ascii", "replace").decode()[:20]
+    def identity(self) -> ScriptIdentity:
+        """Name and calibrations of the aircraft file, as the script states them."""
+        return ScriptIdentity.of(self.aircraft)
 
     def travel_rad(self, control: Control) -> float:
         """Return the travel of a control from neutral to the nearer stop, rad."""
         return travel_of(self.aircraft, control)
-
-    @property
-    def calibration_hash(self) -> str:
-        """Eight digits that change with any calibration or stated output."""
-        outputs = [[(o.output, o.factor, o.calibration) for o in self.outputs[c]] for c in CONTROLS]
-        calibrations = [getattr(self.aircraft, c).calibration for c in CONTROLS]
-        text = json.dumps([outputs, calibrations, sorted(self.parameters.items())])
-        return hashlib.sha256(text.encode()).hexdigest()[:8]
 
 
 def script_table(

@@ -171,8 +171,17 @@ def airborne(
         finally:
             if link is not None:
                 link.close()
-            process.terminate()
-            process.wait(10)
+            _end(process)
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End ArduPlane, which may wait for a link that nobody reads any more."""
+    process.terminate()
+    try:
+        process.wait(10)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait(10)
 
 
 def _install(script: str, folder: Path, airframe: Airframe) -> None:

@@ -354,7 +354,7 @@ def test_the_script_says_its_aircraft_and_calibration_when_it_loads_and_when_the
     table = _table(aircraft=Aircraft(name='my "own" aircraft'))
     engine = Engine(armed=False)
     engine.load(ardupilot_script(table))
-    line = f'ADVISOR SCRIPT my "own" aircraft {table.calibration_hash}'
+    line = f'ADVISOR SCRIPT my "own" aircraft {table.identity.calibration}'
     assert engine.said("ADVISOR SCRIPT") == [line]
     engine.armed = True
     engine.run(0.1)

@@ -116,7 +116,7 @@ def test_inputs_of_an_absent_control_are_left_out() -> None:
 
 
 def test_the_hash_follows_the_calibration() -> None:
-    plain = script_table(Aircraft(), Source()).calibration_hash
+    plain = script_table(Aircraft(), Source()).identity.calibration
     turned = Elevator(calibration=((1100.0, 20.0), (1900.0, -20.0)))
-    assert script_table(replace(Aircraft(), elevator=turned), Source()).calibration_hash != plain
-    assert script_table(replace(Aircraft(), name="another"), Source()).calibration_hash == plain
+    assert script_table(replace(Aircraft(), elevator=turned), Source()).identity.calibration != plain
+    assert script_table(replace(Aircraft(), name="another"), Source()).identity.calibration == plain

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import Literal, get_args
 
+from advisor.aircraft.script_identity import ScriptIdentity
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.maneuvers.maneuver import InputKind
 from advisor.words.printable import printable
@@ -45,8 +46,10 @@ class Announcement:
     word: Literal["begin", "end", "script", "unread"]
     number: int = 0
     said: str = ""
-    """Name of the input, reason for the early end, name of the aircraft, or the whole text that is unread."""
+    """Name of the input, reason for the early end, or the whole text that is unread."""
     aborted: bool = False
+    script: ScriptIdentity | None = None
+    """Identity of the aircraft file that a script was written from."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +112,7 @@ def read_announcement(raw: bytes) -> Announcement | None:
     if end := _END.fullmatch(said):
         return Announcement("end", int(end[1]), (end[3] or "no reason stated").strip(), aborted=not end[2])
     if script := _SCRIPT.fullmatch(said):
-        return Announcement("script", said=script[1])
+        return Announcement("script", script=ScriptIdentity(script[1], script[2]))
     return Announcement("unread", said=said)
 
 
@@ -119,10 +122,10 @@ class Announcements:
     Parameters
     ----------
     aircraft
-        Name in the aircraft file; None for the name of an aircraft without a file.
+        Identity of the aircraft file. None: every script is taken.
     """
 
-    def __init__(self, aircraft: str | None) -> None:
+    def __init__(self, aircraft: ScriptIdentity | None) -> None:
         self._aircraft = aircraft
         self.start_boot()
 
@@ -187,10 +190,11 @@ class Announcements:
         return (Notice(SCRIPT_NOTICE, f"{text}{_BY_HAND}."),)
 
     def _other_aircraft(self, said: Announcement) -> tuple[Notice, ...]:
-        if self._aircraft is None or said.said == self._aircraft:
+        own, its = self._aircraft, said.script
+        if own is None or its is None or its == own:
             return ()
-        text = (
-            f"The script in the autopilot was written for the aircraft {said.said}, and the aircraft file is "
-            f"that of {self._aircraft}; write the script anew: advisor script ardupilot."
-        )
+        differs = f"was written for other calibrations of {own.name} than those in the aircraft file"
+        if its.name != own.name:
+            differs = f"was written for the aircraft {its.name}, and the aircraft file is that of {own.name}"
+        text = f"The script in the autopilot {differs}; write the script anew: advisor script ardupilot."
         return (Notice(SCRIPT_NOTICE, text),)

@@ -10,6 +10,7 @@ from typing import Literal
 
 import numpy as np
 
+from advisor.aircraft.script_identity import ScriptIdentity
 from advisor.flight.maneuvers.announced import SCRIPT_NOTICE, Announced, Announcement, Announcements
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.maneuvers.maneuver import Span
@@ -104,10 +105,10 @@ class Marks:
     Parameters
     ----------
     aircraft
-        Name in the aircraft file, which a script must state. None: every script is taken.
+        Identity of the aircraft file, which a script must state. None: every script is taken.
     """
 
-    def __init__(self, given: Sequence[Mark] = (), aircraft: str | None = None) -> None:
+    def __init__(self, given: Sequence[Mark] = (), aircraft: ScriptIdentity | None = None) -> None:
         self._given = list(given)
         self._script = Announcements(aircraft)
         self._heard: list[tuple[float, float]] = []

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.script_identity import ScriptIdentity
 from advisor.flight.elevator.elevator_guess import ElevatorGuesses, Guess
 from advisor.flight.elevator.elevator_sign import SAID
 from advisor.flight.elevator.mixing import Mixing
@@ -73,7 +74,8 @@ class StreamState:
         )
         """Channels of this power-on, the newest stretch of each."""
         self._breaks = Breaks()
-        self.marks = Marks(marks, None if aircraft.name == Aircraft.name else aircraft.name)
+        identity = ScriptIdentity.of(aircraft)
+        self.marks = Marks(marks, None if identity == ScriptIdentity.of(Aircraft()) else identity)
         """Marks by hand, by a switch, by texts and by a script."""
         self._cutting = Cutting(self.tracks, self._who, aircraft, self._breaks, self.marks, lateral)
         self._mixing = Mixing(self.tracks)

@@ -4,14 +4,18 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Elevator
 from advisor.flight.elevator.elevator_sign import turned
 from advisor.flight.maneuvers.events import Activity, Notice, SideManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.flight.stream.stream import FlightStream
+from advisor.scripts.ardupilot import ardupilot_script
+from advisor.scripts.table import Source, script_table
 from tests.flight.columns import Wire, attitude, fly, heartbeat, plane_parameters, pull, servo, text
 from tests.flight.maneuvers.test_marks import PIECE
 from tests.flight.stream.test_stream import as_plain, flown, maneuvers
+from tests.scripts.engine import Engine
 
 BEGIN, END = "ADVISOR BEGIN 3 reverse 3-2-1-1", "ADVISOR END 3 done"
 
@@ -199,7 +203,31 @@ def test_a_script_of_another_aircraft_is_told_with_both_names():
         "The script in the autopilot was written for the aircraft big wing, and the aircraft file is that of "
         "small wing; write the script anew: advisor script ardupilot."
     )
-    assert told(wire, Aircraft(name="big wing")) == []
+
+
+def said_by(script_of: Aircraft) -> Wire:
+    engine = Engine(armed=False)
+    engine.load(ardupilot_script(script_table(script_of, Source())))
+    (line,) = engine.said("ADVISOR SCRIPT")
+    return announced((51.0, line))
+
+
+@pytest.mark.parametrize("name", ["big wing", "a glider with a very long name", "Flügel 三"])
+def test_the_script_of_the_aircraft_file_is_taken(name: str):
+    aircraft = Aircraft(name=name)
+    assert told(said_by(aircraft), aircraft) == []
+
+
+@pytest.mark.parametrize("name", [Aircraft.name, "big wing"])
+def test_a_script_with_earlier_calibrations_is_told(name: str):
+    before, after = (
+        Aircraft(name=name, elevator=Elevator(calibration=((1100.0, -deg), (1900.0, deg))))
+        for deg in (20.0, 22.0)
+    )
+    assert told(said_by(before), after) == [
+        f"The script in the autopilot was written for other calibrations of {name} than those in the "
+        "aircraft file; write the script anew: advisor script ardupilot."
+    ]
 
 
 def test_without_an_aircraft_file_any_script_is_taken():
