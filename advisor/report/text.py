@@ -15,9 +15,9 @@ from advisor.oem.estimate import Estimate
 from advisor.report.axes.lateral_document import side_quality_lines
 from advisor.report.facts.decision import INDENT, decisions
 from advisor.report.facts.estimates import structure_lines, untold
-from advisor.report.facts.gap import counted
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
 from advisor.report.result_rows import SIDE_ROOM, channel_table, joint_table, maneuver_line, regression_table
+from advisor.words.digits import counted
 from advisor.words.vehicle_time import CLOCK, clock
 
 

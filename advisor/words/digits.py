@@ -1,5 +1,6 @@
 """Numbers as text: an interval with two significant digits, and unequal texts for unequal numbers."""
 
+from collections.abc import Sequence
 from math import floor, isfinite, log10
 from typing import Literal
 
@@ -58,3 +59,10 @@ def with_half(value: float, half: float) -> str:
     """Return a number with half its 95 % interval: ``−48.3 ± 2.1``."""
     decimals = decimals_for(half)
     return f"{signed(value, decimals)} ± {signed(half, decimals)}"
+
+
+def counted(numbers: Sequence[int]) -> str:
+    """Return ``1 to 9`` for numbers without a gap, else a list."""
+    if len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1:
+        return f"{numbers[0]} to {numbers[-1]}"
+    return ", ".join(map(str, numbers))

@@ -94,8 +94,8 @@ class SlowMotion:
         grid = AxisGrid(
             first=rows.first, row=rows.row, place=SLOW.place, bias=SLOW.bias,
             scale=np.ones(len(SLOW.outputs)),
-            turning=np.array([(0, 1, 1), (2, 1, 2)]),
-            seen=np.array([(0, 0, 0), (1, 1, 0), (2, 2, 0), (3, states, 0), (4, 3, 0)]),
+            turning=np.array([(0, 1, 1, -1, 1), (2, 1, 2, -1, 1)]),
+            seen=np.array([(k, state, 0, -1, 1) for k, state in enumerate((0, 1, 2, states, 3))]),
             forced=np.empty((0, states)), changed=causes, changed_start=causes, changed_slope=causes,
             initial=tuple(len(SLOW.place) + k for k in range(states)), bank=-1, yaw=0, **rows.columns,
         )  # fmt: skip

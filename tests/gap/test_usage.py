@@ -73,7 +73,6 @@ def test_a_plan_is_foreseen_by_a_command_of_its_own_out_of_the_help_of_the_gap()
 @pytest.mark.parametrize(("arguments", "option"), [
     (["flight.tlog", "--rate", "20"], "--rate has a meaning with --foresee only"),
     (["--foresee", "--holdout", "2"], "--holdout has a meaning without --foresee only"),
-    (["flight.tlog", "--axis", "lateral", "--all"], "--all has a meaning with --axis pitch only"),
 ])  # fmt: skip
 def test_an_option_of_the_other_half_of_the_command_is_refused_for_it_would_be_ignored(
     capsys, monkeypatch, arguments, option

@@ -1,5 +1,6 @@
 """A section or a picture that a fault ends is a sentence in its place, and the rest of the page stands."""
 
+from types import SimpleNamespace
 from typing import Any, NoReturn
 
 import pytest
@@ -18,7 +19,7 @@ def flight_picture(content: object) -> NoReturn:
 def test_a_section_that_fails_is_named_in_its_place_and_its_neighbours_stand(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    content: Any = None
+    content: Any = SimpleNamespace(state=SimpleNamespace(maneuvers=(), tested_sideways=None))
     monkeypatch.setattr(render, "_PARTS", (lambda _: SOUND, flight_picture, lambda _: SOUND))
     first, failed, last = render.sections(content)
     assert first is last is SOUND
@@ -38,7 +39,7 @@ def test_a_fault_that_is_none_of_numbers_ends_the_page(monkeypatch: pytest.Monke
     def broken(content: object) -> NoReturn:
         raise TypeError("no number")
 
-    content: Any = None
+    content: Any = SimpleNamespace(state=SimpleNamespace(maneuvers=(), tested_sideways=None))
     monkeypatch.setattr(render, "_PARTS", (broken,))
     with pytest.raises(TypeError):
         render.sections(content)

@@ -7,7 +7,6 @@ second. The loss grows with the frequency as that by a servo's lag does. On a fa
 from dataclasses import replace
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
@@ -29,6 +28,8 @@ def command_of(maneuver: Maneuver, control: str) -> Channel:
 
 def between_samples(t: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return times and values of a cubic spline through samples, with corners between them."""
+    from scipy.interpolate import CubicSpline  # not on the start path
+
     part = np.arange(_PARTS) / _PARTS
     fine = np.append((t[:-1, None] + np.diff(t)[:, None] * part).ravel(), t[-1])
     return fine, CubicSpline(t, y)(fine)

@@ -7,8 +7,7 @@ from math import isfinite, nan
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate, TermEstimate
-from advisor.report.facts.gap import counted
-from advisor.words.digits import decimals_for, signed, with_half
+from advisor.words.digits import counted, decimals_for, signed, with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import DEG, symbol
 from advisor.words.quantities import PARAMETERS as PITCH

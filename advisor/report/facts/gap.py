@@ -7,7 +7,7 @@ from advisor.gap.alternative import Weighed
 from advisor.gap.result import ComparedDerivative, Gap, MissingLaw, Shrink, Where
 from advisor.gap.verdict.text import in_words, place
 from advisor.report.facts.sizes import before_after, has_grown, short
-from advisor.words.digits import decimals_for, signed, with_half
+from advisor.words.digits import counted, decimals_for, signed, with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import CHANNELS, PARAMETERS, SIDE_PARAMETERS
 
@@ -79,13 +79,6 @@ def law_said(law: MissingLaw) -> str:
         return f"{told}; no simple formula fits it."
     about = f"about {with_half(law.coefficient.value, half)} · {law.nearest} {unit}, next to a line"
     return f"{told}: {about}; {law.runner_up} comes next."
-
-
-def counted(numbers: Sequence[int]) -> str:
-    """Return ``1 to 9`` for numbers without a gap, else a list."""
-    if len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1:
-        return f"{numbers[0]} to {numbers[-1]}"
-    return ", ".join(map(str, numbers))
 
 
 def changed(one: ComparedDerivative) -> str:
