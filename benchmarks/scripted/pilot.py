@@ -144,9 +144,7 @@ def airborne(
     from pymavlink import mavutil
 
     _install(script, folder, airframe)
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+    port = _free_port()
     words = [
         "./arduplane",
         "--model",
@@ -172,6 +170,16 @@ def airborne(
             if link is not None:
                 link.close()
             _end(process)
+
+
+def _free_port() -> int:
+    """Return a TCP port that is free, as is that of the second link, without which ArduPlane ends."""
+    while True:
+        with socket.socket() as first, socket.socket() as second, suppress(OSError, OverflowError):
+            first.bind(("127.0.0.1", 0))
+            port: int = first.getsockname()[1]
+            second.bind(("127.0.0.1", port + _SECOND))
+            return port
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
