@@ -3,6 +3,7 @@
     python -m benchmarks.gap_score --each 20 --seed 5150     # about ten seconds a flight and core
     python -m benchmarks.gap_score --seed 5150 --table       # the table of the answers kept so far
     python -m benchmarks.gap_score --each 10 --seed 5150 --only-world    # the telemetry of the world alone
+    python -m benchmarks.gap_score --each 10 --seed 5150 --write docs/data/gap-fresh.md    # for the pages
 
 The flights are drawn from the seed in each generator's own mixture, with natural nuisances, and with more
 flights that have no name for their cause. In the strata of the world all natural numbers act together
@@ -15,6 +16,7 @@ import json
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +26,7 @@ import numpy as np
 from advisor.cli.running import runner_of
 from advisor.gap.inference.prior import FIELD
 from benchmarks.gap_draws import DRAWS, drawn
+from benchmarks.real import commit
 from benchmarks.sealed.answer import answer
 from benchmarks.sealed.generator import COMPARED
 from sim.sealed.cases import SealedCase, write_case
@@ -34,6 +37,8 @@ SURE = 0.9
 LEAST_SHARE = 1e-3
 """Probability below which the log score of an answer falls no further."""
 FOLDER = Path("build") / "gap-score"
+_NAME = 56
+"""Width of a figure's name in the table."""
 
 
 def answered(name: str, case: SealedCase) -> dict[str, Any]:
@@ -149,9 +154,9 @@ def table(flights: Sequence[Mapping[str, Any]]) -> Iterator[str]:
 
     def share(name: str, hits: Sequence[bool]) -> str:
         if not hits:
-            return f"{name:56s} no case"
+            return f"{name:{_NAME}s} no case"
         low, high = wilson(sum(hits), len(hits))
-        return f"{name:56s} {sum(hits):4d} of {len(hits):<4d} [{100 * low:3.0f}, {100 * high:3.0f}] %"
+        return f"{name:{_NAME}s} {sum(hits):4d} of {len(hits):<4d} [{100 * low:3.0f}, {100 * high:3.0f}] %"
 
     worldly = [f for f in flights if "world" in f["truth"]]
     flights = [f for f in flights if "world" not in f["truth"]]
@@ -161,7 +166,7 @@ def table(flights: Sequence[Mapping[str, Any]]) -> Iterator[str]:
             continue
         yield share(f"in the world: first answer right, {generator}", [is_right(f) for f in mine])
         alarms = [is_alarm(f) for f in mine if f["truth"]["kind"] == "none"]
-        yield share(f"  false alarms, nothing withheld, {generator}", alarms)
+        yield share(f"in the world: false alarms, {generator}", alarms)
     if not flights:
         return
     for generator in DRAWS:
@@ -176,7 +181,7 @@ def table(flights: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         sure = [is_right(f) for f in mine if stated(f) >= SURE]
         yield share(f"  right where P is at least .9, {generator}", sure)
         score = float(np.mean([log_score(f) for f in mine]))
-        yield f"{f'  log score of the truth, {generator}':56s} {score:.2f} nats a flight"
+        yield f"{f'  log score of the truth, {generator}':{_NAME}s} {score:.2f} nats a flight"
     kinds = {k: [f for f in flights if f["truth"]["kind"] == k] for k in ("none", "outside", "parameters")}
     yield share("false alarms, nothing withheld", [is_alarm(f) for f in kinds["none"]])
     yield share("wrong numbers, told", [is_right(f) for f in kinds["parameters"]])
@@ -191,17 +196,18 @@ def table(flights: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     yield share("right where P is at least .9", [is_right(f) for f in flights if stated(f) >= SURE])
     sure = np.array([stated(f) >= SURE for f in flights]) * in_the_field(flights)
     held = float(sure @ np.array([is_right(f) for f in flights]) / max(np.sum(sure), 1e-12))
-    yield f"{'  the same, with the kinds as frequent as in the prior':56s} {100.0 * held:.0f} %"
+    yield f"{'  the same, with the kinds as frequent as in the prior':{_NAME}s} {100.0 * held:.0f} %"
     yield share("verdict follows from the probabilities", [follows(f) for f in flights])
     yield share("sizes inside 95 %", [inside for f in flights if is_right(f) for inside in sizes_inside(f)])
     chances = np.array([stated(f) for f in flights])
     right = np.array([is_right(f) for f in flights], float)
     yield (
-        f"{'calibration error, Brier score of the answer':56s} {calibration_error(chances, right):.3f}, "
+        f"{'calibration error, Brier score of the answer':{_NAME}s} {calibration_error(chances, right):.3f}, "
         + (f"{np.mean((chances - right) ** 2):.3f}")
     )
-    yield f"{'mean probability where right':56s} {np.mean(chances[right > 0]):.2f}"
-    yield f"{'processor time of a diagnosis, median':56s} {np.median([f['seconds'] for f in flights]):.1f} s"
+    yield f"{'mean probability where right':{_NAME}s} {np.mean(chances[right > 0]):.2f}"
+    seconds = np.median([f["seconds"] for f in flights])
+    yield f"{'processor time of a diagnosis, median':{_NAME}s} {seconds:.1f} s"
 
 
 def calibration_error(told: np.ndarray, right: np.ndarray) -> float:
@@ -220,6 +226,7 @@ def calibration_error(told: np.ndarray, right: np.ndarray) -> float:
 )
 @click.option("--only-world", is_flag=True, help="Fly only the strata with the telemetry of the world.")
 @click.option("--workers", type=click.IntRange(1), help="Processes; by default one a core.")
+@click.option("--write", "page", type=click.Path(path_type=Path), help="Page that receives the table.")
 def main(
     each: int,
     seed: int,
@@ -228,6 +235,7 @@ def main(
     generators: Sequence[str],
     only_world: bool,
     workers: int | None,
+    page: Path | None,
 ) -> None:
     """Fly, answer and score."""
     kept = FOLDER / f"{seed}{label}.jsonl"
@@ -246,8 +254,17 @@ def main(
                 out.flush()
                 flights.append(result)
                 print(result["case"], result["answer"]["first"]["name"], file=sys.stderr)
-    for row in table(flights):
-        click.echo(row)
+    rows = list(table(flights))
+    click.echo("\n".join(rows))
+    if page is not None:
+        page.write_text(in_markdown(rows, seed, len(flights)), encoding="utf-8")
+
+
+def in_markdown(rows: Sequence[str], seed: int, count: int) -> str:
+    """Return the rows of the table as a page, with seed, number of flights, day and commit."""
+    lines = [f"| {row[:_NAME].strip()} | {' '.join(row[_NAME:].split())} |" for row in rows]
+    source = f"{count} flights, seed {seed}, {date.today().isoformat()}, commit `{commit()}`."
+    return "\n".join(["| figure | value, 95 % interval |", "|---|---|", *lines, "", source, ""])
 
 
 def _answered(pair: tuple[str, SealedCase]) -> dict[str, Any]:

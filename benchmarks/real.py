@@ -62,14 +62,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     records = yaml.safe_load(RECORDS.read_text(encoding="utf-8"))
     rows = [row for record in records for row in judged(record, given.folder)]
-    measured = f"{date.today().isoformat()}, commit {_commit()}, Python {platform.python_version()}"
+    measured = f"{date.today().isoformat()}, commit {commit()}, Python {platform.python_version()}"
     print(in_markdown(rows, measured))
     if given.write:
         write(given.write, rows, measured)
     return 0 if all(row.holds for row in rows) else 1
 
 
-def _commit() -> str:
+def commit() -> str:
     """Return the short name of the commit that is measured; ``unknown`` outside a repository."""
     asked = ["git", "-C", str(RECORDS.parent), "rev-parse", "--short", "HEAD"]
     return subprocess.run(asked, capture_output=True, text=True, check=False).stdout.strip() or "unknown"

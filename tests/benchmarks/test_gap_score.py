@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.gap_draws import DRAWS, STRATA, drawn
-from benchmarks.gap_score import LEAST_SHARE, is_alarm, is_right, log_score, table
+from benchmarks.gap_score import LEAST_SHARE, in_markdown, is_alarm, is_right, log_score, table
 
 
 def flight(kind: str, first: str, shares: dict[str, float], **truth: Any) -> dict[str, Any]:
@@ -64,6 +64,14 @@ def test_flights_in_the_world_are_counted_apart() -> None:
     )
     assert rows[0].split()[:8] == ["in", "the", "world:", "first", "answer", "right,", "own", "0"]
     assert next(r for r in rows if r.startswith("first answer right, own")).split()[4:7] == ["1", "of", "1"]
+
+
+def test_the_page_has_a_row_for_each_figure_and_its_source() -> None:
+    flights = [flight("none", "none", {"none": 1.0}), flight("none", "gust", {"gust": 1.0}, world={})]
+    page = in_markdown(list(table(flights)), seed=7, count=2).splitlines()
+    assert "| first answer right, own | 1 of 1 [ 21, 100] % |" in page
+    assert "| in the world: false alarms, own | 1 of 1 [ 21, 100] % |" in page
+    assert page[-1].startswith("2 flights, seed 7, 20")
 
 
 @pytest.mark.study
