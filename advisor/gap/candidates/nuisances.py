@@ -43,6 +43,13 @@ TRUE_AIR_SPEED = Variant(
 """Nuisance parameter of every model with a_z: the relative excess of the true over the read air speed. Data
 sheets state 5 %. The read speed may be an indicated one, 3 to 5 % below the true one at 600 m."""
 
+GYRO_BIAS = Variant(
+    "gyro_bias", "pitch_rate_sensor", ("bias_rad_s",), ((0.0,),), (5e-4,), ((-0.015, 0.015),), 0.0,
+    entries=("q_bias",), prior_std=(0.003,), is_nuisance=True,
+)  # fmt: skip
+"""Nuisance parameter of every model: the bias of the pitch rate. The zero rate of a MEMS gyro moves by .01 to
+.05 deg/s per kelvin after its calibration: .17 deg/s in flight."""
+
 OWN_ALPHA = Variant(
     "own_alpha", "alpha_sensor", ("lag_s", "scale"), ((0.0, 0.0),), (1e-3, 0.002),
     ((0.0, 2.0 * _OWN_FILTER_S), (-2.0 * COMPUTED_WIDTH, 2.0 * COMPUTED_WIDTH)), 0.0,

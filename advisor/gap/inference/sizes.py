@@ -48,12 +48,11 @@ _NATURAL = 0.02
 effect."""
 _OF_DATA_SHEETS = {
     "actuator_lag": 0.2, "transport_delay": 0.2, "actuator_backlash": 0.15, "actuator_deadband": 0.15,
-    "pitch_rate_scale": 0.1, "pitch_rate_bias": 0.3,
+    "pitch_rate_scale": 0.1,
 }  # fmt: skip
 """Prior: natural share of effects whose natural size data sheets state. The lag and the delay of a servo are
 known to 10 ms. A servo ignores 2 to 4 µs of its command, 0.2 deg, and its gears play as much: 1.5 mrad to
-either side. The scale of a MEMS gyro is right to 1 %. The zero rate of a gyro
-moves by 0.01 to 0.05 deg/s per kelvin after its calibration: 0.17 deg/s in flight."""
+either side. The scale of a MEMS gyro is right to 1 %."""
 _OF_RANGE = 0.5
 """Prior: standard deviation of any other parameter, as a share of the largest searched value."""
 
