@@ -48,7 +48,7 @@ OF_AN_AXIS = frozenset(
 letter."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
-    "lines of code": 7066,
+    "lines of code": 7059,
     "constants": 217,
     "constants that decide": 26,
     "names compared": 11,

@@ -20,6 +20,7 @@ from advisor.gap.inference.marginal import Prior, marginal
 from advisor.gap.inference.posterior import (
     NONE,
     PARAMETERS,
+    UNKNOWN,
     _pairs,
     _with_residual,
     posterior_of,
@@ -408,6 +409,12 @@ def test_what_the_cap_takes_goes_to_the_numbers_as_far_as_fitted_ones_remove_the
     told = capped(posterior_of([row(NONE, 50.0), row(PARAMETERS), row(MOMENT)]), 10.0, 4.0)
     assert told.of(PARAMETERS) == pytest.approx(0.95 * 0.6)
     assert told.of(MOMENT) == pytest.approx(0.95 * 0.4)
+
+
+def test_what_the_cap_takes_without_a_file_and_with_two_manoeuvres_is_in_the_likeliest_effects_block():
+    told = capped(posterior_of([row(NONE, 50.0), row(DELAY), row(LAG, -9.0)]), 3.0, 3.0)
+    assert told.of(PARAMETERS) == 0.0
+    assert told.of(replace(UNKNOWN, block=DELAY.block)) == pytest.approx(0.95)
 
 
 @given(st.floats(0.0, 1.99), st.lists(st.floats(-20.0, 20.0), min_size=6, max_size=6))

@@ -58,6 +58,11 @@ class Bins:
         return float(self.middle_s[self.first + index] - 0.5 * BIN_S)
 
 
+def shows_hands(control: Channel) -> bool:
+    """Return whether a control is sampled more quickly than hands respond."""
+    return len(control) < 2 or float(np.median(np.diff(control.t))) < 0.99 * BIN_S
+
+
 def binned(span: Span, control: Channel, tests: Sequence[tuple[float, float]]) -> Bins | None:
     """Return the control in bins; None if too few bins before the movement show the hands.
 

@@ -11,6 +11,7 @@ from math import degrees, isfinite, radians
 import numpy as np
 
 from advisor.aircraft.aircraft import Limits
+from advisor.flight.maneuvers.binned import shows_hands
 from advisor.flight.maneuvers.excitation import excitation
 from advisor.flight.maneuvers.free_response import FREE_S
 from advisor.flight.maneuvers.hand_flying import flown_elsewhere
@@ -168,7 +169,8 @@ def _told(
         )
     moved = motion.get(control, maneuver.channels[control])
     # A part behind a leap of the stamps shows nothing of the seconds before.
-    asked = not maneuver.leapt_s and not _is_swept(maneuver) and not closes_pitch_loop(maneuver.mode)
+    hidden = bool(maneuver.leapt_s) or not shows_hands(moved)
+    asked = not hidden and not _is_swept(maneuver) and not closes_pitch_loop(maneuver.mode)
     odds, flown = None, [(test.start_s, test.end_s) for test in tests]
     if asked and loop.rate in motion:
         odds = odds_of_own_input(span, moved, motion[loop.rate], motion.get(loop.angle), found.effect, flown)

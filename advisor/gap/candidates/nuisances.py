@@ -36,14 +36,14 @@ aircraft the wake adds about a fifth of the elevator's power."""
 STATIC_PORT = 0.02
 """Prior: relative standard deviation of the air speed's error by the static port, which reads a pressure that
 the wing changes."""
-TRUE_AIR_SPEED = Variant(
+AIRSPEED = Variant(
     "true_air_speed", "accelerometer", ("scale",), ((0.0,),), (0.002,), ((-0.7, 3.0),), 0.0,
     entries=("speed_scale",), prior_std=(0.05,), is_nuisance=True,
 )  # fmt: skip
 """Nuisance parameter of every model with a_z: the relative excess of the true over the read air speed. Data
 sheets state 5 %. The read speed may be an indicated one, 3 to 5 % below the true one at 600 m."""
 
-GYRO_BIAS = Variant(
+GYRO = Variant(
     "gyro_bias", "pitch_rate_sensor", ("bias_rad_s",), ((0.0,),), (5e-4,), ((-0.015, 0.015),), 0.0,
     entries=("q_bias",), prior_std=(0.003,), is_nuisance=True,
 )  # fmt: skip

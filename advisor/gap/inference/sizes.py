@@ -26,8 +26,7 @@ _LEAST_ALPHA_RAD, _LEAST_DELTA_RAD = 0.05, 0.02
 _OF_EFFECT = {
     "actuator_lag.lag_s": 0.05, "transport_delay.delay_s": 0.05, "actuator_rate_limit.rate_rad_s": 1.5,
     "actuator_backlash.half_width_rad": 0.01, "actuator_deadband.half_width_rad": 0.01,
-    "actuator_deadband.neutral_rad": 0.01,
-    "alpha_lag.lag_s": 0.08,
+    "actuator_deadband.neutral_rad": 0.01, "alpha_lag.lag_s": 0.08,
     "pitch_rate_bias.bias_rad_s": 0.01, "structural_mode.frequency_hz": 4.0,
     "structural_mode.omega_rad_s": 25.0, "structural_mode.damping": 0.05, "structural_mode.gain": 1.0,
     "structural_mode.rate_gain": 0.3,

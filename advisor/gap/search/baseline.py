@@ -7,16 +7,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import changes_in, lasting, with_known
-from advisor.gap.candidates.nuisances import (
-    GYRO_BIAS,
-    IMU,
-    LOOP,
-    OWN_ALPHA,
-    PROPELLER,
-    TRUE_AIR_SPEED,
-    filters,
-    latency,
-)
+from advisor.gap.candidates.nuisances import AIRSPEED, GYRO, IMU, LOOP, OWN_ALPHA, PROPELLER, filters, latency
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.transport_delay import DELAY
 from advisor.gap.fitting.fit import EffectFit, evidence_of, fit, rms_of
@@ -83,7 +74,7 @@ def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float 
     The latency is one loop of the autopilot; ``with_telemetry`` widens it after the command's motion is
     known.
     """
-    late = point.with_effect(LOOP, (latency_s,)).with_effect(GYRO_BIAS, (0.0,))
+    late = point.with_effect(LOOP, (latency_s,)).with_effect(GYRO, (0.0,))
     if flights.alpha_is_derived:
         own = filters(flights)
         late = late.with_effect(own, (0.0,) * len(own.names))
@@ -91,7 +82,7 @@ def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float 
     elif {"alpha", "theta"} & set(flights.channels):
         late = late.with_effect(IMU, (0.0,))
     if "a_z" in flights.channels:
-        late = late.with_effect(TRUE_AIR_SPEED, (0.0,))
+        late = late.with_effect(AIRSPEED, (0.0,))
     return late.with_effect(PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
 
 

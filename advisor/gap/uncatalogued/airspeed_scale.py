@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.gap.candidates.nuisances import STATIC_PORT, TRUE_AIR_SPEED
+from advisor.gap.candidates.nuisances import AIRSPEED, STATIC_PORT
 from advisor.gap.decision import SIGMAS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
@@ -51,9 +51,9 @@ def true_over_read(found: AirspeedScale | None, weight: WeightReading | None) ->
 def airspeed_excess(fitted: EffectFit) -> float:
     """Return the relative excess of the true air speed in a fitted model; 0 without a measured air speed."""
     point = fitted.point
-    if TRUE_AIR_SPEED not in point.effects:
+    if AIRSPEED not in point.effects:
         return 0.0
-    return float(point.values[point.effects.index(TRUE_AIR_SPEED)][0])
+    return float(point.values[point.effects.index(AIRSPEED)][0])
 
 
 def airspeed_scale_of(problem: EffectProblem, fitted: EffectFit) -> AirspeedScale | None:
@@ -62,7 +62,7 @@ def airspeed_scale_of(problem: EffectProblem, fitted: EffectFit) -> AirspeedScal
     point, scale = fitted.point, airspeed_excess(fitted)
     if not scale:
         return None
-    at = point.place(point.effects.index(TRUE_AIR_SPEED)).start
+    at = point.place(point.effects.index(AIRSPEED)).start
     known = covariance_of(problem, fitted, colour_of(problem, fitted))
     std = float(np.sqrt(known[at, at]))
     return AirspeedScale(scale, std) if abs(scale) > max(NORMAL_95 * STATIC_PORT, SIGMAS * std) else None

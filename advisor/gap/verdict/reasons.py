@@ -9,7 +9,7 @@ import numpy as np
 from advisor.gap.alternative import Alternative, AlternativeEvidence, Column, Contribution, Weighed, together
 from advisor.gap.decision import Decision
 from advisor.gap.inference.explanation import Row
-from advisor.gap.inference.posterior import NONE, PARAMETERS, Posterior, posterior_of, relabelled
+from advisor.gap.inference.posterior import NONE, PARAMETERS, UNKNOWN, Posterior, posterior_of, relabelled
 from advisor.words.certainty import DECIDED
 
 VISIBLE_GAP, _LEAST_DOUBT = 2.0, 0.05
@@ -86,7 +86,8 @@ def capped(posterior: Posterior[Any], gap: float, left: float) -> Posterior[Any]
     gap.
 
     A visible gap without an explanation is a gap of the derivatives, as far as fitted derivatives remove it.
-    The rest has no name. Below the contract's gap the evidence alone says how likely "no gap" is.
+    The rest has no name, and is in the likeliest effect's block where too few manoeuvres show one. Below the
+    contract's gap the evidence alone says how likely "no gap" is.
 
     Parameters
     ----------
@@ -101,16 +102,13 @@ def capped(posterior: Posterior[Any], gap: float, left: float) -> Posterior[Any]
         return posterior
     by_numbers = float(np.clip(1.0 - left / gap, 0.0, 1.0))
     block = next((row.alternative for row in posterior.rows if row.alternative.kind == "unknown"), PARAMETERS)
+    effects = (a.block for a in posterior.by_alternative if a.is_effect)
+    if block == PARAMETERS and by_numbers == 0.0:
+        block = replace(UNKNOWN, block=next(effects, "force_equation"))
     taken = 1.0 - _LEAST_DOUBT / none
     parts = ((NONE, 1.0 - taken), (PARAMETERS, taken * by_numbers), (block, taken * (1.0 - by_numbers)))
-    rows: list[Row[Any]] = []
-    for row in posterior.rows:
-        if row.alternative != NONE:
-            rows.append(row)
-            continue
-        rows += [
-            relabelled(replace(row, terms={**row.terms, "gap": float(np.log(part))}), name)
-            for name, part in parts
-            if part > 1e-300
-        ]
-    return posterior_of(rows)
+    logs = [(name, float(np.log(part))) for name, part in parts if part > 1e-300]
+    kept = [row for row in posterior.rows if row.alternative != NONE]
+    without = [row for row in posterior.rows if row.alternative == NONE]
+    kept += [relabelled(replace(w, terms={**w.terms, "gap": log}), a) for w in without for a, log in logs]
+    return posterior_of(kept)
