@@ -132,7 +132,8 @@ def predicted(
     Parameters
     ----------
     fitted
-        Fit of the flight without effects, whose natural numbers start the search.
+        Fit of the flight, whose natural numbers start the search: next to the model's effects, where it has
+        any.
     offset_rad
         Offset of α that was removed from the data and that the model does not contain.
     """
@@ -181,7 +182,8 @@ def by_the_file(whole: Examined, unseen: UnseenManeuvers) -> Flown:
     before = after = predicted(problem, given, plain, floor, unseen.kept, unknown_offset(diagnosis, None))
     if changes_something(unseen.found.diagnosis):
         offset = unknown_offset(diagnosis, unseen.found.diagnosis)
-        after = predicted(problem, as_changed(unseen, whole), plain, floor, unseen.kept, offset)
+        own = unseen.found.findings.last.fitted
+        after = predicted(problem, as_changed(unseen, whole), own, floor, unseen.kept, offset)
     was, now = (whole_gap(held.mean_square, floor) for held in (before, after))
     return Flown(before, after, was, now)
 
