@@ -88,7 +88,8 @@ def in_simulator(
         refused = replace(unchanged, after=None, percent=None, refused=str(error.problem))
         return replace(as_it_was, told=refused)
     offset = unknown_offset(whole.diagnosis, unseen.found.diagnosis)
-    after = predicted(now, part.point, plain, floor, kept, offset)
+    own = unseen.found.findings.last.fitted
+    after = predicted(now, part.point, own, floor, kept, offset)
     here = whole_gap(after.mean_square, floor)
     if here > was:
         # Nothing is added that raises the gap.

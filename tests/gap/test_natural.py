@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.candidates.nuisances import GYRO
 from advisor.gap.fitting.natural import with_natural
 from advisor.gap.fitting.problem import SearchPoint
 from advisor.gap.fitting.refit import own_refitted
@@ -55,3 +56,14 @@ def test_the_natural_numbers_come_from_other_manoeuvres_than_those_judged(late):
         with_natural(problem, model, fitted.point, fitted.noise, aside).shared for aside in ((), (0, 2))
     )
     assert not np.array_equal(whole, without)
+
+
+def test_every_model_has_the_bias_of_its_gyro_as_wide_as_data_sheets_state_it():
+    biased = []
+    for one in fly(Setup(maneuvers=3, seed=9)):
+        q = one.channels["q"]
+        biased.append(replace(one, channels={**one.channels, "q": replace(q, y=q.y + np.radians(0.13))}))
+    _, fitted = fit_baseline(prepare(biased, Aircraft()), Aircraft())
+    bias = fitted.point.values[fitted.point.effects.index(GYRO)]
+    assert np.degrees(bias) == pytest.approx([0.13], abs=0.02)
+    assert np.degrees(GYRO.prior_std) == pytest.approx([0.17], abs=0.01)
