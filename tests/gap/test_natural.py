@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.candidates.nuisances import GYRO
+from advisor.gap.candidates.nuisances import AIRSPEED, GYRO
 from advisor.gap.fitting.natural import with_natural
 from advisor.gap.fitting.problem import SearchPoint
 from advisor.gap.fitting.refit import own_refitted
@@ -67,3 +67,9 @@ def test_every_model_has_the_bias_of_its_gyro_as_wide_as_data_sheets_state_it():
     bias = fitted.point.values[fitted.point.effects.index(GYRO)]
     assert np.degrees(bias) == pytest.approx([0.13], abs=0.02)
     assert np.degrees(GYRO.prior_std) == pytest.approx([0.17], abs=0.01)
+
+
+def test_every_model_has_a_read_air_speed_as_wrong_as_data_sheets_state_it():
+    _, fitted = fit_baseline(prepare(fly(Setup(maneuvers=3, seed=9)), Aircraft()), Aircraft())
+    assert AIRSPEED in fitted.point.effects
+    assert AIRSPEED.prior_std == (0.05,)
