@@ -38,8 +38,9 @@ class Flight:
     vehicle: Vehicle | None
     """Vehicle of the log. None where no heartbeat was heard."""
     power_ons: tuple[PowerOn, ...] = field(repr=False)
-    """Every power-on of the vehicle. ``power_ons[0].channels["q"]`` has stamps ``t`` (s since boot) and
-    values ``y`` (SI), shape (n,) each."""
+    """Records of every power-on of the vehicle. ``power_ons[0].channels["q"]`` has stamps ``t`` (s since
+    boot) and values ``y`` (SI), shape (n,) each.
+    """
     maneuvers: tuple[Maneuver, ...] = field(repr=False)
     """Manoeuvres in the order of flying, numbered from 1."""
     problems: tuple[Problem, ...]
@@ -54,15 +55,15 @@ def read(log: str | PathLike[str], aircraft: Aircraft | str | PathLike[str] | No
     Parameters
     ----------
     log : str or path
-        Path of a ``.tlog``, an ArduPilot ``.bin``, a PX4 ``.ulg`` or a table, compressed or not. Marks in
-        ``LOG.maneuvers.yaml`` next to the log count.
+        Path of a ``.tlog``, an ArduPilot ``.bin``, a PX4 ``.ulg`` or a table, compressed or not. The marks in
+        ``LOG.maneuvers.yaml`` next to the log are applied.
     aircraft : Aircraft, str or path, optional
         The aircraft, or its YAML file; by default nothing is known of it.
 
     Returns
     -------
     Flight
-        Also of a log that cannot be used for estimates; ``problems`` then says why.
+        The flight, even if the log cannot be used for estimates; ``problems`` then gives the reasons.
 
     Raises
     ------
@@ -94,8 +95,8 @@ def find(flight: Flight) -> tuple[Maneuver, ...]:
     Returns
     -------
     tuple of Maneuver
-        Each with its ``span`` (times in s since boot) and ``channels``: name to stamps ``t`` and values
-        ``y``, shape (n,) each, SI.
+        Manoeuvres with a ``span`` (times in s since boot) and ``channels``. A channel's name gives stamps
+        ``t`` and values ``y``, shape (n,) each, SI.
 
     Raises
     ------
@@ -115,7 +116,8 @@ def estimate(
     Parameters
     ----------
     maneuvers : Maneuver or sequence of Maneuver
-        Several share their derivatives; each keeps its own trim, initial state and biases.
+        Several manoeuvres share their derivatives; each manoeuvre keeps its own trim, initial state and
+        biases.
     aircraft : Aircraft, optional
         The aircraft; by default nothing is known of it.
 
@@ -123,7 +125,7 @@ def estimate(
     -------
     Estimate or NoEstimate
         ``theta`` and ``std``, shape (8,), and ``covariance``, shape (8, 8), in the order Z_0, Z_alpha, Z_q,
-        Z_delta_e, M_0, M_alpha, M_q, M_delta_e, rad and s. A failure is a value: ``NoEstimate`` with its
+        Z_delta_e, M_0, M_alpha, M_q, M_delta_e, rad and s. A failed fit returns ``NoEstimate`` with its
         reason in ``text``.
     """
     described = aircraft or Aircraft()
@@ -139,8 +141,8 @@ def judge(flights: Flight | Sequence[Flight]) -> CampaignState:
     Parameters
     ----------
     flights : Flight or sequence of Flight
-        One flight, or the flights of one campaign. Their logs are read again, oldest first where all tell
-        their times; what was decided by hand counts.
+        One flight, or the flights of one campaign. The logs are read again, oldest first if all logs have a
+        date. Decisions by hand are applied.
 
     Returns
     -------

@@ -1,1 +1,1 @@
-"""The Textual application. The package imports all others, and none imports it."""
+"""The Textual application. This package imports all other packages, and no package imports this one."""

@@ -1,4 +1,4 @@
-"""Keys of the application: decisions by hand on the present moment, on a live link, and on a replay."""
+"""Actions of the application's keys: marks by hand, actions on a live link, and actions on a replay."""
 
 from abc import abstractmethod
 from dataclasses import replace
@@ -31,7 +31,7 @@ class _Actions(App[None]):
 
 
 class HandActions(_Actions):
-    """Actions that name a moment, or mark a manoeuvre from one moment to another."""
+    """Actions that mark a moment, or mark a manoeuvre from one moment to another."""
 
     def action_mark(self) -> None:
         """Mark this moment in the event log."""
@@ -134,8 +134,9 @@ class ReplayActions(_Actions):
             self.seek(playback.position_s + seconds)
 
     def go_to(self, at_s: float) -> None:
-        """Go to the begin of the manoeuvre at a time of this power-on, s; without a manoeuvre, to the
-        time."""
+        """Go to the begin of the manoeuvre that covers a time of this power-on, s. Without a manoeuvre there,
+        go to the time itself.
+        """
         state, playback = self.view.state, self.view.playback
         if playback is None:
             return
@@ -147,7 +148,9 @@ class ReplayActions(_Actions):
         self.say(f"going to {clock(to_s)}")
 
     def seek(self, position_s: float) -> None:
-        """Go to a position of the replay, s. A position outside the replay becomes its nearest end."""
+        """Go to a position of the replay, s. A position outside the replay becomes the nearest end of the
+        replay.
+        """
         duration_s = self.view.playback.duration_s if self.view.playback is not None else 0.0
         self.conductor.seek(min(max(position_s, 0.0), duration_s))
 
@@ -160,7 +163,7 @@ class ReplayActions(_Actions):
         return self.view.tempo or Tempo()
 
     def _play(self, tempo: Tempo) -> None:
-        """Show the tempo immediately, even if the conductor is busy."""
+        """Give the conductor the new tempo, and show the tempo immediately, even if the conductor is busy."""
         self.conductor.play(tempo)
         self.show(replace(self.view, tempo=tempo))
 

@@ -21,18 +21,18 @@ class Advice:
     sentence: str
     tone: Tone
     age: str = ""
-    """Age of the word, for the line below; empty for a word of the present."""
+    """Age of the word, for the line below the word; empty if the word is new."""
 
 
-_OLD = "the verdicts below are that old, and the link and its recording go on."
+_OLD = "the verdicts below are that old. The link and its recording go on."
 
 
 def advise(view: View) -> Advice:
     """Return the most important advice: unusable data, the manoeuvre in flight, or the verdicts.
 
-    The last word stays while the link is lost or this computer is behind, and its age stands below. Of an
-    estimator that does not answer, only RECOVER and TEST COMPLETE stay. Once the flight test says stop on
-    each axis that is tested, no further data are needed.
+    The last word stays while the link is lost or this computer is behind, and its age stands below. If the
+    estimator does not answer, only RECOVER and TEST COMPLETE stay. After the flight test says stop on each
+    tested axis, no further data are needed.
     """
     if view.health.condition == "stale":
         word = _by_verdicts(view, True)
@@ -54,7 +54,9 @@ def advise(view: View) -> Advice:
 
 
 def _is_a_word(word: Advice, view: View) -> bool:
-    """Return whether the verdicts give a word, for which a manoeuvre must be judged or in flight."""
+    """Return whether the word comes from verdicts. A word from verdicts needs a manoeuvre that is judged or
+    in flight.
+    """
     return word.word in ("RECOVER", "TEST COMPLETE") or _is_flown(view)
 
 
@@ -65,7 +67,7 @@ def _is_flown(view: View) -> bool:
 
 
 def _by_verdicts(view: View, is_old: bool) -> Advice:
-    """Return the advice of the verdicts. Of old data no absence is advice."""
+    """Return the advice of the verdicts. Old data give no advice on a missing channel or vehicle."""
     state, verdict, last = view.state, view.state.flight_test, view.last
     side = state.tested_sideways
     if side is not None:
@@ -93,7 +95,7 @@ def _by_verdicts(view: View, is_old: bool) -> Advice:
 
 
 def _another(view: View) -> str:
-    """Return a sentence on other vehicles that a key selects; empty after a flight and in replays."""
+    """Return a sentence on vehicles that a key selects; empty after the first manoeuvre and in replays."""
     others = view.state.other_vehicles
     if not others or view.state.maneuvers or view.tempo is not None:
         return ""

@@ -49,11 +49,13 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
     Parameters
     ----------
     conductor : Conducting
-        Runs the campaign, started after the first paint in a thread that only listens.
+        Object that runs the campaign. It starts after the first paint, in a thread that only receives
+        reports.
     tempo : Tempo, optional
         Start settings of a replay. None if the source is no replay.
     logs : sequence of Path
-        Logs and recordings, flight by flight, next to which panes are saved. Empty: in the current folder.
+        Logs and recordings of each flight. Panes are saved next to them; without a log, panes are saved in
+        the current folder.
     aircraft_file : Path, optional
         File of the aircraft, for the commands that the gap's pane names.
     """
@@ -102,7 +104,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
         """Newest report that is not shown yet."""
         self._garbage = Garbage()
         self._sideways = False
-        """Views of roll and yaw, while that axis is shown."""
+        """Whether roll and yaw are shown instead of pitch."""
         self._axis_chosen = False
         """Whether the shown axis was chosen, by a key or by the first manoeuvre."""
         self._sheets = Sheets(THEMES)
@@ -132,7 +134,9 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
         self._garbage.end()
 
     async def on_event(self, event: Event) -> None:
-        """Answer a key. The moment after the answer is the best time for garbage collection."""
+        """Answer a key. Start the timers of garbage collection after a key, because the moment after the
+        answer is the best time.
+        """
         await super().on_event(event)
         if isinstance(event, Key):
             self._pressed_s = monotonic()
@@ -144,7 +148,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
             self._tidy()
 
     def _tidy(self) -> None:
-        """Prepare one style sheet, or collect garbage. Either would delay the answer to a key."""
+        """Prepare one style sheet, or collect garbage. Both would delay the answer to a key."""
         if not self._sheets.prepare(self.stylesheet):
             self._garbage.collect_if_due()
 
@@ -252,7 +256,7 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
         super().delay_update(_AT_ONCE_S)
 
     def refresh_css(self, animate: bool = True) -> None:
-        """Style everything by the theme's sheet."""
+        """Apply the theme's style sheet to all widgets."""
         self.stylesheet = self._sheets.of(self.theme, self.stylesheet)
         super().refresh_css(animate)
 
@@ -278,15 +282,15 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
         self.push_screen(Explain(explanation(self)))
 
     async def action_quit(self) -> None:
-        """Quit like the advisor. Textual's own ctrl+q and palette would leave a live link at once."""
+        """Quit as `action_leave` does. Textual's own ctrl+q and palette would leave a live link at once."""
         self.action_leave()
 
     def action_help_quit(self) -> None:
-        """Quit by ctrl+c too, which Textual only explains."""
+        """Quit by ctrl+c. Textual's own action only explains how to quit."""
         self.action_leave()
 
     def action_leave(self) -> None:
-        """Quit the application; on a live link only after a second request."""
+        """Quit the application. On a live link, a second request is needed."""
         over = self.view.tempo is not None or self.view.health.condition == "ended"
         if over or monotonic() - self._leaving_s < _TWICE_WITHIN_S:
             self.exit()

@@ -32,12 +32,12 @@ _SCALES = ((4, 3), (4, 2), (3, 2), (2, 2), (2, 1), (1, 1))
 
 
 def block_letters(word: str, width: int, height: int) -> str:
-    """Write a word as large as the space allows, or in plain letters where block letters do not fit.
+    """Write a word as large as the space allows, or in plain letters if block letters do not fit.
 
     Raises
     ------
     KeyError
-        The word contains a letter without a drawing.
+        The word contains a letter that has no block form.
     """
     for across, down in _SCALES:
         for gap in ("  ", " "):

@@ -19,7 +19,7 @@ from advisor.tui.keys import ACTIONS, ENGINEER
 
 @dataclass(frozen=True, slots=True)
 class KeyAtHand:
-    """One key that works at the present focus."""
+    """One key that works with the present focus."""
 
     shown: str
     does: str
@@ -29,8 +29,9 @@ class KeyAtHand:
 
 
 def keys_at_hand(app: App[None], screen: Screen[Any] | None = None) -> list[KeyAtHand]:
-    """Return the keys of the table in `advisor.tui.keys` that are active on a screen. Screen of the keys;
-    None: the newest."""
+    """Return the keys of the table in `advisor.tui.keys` that are active on a screen. Without a screen,
+    return those of the screen in front.
+    """
     return [
         KeyAtHand(
             app.get_key_display(active.binding),
@@ -46,7 +47,8 @@ def keys_at_hand(app: App[None], screen: Screen[Any] | None = None) -> list[KeyA
 def commands(app: App[None], screen: Screen[Any]) -> list[SystemCommand]:
     """Return every action of the advisor for the palette: the active ones, then the engineer's.
 
-    An action of the engineer's screen that is chosen elsewhere first shows that screen.
+    The palette of the pilot's screen offers the engineer's actions too. Such an action first switches to the
+    engineer's screen.
     """
     at_hand = keys_at_hand(app, screen)
     names = {key.name for key in at_hand}
@@ -89,9 +91,9 @@ _HEADING = Style(bold=True, underline=True)
 
 
 def help_page(text: str) -> Text:
-    """Return a help text, in a small part of Markdown, as one text that wraps to any width.
+    """Return a help text in simple Markdown as one text that wraps to any width.
 
-    Textual's own Markdown mounts a widget for every paragraph and cell, a third of a second for a page.
+    Textual's own Markdown mounts a widget for every paragraph and cell, which takes 0.3 s for a page.
     """
     page = Text()
     for block in _BLOCKS.split(text.strip()):
@@ -117,7 +119,7 @@ def _append_marked(page: Text, line: str) -> None:
 
 
 class Explain(ModalScreen[None]):
-    """Shows a text. Each of the keys escape, q and ? closes the page."""
+    """Shows a text. Page of help, which each of the keys escape, q and ? closes."""
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape,q,question_mark", "dismiss", "Close")]
 

@@ -1,25 +1,25 @@
 """Garbage collection at times without a pending key.
 
-Python collects whenever enough objects were made, most often while a key is being answered. Every few
-milliseconds it examines the newest objects. Now and then it examines all objects, which delays everything by
-10 to 50 ms.
+Python collects garbage whenever enough objects were made, most often while a key is being answered. Every few
+milliseconds Python examines the newest objects. Now and then Python examines all objects, which takes 10 to
+50 ms.
 """
 
 import gc
 
 _LOT = 5_000
-"""Number of new objects that justifies a collection of one millisecond. Painting a large screen makes five
-times as many objects."""
+"""Number of new objects after which garbage is collected; a collection takes one millisecond. Painting a
+large screen makes five times as many objects.
+"""
 _LOTS = 5
-"""Number of collections after which their survivors are examined with all other objects."""
+"""Number of collections of new objects after which all objects are examined."""
 
 
 class Garbage:
     """Runs garbage collections at times without a pending key, instead of Python's own."""
 
     def begin(self) -> None:
-        """Stop Python's own garbage collection. Objects that were imported before stay alive and are never
-        examined."""
+        """Stop Python's own garbage collection. Objects that exist already are never examined."""
         gc.freeze()
         gc.disable()
 

@@ -1,4 +1,4 @@
-"""Every action of the screens with its key: the single table of footers, help and settings."""
+"""Every action of the screens with its key. Footers, help and settings read this single table."""
 
 from textual.binding import Binding, BindingType
 

@@ -12,7 +12,7 @@ Face = Literal["pilot", "engineer"]
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The settings file, ``advisor locate config``. Every key is optional.
+    """Content of the settings file, whose path ``advisor locate config`` prints. Every key is optional.
 
     An example::
 
@@ -40,7 +40,7 @@ def settings_path() -> Path:
 
 
 def load_settings(path: Path | None = None) -> Settings:
-    """Read the settings file; without one, the defaults.
+    """Read the settings file. Without a file, return the defaults.
 
     Raises
     ------

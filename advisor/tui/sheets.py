@@ -10,7 +10,7 @@ from textual.theme import Theme
 
 
 class Sheet(Stylesheet):
-    """A style sheet that parses no rules twice while its variables are unchanged."""
+    """Style sheet that parses each rule once while its variables are unchanged."""
 
     def __init__(self, variables: dict[str, str]) -> None:
         super().__init__(variables=variables)
@@ -36,7 +36,7 @@ class Sheets:
         }
 
     def of(self, theme: str, now: Stylesheet) -> Sheet:
-        """Return the sheet of a theme, with everything that the present sheet has read, in equal order."""
+        """Return the sheet of a theme with all sources that the present sheet has read, in equal order."""
         sheet = self._sheets[theme]
         for place, source in now.source.items():
             sheet.add_source(source.content, place, source.is_defaults, source.tie_breaker, source.scope)

@@ -9,7 +9,7 @@ from advisor.tui.advice import advise
 from advisor.tui.panes.last_verdict import for_the_pilot
 
 _PROGRAMS = ("spd-say", "espeak-ng", "espeak", "say")
-"""Programs that speak their argument: of Linux's speech dispatcher, of eSpeak, of macOS."""
+"""Programs that speak their argument, from Linux's speech dispatcher, from eSpeak, and from macOS."""
 
 
 class Voice:
@@ -38,7 +38,7 @@ class Sound:
         self._last: tuple[bool, int, str, str] | None = None
 
     def hear(self, view: View) -> None:
-        """Compare the state of a moment with the last one, and sound after a change."""
+        """Compare the present state with the last state, and ring and speak after a change."""
         now = view.elevator is None, len(view.state.maneuvers), advise(view).word, _hindered(view)
         last, self._last = self._last, now
         if last is None or last[0] != now[0] or last == now or not self.on or _hurries(view):
@@ -48,7 +48,7 @@ class Sound:
 
 
 def _hindered(view: View) -> str:
-    """Return the reason why the last word may be old; empty without one."""
+    """Return why the last word may be old; empty if the word is new."""
     if view.health.condition == "lost":
         return "no link"
     return "behind" if view.health.behind else ""

@@ -1,4 +1,4 @@
-"""The next input as a drawing of the stick: pull above trim, push below, the seconds of each step."""
+"""Drawing of the next input at the stick: pull above trim, push below trim, and the seconds of each step."""
 
 from collections.abc import Sequence
 from math import degrees
@@ -7,19 +7,21 @@ from textwrap import fill
 from advisor.decision.verdict import NextInput
 
 _UNIT_COLUMNS = 6
-"""Columns of the shortest step, enough for its duration: ``0.4 s``."""
+"""Number of columns of the shortest step, enough for the text of its duration: ``0.4 s``."""
 _LEAD = 3
-"""Columns of the drawing at trim, before the first step and after the last."""
+"""Number of columns at trim, before the first step and after the last step."""
 _PULL, _TRIM, _PUSH = 0, 1, 2
 _LEVELS = (_PULL, _TRIM, _PUSH)
 _SIDE_COLUMNS = 6
 _LABEL = "next        "
 SIDES = {"elevator": ("pull", "push"), "aileron": ("right", "left"), "rudder": ("right", "left")}
-"""Names of both directions of each control, by the control's name: above trim in the drawing, and below."""
+"""Names of the two directions of each control, by the control's name. The first direction is drawn above
+trim, the second below.
+"""
 
 
 def drawn(advised: NextInput, width: int, *, large: bool) -> str:
-    """Return the advice, and the drawing of the advised input."""
+    """Return the advice in words and the drawing of the advised input."""
     words = f"{_LABEL}{advised.advice.removeprefix('next: ')}"
     flown = advised.input
     if flown is None:
@@ -43,9 +45,9 @@ def stick_drawing(
     Parameters
     ----------
     steps
-        Steps in order: whether the step is nose up (stick back) or to the right, and its duration, s.
+        Steps in order. Each has its direction (true for nose up, stick back, or right) and its duration, s.
     width
-        Columns of the drawing. Without room the drawing is empty.
+        Number of columns. The drawing is empty if it has no room.
     """
     shortest = min(duration for _, duration in steps)
     lengths = [round(_UNIT_COLUMNS * duration / shortest) for _, duration in steps]
@@ -63,7 +65,7 @@ def stick_drawing(
 
 
 def stick_line(steps: Sequence[tuple[bool, float]]) -> str:
-    """Draw the steps in one line, one block for each half of the shortest step: ``▁▁▁▁▁▁▔▔▔▔▁▁▔▔``."""
+    """Draw the steps in one line, with two blocks for the shortest step: ``▁▁▁▁▁▁▔▔▔▔▁▁▔▔``."""
     shortest = min(duration for _, duration in steps)
     return "".join(
         ("▔" if nose_up else "▁") * max(round(2.0 * duration / shortest), 1) for nose_up, duration in steps
@@ -71,7 +73,9 @@ def stick_line(steps: Sequence[tuple[bool, float]]) -> str:
 
 
 def _line(levels: Sequence[int], columns: Sequence[int]) -> list[str]:
-    """Return three rows with a line that runs through the levels, each for its number of columns."""
+    """Return three rows with a line through the levels. The line stays on each level for its number of
+    columns.
+    """
     rows = [""] * len(_LEVELS)
     before = levels[0]
     for level, length in zip(levels, columns, strict=True):

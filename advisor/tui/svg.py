@@ -28,7 +28,7 @@ def drawn(svg: str) -> str:
 
 
 def _shapes(line: re.Match[str]) -> str:
-    """Set a piece of a line of the terminal: words where they begin, blocks and dots as shapes."""
+    """Return a piece of a terminal line as SVG, with words as text and blocks and dots as shapes."""
     drawn_runs = []
     for run in _RUNS.finditer(unescape(line["text"])):
         x, width = float(line["x"]) + run.start() * _CELL_WIDTH, len(run[0]) * _CELL_WIDTH

@@ -29,7 +29,7 @@ class TableRows:
 
 
 def rows_of_charts(charts: Iterable[Chart]) -> TableRows:
-    """Return every sample of every series as a row of its own: quantity, series, x, y."""
+    """Return one row for each sample of each series: quantity, series, x, y."""
     rows: list[tuple[object, ...]] = []
     x_label = "x"
     for chart in charts:

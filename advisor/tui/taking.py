@@ -14,7 +14,7 @@ from advisor.tui.svg import picture_of
 from advisor.words.printable import printable
 
 WITHOUT_LOG = Path("advisor")
-"""Name that replaces the log's name without a recording. Such files are written into the current folder."""
+"""Name of the files if no log is recorded. These files are written into the current folder."""
 
 
 def pane_name(pane: Pane, view: View) -> str:
@@ -25,9 +25,9 @@ def pane_name(pane: Pane, view: View) -> str:
 
 
 def log_of(pane: Pane, view: View) -> Path:
-    """Return the log that names the files: that of the selected manoeuvre, else the newest log.
+    """Return the log whose name the files get: the log of the selected manoeuvre, else the newest log.
 
-    A page in a browser knows the log of a replay by the title alone.
+    In a browser only the title names the log of a replay.
     """
     if not view.logs:
         return Path(Path(view.title.split(", ")[0]).name) if view.tempo is not None else WITHOUT_LOG
@@ -47,9 +47,10 @@ def files_of(pane: Pane, view: View) -> dict[str, str]:
 
 
 def save(pane: Pane, view: View) -> str:
-    """Write the files of a pane into the folder of the log; return a sentence on the place or failure.
+    """Write the files of a pane into the folder of the log, and return a sentence on the place or the
+    failure.
 
-    A file from an earlier save is replaced. A file that is half written never has the final name.
+    A file from an earlier save is replaced. A file gets its final name only after it is complete.
     """
     folder, files = log_of(pane, view).parent, files_of(pane, view)
     names = " and ".join(map(printable, files))
@@ -63,7 +64,7 @@ def save(pane: Pane, view: View) -> str:
 
 
 def picture_of_plots(pane: Pane, title: str) -> str:
-    """Draw the plots in sight as SVG, each in its place; empty where the pane has none with curves."""
+    """Draw the visible plots of the pane as one SVG; empty if no plot has curves."""
     plots = [plot for plot in pane.query(Plot) if plot.display and plot.chart.series and plot.size.area]
     if not plots:
         return ""
@@ -76,7 +77,7 @@ def picture_of_plots(pane: Pane, title: str) -> str:
 
 
 def _joined(plots: list[Plot], y: int, around: Region, paper: Style) -> Strip:
-    """Join one line of plots that are side by side."""
+    """Join one line of several plots that stand side by side."""
     pieces, x = [], around.x
     for plot in plots:
         pieces += [Strip.blank(plot.region.x - x, paper), plot.render_line(y - plot.region.y)]

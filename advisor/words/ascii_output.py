@@ -16,24 +16,27 @@ _SPELLED = {
     "▉": "#", "▊": "#", "▋": "#", "▌": "=", "▍": "=", "▎": "-", "▏": "|",
     "■": "#", "▶": ">", "►": ">", "◀": "<", "●": "*", "✓": "+", "✗": "x", "❚": "|",
 }  # fmt: skip
-"""ASCII spellings of the characters that the advisor writes. Greek letters and lines follow from their
-Unicode names. A delta stands before the e of the elevator, as in M_delta_e."""
+"""ASCII spellings of the characters that the advisor writes. The Unicode names of Greek letters and lines
+give their spellings. ``δ`` becomes ``delta_`` so that M_δe reads M_delta_e.
+"""
 
 BRAILLE, _UPPER = 0x2800, 0b00011011
-"""The blank cell of braille, in which curves are drawn, and the bits of the upper half of its dots."""
+"""First code point of Unicode's braille cells, in which curves are drawn, and the bits of a cell's four upper
+dots.
+"""
 
 
 def plain(text: str) -> str:
-    """Return the text in ASCII: stand-ins, letters without accents, a question mark for all else."""
+    """Return the text in ASCII. A character without an ASCII spelling becomes a question mark."""
     return "".join(map(_spelled, text))
 
 
 def speak_plainly() -> None:
     """Let standard output and standard error replace characters outside their encoding, instead of failing.
 
-    A stream in ASCII is given ASCII under another name, because click takes ASCII for a mistake in the user's
-    settings and writes UTF-8 there. A terminal whose user states the POSIX locale is such a stream, although
-    Python writes UTF-8 there. A closed stream accepts every text and shows nothing.
+    An ASCII stream gets an encoding with another name. Otherwise click takes ASCII for a mistake in the
+    user's settings and writes UTF-8. A terminal with the POSIX locale counts as an ASCII stream, although
+    Python writes UTF-8 to it. A closed stream accepts every text and shows nothing.
     """
     codecs.register_error(_ERRORS, _stand_in)
     codecs.unregister(_ascii_by_another_name)  # a second call registers nothing twice
@@ -47,7 +50,7 @@ def speak_plainly() -> None:
 
 
 def _posix() -> bool:
-    """Return whether the user chose the POSIX locale, and no other setting chose Python's UTF-8."""
+    """Return whether the user chose the POSIX locale, and no other setting chose UTF-8 for Python."""
     stated = os.environ.get("LC_ALL") or os.environ.get("LANG")
     return stated in ("C", "POSIX") and bool(sys.flags.utf8_mode) and "PYTHONUTF8" not in os.environ
 

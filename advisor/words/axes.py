@@ -3,6 +3,6 @@
 from typing import Literal
 
 AxisName = Literal["pitch", "lateral"]
-"""Pitch, which the elevator moves; or roll and yaw, which aileron and rudder move."""
+"""An axis: pitch, which the elevator moves, or roll and yaw, which aileron and rudder move."""
 AXES: tuple[AxisName, ...] = ("pitch", "lateral")
 """All axes, in the order of the reports."""

@@ -1,4 +1,4 @@
-"""Certainty of an answer: the title above the answer, and the sentence on the doubt."""
+"""Certainty of an answer: its title, and the sentence that names two undecided answers."""
 
 from collections.abc import Sequence
 
@@ -22,7 +22,7 @@ def title(stated: str, likely: str, answers: Answers) -> str:
     Parameters
     ----------
     stated, likely
-        Titles of the likeliest answer where it is sure, and where it is only likely.
+        Title of the likeliest answer if that answer is certain, and title if the answer is only likely.
     """
     if len(answers) > 1 and not is_decided(answers):
         return f"NOT DECIDED BETWEEN {answers[0][0]} AND {answers[1][0]}".upper()
@@ -38,7 +38,9 @@ def doubt_of(answers: Answers) -> str:
 
 
 def as_sure(sentence: str, answers: Answers) -> str:
-    """Return the sentence of an answer with its certainty: alone, after "likely", or the doubt."""
+    """Return the sentence of an answer with its certainty. A likely answer begins with "Likely"; an undecided
+    answer becomes the sentence of `doubt_of`.
+    """
     if not answers or answers[0][1] >= _SURE:
         return sentence
     return doubt_of(answers) or f"Likely, {sentence[:1].lower()}{sentence[1:]}"

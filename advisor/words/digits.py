@@ -1,30 +1,32 @@
-"""Numbers as text: an interval with two significant digits, and unequal texts for unequal numbers."""
+"""Numbers as text. An interval has two significant digits, and unequal numbers have unequal texts."""
 
 from collections.abc import Sequence
 from math import floor, isfinite, log10
 from typing import Literal
 
 MOST_DIGITS = 9
-"""Largest number of decimals or significant digits of a text. Numbers that are equal in so many digits have
-equal texts."""
+"""Largest number of decimals or significant digits of a text. Two numbers have equal texts only if nine
+digits agree.
+"""
 
 
 def distinct_texts(
     value: float, limit: float, digits: int = 0, style: Literal["f", "g"] = "f"
 ) -> tuple[str, str]:
-    """Write a number and its limit with ``digits`` digits, and with more where both texts would be equal.
+    """Write a number and its limit with ``digits`` digits, and with more digits if both texts would be equal.
 
     "1.9 s (at least 1.9)" contradicts itself; "1.86 s (at least 1.90)" does not.
 
     Parameters
     ----------
     digits
-        Fewest decimals (``f``) or significant digits (``g``).
+        Least number of decimals (``f``) or significant digits (``g``).
 
     Returns
     -------
     tuple of str
-        Value and limit with equal numbers of digits. Texts are equal only where both agree to `MOST_DIGITS`.
+        Texts of the value and of its limit, with equal numbers of digits. The texts are equal only if both
+        numbers agree in `MOST_DIGITS` digits.
     """
     for more in (*range(digits, MOST_DIGITS), digits):
         if style == "g":
@@ -37,12 +39,14 @@ def distinct_texts(
 
 
 def significant(value: float, digits: int) -> str:
-    """Return a number with so many significant digits, and without an exponent up to 15 places: ``130``."""
+    """Return a number with ``digits`` significant digits. A number of up to 15 places has no exponent:
+    ``130``.
+    """
     return f"{float(f'{value:.{digits}g}'):.15g}"
 
 
 def decimals_for(spread: float) -> int:
-    """Return the number of decimals that show two significant digits of ``spread``, between 0 and 6."""
+    """Return the number of decimals, 0 to 6, that show two significant digits of ``spread``."""
     if not (isfinite(spread) and spread > 0.0):
         return 3
     return min(max(1 - floor(log10(spread)), 0), 6)
@@ -62,7 +66,7 @@ def with_half(value: float, half: float) -> str:
 
 
 def counted(numbers: Sequence[int]) -> str:
-    """Return ``1 to 9`` for numbers without a gap, else a list."""
+    """Return consecutive numbers as ``1 to 9``, and other numbers as a list."""
     if len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1:
         return f"{numbers[0]} to {numbers[-1]}"
     return ", ".join(map(str, numbers))

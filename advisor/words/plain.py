@@ -1,4 +1,4 @@
-"""Results as plain values for JSON and YAML: mappings and lists of texts, truths and finite numbers."""
+"""Results as plain values for JSON and YAML: mappings and lists of texts, truth values and finite numbers."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def plain(value: Any) -> Any:
-    """Return a dataclass as a mapping, a sequence as a list, and an undefined number as None."""
+    """Return a dataclass as a mapping, a sequence as a list, and a number that is not finite as None."""
     if isinstance(value, float):  # most values; a look-up of abstract classes takes ten times as long
         return float(value) if isfinite(value) else None
     if value is None or isinstance(value, str | bool | Integral):

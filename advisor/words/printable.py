@@ -1,11 +1,12 @@
-"""Text from outside, made safe for a terminal."""
+"""Text from a vehicle, a file or a user, made safe for a terminal."""
 
 
 def printable(text: str) -> str:
     """Return the text on one line, without control characters and escape sequences.
 
-    Letters of every script stay. A line break and a tab become a space. Half of a surrogate pair, as in the
-    name of a file in another encoding, becomes U+FFFD. Every other character without a shape is dropped.
+    Letters of every script stay. A line break and a tab become a space. Half of a surrogate pair becomes
+    U+FFFD; the name of a file in another encoding has such halves. Every other unprintable character is
+    removed.
     """
     return text if text.isprintable() else "".join(map(_shown, text))
 

@@ -8,7 +8,7 @@ from advisor.words.printable import printable
 
 @dataclass(frozen=True)
 class Problem:
-    """One obstacle, as listed in the JSON documents."""
+    """One obstacle to the use of an input, as listed in the JSON documents."""
 
     code: str
     """Short and stable identifier: ``no_vehicle``, ``no_elevator``, ``rate``, ``not_a_tlog``, ``empty``,

@@ -1,4 +1,4 @@
-"""Channels and parameters for people: symbol, unit, factor from SI."""
+"""Symbol, unit and factor from SI of each channel and parameter, for people."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -49,11 +49,14 @@ PARAMETERS: Mapping[str, Quantity] = {
     "M_q": Quantity("M_q", "1/s"),
     "M_delta_e": Quantity("M_δe", "1/s²"),
 }
-"""Quantity with symbol and unit for each parameter, by the parameter's name. Only Z_0 and M_0 have an angle
-in their unit."""
+"""Quantity with symbol and unit for each parameter, by the parameter's name. Only the units of Z_0 and M_0
+contain an angle.
+"""
 
 _SIDE_UNITS = {"beta": ("β", 2), "p": ("p", 1), "r": ("r", 1), "delta_a": ("δa", 2), "delta_r": ("δr", 2)}
-"""Symbol of each factor of a lateral derivative, with the power of 1/s in the unit of a moment derivative."""
+"""Symbol of each variable that a lateral derivative refers to, with the power of 1/s in the unit of a moment
+derivative.
+"""
 SIDE_PARAMETERS: Mapping[str, Quantity] = {
     f"{y}_{x}": Quantity(f"{y}_{symbol}", ("1", "1/s", "1/s²")[power - (y == "Y")])
     for y in "YLN"

@@ -1,4 +1,4 @@
-"""Vehicle time for people: one form on every screen, in every text, in every report.
+"""Vehicle time for people, in one form on every screen, in every text and in every report.
 
 Documents and files for programs give the vehicle's time in seconds since power-on.
 """
@@ -12,7 +12,7 @@ CLOCK = "minutes:seconds since power-on"
 def clock(seconds: float) -> str:
     """Write a time since power-on: ``3:07.5``; ``–`` where the time is not known.
 
-    Minutes continue beyond 60, so that one multiplication gives the seconds of a document.
+    Minutes continue beyond 60, so that 60 times the minutes plus the seconds is the time in a document.
 
     Parameters
     ----------

@@ -135,7 +135,7 @@ async def test_a_decision_by_hand_is_acknowledged_before_it_is_computed(monkeypa
         monkeypatch.setattr(here.app.screen, "say", said.append)
         monkeypatch.setattr(here.app.conductor, "decide", lambda decision: None)
         await here.press("up", "x", *"gust", "enter")
-        assert said == ["exclude manoeuvre 2: every decision is made again"]
+        assert said == ["exclude manoeuvre 2: all verdicts are computed again"]
 
 
 async def test_a_question_moves_no_pane_and_an_exclusion_without_a_reason_is_not_made():

@@ -87,7 +87,7 @@ async def test_a_second_manoeuvre_is_laid_over_and_taken_away_again():
         fit = await fit_of(here, 4)
         await here.press("l", "1", "enter")
         assert fit.border_subtitle == "manoeuvres 4 and 1"
-        assert str(fit.border_title).startswith("4 Fit  both from the start of the input")
+        assert str(fit.border_title).startswith("4 Fit  both start at the first step of the input")
         assert legend(here, "fit-alpha") == "α [deg]  ── measured 1  ∙∙ measured 4"
         await here.press("l", "9", "enter")
         assert "Choose another manoeuvre than 4, from 1 to 4." in here.page()

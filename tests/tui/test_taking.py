@@ -64,7 +64,7 @@ async def test_every_pane_can_be_copied():
         assert copied["2"].startswith("✓ ACCEPTED  manoeuvre 4")
         assert table(copied["3"])[5]["parameter"] == "M_α 1/s²"
         assert {row["channel"] for row in table(copied["4"])} == {"elevator", "alpha", "q", "a_z", "theta"}
-        assert "Nothing is being flown" in copied["5"]
+        assert "No manoeuvre is being flown" in copied["5"]
         assert {row["series"] for row in table(copied["6"])} == {"continuous", "separate", "information"}
         assert "AOA_SSA.AOA" in copied["7"]
         assert "manoeuvre 4 judged" in copied["8"]

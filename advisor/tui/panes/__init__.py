@@ -1,1 +1,1 @@
-"""Panes: each widget answers one question of the crew."""
+"""Panes of the screens. Each pane answers one question of the crew."""

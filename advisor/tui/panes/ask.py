@@ -13,7 +13,7 @@ from textual.widgets import Input, Label
 class Ask(Horizontal):
     """Asks for a reason, a note or a number. The Escape key leaves everything unchanged.
 
-    The widget is a line and no dialog, so that the subject of the question stays visible.
+    The question is a line and not a dialog, so that the subject of the question stays visible.
     """
 
     BINDINGS: ClassVar[list[BindingType]] = [Binding("escape", "leave", "Leave it")]
@@ -29,12 +29,12 @@ class Ask(Horizontal):
         yield Input(compact=True)
 
     def put(self, question: str, answered: Callable[[str], object], *, integer: bool = False) -> None:
-        """Show a question and take the keys. An open question is replaced.
+        """Show a question and take the focus. A question that is still open is replaced.
 
         Parameters
         ----------
         integer : bool
-            Whether only whole numbers are accepted.
+            Whether the answer must be a whole number.
         """
         if not self.has_class("-open"):
             self._focused_before = self.screen.focused

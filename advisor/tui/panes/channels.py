@@ -1,4 +1,4 @@
-"""Arriving data: the link, every channel, and the source of the angle of attack."""
+"""Pane of the arriving data: the link, every channel, and the source of the angle of attack."""
 
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
@@ -14,7 +14,7 @@ def alpha_in_words(view: View) -> str:
     """Return the source of the angle of attack in one line."""
     alpha = view.state.channels.get("alpha")
     if alpha is None:
-        return "no angle of attack heard yet"
+        return "no angle of attack received yet"
     return f"{alpha.provenance}, from {alpha.source}, {alpha.rate_hz:.0f} Hz"
 
 

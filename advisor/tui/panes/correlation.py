@@ -25,7 +25,9 @@ _STRONG = Style(reverse=True)
 
 
 class Correlation(Redrawn, Pane):
-    """Correlation matrix: the joint estimate above the diagonal, the selected manoeuvre below."""
+    """Correlation matrix, with the joint estimate above the diagonal and the selected manoeuvre below the
+    diagonal.
+    """
 
     OF_ELEVATOR = True
     TITLE = "0 Correlation"
@@ -81,7 +83,7 @@ grow at the cost of the other. An input with other frequencies tells them apart.
         return TableRows(("estimate", "parameter", "with", "correlation"), tuple(rows))
 
     def _redraw(self) -> None:
-        """Write correlations without the zero before the point if the pane is narrow."""
+        """Write the correlations; a narrow pane shows them without the zero before the decimal point."""
         if self._number is None:
             return
         below = f"manoeuvre {self._number}{'' if self._single else ', which has no estimate'}"

@@ -17,11 +17,13 @@ from advisor.tui.table_rows import TableRows
 from advisor.words.quantities import PARAMETERS, SIDE_PARAMETERS
 
 _MANY = 4
-"""Number of adjacent plots above which there is no room for the name of their x axis."""
+"""Number of plots in a row above which the name of the x axis has no room."""
 
 
 class Courses(Redrawn, Pane):
-    """Eight small plots: each manoeuvre's estimate with its interval against the manoeuvre's number."""
+    """Eight small plots. Each plot shows one parameter's estimate and interval against the manoeuvre's
+    number.
+    """
 
     OF_ELEVATOR = True
     TITLE = "h History"
@@ -51,7 +53,7 @@ drifts shows an aircraft that changes.
             self._redraw()
 
     def _redraw(self) -> None:
-        """Number the manoeuvres under the lowest plots of a small terminal, where the others have no room."""
+        """Draw all plots. On a small terminal only the lowest plots have manoeuvre numbers."""
         across = self.styles.grid_size_columns
         for k, name in enumerate(NAMES):
             lowest, roomy = k >= len(NAMES) - across, across < _MANY
@@ -82,19 +84,23 @@ drifts shows an aircraft that changes.
 
 
 def _small(chart: Chart, x_label: str, *, foot: bool) -> Chart:
-    """Remove the names that the pane's frame shows for all plots."""
+    """Return a chart without the names that the pane's frame shows for all plots."""
     series = tuple(replace(one, name="") for one in chart.series)
     levels = tuple(replace(level, name="") for level in chart.levels)
     return replace(chart, x_label=x_label, foot=foot, series=series, levels=levels)
 
 
 _MARGIN = 0.5
-"""Manoeuvres to the left of the first and to the right of the last: no bar stands on the edge of a plot."""
+"""Margin of the x axis before the first manoeuvre and after the last one, in manoeuvres. With the margin no
+bar stands on the edge of a plot.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class ParameterCourse:
-    """Estimates of one parameter over the manoeuvres, with values for comparison, in the unit for people."""
+    """Estimates of one parameter over the manoeuvres, with the joint estimate and the file's value. All
+    values are in the unit for people.
+    """
 
     parameter: str
     numbers: FloatArray
@@ -133,7 +139,9 @@ def history_chart(view: View | None, name: str) -> Chart:
     levels."""
     quantity, of = {**PARAMETERS, **SIDE_PARAMETERS}[name], course(view, name)
     if len(of.numbers) == 0:
-        return Chart(quantity.label, "manoeuvre", why_empty="no manoeuvre has given an estimate of it yet.")
+        return Chart(
+            quantity.label, "manoeuvre", why_empty="no manoeuvre has given an estimate of this parameter yet."
+        )
     levels = []
     if of.model is not None:
         levels.append(Level("joint", of.model, "fitted", dashed=False))

@@ -17,7 +17,7 @@ _Y, _X = "[% of limit]", "manoeuvre"
 
 
 _MULTIPLE_PERCENT = 1000.0
-"""Words: criterion, per cent of its limit, that is stated as a multiple."""
+"""Least criterion, % of its limit, that is written as a multiple of the limit: ten times."""
 
 
 class Criterion(TextPane):
@@ -40,7 +40,7 @@ prediction of the newest manoeuvre are within their tolerances; the lines above 
 """
 
     def compose(self) -> ComposeResult:
-        """Lay out the rules' lines over the curves."""
+        """Lay out one line for each rule above the curves."""
         yield from super().compose()
         yield Plot(_chart(None))
 
@@ -54,7 +54,9 @@ prediction of the newest manoeuvre are within their tolerances; the lines above 
 
 
 def share_of_limit(percent: float) -> str:
-    """Return a criterion relative to its limit: in per cent, or as a multiple of at least ten."""
+    """Return a criterion relative to its limit, in per cent. A criterion of at least ten times its limit is a
+    multiple.
+    """
     if percent >= _MULTIPLE_PERCENT:
         return f"{0.01 * percent:.0f} times its limit"
     return f"{distinct_texts(percent, 100.0)[0]} % of its limit"

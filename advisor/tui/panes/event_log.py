@@ -1,4 +1,4 @@
-"""The event log: sentences in order of time."""
+"""Pane of the event log, whose sentences are in order of time."""
 
 from textual.containers import VerticalScroll
 
@@ -7,11 +7,11 @@ from advisor.tui.panes.pane import TextPane
 
 _SHOWN = 200
 _TIME = 9
-"""Number of characters before a sentence: its time and two blanks."""
+"""Number of characters before a sentence, for the sentence's time and two blanks."""
 
 
 class EventLogPane(TextPane):
-    """The newest sentences of the event log, the last one at the bottom."""
+    """Pane with the newest sentences of the event log, the last sentence at the bottom."""
 
     TITLE = "8 Log"
     SHORT = "8Log"

@@ -1,4 +1,4 @@
-"""Controls, and measured, fitted and residual curves of every output of the selected manoeuvre."""
+"""Pane of the selected manoeuvre: controls, and measured, fitted and residual curves of every output."""
 
 import numpy as np
 from textual.app import ComposeResult
@@ -28,18 +28,22 @@ from advisor.tui.table_rows import TableRows
 from advisor.words.digits import signed
 
 _ROWS_FOR_ONE = 11
-"""Rows that an output and its residual need where several stand above one another."""
+"""Number of terminal rows that an output and its residual need if several outputs are shown."""
 _LEAST_ROWS_FOR_BOTH = 8
 """Number of rows below which an output has no room for its residual."""
 _ROWS_OF_INPUT = 3
 _SHARE_OF_INPUT = 8
-"""A control takes an eighth of the rows, and at least ``_ROWS_OF_INPUT``."""
+"""Number of controls' heights in a pane: a control takes an eighth of the rows, and at least
+``_ROWS_OF_INPUT`` rows.
+"""
 _INPUTS = (*ELEVATOR_AXIS.inputs, *SIDE_AXIS.inputs)
 _OUTPUTS = (*ELEVATOR_AXIS.outputs, *SIDE_AXIS.outputs)
 
 
 class Fit(Redrawn, Pane):
-    """The controls, then two plots for each output: measured with fitted, and the residual."""
+    """Plots of the controls, then two plots for each output. One plot shows measured and fitted values, the
+    other the residual.
+    """
 
     BINDINGS = keys.FIT
     TITLE = "4 Fit"
@@ -71,7 +75,7 @@ with 0 takes the second away.
     _sight: Sight | None = None
 
     def compose(self) -> ComposeResult:
-        """Lay out all plots; those without room are hidden."""
+        """Lay out all plots. Plots without room are hidden."""
         for name in _INPUTS:
             yield Plot(no_fit(name, ""), id=f"fit-{name}", classes="input")
         for name in _OUTPUTS:
@@ -99,8 +103,9 @@ with 0 takes the second away.
         self._redraw()
 
     def lay_over(self, number: int | None) -> None:
-        """Choose the manoeuvre that the next ``show`` lays over the selected one. None: no manoeuvre is laid
-        over."""
+        """Choose the manoeuvre that the next ``show`` lays over the selected one. With None, no manoeuvre is
+        laid over.
+        """
         self._over_number = number
 
     def rows(self) -> TableRows | None:
@@ -113,7 +118,7 @@ with 0 takes the second away.
         self._look(self._sight and self._sight.pointed(event.x, self._stamps()))
 
     def on_plot_wheeled(self, event: Plot.Wheeled) -> None:
-        """Zoom at the mouse position; with shift, pan."""
+        """Zoom at the mouse position, or pan if the shift key is held."""
         event.stop()
         if event.sideways:
             self.action_pan(-1 if event.up else 1)
@@ -142,7 +147,9 @@ with 0 takes the second away.
             self._redraw()
 
     def _stamps(self) -> FloatArray:
-        """Return the time stamps for the cursor: of the top output, else of the control."""
+        """Return the time stamps that the cursor steps through: those of the top output, else those of a
+        control.
+        """
         there = self._outputs()
         for name in (there[self._first % len(there)], *self._axis.inputs):
             curve = measured(self._judged, name) if self._judged is not None else None
@@ -163,13 +170,13 @@ with 0 takes the second away.
             self._draw_input(name, name in inputs, each)
         for name in _OUTPUTS:
             self._draw_output(name, name in shown, lowest=name == lowest, with_residual=residuals)
-        aligned = "  both from the start of the input" if self._over is not None else ""
+        aligned = "  both start at the first step of the input" if self._over is not None else ""
         more = "" if count == len(there) else "  (o: next output)"
         self.border_title = f"{self.TITLE}{aligned}{more}"
         self._write_subtitle()
 
     def _outputs(self) -> list[str]:
-        """Return the outputs of the fit; without a fit, one output that shows the reason."""
+        """Return the outputs of the fit. Without a fit, return one output, whose plot shows the reason."""
         fits = fits_of(self._judged) if self._judged is not None else {}
         outputs = self._axis.outputs
         return [name for name in outputs if name in fits] or [outputs[0]]

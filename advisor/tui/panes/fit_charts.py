@@ -1,4 +1,4 @@
-"""Charts of a manoeuvre for the fit pane, alone and with a second manoeuvre laid over it."""
+"""Charts of the fit pane, for one manoeuvre or for two manoeuvres laid over each other."""
 
 from dataclasses import dataclass, replace
 
@@ -15,8 +15,9 @@ from advisor.words.quantities import channel
 OUTPUTS = ("alpha", "q", "a_z", "theta")
 _T = "t [s]"
 _GUTTER = 7
-"""Columns left of the canvas, wide enough for ``-12.50``, so that all plots of the pane begin in one
-column."""
+"""Number of columns left of the canvas, wide enough for ``-12.50``. With one width all plots of the pane
+begin in one column.
+"""
 
 Curve = tuple[FloatArray, FloatArray]
 """Seconds since the start of the input, shape (n,), and values in the unit for people, shape (n,)."""
@@ -35,7 +36,7 @@ SIDE_AXIS = Shown(LATERAL.inputs, LATERAL.outputs)
 
 
 def since_start(judged: JudgedManeuver, t: FloatArray) -> FloatArray:
-    """Return stamps aligned at the start of the input: seconds since the first elevator step, as ``t``."""
+    """Return the stamps ``t`` as seconds since the first step of the input."""
     return t - judged.maneuver.span.start_s
 
 
@@ -45,7 +46,9 @@ def fits_of(judged: JudgedManeuver) -> dict[str, ChannelFit]:
 
 
 def measured(judged: JudgedManeuver, name: str) -> Curve | None:
-    """Return a channel as the fit used it, else as recorded; None for a channel that is not recorded."""
+    """Return the channel's samples that the fit used, else the recorded samples; None for a channel that is
+    not recorded.
+    """
     factor = channel(name).factor
     fit = fits_of(judged).get(name)
     if fit is not None:
@@ -57,7 +60,7 @@ def measured(judged: JudgedManeuver, name: str) -> Curve | None:
 
 
 def extent(judged: JudgedManeuver, over: JudgedManeuver | None) -> tuple[float, float]:
-    """Return the first and last time of the drawing, in seconds since the start of the input."""
+    """Return the first and the last time that the plots show, in seconds since the start of the input."""
     spans = [one.maneuver.span for one in (judged, over) if one is not None]
     first = min(span.record_from_s - span.start_s for span in spans)
     last = max(span.end_s - span.start_s for span in spans)
@@ -65,18 +68,18 @@ def extent(judged: JudgedManeuver, over: JudgedManeuver | None) -> tuple[float, 
 
 
 def in_sight(chart: Chart, x_range: tuple[float, float], cursor: float | None, *, foot: bool) -> Chart:
-    """Return a part of a chart, with a cursor, aligned with the other plots of the pane."""
+    """Return the visible part of a chart, with a cursor, aligned with the other plots of the pane."""
     return replace(chart, x_range=x_range, cursor=cursor, foot=foot, gutter=_GUTTER)
 
 
 def input_chart(name: str, judged: JudgedManeuver, over: JudgedManeuver | None) -> Chart:
-    """Draw a control of one manoeuvre, or of two."""
+    """Draw a control of one manoeuvre, or of two manoeuvres."""
     curves = _overlaid(name, measured(judged, name), judged, over, name, "input", "line")
     return Chart(channel(name).label, _T, series=curves, why_empty="the record has none.")
 
 
 def fit_chart(name: str, judged: JudgedManeuver, over: JudgedManeuver | None) -> Chart:
-    """Draw measured with fitted; with a second manoeuvre, measured with measured."""
+    """Draw the measured and fitted values of one manoeuvre, or the measured values of two manoeuvres."""
     fit = fits_of(judged).get(name)
     if fit is None:
         return no_fit(name, _why_no_fit(judged))
@@ -95,7 +98,7 @@ def fit_chart(name: str, judged: JudgedManeuver, over: JudgedManeuver | None) ->
 
 
 def residual_chart(name: str, judged: JudgedManeuver, over: JudgedManeuver | None) -> Chart:
-    """Draw measured minus fitted, of one manoeuvre or of two."""
+    """Draw the residual, measured minus fitted, of one manoeuvre or of two manoeuvres."""
     fit = fits_of(judged).get(name)
     if fit is None:
         return no_fit(name, _why_no_fit(judged))
@@ -107,7 +110,7 @@ def residual_chart(name: str, judged: JudgedManeuver, over: JudgedManeuver | Non
 
 
 def no_fit(name: str, why: str) -> Chart:
-    """Return a chart with the reason for which an output has nothing to draw."""
+    """Return an empty chart that shows why an output has no fit."""
     return Chart(channel(name).label, _T, why_empty=why)
 
 
@@ -142,7 +145,9 @@ def _overlaid(
     ink: Ink,
     mark: Mark,
 ) -> tuple[Series, ...]:
-    """Name the curves of one manoeuvre or of two; the selected one is last and painted over the other."""
+    """Return the curves of one manoeuvre or of two manoeuvres. The selected manoeuvre is last, so that its
+    curve is painted over the other curve.
+    """
     if curve is None:
         return ()
     first = Series(_named(what, judged, over), *curve, ink, mark)
@@ -153,7 +158,7 @@ def _overlaid(
 
 
 def _named(what: str, judged: JudgedManeuver, beside: JudgedManeuver | None) -> str:
-    """Name a curve, with the manoeuvre's number where there are two."""
+    """Return the name of a curve. With two manoeuvres the name contains the manoeuvre's number."""
     return what if beside is None else f"{what} {judged.maneuver.number}"
 
 

@@ -1,4 +1,6 @@
-"""The whole flight: channels, manoeuvres of both axes, flight modes, and a channel laid over."""
+"""Pane of the whole flight: channels, manoeuvres of both axes, flight modes, and a channel laid over the
+plots.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -22,20 +24,22 @@ from advisor.words.quantities import CHANNELS, channel
 SHOWN_WHOLE = ("elevator", "alpha", "q", "airspeed", "height")
 """Channels of pitch that have their own plots, from top to bottom."""
 _SIDEWAYS = ("aileron", "rudder", "p", "r", "airspeed")
-"""Channels of roll and yaw, which replace those of pitch."""
+"""Channels of roll and yaw, which replace the channels of pitch while roll and yaw are shown."""
 _INKS: dict[str, Ink] = {
     **dict.fromkeys(("elevator", "aileron", "rudder"), "input"), "height": "prior", "airspeed": "residual"
 }  # fmt: skip
 _ROWS_FOR_ONE = 4
 _GUTTER = 7
-"""Columns left of the plots, for the labels of their axes."""
+"""Number of columns left of the plots, for the labels of their axes."""
 _MODE = "modes"
 _LEAST_S = 10.0
 """Shortest length of the time axis, s."""
 
 
 class WholeFlightPane(Pane):
-    """Every channel over the present power-on; a click goes to the manoeuvre there."""
+    """Pane with every channel over the present power-on. In a replay a click goes to the manoeuvre at the
+    clicked time.
+    """
 
     EITHER_AXIS = True
     TITLE = "i Flight"
@@ -75,7 +79,7 @@ upright line is the present moment.
         yield Lines(id="whole-modes")
 
     def show(self, view: View) -> None:
-        """Draw the power-on again after its picture is renewed or a manoeuvre is judged."""
+        """Draw the power-on again after new data have arrived or a manoeuvre is judged."""
         self._view = view
         if self.changed(view.state.whole_flight, view.state.maneuvers, view.state.lateral):
             self._draw(view)
@@ -111,7 +115,9 @@ upright line is the present moment.
         self._draw(self._view)
 
     def _layer(self, view: View) -> Series | None:
-        """Return the curve of the channel that is laid over, and name the channel in the lower edge."""
+        """Return the curve of the channel that is laid over the plots, and name that channel in the lower
+        edge.
+        """
         if self._over is None or not len((course := self._course(view, self._over)).t):
             self.subtitle("l: lay a channel over")
             return None
@@ -151,12 +157,16 @@ def _chart(name: str, course: Course, ends: tuple[float, float], now_s: float, *
 
 
 def _zigzag(course: Course) -> tuple[FloatArray, FloatArray]:
-    """Return a line through the lowest and highest values of each interval of a channel; shape (2n,) each."""
+    """Return the times and values of a line through the lowest and highest values of each interval, shape
+    (2n,) each.
+    """
     return np.repeat(course.t, 2), np.column_stack([course.low, course.high]).ravel()
 
 
 def _maneuvers(view: View, low: float, high: float, width: int) -> str:
-    """Return the numbers of the manoeuvres of this power-on, each at its place on the time axis."""
+    """Return a line with the numbers of this power-on's manoeuvres, each number at its manoeuvre's place on
+    the time axis.
+    """
     line = [" "] * width
     here = (view.state.flight, view.state.boot)
     side = view.state.lateral
@@ -174,7 +184,9 @@ def _maneuvers(view: View, low: float, high: float, width: int) -> str:
 
 
 def _modes(bands: Sequence[tuple[float, float, str]], low: float, high: float, width: int) -> str:
-    """Return the flight modes, each from its start on the time axis as far as there is room."""
+    """Return a line with the flight modes. Each mode begins at its start on the time axis and is cut where
+    room ends.
+    """
     line = [" "] * width
     line[: len(_MODE)] = _MODE
     for begin_s, end_s, name in bands:

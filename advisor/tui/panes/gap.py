@@ -1,4 +1,6 @@
-"""The sim-to-real gap of the flight so far: answer, plots of the worst manoeuvre, next steps."""
+"""Pane of the sim-to-real gap of the flight so far: answer, plots of the manoeuvre with the largest gap, next
+steps.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
@@ -23,7 +25,7 @@ from advisor.words.quantities import channel
 
 _SHOWN = ("alpha", "q", "a_z", "theta")
 _SHOWN_SIDEWAYS = ("p", "r", "bank", "a_y")
-"""Channels of roll and yaw, which replace those of pitch."""
+"""Channels of roll and yaw, which replace the channels of pitch while roll and yaw are shown."""
 _ROWS_FOR_ONE = 6
 _TEXT_SHARE = 0.45
 """Largest fraction of the pane's height for the text."""
@@ -33,7 +35,7 @@ _TOO_EARLY = "No manoeuvre has been flown yet, so there is nothing to compare wi
 
 
 class GapPane(Pane):
-    """The diagnosis of the flight so far, made when the pane is chosen."""
+    """Pane with the diagnosis of the flight so far. Choosing the pane starts the diagnosis."""
 
     TITLE = "d Gap"
     SHORT = "dGap"
@@ -51,7 +53,7 @@ findings.
 """
 
     def compose(self) -> ComposeResult:
-        """Lay out the text over one plot for each channel."""
+        """Lay out the text above one plot for each channel."""
         with VerticalScroll():
             yield HangingLines(_TOO_EARLY, id="gap-text")
         for name in _SHOWN:
@@ -60,15 +62,15 @@ findings.
     _asked: tuple[int, ...] | None = None
     """Axis and manoeuvres of the newest requested diagnosis."""
     _since_s: float | None = None
-    """Time at which the running diagnosis was started; None while none runs."""
+    """Start time of the running diagnosis; None while no diagnosis runs."""
     _view: View | None = None
 
     def on_mount(self) -> None:
-        """Say every second how long a diagnosis has been running."""
+        """Start a timer that shows every second how long a diagnosis has been running."""
         self.set_interval(1.0, self._tick)
 
     def show(self, view: View) -> None:
-        """Keep the state of this moment. The pane itself changes only with a diagnosis."""
+        """Keep the present state for the next diagnosis. The pane changes only when a diagnosis ends."""
         self._view = view
 
     def ask(self, view: View) -> None:
@@ -91,13 +93,13 @@ findings.
         self.app.call_from_thread(self._told, document)
 
     def _tick(self) -> None:
-        """Say how long the diagnosis has been running."""
+        """Show how long the diagnosis has been running."""
         if self._since_s is not None and self._asked is not None:
             seconds = monotonic() - self._since_s
             self._say([("", _ASKING.format(count=len(self._asked) - 1, seconds=seconds))])
 
     def _told(self, document: Document) -> None:
-        """Show a diagnosis. If one part of the pane fails, the other part is still shown."""
+        """Show a diagnosis. If the text or the picture fails, the other is still shown."""
         self._since_s = None
         rows: list[Labelled] = []
         parts = Parts(lambda failed: rows.append(("✗ ", str(failed.problem))))
@@ -132,8 +134,9 @@ findings.
 
 
 def answer_rows(document: Document) -> Iterator[Labelled]:
-    """Yield the answer, its certainty and limits, the differences, the reduction of the gap, the steps and
-    the reasons."""
+    """Yield rows: the answer, its certainty and limits, the differences, the reduction of the gap, the next
+    steps and the reasons.
+    """
     found = document.get("lateral") or document
     if found["sentence"] is None:
         yield from (("✗ ", f"{problem['text']} {problem['fix']}") for problem in document["problems"])

@@ -1,4 +1,6 @@
-"""Verdicts for the crew: the newest manoeuvre's word and sentence, and the reasons for the selected one's."""
+"""Panes of the verdicts: the newest manoeuvre's word and sentence, and the reasons for the selected
+manoeuvre's verdict.
+"""
 
 from textual.app import ComposeResult
 from textual.containers import Vertical
@@ -17,16 +19,16 @@ from advisor.words.vehicle_time import stretch
 
 
 def symbol_and_word(judged: JudgedManeuver) -> tuple[str, str]:
-    """Return the symbol and the word of a verdict, readable without colour."""
+    """Return the symbol and the word of a verdict. Both are readable without colour."""
     if judged.excluded_because is not None:
         return "∅", "EXCLUDED"
     return ("✓", "ACCEPTED") if judged.verdict.accepted else ("✗", "REJECTED")
 
 
 def for_the_pilot(judged: JudgedManeuver, test_is_complete: bool) -> tuple[str, str, str]:
-    """Return symbol, word and sentence of the newest verdict: GOOD, or REPEAT while the test goes on.
+    """Return symbol, word and sentence of the newest verdict.
 
-    After the end of the test nothing is repeated, so a rejected manoeuvre is NOT USED.
+    A rejected manoeuvre says REPEAT while the test goes on, and NOT USED after the end of the test.
     """
     symbol, word = symbol_and_word(judged)
     sentence = without_word(judged.verdict.sentence)
@@ -41,7 +43,7 @@ def for_the_pilot(judged: JudgedManeuver, test_is_complete: bool) -> tuple[str, 
     return symbol, "REPEAT", sentence
 
 
-_NONE_YET = "no manoeuvre yet", "The verdict stands here a few seconds after a manoeuvre ends."
+_NONE_YET = "no manoeuvre yet", "The verdict appears here a few seconds after a manoeuvre ends."
 
 
 class LastVerdict(Part, Vertical):
@@ -50,7 +52,9 @@ class LastVerdict(Part, Vertical):
     EITHER_AXIS = True
 
     def compose(self) -> ComposeResult:
-        """Yield the word, large where there is room; a line that names the manoeuvre; and the sentence."""
+        """Yield the word, a line that names the manoeuvre, and the sentence. The word is large if there is
+        room.
+        """
         yield Lines(id="verdict-block")
         yield Lines(_NONE_YET[0], id="verdict-word")
         yield Lines(_NONE_YET[1], id="verdict-sentence")
@@ -126,6 +130,6 @@ def _rows(judged: JudgedManeuver, of: str) -> list[Labelled]:
 
 
 def _limits(verdict: ManeuverVerdict) -> str:
-    """Return the limits of the fit's cost under each stopping rule."""
+    """Return each stopping rule's limit of the fit's cost J."""
     limits = [f"{rule} {one.limit:.3g}" for rule, one in verdict.rules.items() if one.limit is not None]
     return f" (limit {', '.join(limits)})" if limits else ""

@@ -10,7 +10,7 @@ _APART = "    "
 
 
 class LimitsNow(Part, Lines):
-    """One line that a pilot reads before the first step."""
+    """Line with the present values and limits, which a pilot reads before the first step."""
 
     def show(self, view: View) -> None:
         """Write the newest values of bank, air speed and angle of attack. A value outside its limit is marked
@@ -22,7 +22,7 @@ class LimitsNow(Part, Lines):
 def limits_now(view: View) -> str:
     """Return bank, air speed and angle of attack with their limits, as far as they are received.
 
-    The air speed is compared with that of the joint estimate, or with the aircraft file's.
+    The air speed is compared with the joint estimate's air speed, or with the aircraft file's.
     """
     limits = view.aircraft.limits
     said = [
@@ -34,13 +34,13 @@ def limits_now(view: View) -> str:
 
 
 def _bank_rad(view: View) -> float | None:
-    """Return the bank, rad, of the link itself where there is one; None: not received."""
+    """Return the bank, rad, from the link, else from the campaign; None if no bank is received."""
     link = view.health.link
     return link.bank_rad if link is not None and isfinite(link.bank_rad) else _newest(view, "bank")
 
 
 def _airspeed_m_s(view: View) -> float | None:
-    """Return the campaign's air speed, m/s, else the link's own; None: not received."""
+    """Return the air speed, m/s, from the campaign, else from the link; None if no air speed is received."""
     link = view.health.link
     late = view.health.behind or "airspeed" not in view.state.channels
     if late and link is not None and isfinite(link.airspeed_m_s):
@@ -49,7 +49,7 @@ def _airspeed_m_s(view: View) -> float | None:
 
 
 def _newest(view: View, name: str) -> float | None:
-    """Return a channel's newest value that the campaign has; None: not received, or too old."""
+    """Return the campaign's newest value of a channel; None if the value is not received, or too old."""
     if view.health.behind:
         return None
     status = view.state.channels.get(name)

@@ -14,11 +14,10 @@ from advisor.session.view import View
 
 
 class Part:
-    """Any widget that is shown each new `View`."""
+    """Widget that receives each new `View`."""
 
     EITHER_AXIS: ClassVar[bool] = False
-    """Whether the part can show roll and yaw. A part that cannot show roll and yaw shows the elevator's
-    axis."""
+    """Whether the part can show roll and yaw. Any other part shows only pitch."""
 
     @property
     def wants_showing(self) -> bool:
@@ -27,11 +26,11 @@ class Part:
 
     @abstractmethod
     def show(self, view: View) -> None:
-        """Update the part to a new moment. The update is fast if no data of the part have changed."""
+        """Show the state of a new moment. The update is fast if no data of the part have changed."""
 
 
 class Redrawn:
-    """Any widget that is drawn anew at another size."""
+    """Widget that is drawn anew after a change of its size."""
 
     def on_resize(self, event: Resize) -> None:
         """Draw as much as has room."""
@@ -58,7 +57,9 @@ class Lines(Static):
             self.update(text, layout=higher)
 
     def _rows(self, text: str) -> float:
-        """Return the number of rows of a text; NaN, unequal to all, if the text must be wrapped."""
+        """Return the number of rows of a text. NaN, which is equal to no number, means that the text must be
+        wrapped.
+        """
         height = self.styles.height
         if height is not None and not height.is_auto:
             return height.value
@@ -67,7 +68,7 @@ class Lines(Static):
 
 
 Labelled = tuple[str, str]
-"""A label, and the text after it."""
+"""A label, and the text after the label."""
 
 _LEAST = 20
 """Least number of columns for the text after a label. With fewer columns, the text continues at the left

@@ -1,4 +1,4 @@
-"""The manoeuvre that is being flown: its curves and its running estimate."""
+"""Pane of the manoeuvre in flight: its curves and its running estimate."""
 
 from math import floor
 
@@ -24,7 +24,7 @@ _BAR = 10
 
 
 class Live(Pane):
-    """Angle of attack, pitch rate and elevator of the manoeuvre in flight."""
+    """Pane with angle of attack, pitch rate and elevator of the manoeuvre in flight."""
 
     OF_ELEVATOR = True
     TITLE = "5 Live"
@@ -42,7 +42,8 @@ manoeuvres before. All bars full: ENOUGH, let go. Between manoeuvres nothing mov
     def compose(self) -> ComposeResult:
         """Yield a line of numbers above three plots."""
         yield Lines(
-            "Nothing is being flown; the trace begins with the first step of the elevator.", id="settling"
+            "No manoeuvre is being flown; the curves begin with the first step of the elevator.",
+            id="settling",
         )
         yield Lines("", id="arrived")
         for name in TRACES:
@@ -54,7 +55,7 @@ manoeuvres before. All bars full: ENOUGH, let go. Between manoeuvres nothing mov
         flying, settling = view.state.flying, view.state.settling
         if flying is None or view.health.condition == "ended":
             if self.border_subtitle:
-                self.query_one("#settling", Lines).write("Nothing is in the air; the last trace stays.")
+                self.query_one("#settling", Lines).write("No manoeuvre is being flown; the last curves stay.")
             self.subtitle("")
             self._write_arrived([])
             return
@@ -92,7 +93,9 @@ def _trace(flying: Maneuver, settling: Estimate | None, name: str, ink: Ink) -> 
 
 
 def arrived_in_words(arrived: Arriving | None) -> list[str]:
-    """Return a line with the word, and lines with two bars of the information; empty without information."""
+    """Return a line that says whether the data are enough, and lines of two bars each. A bar shows one
+    parameter's error; without errors the list is empty.
+    """
     if arrived is None or not arrived.percent:
         return []
     word = "ENOUGH: let go" if arrived.is_enough else "not yet enough; errors in % of the tolerance"
@@ -104,14 +107,16 @@ def arrived_in_words(arrived: Arriving | None) -> list[str]:
 
 
 def _full(percent: float) -> float:
-    """Return the filled share of a bar, in whole parts: the bar is full only within the tolerance."""
+    """Return the filled fraction of a bar in whole cells. The bar is full only if the error is within the
+    tolerance.
+    """
     return floor(_BAR * WITHIN_PERCENT / max(percent, 1.0)) / _BAR
 
 
 def _settling_in_words(state: CampaignState) -> str:
     settling = state.settling
     if settling is None or not state.readable:
-        return f"{state.progress}; numbers come when the input is over and they agree with the tests before."
+        return f"{state.progress}; estimates appear after the input, if they agree with the tests before."
     names = ("M_alpha", "M_q", "M_delta_e", "Z_alpha")
     rows = [estimated_parameter(name, "Manoeuvre in the air", settling, {}) for name in names]
     return "   ".join(f"{row.name} {row.cell}" for row in rows)

@@ -1,4 +1,4 @@
-"""Every manoeuvre with its verdict, and the result of every rule."""
+"""Pane with every manoeuvre, its verdict, and the result of every rule."""
 
 from textwrap import shorten
 
@@ -20,10 +20,11 @@ no column."""
 
 _FIRST: Columns = (("no.", 3), ("start", 7), ("input", 15))
 _MIDDLE: tuple[Columns, ...] = ((("verdict", 10), ("csi", 3)), (("", 2), ("csi", 3)), (("", 2),))
-"""Columns between the input and the reason, beginning with the most detailed choice. The shortest choice is
-the symbol alone."""
+"""Sets of columns between the input and the reason, the most detailed set first. The shortest set is the
+symbol alone.
+"""
 _REASON = 13
-"""Longest reason in one word, in characters (``free response``), with ``turbulence +1``."""
+"""Width of the reason, in characters: ``free response`` and ``turbulence +1`` are the longest reasons."""
 _RULES = ("continuous", "separate", "information")
 
 
@@ -49,7 +50,7 @@ verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each ru
 """
 
     class Selected(Message):
-        """Another manoeuvre was selected; None: always the newest."""
+        """Another manoeuvre was selected. None selects the newest manoeuvre at any time."""
 
         def __init__(self, number: int | None) -> None:
             super().__init__()
@@ -64,11 +65,11 @@ verdict pane has them in sentences, with the cost J (det R of Eq. 7) and each ru
         yield DataTable(cursor_type="row", zebra_stripes=True, cell_padding=1)
 
     def on_mount(self) -> None:
-        """Show the reason for which the table is empty."""
+        """Show why the table is empty."""
         self.subtitle("none yet: a row appears when a manoeuvre has ended")
 
     def on_resize(self, event: Resize) -> None:
-        """Give the columns the available room, without cutting a word."""
+        """Fit the columns into the available width without cutting a word."""
         table = self.query_one(DataTable)
         columns = _columns(table.size.width)
         if columns != self._columns:
@@ -141,7 +142,7 @@ def _cell(judged: JudgedManeuver, column: str, width: int) -> str:
 
 
 def _reason(judged: JudgedManeuver, width: int) -> str:
-    """Return as many reasons against a manoeuvre as fit, without cut words."""
+    """Return as many reasons against a manoeuvre as have room. No word is cut."""
     if judged.excluded_because is not None:
         return shorten(judged.excluded_because, width, placeholder="…")
     words = [r.code.replace("_", " ") for r in judged.verdict.reasons]
@@ -150,6 +151,6 @@ def _reason(judged: JudgedManeuver, width: int) -> str:
 
 
 def _listed(words: list[str], count: int) -> str:
-    """Join the first words, and state the number of the other words."""
+    """Join the first words, and add the number of words left out."""
     more = f" +{len(words) - count}" if count < len(words) else ""
     return f"{', '.join(words[:count])}{more}"

@@ -13,22 +13,24 @@ from advisor.tui.table_rows import TableRows, rows_of_charts
 
 
 class Pane(Part, Vertical):
-    """A framed part of a screen that can be focused, explained, shown a `View`, and copied as text."""
+    """Framed part of a screen. A pane takes the focus, explains itself, shows a `View`, and gives its content
+    as text.
+    """
 
     TITLE: ClassVar[str] = ""
     SHORT: ClassVar[str] = ""
-    """Title of the pane if all titles share 80 columns."""
+    """Short title of the pane, for a line of 80 columns with all titles."""
     OF_ELEVATOR: ClassVar[bool] = False
-    """Whether the pane shows only the elevator's axis, whichever axis other panes show."""
+    """Whether the pane shows only pitch, whichever axis other panes show."""
     OF_SELECTED: ClassVar[bool] = False
     """Whether the pane shows the selected manoeuvre."""
     HELP = ""
-    """Content and use of the pane, for the help key."""
+    """Help text on the content and use of the pane."""
     can_focus = True
     """Whether the pane takes the focus. A pane whose table or text takes the keys does not take the focus."""
 
     _parts: tuple[object, ...] = ()
-    """Data of the last painted moment."""
+    """Data that were painted last."""
 
     def on_mount(self) -> None:
         """Write the pane's title into its frame."""
@@ -40,7 +42,7 @@ class Pane(Part, Vertical):
         return bool(self.display)
 
     def changed(self, *parts: object) -> bool:
-        """Return whether any part is a new object since the last call, so that painting is needed."""
+        """Return whether a part is another object than at the last call. If so, the pane must be painted."""
         same = len(parts) == len(self._parts) and all(a is b for a, b in zip(parts, self._parts, strict=True))
         self._parts = parts
         return not same
@@ -51,8 +53,7 @@ class Pane(Part, Vertical):
             self.border_subtitle = text
 
     def rows(self) -> TableRows | None:
-        """Return the cells of the pane as a table, or the values of its curves; None for a pane with text
-        only."""
+        """Return the cells of the pane's table, or the values of its curves; None for a pane of text."""
         if tables := self.query(DataTable):
             table = tables.first()
             header = tuple(str(column.label) for column in table.ordered_columns)

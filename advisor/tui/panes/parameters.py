@@ -1,4 +1,6 @@
-"""The parameters with their intervals, against the simulator's model and for each manoeuvre."""
+"""Pane of the parameters with their intervals: comparison with the simulator's model, and each manoeuvre's
+estimates.
+"""
 
 from itertools import accumulate
 
@@ -21,11 +23,12 @@ _COLUMNS = (
     ("simulator", 10),
     ("off by", 6),
 )
-"""Name and width, with a space at the end: what grows must not push the others about. The last ones are left
-away where they have no room: half a number would be another number."""
+"""Name and width of each column, including a space at the end. A fixed width keeps the columns in place. The
+last columns are left out if they have no room, because a cut number would be wrong.
+"""
 _SCROLL_BAR = 1
 _FIRST_SHOWN = ("M_alpha", "L_p")
-"""Parameter of each axis that is selected at first, as the most requested one."""
+"""Parameter of each axis that is selected at the start, because users ask for it most often."""
 
 
 class ParametersPane(Pane):
@@ -52,7 +55,7 @@ others; the verdict pane says why.
     _shown = _FIRST_SHOWN[0]
 
     def compose(self) -> ComposeResult:
-        """Lay out the table over the history."""
+        """Lay out the table above the history plot."""
         yield DataTable[Text](cursor_type="row", cell_padding=0)
         yield Plot(history_chart(None, _FIRST_SHOWN[0]))
 
@@ -108,6 +111,8 @@ def _cells(joint: EstimatedParameter, alone: EstimatedParameter) -> tuple[str, .
 
 
 def _columns_in(width: int) -> int:
-    """Return the number of columns that fit, at least those of the names and of the model."""
+    """Return the number of columns that have room; the columns of the names and of the model are always
+    shown.
+    """
     ends = accumulate(width for _, width in _COLUMNS)
     return max(sum(end <= width for end in ends), 2)

@@ -1,4 +1,4 @@
-"""Panes of the pilot alone: the word of advice, the next input, the progress, and notes."""
+"""Panes of the pilot's screen: the word of advice, the next input, the progress, and notes."""
 
 from collections.abc import Iterator
 
@@ -44,7 +44,7 @@ class Why(Part, Lines):
     EITHER_AXIS = True
 
     def show(self, view: View) -> None:
-        """Write the sentence of the advice, behind the age of an old word."""
+        """Write the sentence of the advice. The age of an old word comes before the sentence."""
         advice = advise(view)
         age = f"({advice.age.removesuffix('.')})  " if advice.age else ""
         self.write(f"{age}{without_word(advice.sentence)}")
@@ -61,7 +61,9 @@ class NextInput(Part, Redrawn, Lines):
         self._advised: Advised | None = None
 
     def show(self, view: View) -> None:
-        """Draw the input that is advised now, of the axis that lacks most where both are tested."""
+        """Draw the input that is advised now. If both axes are tested, the input belongs to the axis that
+        lacks most information.
+        """
         self._advised = view.plan.next if view.plan is not None else view.state.flight_test.next
         self._redraw()
 
@@ -91,7 +93,7 @@ class Gauge(Part, HangingLines):
 
 
 def how_far(view: View) -> str:
-    """Return the bar with the manoeuvres flown, and how many more are expected."""
+    """Return the progress bar, and how many more manoeuvres are expected."""
     verdict, flown = view.state.flight_test, len(view.state.maneuvers)
     if verdict.decision == "stop":
         return f"{bar(1.0, _BAR)}  complete"
@@ -100,7 +102,7 @@ def how_far(view: View) -> str:
     if remaining is None and accepted:
         return f"{bar(0.0, _BAR)}  {accepted} accepted so far"
     if remaining is None:
-        return f"{bar(0.0, _BAR)}  known after the first good manoeuvre"
+        return f"{bar(0.0, _BAR)}  known after the first accepted manoeuvre"
     if remaining.median is None:
         return f"{bar(0.0, _BAR)}  no end in sight"
     return f"{bar(flown / (flown + remaining.median), _BAR)}  {remaining.spoken}"
@@ -137,12 +139,12 @@ class CrewNotes(Part, HangingLines):
     EITHER_AXIS = True
 
     def show(self, view: View) -> None:
-        """Write one line each; warnings last, each with its sign."""
+        """Write one line for each note. Warnings come last, each with its symbol."""
         self.write_rows(_rows(view))
 
 
 def _other_axis(view: View) -> Iterator[Labelled]:
-    """Yield the verdict's word of the axis that is not shown, after its first manoeuvre."""
+    """Yield the word of the hidden axis's verdict, if that axis has a manoeuvre."""
     lateral = view.state.lateral
     if view.elevator is not None and view.elevator.state.maneuvers:
         yield "elevator    ", _word(view.elevator.state.flight_test)
@@ -151,7 +153,7 @@ def _other_axis(view: View) -> Iterator[Labelled]:
 
 
 def _word(verdict: FlightTestVerdict) -> str:
-    """Return a verdict's first words, which its axis shows in large letters."""
+    """Return the first words of a verdict, which the screen of its axis shows in large letters."""
     return verdict.sentence.partition(":")[0]
 
 
@@ -159,7 +161,7 @@ def _rows(view: View) -> Iterator[Labelled]:
     if view.elevator is None:
         yield "in the air  ", flying_in_words(view)
     else:
-        yield "axis        ", "roll and yaw; key r shows the elevator's"
+        yield "axis        ", "roll and yaw; key r shows the elevator's axis"
     yield from _other_axis(view)
     if view.health.condition in ("poor", "lost"):
         yield "link        ", view.health.sentence

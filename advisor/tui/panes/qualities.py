@@ -1,4 +1,4 @@
-"""Flying qualities of the axis that is shown, as lines."""
+"""Pane of the flying qualities of the axis that is shown."""
 
 from collections.abc import Iterable
 

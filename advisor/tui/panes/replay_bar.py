@@ -1,4 +1,4 @@
-"""Position of a replay; hidden on a live link."""
+"""Bar with the position of a replay; hidden on a live link."""
 
 from math import isinf
 
@@ -29,7 +29,7 @@ class ReplayBar(Part, Lines):
     _duration_s = 0.0
 
     def show(self, view: View) -> None:
-        """Write the line when the source is a replay."""
+        """Write the line if the source is a replay."""
         tempo, playback = view.tempo, view.playback or Playback(0.0, 0.0)
         self.set_class(tempo is not None, "-playing")
         if tempo is None:
@@ -52,7 +52,7 @@ class ReplayBar(Part, Lines):
 
 
 def _now(view: View) -> str:
-    """Return the vehicle's time, with flight and power-on where there are several."""
+    """Return the vehicle's time. The flight's and the power-on's numbers follow if there are several."""
     state = view.state
     flight = f"flight {state.flight + 1}, " if state.flight else ""
     power_on = f"power-on {state.boot + 1}, " if state.boot else ""

@@ -1,4 +1,4 @@
-"""Test whether the residuals of the selected manoeuvre are white noise."""
+"""Pane that tests whether the residuals of the selected manoeuvre are white noise."""
 
 from dataclasses import dataclass
 
@@ -17,8 +17,9 @@ from advisor.tui.table_rows import TableRows
 from advisor.words.quantities import channel
 
 _LAGS_SHARE = 4
-"""Longest lag of the autocorrelation: a quarter of the record (Box and Jenkins). At a longer lag too few
-products are averaged."""
+"""Length of the record divided by the longest lag of the autocorrelation: 4 (Box and Jenkins). At a longer
+lag too few products are averaged.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +31,7 @@ class Whiteness:
     r: FloatArray
     """Shape (m,), autocorrelation at each lag."""
     bound: float
-    """Half-width of the band in which white noise remains at 95 % of the lags."""
+    """Half-width of the band that holds the autocorrelation of white noise at 95 % of the lags."""
 
     @classmethod
     def of(cls, fit: ChannelFit) -> "Whiteness":
@@ -41,7 +42,9 @@ class Whiteness:
 
     @property
     def outside(self) -> int:
-        """Number of lags outside the bound; for white noise one in twenty is expected."""
+        """Number of lags with an autocorrelation outside the bound. White noise has one such lag
+        in twenty.
+        """
         return int(np.count_nonzero(np.abs(self.r) > self.bound))
 
 
@@ -74,7 +77,7 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
         self._only_with_fit()
 
     def show(self, view: View) -> None:
-        """Draw the selected manoeuvre anew when the selection has changed."""
+        """Draw the selected manoeuvre after the selection has changed."""
         judged = view.judged
         if judged is None or not self.changed(judged):
             return
@@ -88,7 +91,7 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
         self._only_with_fit()
 
     def _only_with_fit(self) -> None:
-        """Hide plots of channels without a fit; without any output, let one plot show the reason."""
+        """Hide plots of channels without a fit. If no channel has a fit, show the reason in one plot."""
         shown = self._fits or OUTPUTS[:1]
         for name in OUTPUTS:
             self.query_one(f"#white-{name}").display = name in shown

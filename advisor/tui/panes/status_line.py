@@ -1,4 +1,6 @@
-"""The first and the last line of every screen: condition of the link, and the keys that work now."""
+"""The first and the last line of every screen. The first shows the condition of the link, the last the keys
+that work now.
+"""
 
 from rich.style import Style
 from rich.text import Text
@@ -27,7 +29,7 @@ class StatusLine(Part, Lines):
     EITHER_AXIS = True
 
     def show(self, view: View) -> None:
-        """Write the line. The line's colour follows the link's condition."""
+        """Write the line. Write the line. Its colour follows the link's condition."""
         state = view.state
         vehicle = str(state.vehicle) if state.vehicle else "no vehicle yet"
         parts = [
@@ -47,14 +49,14 @@ class StatusLine(Part, Lines):
 
 
 _MARGINS = 2
-"""Columns to the left and right of a message."""
+"""Number of columns to the left and right of a message together."""
 
 
 class KeysLine(Redrawn, Static):
     """Keys and their actions, in the order of importance. A click on an action presses its key.
 
-    The line is one text, whereas Textual's footer mounts a widget for every key anew whenever the focus
-    moves. A message uses this line and needs no new layout. Textual's toasts would come up a repaint later.
+    The line is one text. Textual's footer would mount a widget for every key whenever the focus moves. A
+    message replaces the keys and needs no new layout. Textual's toasts would appear one repaint later.
     """
 
     def __init__(self) -> None:

@@ -8,12 +8,14 @@ import numpy as np
 from advisor.process.arrays import FloatArray
 
 _FINENESS = 8
-"""The ends of an axis are rounded to about an eighth of the axis's length."""
+"""Number of grains in the length of an axis. The ends are rounded to a grain, an eighth of the length."""
 
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """An axis range with rounded ends, unchanged while data grow inside it, and the step of its ticks."""
+    """Axis with rounded ends and the step of its ticks. The ends stay unchanged while new data lie between
+    them.
+    """
 
     low: float
     high: float
@@ -27,14 +29,14 @@ class Axis:
 
     @property
     def labels(self) -> list[str]:
-        """Ticks with as many decimals as the step needs."""
+        """Texts of the ticks, with as many decimals as the step needs."""
         decimals = max(0, -floor(log10(self.step) + 1e-9))
         return [f"{tick:.{decimals}f}" for tick in self.ticks]
 
 
 @dataclass(frozen=True, slots=True)
 class LogAxis:
-    """A logarithmic range with ticks at 1, 2 and 5 times powers of ten, or at powers of ten alone."""
+    """Logarithmic axis with ticks at 1, 2 and 5 times powers of ten, or at powers of ten alone."""
 
     low: float
     """Decimal logarithm of the value at the lower end."""
@@ -50,7 +52,7 @@ class LogAxis:
 
     @property
     def labels(self) -> list[str]:
-        """The values in full: ``25``, ``2,500``."""
+        """Texts of the values, without an exponent: ``25``, ``2,500``."""
         return [f"{value:,.0f}" if value >= 1.0 else f"{value:g}" for value in self.values]
 
 
@@ -60,7 +62,8 @@ def log_axis(values: list[FloatArray], most: int) -> LogAxis:
     Parameters
     ----------
     values : list of ndarray
-        Data of any lengths; what is not positive and finite is left out, without any the range is 1 to 10.
+        Data of any lengths. Values that are not positive and finite are left out; without any value the range
+        is 1 to 10.
     most : int
         Wanted number of ticks, at least 2.
     """
@@ -106,12 +109,12 @@ def round_axis(values: list[FloatArray], intervals: int) -> Axis:
 
 
 def exact_axis(low: float, high: float, intervals: int) -> Axis:
-    """Choose ticks for a range that keeps its ends, about ``intervals`` steps, at least three ticks.
+    """Choose the axis for a range with fixed ends, with about ``intervals`` steps and at least three ticks.
 
     Parameters
     ----------
     low, high
-        Ends of the range, low below high.
+        Ends of the range; low is below high.
     intervals
         Wanted number of steps of 1, 2 or 5 times a power of ten, at least 1.
     """
@@ -122,6 +125,6 @@ def exact_axis(low: float, high: float, intervals: int) -> Axis:
 
 
 def _round_up(step: float) -> float:
-    """Return the next of 1, 2 and 5 times a power of ten."""
+    """Return the smallest number at or above the value that is 1, 2 or 5 times a power of ten."""
     magnitude = 10.0 ** floor(log10(step))
     return next(m * magnitude for m in (1.0, 2.0, 5.0, 10.0) if m * magnitude >= step * (1.0 - 1e-9))

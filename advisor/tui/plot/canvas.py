@@ -1,4 +1,4 @@
-"""Braille canvas: each terminal cell is a field of 2 x 4 dots."""
+"""Canvas of braille characters, whose terminal cells have 2 x 4 dots each."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,14 +31,14 @@ class Canvas:
         self._y1, self._y_scale = y_range[1], (self._height - 1) / (y_range[1] - y_range[0])
         self._dots = np.zeros((self._height, self._width), dtype=np.uint8)
         self.ink = np.full((rows, columns), -1, dtype=np.int8)
-        """Shape (rows, columns). Number of the ink last used in each cell, -1 where none."""
+        """Shape (rows, columns). Number of the ink that was last used in each cell; -1 for an empty cell."""
 
     def points(self, x: FloatArray, y: FloatArray, ink: int) -> None:
         """Set one dot for each sample; samples that are not finite or lie outside are omitted."""
         self._set(*self._place(x, y), ink)
 
     def line(self, x: FloatArray, y: FloatArray, ink: int) -> None:
-        """Draw a polyline; a NaN interrupts the line, and a single sample between two NaN is a point."""
+        """Draw a polyline. A NaN interrupts the line, and a single sample between two NaN is a point."""
         px, py = self._place(x, y)
         self._set(px, py, ink)
         dx, dy = np.diff(px), np.diff(py)

@@ -46,7 +46,7 @@ def paint(chart: Chart, width: int, height: int, base: Style, inks: list[Style])
     Parameters
     ----------
     width, height
-        Size in cells; where it is too small, a sentence says so.
+        Size in cells. A plot that is too small shows a sentence instead.
     """
     if not chart.series:
         return Painting(_sentence(f"{chart.y_label}: {chart.why_empty}", width, base))
@@ -90,7 +90,9 @@ def _y_axis(chart: Chart, rows: int) -> Axis | LogAxis:
 
 
 def _logarithmic(chart: Chart) -> Chart:
-    """Give curves and levels at the decimal logarithms of their heights; NaN where one is not positive."""
+    """Return a chart with the decimal logarithms of its curves and levels; NaN for values that are not
+    positive.
+    """
     return replace(
         chart,
         series=tuple(replace(s, y=np.log10(np.where(s.y > 0.0, s.y, np.nan))) for s in chart.series),
@@ -99,7 +101,7 @@ def _logarithmic(chart: Chart) -> Chart:
 
 
 def _in_range(chart: Chart) -> Chart:
-    """Remove samples outside the range of x. A neighbour at each end lets lines run to the edge."""
+    """Remove samples outside the range of x. One sample beyond each end stays for lines to the edge."""
     if chart.x_range is None:
         return chart
     return replace(chart, series=tuple(_cut(s, *chart.x_range) for s in chart.series))
@@ -113,7 +115,7 @@ def _cut(series: Series, low: float, high: float) -> Series:
 
 
 def _scaled(series: Series, low: float, high: float) -> Series:
-    """Return a curve whose lowest and highest value are moved to two heights."""
+    """Return a curve scaled so that its lowest and highest values are ``low`` and ``high``."""
     least, most = float(np.min(series.y)), float(np.max(series.y))
     share = (series.y - least) / (most - least) if most > least else np.full_like(series.y, 0.5)
     return replace(series, y=low + share * (high - low))
@@ -154,7 +156,7 @@ def _draw_series(canvas: Canvas, series: Series) -> None:
 
 
 def _runs(text: str, ink: NDArray[np.int8], inks: list[Style], base: Style) -> list[Segment]:
-    """Cut a line into one segment for each stretch of cells in one colour."""
+    """Yield one segment for each stretch of cells in one colour."""
     edges = [0, *(np.flatnonzero(np.diff(ink)) + 1).tolist(), len(text)]
     styles = [*inks, base]
     return [Segment(text[i:j], styles[ink[i]]) for i, j in pairwise(edges)]
@@ -170,7 +172,9 @@ def whole(axis: Axis) -> Axis:
 
 
 def down_the_side(axis: Axis | LogAxis, rows: int, gutter: int) -> list[str]:
-    """Return the labels of the y axis, one string of ``gutter`` characters a row, highest first."""
+    """Return the labels of the y axis: one string of ``gutter`` characters for each row, the highest row
+    first.
+    """
     column = [" " * gutter] * rows
     for tick, label in zip(axis.ticks, axis.labels, strict=True):
         row = round((axis.high - tick) / (axis.high - axis.low) * (rows - 1))
@@ -179,7 +183,9 @@ def down_the_side(axis: Axis | LogAxis, rows: int, gutter: int) -> list[str]:
 
 
 def along_the_foot(axis: Axis, name: str, gutter: int, width: int) -> str:
-    """Return the labels of the x axis on one line with the axis's name at its end. Crowded ones are out."""
+    """Return the labels of the x axis on one line, with the axis's name at the end. Labels without room are
+    left out.
+    """
     line = [" "] * width
     columns = width - gutter
     room_until = width - len(name) - 1
@@ -198,12 +204,12 @@ _SAMPLE = {"line": "──", "joined": "──", "points": "∙∙", "stems": "�
 
 
 def legend(chart: Chart, read: list[str], width: int, style: Style, inks: list[Style]) -> Strip:
-    """Compose the line, from left to right as far as there is room.
+    """Return the legend line with as many series as have room, from left to right.
 
     Parameters
     ----------
     read
-        One text for each series: its value at the cursor, empty without one.
+        Text of each series's value at the cursor; empty without a cursor.
     """
     curves = [
         (f"  {_SAMPLE[s.mark]} {s.name} {value}".rstrip(), s.ink)

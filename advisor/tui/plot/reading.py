@@ -8,16 +8,16 @@ from advisor.tui.plot.window import nearest
 from advisor.words.digits import signed
 
 _DIGITS = 4
-"""Digits for the length of an axis: one part in a thousand or less of what can be seen."""
+"""Number of significant digits of the visible length of an axis that a reading resolves."""
 
 
 def readings(chart: Chart, y_axis: Axis | LogAxis) -> list[str]:
-    """Write the value of each series at the chart's cursor; nothing where no sample is near.
+    """Return the text of each series's value at the chart's cursor.
 
     Returns
     -------
     list of str
-        One text a series, in order; all empty without a cursor.
+        Texts in the order of the series. A text is empty if no sample is near, or without a cursor.
     """
     if chart.cursor is None:
         return [""] * len(chart.series)
@@ -29,7 +29,9 @@ def readings(chart: Chart, y_axis: Axis | LogAxis) -> list[str]:
 
 
 def value_at(series: Series, x: float) -> float | None:
-    """Return the sample nearest to ``x``; None where it is farther than two samples are apart."""
+    """Return the value of the sample nearest to ``x``; None if the sample is farther away than the distance
+    of two samples.
+    """
     if len(series.x) == 0:
         return None
     at = nearest(series.x, x)

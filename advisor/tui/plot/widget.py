@@ -13,10 +13,12 @@ _BOLD: frozenset[Ink] = frozenset({"fitted", "limit"})
 
 
 class Plot(Widget):
-    """Paints a `Chart`; repaints only when the chart, the size or the theme changes."""
+    """Widget that paints a `Chart`. The plot is painted again only after the chart, the size or the theme has
+    changed.
+    """
 
     class Pointed(Message):
-        """The mouse was pressed, or drawn, at a value of x."""
+        """The mouse button was pressed, or the mouse was dragged, at a value of x."""
 
         def __init__(self, x: float) -> None:
             super().__init__()
@@ -29,9 +31,9 @@ class Plot(Widget):
             super().__init__()
             self.x = x
             self.up = up
-            """Away from the user."""
+            """Whether the wheel was turned away from the user."""
             self.sideways = sideways
-            """With the shift key."""
+            """Whether the shift key was held."""
 
     def __init__(self, chart: Chart, *, id: str | None = None, classes: str | None = None) -> None:
         super().__init__(id=id, classes=classes)
@@ -40,7 +42,7 @@ class Plot(Widget):
 
     @property
     def chart(self) -> Chart:
-        """The chart in sight."""
+        """Chart that the widget shows."""
         return self._chart
 
     @chart.setter
@@ -51,11 +53,11 @@ class Plot(Widget):
             self.refresh()
 
     def on_resize(self) -> None:
-        """Paint anew: another size needs other ticks."""
+        """Paint the chart again, because another size needs other ticks."""
         self._painting = None
 
     def notify_style_update(self) -> None:
-        """Paint anew: another theme needs other colours."""
+        """Paint the chart again, because another theme needs other colours."""
         super().notify_style_update()
         self._painting = None
 
@@ -105,6 +107,8 @@ class Plot(Widget):
         return self._painting
 
     def _inks(self, base: Style) -> list[Style]:
-        """Look up the colours of the theme. Component classes would be looked up at every change of focus."""
+        """Return the colours of the theme. Textual's component classes would be computed at every change of
+        focus.
+        """
         colours = self.app.theme_variables
         return [base + Style(color=colours[f"ink-{ink}"], bold=ink in _BOLD) for ink in INKS]

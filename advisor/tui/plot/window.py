@@ -7,12 +7,14 @@ import numpy as np
 from advisor.process.arrays import FloatArray
 
 _LEAST_SHARE = 0.01
-"""Shortest visible part, as a fraction of the whole axis: a hundredth of 12 s holds six samples at 50 Hz."""
+"""Shortest visible part, as a fraction of the whole axis. A hundredth of a record of 12 s holds six samples
+at 50 Hz.
+"""
 
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """A visible part of a longer range of an axis. Every change keeps the part inside the range."""
+    """Visible part of a longer range of an axis. Every change keeps the visible part inside the range."""
 
     first: float
     last: float
@@ -37,7 +39,9 @@ class Window:
         return self.low, self.high
 
     def zoom(self, factor: float, about: float) -> "Window":
-        """Show ``1/factor`` of the present length; the value ``about`` keeps its place in the plot."""
+        """Return a window with ``1/factor`` of the present length. The value ``about`` keeps its place in the
+        plot.
+        """
         length = self.high - self.low
         about = min(max(about, self.low), self.high)
         wanted = max(length / factor, _LEAST_SHARE * (self.last - self.first))
@@ -45,7 +49,9 @@ class Window:
         return self._placed(low, wanted)
 
     def pan(self, share: float) -> "Window":
-        """Move the visible part by a fraction of its length; above 0 towards the last value."""
+        """Move the visible part by a fraction of its length. A positive fraction moves towards the last
+        value.
+        """
         length = self.high - self.low
         return self._placed(self.low + share * length, length)
 
@@ -57,8 +63,9 @@ class Window:
         return self._placed(low, length)
 
     def over(self, first: float, last: float) -> "Window":
-        """Take another range. A window on the whole range follows the range. A zoomed
-        window keeps its length and place."""
+        """Take another range. Return the window over a new range. A window on the whole range shows the whole
+        new range, and a zoomed window keeps its length and place.
+        """
         if not self.zoomed:
             return Window.whole(first, last)
         return Window(first, last, self.low, self.high)._placed(self.low, self.high - self.low)
@@ -71,12 +78,12 @@ class Window:
 
 
 def nearest(x: FloatArray, value: float) -> int:
-    """Find the index of the element of ``x`` that lies nearest to a value.
+    """Return the index of the element of ``x`` that lies nearest to a value.
 
     Parameters
     ----------
     x
-        Shape (n,), rising, n at least 1.
+        Shape (n,) with n at least 1, in rising order.
     """
     at = int(np.searchsorted(x, value))
     if at == 0 or at == len(x):
@@ -92,25 +99,25 @@ _PAN = 0.2
 
 @dataclass(frozen=True, slots=True)
 class Sight:
-    """A visible part of the time axis, and a cursor on samples."""
+    """Visible part of the time axis, and a cursor that stands on a sample."""
 
     window: Window
     cursor: float | None = None
     """Time stamp of the cursor's sample; None without a cursor."""
 
     def over(self, first: float, last: float, stamps: FloatArray) -> "Sight":
-        """Show another record; the cursor moves to its nearest sample."""
+        """Show another record. The cursor moves to the nearest sample of that record."""
         there = replace(self, window=self.window.over(first, last))
         return there if self.cursor is None else there.pointed(self.cursor, stamps)
 
     def pointed(self, x: float, stamps: FloatArray) -> "Sight":
-        """Set the cursor on the sample nearest to ``x``; without samples there is no cursor."""
+        """Set the cursor on the sample nearest to ``x``; remove the cursor if there are no samples."""
         return replace(self, cursor=float(stamps[nearest(stamps, x)]) if len(stamps) else None)
 
     def stepped(self, direction: int, stamps: FloatArray, *, finely: bool) -> "Sight":
-        """Move the cursor by a hundredth of what is shown, or by one sample; the window follows.
+        """Move the cursor by a hundredth of the visible part, or by one sample.
 
-        Without a cursor, set one at 0 where 0 is in sight, else in the middle.
+        The window follows the cursor. Without a cursor, set one at 0 if 0 is visible, else in the middle.
         """
         low, high = self.window.shown
         if self.cursor is None or not len(stamps):
@@ -122,7 +129,9 @@ class Sight:
         return Sight(self.window.showing(cursor), cursor)
 
     def zoomed(self, direction: int, about: float | None = None) -> "Sight":
-        """Zoom in (1) or out (-1) about a time, else about the cursor, else about the middle."""
+        """Zoom in (1) or out (-1) about a given time. The default is the cursor's time, or the middle without
+        a cursor.
+        """
         if about is None:
             low, high = self.window.shown
             in_sight = self.cursor is not None and low <= self.cursor <= high

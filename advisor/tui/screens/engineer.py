@@ -44,17 +44,17 @@ _COLUMNS: dict[str, tuple[type[Pane], ...]] = {
     "right": (Live, Criterion, Channels, EventLogPane),
 }
 _LAYOUTS = {"-wide": (160, 42), "-medium": (110, 30), "-narrow": (0, 0)}
-"""Layouts by class, with the least columns and rows of their terminals, the largest first."""
+"""Style class of each layout, with the least columns and rows of the terminal, the largest layout first."""
 _LOW = 7
-"""Rows of the manoeuvre table above a single pane."""
+"""Number of rows of the manoeuvre table above a single pane."""
 _LOW_TABLE = 38
 """Height of a terminal, in rows, below which the parameter table shows four of its eight rows at once."""
 
 
 class EngineerScreen(PaneActions):
-    """Fourteen panes: eight at once on a wide terminal, one next to or below the manoeuvres on a small one.
+    """Screen of fourteen panes.
 
-    The panes of the middle column share one place: fit, residuals, correlation, history, whole flight.
+    A wide terminal shows eight panes at once, a small terminal one pane next to or below the manoeuvres.
     """
 
     BINDINGS = keys.ENGINEER
@@ -81,7 +81,7 @@ work on the manoeuvres that are shown.
         self._middle: type[Pane] = Fit
 
     def compose(self) -> ComposeResult:
-        """Lay out the panes in three columns; the style sheet shows those that have room."""
+        """Lay out the panes in three columns. The style sheet hides panes without room."""
         self._lay_out(self.app.size)
         yield StatusLine()
         yield Alarm()
@@ -106,7 +106,9 @@ work on the manoeuvres that are shown.
         self.call_after_refresh(self._refresh_panes)
 
     def _lay_out(self, size: Size) -> None:
-        """Name the layout by classes. Every change of the classes restyles all panes."""
+        """Set the style class of the layout, only if it differs, because every change of classes restyles all
+        panes.
+        """
         layout = next(name for name, (w, h) in _LAYOUTS.items() if size.width >= w and size.height >= h)
         classes = self.classes - {*_LAYOUTS, "-low"} | {layout, *["-low"] * (size.height < _LOW_TABLE)}
         if classes != self.classes:
@@ -152,7 +154,9 @@ work on the manoeuvres that are shown.
         self._refresh_panes()
 
     def _arrange(self) -> None:
-        """Show the panes that have room. Classes would restyle everything inside anew."""
+        """Show the panes that have room. The code sets no style classes, because a change of classes restyles
+        all widgets of a pane.
+        """
         narrow = self.has_class("-narrow")
         shown = {Maneuvers, self._chosen} if narrow else {*_COLUMNS["left"], self._beside}
         if self.has_class("-wide"):
@@ -183,7 +187,7 @@ work on the manoeuvres that are shown.
         """Add a note to the selected manoeuvre."""
         judged = self._view.judged if self._view else None
         if judged is None:
-            self.say("There is no manoeuvre to note anything on yet.")
+            self.say("There is no manoeuvre yet that could take a note.")
             return
         self._ask("note", judged.maneuver.number, f"Note on manoeuvre {judged.maneuver.number}:")
 
@@ -192,7 +196,9 @@ work on the manoeuvres that are shown.
         self.ask(question, lambda text: self._decided(HandDecision(verb, text, number, shown)))
 
     def _decided(self, decision: HandDecision) -> None:
-        """Send the decision to the campaign with a message; the table shows it once recomputed."""
+        """Send a decision to the campaign, and show a message. The table shows the decision after the
+        verdicts are computed again.
+        """
         self.post_message(self.Decided(decision))
         if decision.verb != "note":
-            self.say(f"{decision.verb} manoeuvre {decision.number}: every decision is made again")
+            self.say(f"{decision.verb} manoeuvre {decision.number}: all verdicts are computed again")

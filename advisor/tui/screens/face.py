@@ -23,7 +23,7 @@ class Face(Screen[None]):
     AUTO_FOCUS = ""
 
     class Decided(Message):
-        """A crew member made a decision by hand."""
+        """A crew member has excluded, included or noted on a manoeuvre."""
 
         def __init__(self, decision: HandDecision) -> None:
             super().__init__()
@@ -34,7 +34,9 @@ class Face(Screen[None]):
         self._parts = Parts(lambda failed: self.notify(str(failed.problem), severity="error", markup=False))
 
     async def on_event(self, event: Event) -> None:
-        """Return to the state at leaving. A theme that changed meanwhile is applied by the switch itself."""
+        """Resume a screen without new styles. The switch of screens already applies a theme that changed
+        meanwhile.
+        """
         if isinstance(event, ScreenResume):
             event.refresh_styles = False
         await super().on_event(event)
@@ -52,7 +54,7 @@ class Face(Screen[None]):
             self.notify(text, timeout=seconds, markup=False)
 
     def show(self, view: View) -> None:
-        """Update every visible part to a new moment."""
+        """Show the state of a new moment in every visible part."""
         # A report may still arrive while the screen is taken down, its innermost widgets first.
         with suppress(NoMatches):
             for node in self.walk_children():

@@ -1,4 +1,4 @@
-"""Actions of keys on one pane: copy, save, bring the next output up, lay something over."""
+"""Actions of keys on one pane: copy, save, show the next output, lay a manoeuvre or a channel over."""
 
 from abc import abstractmethod
 from io import StringIO
@@ -11,7 +11,8 @@ from advisor.tui.screens.face import Face
 from advisor.tui.taking import files_of, pane_name, save
 
 _SAY_S = 8.0
-"""Time for which a sentence with a file path is shown, s. A path takes longer to read than a word."""
+"""Time for which a sentence with a file path is shown, s. A path takes longer to read than a short message.
+"""
 
 
 class PaneActions(Face):
@@ -21,20 +22,20 @@ class PaneActions(Face):
 
     @abstractmethod
     def pane_in_front(self) -> Pane:
-        """Return the pane that has the focus, else the one chosen last."""
+        """Return the pane with the focus, else the pane that was chosen last."""
 
     def action_copy(self) -> None:
         """Copy the pane to the clipboard of the terminal."""
         if self._view is None:
             return
         if self.app.is_web:
-            self.say("a browser's clipboard is out of reach; key s offers the pane as files", _SAY_S)
+            self.say("the page cannot write the browser's clipboard; key s offers the pane as files", _SAY_S)
             return
         pane = self.pane_in_front()
         text = pane.text()
         self.app.copy_to_clipboard(text)
         what = f"{pane_name(pane, self._view)} copied, {text.count(chr(10))} lines."
-        self.say(f"{what} Where the terminal has no OSC 52, press s.", _SAY_S)
+        self.say(f"{what} If your terminal cannot copy (it lacks OSC 52), press s.", _SAY_S)
 
     def action_save(self) -> None:
         """Write the pane into files in the folder of the log, or offer the files to a browser."""
@@ -60,14 +61,16 @@ class PaneActions(Face):
             pane.lay_over_next()
             return
         self.ask(
-            "Lay over manoeuvre number (0: none):", lambda answer: self._lay_over(int(answer)), integer=True
+            "Number of the manoeuvre to lay over (0: none):",
+            lambda answer: self._lay_over(int(answer)),
+            integer=True,
         )
 
     def _lay_over(self, number: int) -> None:
         view = self._view
         judged = view.judged if view is not None else None
         if view is None or judged is None:
-            self.say("There is no manoeuvre to lay another one over yet.")
+            self.say("There is no manoeuvre yet over which another could be laid.")
             return
         known = {j.maneuver.number for j in view.state.maneuvers}
         if number and (number not in known or number == judged.maneuver.number):

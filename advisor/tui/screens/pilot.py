@@ -19,7 +19,7 @@ _LARGE = 32
 
 
 class PilotScreen(Face):
-    """Word, verdict, progress and next input. Nothing moves without a reason."""
+    """The pilot's screen: word, verdict, progress and next input. Content changes place only for a reason."""
 
     HELP = """\
 # Pilot

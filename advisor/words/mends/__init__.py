@@ -1,6 +1,6 @@
-"""Remedies for a record with missing or slow data, in the words of the autopilot's users.
+"""Remedies for a record with missing or slow data. Each remedy uses the autopilot's own names.
 
-A vehicle is heard over telemetry, live or from a ``.tlog``, or read from the log that its autopilot keeps.
+The data of a vehicle come over telemetry, live or from a ``.tlog``, or from the autopilot's own log.
 Each kind of sender has other names for the values, and other settings for their rates.
 """
 
@@ -16,9 +16,10 @@ from advisor.words.mends.ulog import Ulog
 __all__ = ["GOOD_HZ", "Carrier", "Mends", "mends_of", "sentence"]
 
 Carrier = Literal["telemetry", "dataflash", "ulog", "sdlog2", "table"]
-"""Kind of record: a link or its ``.tlog``, or an autopilot's own log, or a table with named columns.
+"""Kind of record: a link or its ``.tlog``, an autopilot's own log, or a table with named columns.
 
-The own logs are ArduPilot's (``.bin``), PX4's (``.ulg``) and PX4's before 2017 (``.px4log``)."""
+ArduPilot's own log is a ``.bin``, PX4's a ``.ulg``, and PX4's before 2017 a ``.px4log``.
+"""
 
 
 def mends_of(autopilot: str, carrier: Carrier, log_profile: int | None = None) -> Mends:
@@ -29,7 +30,7 @@ def mends_of(autopilot: str, carrier: Carrier, log_profile: int | None = None) -
     autopilot
         ``ardupilot``, ``px4``, or another name.
     log_profile
-        SDLOG_PROFILE of a PX4 log; None where unknown.
+        Value of SDLOG_PROFILE in a PX4 log; None if unknown.
     """
     if carrier == "dataflash":
         return Dataflash()

@@ -14,7 +14,7 @@ class _Record:
     bit: int
     bit_name: str
     paced: str
-    """Origin of the rate at which the record is written."""
+    """Rate at which the record is written, or the loop that sets this rate."""
 
 
 _IMU = _Record("IMU", 7, "IMU", "the main loop's rate")
@@ -22,12 +22,13 @@ _RECORDS = {
     "ATTITUDE": _IMU,
     "RAW_IMU": _IMU,
     "HIGHRES_IMU": _IMU,
-    "SERVO_OUTPUT_RAW": _Record("RCOU", 13, "RC", "25 Hz, older firmware at 10 Hz"),
+    "SERVO_OUTPUT_RAW": _Record("RCOU", 13, "RC", "25 Hz (10 Hz in older firmware)"),
     "AOA_SSA": _Record("AOA", 0, "ATTITUDE_FAST", "10 Hz"),
     "VFR_HUD": _Record("ARSP", 7, "IMU", "10 Hz"),
 }
-"""Message to ArduPlane's record, with the bit of LOG_BITMASK that logs it (ArduPlane/defines.h) and its rate
-(ArduPlane.cpp: update_logging10, update_logging25)."""
+"""ArduPlane's record for each MAVLink message. A record has its bit of LOG_BITMASK (ArduPlane/defines.h) and
+its rate (ArduPlane.cpp: update_logging10, update_logging25).
+"""
 _NAMES = {message: record.name for message, record in _RECORDS.items()}
 
 
@@ -37,14 +38,14 @@ class Dataflash(Mends):
     names = _NAMES
 
     def faster(self, message: str) -> str:
-        """Return the log's own rate, and the source of a higher one."""
+        """Return the rate of the record in the log, and the kind of log that has a higher rate."""
         record = _RECORDS.get(message)
         logged = (
             f"LOG_BITMASK logs {record.name} at {record.paced} (bit {record.bit}, {record.bit_name}); "
             if record
             else ""
         )
-        return f"{logged}for more record a telemetry log with {message} at {GOOD_HZ} Hz"
+        return f"{logged}for a higher rate, record a telemetry log with {message} at {GOOD_HZ} Hz"
 
     def present(self, messages: Sequence[str]) -> str:
         """Return the bits of LOG_BITMASK that log the given records."""

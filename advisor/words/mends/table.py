@@ -25,6 +25,6 @@ class Table(Mends):
         return f"write the table with {GOOD_HZ} rows a second, for {self.called(message)}"
 
     def present(self, messages: Sequence[str]) -> str:
-        """Return the keys by which the aircraft file names the columns."""
+        """Return the keys of the aircraft file that name the table's columns."""
         named = ", ".join(dict.fromkeys(self.called(message) for message in messages))
         return f"name the columns in the aircraft file (columns: {named})"

@@ -12,7 +12,9 @@ _STREAM_GROUPS = {
     "SCALED_IMU2": "RAW_SENS",
     "GLOBAL_POSITION_INT": "POSITION",
 }
-"""Stream group in ArduPilot (GCS_MAVLink) of each message: the suffix of the parameter with the rate."""
+"""ArduPilot's stream group (GCS_MAVLink) of each message. The group's name ends the name of the parameter
+that holds the rate.
+"""
 
 _IDS = {
     "SCALED_IMU": 26,
@@ -38,10 +40,10 @@ def _request(message: str) -> str:
 
 
 class ArduPilotTelemetry(Mends):
-    """ArduPilot's streams: one parameter for each group of messages."""
+    """ArduPilot's streams. One parameter sets the rate of each group of messages."""
 
     def faster(self, message: str) -> str:
-        """Return the parameter of the stream group, in both spellings, or a request."""
+        """Return the remedy: the rate parameter of the stream group, in both spellings, or a request."""
         group = _STREAM_GROUPS.get(message)
         if group is None:
             return f"raise the rate of {message} at its sender to {GOOD_HZ} Hz"
@@ -52,12 +54,12 @@ class ArduPilotTelemetry(Mends):
 
 
 class Px4Telemetry(Mends):
-    """PX4's streams: a rate for each stream, below the limit of its link."""
+    """PX4's streams. Each stream has a rate, and the limit of the link bounds all streams together."""
 
     names = _PX4_NAMES
 
     def faster(self, message: str) -> str:
-        """Return the command of PX4's shell, or a request."""
+        """Return the remedy: the command of PX4's shell that sets the rate, or a request."""
         stream = _PX4_STREAMS.get(message, message)
         return (
             f"set mavlink stream -d DEVICE -s {stream} -r {GOOD_HZ} in etc/extras.txt on the SD card, with "

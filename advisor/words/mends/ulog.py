@@ -33,7 +33,7 @@ _BITS: Mapping[str, tuple[_Bit, ...]] = {
     "VFR_HUD": (_REPLAY,),
     "NAMED_VALUE_FLOAT": (_DEBUG,),
 }
-"""Message to the bits of SDLOG_PROFILE that log its topic at full rate, the first preferred (PX4's
+"""Bits of SDLOG_PROFILE that log the topic of each message at full rate, the preferred bit first (PX4's
 ``logged_topics.cpp``).
 
 With the bit for high rates, ``actuator_servos`` comes at full rate, and ``actuator_outputs`` stays at 10 Hz.
@@ -47,7 +47,7 @@ class Ulog(Mends):
     Parameters
     ----------
     profile
-        SDLOG_PROFILE of the log; None where unknown. No advice names a bit that is set.
+        Value of SDLOG_PROFILE in the log; None if unknown. No advice names a bit that is already set.
     """
 
     names = _TOPICS
@@ -65,7 +65,7 @@ class Ulog(Mends):
         bits = [bit for bit in dict.fromkeys(wanted) if not self._has(bit)]
         topics = " and ".join(dict.fromkeys(self.called(message) for message in messages))
         if not bits:
-            return f"{self._set()} already logs {topics}: see why the vehicle does not publish them"
+            return f"{self._set()} already logs {topics}: find out why the vehicle does not publish them"
         return f"set {' and '.join(map(_bit, bits))}, so that {topics} are logged"
 
     def _advice(self, bits: Sequence[_Bit], topic: str) -> str:
