@@ -13,7 +13,8 @@ import click
 
 from advisor.analysis.gap import compare_flown, maneuvers_of, named_simulator
 from advisor.cli.options import decided_on, read_aircraft
-from advisor.exports.models.proof import Proof, prove
+from advisor.exports.models.axes.prove_pitch import prove
+from advisor.exports.models.proof import Proof
 from advisor.words.problems import UnusableInputError
 
 

@@ -1,6 +1,5 @@
 """Flights of every generator, and those of the gate's autopilot, diagnosed once for their evidence."""
 
-import json
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -10,13 +9,12 @@ from advisor.analysis.axes.side_comparison import compare_side_logs
 from advisor.analysis.gap import compare_logs
 from advisor.words.problems import UnusableInputError
 from benchmarks.gap_draws import drawn
+from benchmarks.gate_flights import GateFlight, gate_flights
 from benchmarks.metamorphic.flights import unpacked
 from sim.sealed.cases import AIRCRAFT, LOG, SealedCase, write_case
 
 from .evidence import KeptFlight, evidence_rows
 
-GATE = Path("../shared/gate")
-"""Folder of the gate's cases, next to a checkout."""
 AUTOPILOT = "autopilot"
 _KINDS = {"none": "none", "parameters": "parameters", "unknown": "outside"}
 
@@ -44,20 +42,17 @@ def _of_a_case(name: str, case: SealedCase) -> KeptFlight | None:
 
 def _of_the_gate() -> Iterator[Asked]:
     """Yield the gate's diagnoses of an autopilot whose logs are at hand."""
-    listed = GATE / "cases.json"
-    for name, case in json.loads(listed.read_text(encoding="utf-8")).items() if listed.is_file() else ():
-        log = GATE / str(case.get("log", ""))
-        if case.get("command") != "gap" or AUTOPILOT not in name or not log.is_file():
+    for flown in gate_flights():
+        if AUTOPILOT not in flown.name:
             continue
 
-        def work(name: str = name, case: dict = case, log: Path = log) -> KeptFlight | None:  # type: ignore[type-arg]
-            names = tuple(case["answer"])
-            kind = _KINDS.get(names[0], "one")
-            axis = "lateral" if "lateral" in case.get("options", ()) else "pitch"
-            with unpacked(log) as plain:
-                return _kept(f"{AUTOPILOT}/{name}", kind, names, plain, GATE / case["aircraft"], axis)
+        def work(flown: GateFlight = flown) -> KeptFlight | None:
+            kind = _KINDS.get(flown.right[0], "one")
+            with unpacked(flown.log) as plain:
+                name = f"{AUTOPILOT}/{flown.name}"
+                return _kept(name, kind, flown.right, plain, flown.aircraft_file, flown.axis)
 
-        yield f"{AUTOPILOT}/{name}", work
+        yield f"{AUTOPILOT}/{flown.name}", work
 
 
 def _kept(
