@@ -10,7 +10,7 @@ from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
-from advisor.analysis.gap import diagnose_logs
+from advisor.analysis.gap import compare_logs
 from advisor.analysis.marks_file import read_by_hand
 from advisor.analysis.table_log import as_in_tables
 from advisor.analysis.whole_flights import read_whole
@@ -186,7 +186,8 @@ def diagnose(flights: Flight | Sequence[Flight], holdout: int | None = None) -> 
     """
     several = _several(flights)
     logs = [flight.log for flight in several]
-    return diagnose_logs(logs, _one_aircraft(several), holdout, by_hand=[read_by_hand(log) for log in logs])
+    by_hand = [read_by_hand(log) for log in logs]
+    return compare_logs(logs, _one_aircraft(several), holdout, by_hand=by_hand).diagnosis
 
 
 def _described(file: str | PathLike[str] | None) -> Aircraft:

@@ -25,8 +25,9 @@ from scipy.optimize import fsolve
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS, Reference
-from advisor.analysis.axes.side_comparison import accepted_of, compare_side_logs
+from advisor.analysis.axes.side_comparison import accepted_of, compare_side_flown
 from advisor.analysis.gap import compare_logs, maneuvers_of
+from advisor.analysis.whole_flights import read_whole
 from advisor.cli.options import read_aircraft
 from advisor.exports.models.axes.handed_over import improved_side
 from advisor.exports.models.flown import FlownModel, SideModel, improved_model
@@ -273,11 +274,13 @@ def compared(log: Path, aircraft: Aircraft, truth: Path | None, axis: str) -> Co
     """Return the models of the file, of the finding, and of the truth where a file states it."""
     if axis == "pitch":
         maneuvers: Sequence[Maneuver] = maneuvers_of([log], aircraft).maneuvers
-        after = improved_model(compare_logs([log], aircraft, None).diagnosis, aircraft, None)
+        after = improved_model(
+            compare_logs([log], replace(aircraft, simulator=None)).diagnosis, aircraft, None
+        )
         assert after.pitch is not None
         air, after = after.pitch.air, replace(after, side=None)
     else:
-        found = compare_side_logs([log], aircraft)
+        found = compare_side_flown(read_whole([log], aircraft, axis="lateral").state, aircraft)
         maneuvers, after = accepted_of(found.state), improved_side(found)
         assert after.side is not None
         air, after = after.side.air, replace(after, pitch=None)

@@ -20,7 +20,7 @@ import click
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.gap import compare_named
+from advisor.analysis.gap import compare_logs
 from advisor.flight.signals.true_airspeed import (
     SEA_LEVEL_DENSITY_KG_M3,
     standard_density,
@@ -164,7 +164,7 @@ def row(name: str, case: Case, seed: int) -> tuple[str, bool]:
         flown(case, log, seed)
         aircraft = Aircraft(simulator=simulator_of(case, folder))
         began = time.process_time()
-        told = compare_named([log], aircraft).diagnosis
+        told = compare_logs([log], aircraft).diagnosis
         spent = time.process_time() - began
         cause, size = answer_of(told)
         effects = {e: s for e, s in told.effects.items() if e in case.scenario.effects}

@@ -26,6 +26,7 @@ from advisor.analysis.whole_flights import WholeFlights
 from advisor.campaign import joint_estimate, single_maneuver
 from advisor.campaign.axes import lateral_campaign
 from advisor.cli import analyze, page_content
+from advisor.cli.axes import lateral_gap
 from advisor.doctor import examiner
 from advisor.exports.models.jsbsim import run as jsbsim_run
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -39,7 +40,7 @@ Result = TypeVar("Result")
 def use_recorded(patch: pytest.MonkeyPatch) -> None:
     """Let commands read the analysis of a log that another test of this run has analysed already."""
     whole, compared = _once(whole_flights.read_whole), _once(gap.compare_logs)
-    for module in (whole_flights, page_content, side_gap):
+    for module in (whole_flights, page_content, side_gap, lateral_gap):
         patch.setattr(module, "read_whole", whole)
     patch.setattr(gap, "compare_logs", compared)
     patch.setattr(gap, "compare_flown", _diagnosed_once(gap.compare_flown))
@@ -48,6 +49,7 @@ def use_recorded(patch: pytest.MonkeyPatch) -> None:
 
 def _once(function: Callable[..., Result]) -> Callable[..., Result]:
     """The function, whose result is kept by its arguments and by the content of its logs."""
+    made_by_simulator = gap.compare_logs
 
     @wraps(function)
     def recalled(*arguments: Any, **settings: Any) -> Result:
@@ -55,8 +57,9 @@ def _once(function: Callable[..., Result]) -> Callable[..., Result]:
         bound.apply_defaults()
         asked = {name: _deciding(value) for name, value in bound.arguments.items()}
         given = asked.pop("logs", None) or bound.arguments["series"].logs
-        if not all(log.exists() for log in given):
-            return function(*arguments, **settings)  # which says so
+        of_user = getattr(asked.get("aircraft"), "simulator", None) if function is made_by_simulator else None
+        if of_user not in (None, "linear") or not all(log.exists() for log in given):
+            return function(*arguments, **settings)  # a user's simulator flies anew; a missing log says so
         read = [(log.name, log.read_bytes()) for log in given]
         by_hand = LogSeries(given).read_by_hand()
         key = (function.__qualname__, asked, read, by_hand)

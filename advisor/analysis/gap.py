@@ -1,6 +1,6 @@
 """From logs to a diagnosis: every manoeuvre is used once, then ``advisor.gap`` diagnoses the gap."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,7 +17,6 @@ from advisor.flight.vehicle.one_aircraft import OneAircraft
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.gap.diagnose import examine, without_simulator
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.result import Diagnosis
 from advisor.gap.search.baseline import prior_derivatives
 from advisor.mavlink.logs.whole import read_whole_log
 from advisor.oem.estimate import Estimate, NoEstimate
@@ -25,6 +24,7 @@ from advisor.oem.estimator import estimate_jointly
 from advisor.simulators.agreed import agreeing
 from advisor.simulators.by_log import IdentifiedSimulator
 from advisor.simulators.compare import Compared, compare
+from advisor.simulators.flying import Progress
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Simulator
 from advisor.simulators.specification import simulator_of
@@ -142,19 +142,12 @@ def _on_one_clock(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
     return found
 
 
-def diagnose_logs(
-    logs: Sequence[Path], aircraft: Aircraft, holdout: int | None = None, by_hand: Sequence[ByHand] = ()
-) -> Diagnosis:
-    """Read logs and diagnose their gap to the aircraft file's model."""
-    return compare_logs(logs, aircraft, None, holdout, by_hand=by_hand).diagnosis
-
-
-def compare_named(
+def compare_logs(
     logs: Sequence[Path],
     aircraft: Aircraft,
     holdout: int | None = None,
     target_system: int | None = None,
-    progress: Callable[[str, float], None] = lambda *_: None,
+    progress: Progress = lambda *_: None,
     by_hand: Sequence[ByHand] = (),
     prior: FieldPrior = FIELD,
     flown: GapFlights | None = None,
@@ -167,32 +160,9 @@ def compare_named(
         A log cannot be read or cannot serve, or the simulator does not fly.
     """
     with opened_simulator(aircraft, target_system) as simulator:
-        return compare_logs(
-            logs, aircraft, simulator, holdout, target_system, progress, by_hand, prior, flown
-        )
-
-
-def compare_logs(
-    logs: Sequence[Path],
-    aircraft: Aircraft,
-    simulator: Simulator | None,
-    holdout: int | None = None,
-    target_system: int | None = None,
-    progress: Callable[[str, float], None] = lambda *_: None,
-    by_hand: Sequence[ByHand] = (),
-    prior: FieldPrior = FIELD,
-    flown: GapFlights | None = None,
-) -> Compared:
-    """Read logs and diagnose their gap to a simulator, or to the aircraft file's model where there is none.
-
-    Raises
-    ------
-    UnusableInputError
-        A log cannot be read or cannot serve, or the simulator does not fly.
-    """
-    progress("reading", 0.0)
-    flown = flown or maneuvers_of(logs, aircraft, target_system, by_hand)
-    return compare_flown(flown, aircraft, simulator, holdout, progress, prior)
+        progress("reading", 0.0)
+        flown = flown or maneuvers_of(logs, aircraft, target_system, by_hand)
+        return compare_flown(flown, aircraft, simulator, holdout, progress, prior)
 
 
 def compare_flown(
@@ -200,7 +170,7 @@ def compare_flown(
     aircraft: Aircraft,
     simulator: Simulator | None,
     holdout: int | None = None,
-    progress: Callable[[str, float], None] = lambda *_: None,
+    progress: Progress = lambda *_: None,
     prior: FieldPrior = FIELD,
 ) -> Compared:
     """Diagnose the gap of manoeuvres to a simulator, or to the aircraft file's model where there is none.

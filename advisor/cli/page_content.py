@@ -22,9 +22,8 @@ from advisor.doctor.document import doctor_document
 from advisor.exports.flights.reading import sha256
 from advisor.gap.inference.engine import Progress
 from advisor.report.document import analysis_document
-from advisor.report.gap_document import gap_document
 from advisor.report.page.content import Content, Document, Origin
-from advisor.session.diagnosis import diagnosed
+from advisor.session.diagnosis import diagnosed, document_of
 from advisor.words.printable import printable
 from advisor.words.problems import UnusableInputError
 
@@ -105,11 +104,9 @@ def _examined(log: Path, aircraft: Aircraft, target_system: int | None) -> Docum
 def _gap(flights: WholeFlights, aircraft: Aircraft, asked: LogsAsked, tell: Progress) -> Document:
     """Return the diagnosis of pitch; of roll and yaw where they alone have accepted manoeuvres."""
     if flights.state.lateral_alone is not None:
-        try:
-            compared = compare_side_flown(flights.state, aircraft, progress=tell)
-        except UnusableInputError as error:
-            return gap_document(None, error.problems)
-        return gap_document(compared.gap)
+        return document_of(
+            "lateral", lambda: compare_side_flown(flights.state, aircraft, progress=tell).diagnosis
+        )
     usable = [flight for flight in range(len(flights.logs)) if flight not in flights.left_out]
     logs = [flights.logs[flight] for flight in usable]
     decided = [flights.by_hand.on_flight(flight) for flight in usable]

@@ -7,7 +7,7 @@ from math import nan
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
 from advisor.analysis.axes.side_comparison import compare_side_flown
-from advisor.analysis.gap import compare_named
+from advisor.analysis.gap import compare_logs
 from advisor.analysis.whole_flights import WholeFlights
 from advisor.campaign.state import CampaignState, LateralState
 from advisor.decision.axes.lateral_requirements import GROUPS
@@ -148,11 +148,12 @@ def gap_of(
     """
     try:
         if axis == "lateral":
-            gap = compare_side_flown(flights.state, aircraft, progress=progress).gap.gap
+            diagnosis = compare_side_flown(flights.state, aircraft, progress=progress).diagnosis
         else:
             decided = [flights.by_hand.on_flight(flight) for flight in range(len(flights.logs))]
-            compared = compare_named(flights.logs, aircraft, None, target_system, progress, decided)
-            gap = compared.diagnosis.gap
+            compared = compare_logs(flights.logs, aircraft, None, target_system, progress, decided)
+            diagnosis = compared.diagnosis
     except UnusableInputError as error:
         return Measured(reason=str(error))
+    gap = diagnosis.gap
     return Measured(gap.before) if gap.by_channel else Measured(reason="the manoeuvres show no gap")

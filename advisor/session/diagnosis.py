@@ -16,10 +16,12 @@ from typing import TYPE_CHECKING, Any
 from advisor.aircraft.aircraft import Aircraft
 from advisor.process import interrupt
 from advisor.session.child_process import start_child
+from advisor.words.axes import AxisName
 from advisor.words.problems import Problem
 
 if TYPE_CHECKING:
     from advisor.campaign.hand_decisions import ByHand
+    from advisor.gap.result import Diagnosis
 
 _GIVES_WAY = 10
 """Niceness of the diagnosis process. A diagnosis may wait for the estimates of a manoeuvre in flight."""
@@ -43,7 +45,14 @@ class GapTask:
         from advisor.analysis.marks_file import read_by_hand
 
         if self.sideways:
-            return _diagnosed_sideways(self.logs, self.aircraft)
+            from advisor.analysis.axes.side_comparison import compare_side_flown
+            from advisor.analysis.whole_flights import read_whole
+
+            def sideways() -> "Diagnosis":
+                state = read_whole(self.logs, self.aircraft, axis="lateral").state
+                return compare_side_flown(state, self.aircraft).diagnosis
+
+            return document_of("lateral", sideways)
         by_hand = [read_by_hand(log) for log in self.logs]
         return diagnosed(self.logs, self.aircraft, by_hand, self.aircraft_file)
 
@@ -58,37 +67,39 @@ def diagnosed(
     tell: Callable[[str, float], None] = lambda *_: None,
 ) -> Document:
     """Diagnose logs against the aircraft file's simulator; return ``advisor.gap/1`` with the next steps."""
-    from advisor.analysis.gap import compare_named
-    from advisor.process.parts import FailedPart, attempt
-    from advisor.report.gap_document import gap_document
+    from advisor.analysis.gap import compare_logs
     from advisor.report.gap_steps import next_steps
     from advisor.words.plain import plain
-    from advisor.words.problems import UnusableInputError
 
-    try:
-        compared = attempt(
-            "pitch, diagnosis", lambda: compare_named(logs, aircraft, None, target_system, tell, by_hand)
-        )
-    except UnusableInputError as error:
-        return gap_document(None, error.problems)
-    if isinstance(compared, FailedPart):
-        return gap_document(None, failed=(compared,))
     file = str(aircraft_file) if aircraft_file else None
-    steps = next_steps(compared.diagnosis, list(map(str, logs)), file, aircraft.simulator, reading)
-    return {**gap_document(compared.diagnosis), "next": plain(steps)}
+
+    def following(diagnosis: "Diagnosis") -> Document:
+        steps = next_steps(diagnosis, list(map(str, logs)), file, aircraft.simulator, reading)
+        return {"next": plain(steps)}
+
+    def diagnose() -> "Diagnosis":
+        return compare_logs(logs, aircraft, None, target_system, tell, by_hand).diagnosis
+
+    return document_of("pitch", diagnose, following)
 
 
-def _diagnosed_sideways(logs: Sequence[Path], aircraft: Aircraft) -> Document:
-    from advisor.analysis.axes.side_comparison import compare_side_logs
+def document_of(
+    axis: AxisName,
+    diagnose: "Callable[[], Diagnosis]",
+    following: "Callable[[Diagnosis], Document]" = lambda _: {},
+) -> Document:
+    """Return ``advisor.gap/1`` of one axis, with the reason where there is no diagnosis."""
     from advisor.process.parts import FailedPart, attempt
     from advisor.report.gap_document import gap_document
     from advisor.words.problems import UnusableInputError
 
     try:
-        found = attempt("lateral, diagnosis", lambda: compare_side_logs(logs, aircraft))
+        made = attempt(f"{axis}, diagnosis", diagnose)
     except UnusableInputError as error:
         return gap_document(None, error.problems)
-    return gap_document(None, failed=(found,)) if isinstance(found, FailedPart) else gap_document(found.gap)
+    if isinstance(made, FailedPart):
+        return gap_document(None, failed=(made,))
+    return {**gap_document(made), **following(made)}
 
 
 def diagnose_elsewhere(task: GapTask) -> Document:

@@ -2,11 +2,13 @@
 
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from advisor.aircraft_file.read import load_aircraft
-from advisor.analysis.axes.side_comparison import compare_side_logs
+from advisor.analysis.axes.side_comparison import compare_side_flown
 from advisor.analysis.gap import compare_logs
+from advisor.analysis.whole_flights import read_whole
 from advisor.words.problems import UnusableInputError
 from benchmarks.gap_draws import drawn
 from benchmarks.gate_flights import GateFlight, gate_flights
@@ -62,9 +64,9 @@ def _kept(
     aircraft = load_aircraft(aircraft_file)
 
     def diagnose() -> object:
-        return (
-            compare_side_logs([log], aircraft) if axis == "lateral" else compare_logs([log], aircraft, None)
-        )
+        if axis == "lateral":
+            return compare_side_flown(read_whole([log], aircraft, axis="lateral").state, aircraft)
+        return compare_logs([log], replace(aircraft, simulator=None))
 
     try:
         rows = evidence_rows(diagnose)

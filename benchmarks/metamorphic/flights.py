@@ -107,7 +107,8 @@ class SideFlight:
             )
         except UnusableInputError as error:
             return Answer({}, str(error))
-        return answer_of(compared.gap) if compared.gap.evidence else Answer({}, "no model fits")
+        found = compared.diagnosis
+        return answer_of(found) if found.evidence else Answer({}, "no model fits")
 
 
 def answer_of(diagnosis: Weighed) -> Answer:

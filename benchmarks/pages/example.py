@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from advisor.aircraft_file.read import load_aircraft
-from advisor.analysis.gap import diagnose_logs
+from advisor.analysis.gap import compare_logs
 from advisor.library import estimate, read
 from advisor.oem.estimate import Estimate
 from benchmarks.pages.figure import errors, residuals, response, stages, svg
@@ -161,4 +161,4 @@ def figures() -> Iterator[tuple[str, str]]:
     yield "maneuver.svg", svg(stages(maneuver))
     yield "model.svg", svg(response(maneuver, found))
     yield "output-error.svg", svg(residuals(maneuver, found))
-    yield "gap.svg", svg(errors(diagnose_logs([LOG], aircraft)))
+    yield "gap.svg", svg(errors(compare_logs([LOG], aircraft).diagnosis))

@@ -23,8 +23,9 @@ from advisor.cli.running import Progress, runner_of, running_options
 
 def answer(case: Path, axis: str = "pitch") -> tuple[dict[str, Any], float]:
     """Return the document of ``advisor gap --json`` (empty without one), and the CPU time in s."""
-    from advisor.analysis.axes.side_comparison import compare_side_logs
-    from advisor.analysis.gap import compare_named
+    from advisor.analysis.axes.side_comparison import compare_side_flown
+    from advisor.analysis.gap import compare_logs
+    from advisor.analysis.whole_flights import read_whole
     from advisor.cli.options import read_aircraft
     from advisor.report.gap_document import axis_document, gap_document
     from advisor.words.problems import UnusableInputError
@@ -34,9 +35,10 @@ def answer(case: Path, axis: str = "pitch") -> tuple[dict[str, Any], float]:
     aircraft = read_aircraft(case / AIRCRAFT)
     try:
         if axis == "pitch":
-            document = gap_document(compare_named([case / LOG], aircraft).diagnosis)
+            document = gap_document(compare_logs([case / LOG], aircraft).diagnosis)
         else:
-            document = axis_document(compare_side_logs([case / LOG], aircraft).gap)
+            state = read_whole([case / LOG], aircraft, axis="lateral").state
+            document = axis_document(compare_side_flown(state, aircraft).diagnosis)
     except UnusableInputError as error:
         print(f"{case.name}: {error.problem}", file=sys.stderr)
         document = {}

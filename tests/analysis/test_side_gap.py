@@ -14,6 +14,8 @@ from advisor.cli.group import advisor
 from advisor.gap.result import Diagnosis, Gap
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
+STATE = SimpleNamespace(lateral=SimpleNamespace(model="as logged"))
+
 
 @pytest.fixture
 def compared(monkeypatch):
@@ -32,11 +34,7 @@ def compared(monkeypatch):
         seen.as_logged = as_logged
         return Diagnosis(axis="lateral", verdict="untested", sentence="", gap=Gap(), model={})
 
-    monkeypatch.setattr(
-        side_gap,
-        "read_whole",
-        lambda *_, **__: SimpleNamespace(state=SimpleNamespace(lateral=SimpleNamespace(model="as logged"))),
-    )
+    monkeypatch.setattr(side_gap, "read_whole", lambda *_, **__: SimpleNamespace(state=STATE))
     monkeypatch.setattr(side_gap, "accepted_of", lambda _: ["as flown"])
     monkeypatch.setattr(side_gap, "compare_side", compare)
     monkeypatch.setattr(side_gap, "simulator_of", named)
@@ -48,14 +46,14 @@ def compared(monkeypatch):
 
 @pytest.mark.parametrize("specification", [None, "linear"])
 def test_the_aircraft_files_own_numbers_are_compared_without_a_replay(compared, specification):
-    side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator=specification))
+    side_gap.compare_side_flown(STATE, Aircraft(simulator=specification))
     assert compared.maneuvers == ["as flown"]
     assert compared.as_logged
     assert compared.specification is None
 
 
 def test_a_simulator_flies_the_manoeuvres_and_is_closed(compared):
-    side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator="jsbsim:c172p"))
+    side_gap.compare_side_flown(STATE, Aircraft(simulator="jsbsim:c172p"))
     assert compared.specification == "jsbsim:c172p"
     assert (compared.maneuvers, compared.logged) == (["beside"], "as logged")
     assert not compared.as_logged
@@ -69,7 +67,7 @@ def test_a_simulator_that_refuses_is_closed_too(compared, monkeypatch):
 
     monkeypatch.setattr(side_gap, "side_without_difference", refuse)
     with pytest.raises(ConfigurationError):
-        side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator="jsbsim:c172p"))
+        side_gap.compare_side_flown(STATE, Aircraft(simulator="jsbsim:c172p"))
     assert compared.closed == 1
 
 
@@ -78,7 +76,7 @@ def test_the_derivatives_of_a_simulators_log_are_its_numbers(compared, monkeypat
     monkeypatch.setattr(side_gap, "estimate_lateral", lambda *_: found)
     log = tmp_path / "simulated.tlog"
     log.touch()
-    side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator=f"log:{log}"))
+    side_gap.compare_side_flown(STATE, Aircraft(simulator=f"log:{log}"))
     assert "Y_beta" not in compared.aircraft.model
     assert compared.aircraft.model["Y_p"] == 1.0
     assert compared.aircraft.reference_airspeed_m_s == 30.0
@@ -86,7 +84,7 @@ def test_the_derivatives_of_a_simulators_log_are_its_numbers(compared, monkeypat
 
 def test_a_log_that_is_not_there_is_one_sentence(compared):
     with pytest.raises(ConfigurationError, match="there is no such file"):
-        side_gap.compare_side_logs([Path("a.tlog")], Aircraft(simulator="log:nowhere.tlog"))
+        side_gap.compare_side_flown(STATE, Aircraft(simulator="log:nowhere.tlog"))
 
 
 @pytest.mark.parametrize(
@@ -138,7 +136,6 @@ def test_a_flight_that_roll_and_yaw_answer_is_read_once(monkeypatch):
     monkeypatch.setattr(side_gap, "read_whole", lambda *_, **__: SimpleNamespace(state=state))
     monkeypatch.setattr(side_gap, "accepted_of", lambda _: [0])
     monkeypatch.setattr(side_gap_command, "read_whole", None)
-    monkeypatch.setattr(side_gap_command, "compare_side_logs", None)
     monkeypatch.setattr(side_gap_command, "compare_side_flown", compare)
     CliRunner().invoke(advisor, ["gap", "logs/bundled-demo.tlog"])
     assert compared == [state]

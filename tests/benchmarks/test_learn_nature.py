@@ -126,7 +126,7 @@ def test_evidence_of_a_recorded_flight_has_the_probabilities_of_its_posterior() 
     log = Path("logs/arduplane-calm.tlog")
     diagnoses = []
     rows = evidence_rows(
-        lambda: diagnoses.append(compare_logs([log], load_aircraft(log.with_suffix(".yaml")), None))
+        lambda: diagnoses.append(compare_logs([log], load_aircraft(log.with_suffix(".yaml"))))
     )
     (compared,) = diagnoses
     kept = KeptFlight("real", "calm", "one", ("actuator_lag",), rows)

@@ -11,8 +11,9 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import gap as pitch_logs
-from advisor.analysis.axes import side_comparison as lateral_logs
+from advisor.analysis import whole_flights
 from advisor.analysis.gap import GapFlights
+from advisor.cli.axes import lateral_gap
 from advisor.gap import diagnose
 from advisor.gap.axes.lateral import comparison
 from advisor.session.diagnosis import GapTask
@@ -40,7 +41,8 @@ def read_already(monkeypatch: pytest.MonkeyPatch) -> None:
     read = SimpleNamespace(
         state=SimpleNamespace(lateral=side_state(judged(1, "aileron"), judged(2, "rudder")))
     )
-    monkeypatch.setattr(lateral_logs, "read_whole", lambda *_, **__: read)
+    for reader in (whole_flights, lateral_gap):
+        monkeypatch.setattr(reader, "read_whole", lambda *_, **__: read)
 
 
 def break_at(monkeypatch: pytest.MonkeyPatch, module: ModuleType, name: str, fault: Exception) -> None:

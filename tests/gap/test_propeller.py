@@ -3,7 +3,7 @@
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.gap import diagnose_logs
+from advisor.analysis.gap import compare_logs
 from advisor.gap.diagnose import diagnose
 from sim.effects.fitting import flight_of
 from sim.record import record
@@ -36,6 +36,6 @@ def test_another_engines_aircraft_gets_no_other_name_than_what_was_put_into_it(
 ):
     (tmp_path / "c172.yaml").write_text(C172 + effects)
     record(flight_of(read_scenario(tmp_path / "c172.yaml")), tmp_path / "c172.tlog")
-    found = diagnose_logs([tmp_path / "c172.tlog"], Aircraft())
+    found = compare_logs([tmp_path / "c172.tlog"], Aircraft()).diagnosis
     assert found.verdict == verdict
     assert [c.effect for c in found.causes if c.present][:1] == ([named] if named else [])

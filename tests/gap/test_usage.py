@@ -149,7 +149,7 @@ def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
     monkeypatch.setattr(reading, "with_static_errors", lambda told, _: told)
     log = recorded("uav", 1.0, maneuvers=TWO)
     once = reading.maneuvers_of([log], Aircraft()).maneuvers
-    found = reading.diagnose_logs([log, log], Aircraft())
+    found = reading.compare_logs([log, log], Aircraft()).diagnosis
     assert [m.number for m in judged] == [m.number for m in once]
     assert found.notes[0].startswith(f"{len(once)} of {2 * len(once)} manoeuvres came twice")
 

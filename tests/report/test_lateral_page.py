@@ -172,7 +172,9 @@ def test_the_gap_of_a_page_is_of_roll_and_yaw_where_they_alone_are_accepted(monk
     flown = changed(flights_of_pitch.state(), maneuvers=(one(pitch),), lateral=sides)
     flights = SimpleNamespace(state=flown, logs=[], left_out={})
     asked = SimpleNamespace(aircraft_file=None, reading=[], target_system=None)
-    monkeypatch.setattr(page_content, "compare_side_flown", lambda *_, **__: SimpleNamespace(gap=None))
-    monkeypatch.setattr(page_content, "gap_document", lambda _: {"lateral": {"of": "lateral"}})
+    monkeypatch.setattr(
+        page_content, "compare_side_flown", lambda *_, **__: SimpleNamespace(diagnosis="lateral")
+    )
+    monkeypatch.setattr(page_content, "document_of", lambda _, made: {"lateral": {"of": made()}})
     monkeypatch.setattr(page_content, "diagnosed", lambda *_: {"lateral": {"of": "pitch"}})
     assert page_content._gap(flights, Aircraft(), asked, print)["lateral"]["of"] == axis

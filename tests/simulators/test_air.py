@@ -91,10 +91,9 @@ def test_the_reference_speed_of_linear_is_made_true_as_the_flights_speed_is(monk
         asked.update(simulator=simulator, aircraft=aircraft)
         raise ToldError
 
-    monkeypatch.setattr(gap_of_logs, "maneuvers_of", lambda *_: gap_of_logs.GapFlights(read, 0, ()))
     monkeypatch.setattr(gap_of_logs, "compare", told)
     file = Aircraft(reference_airspeed_m_s=20.0)
     with pytest.raises(ToldError):
-        gap_of_logs.compare_logs([], file, LinearSimulator({}, 20.0))
+        gap_of_logs.compare_flown(gap_of_logs.GapFlights(read, 0, ()), file, LinearSimulator({}, 20.0))
     assert asked["simulator"].reference_m_s == pytest.approx(22.0)
     assert asked["aircraft"].reference_airspeed_m_s == pytest.approx(22.0)

@@ -28,8 +28,7 @@ def logs(tmp_path_factory):
 
 def diagnosed(flight: Path, simulator: Path):
     """Return the diagnosis of a flight relative to the simulator that wrote a log."""
-    named = named_simulator(Aircraft(simulator=f"log:{simulator}"))
-    return compare_logs([flight], Aircraft(), named).diagnosis
+    return compare_logs([flight], Aircraft(simulator=f"log:{simulator}")).diagnosis
 
 
 @pytest.mark.study

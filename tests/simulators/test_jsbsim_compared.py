@@ -3,7 +3,7 @@
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.gap import compare_logs, opened_simulator
+from advisor.analysis.gap import compare_logs
 from sim.effects.fitting import flight_of
 from sim.flight import Flight
 from sim.record import record
@@ -19,8 +19,7 @@ def test_noise_that_coloured_instruments_explain_alone_is_no_moving_air(tmp_path
     record(
         Flight(Scenario(aircraft="J3Cub", engine="jsbsim", seed=7, airspeed_m_s=32.0, height_m=500.0)), log
     )
-    with opened_simulator(Aircraft(simulator="jsbsim:J3Cub")) as simulator:
-        assert compare_logs([log], Aircraft(), simulator).diagnosis.verdict == "none"
+    assert compare_logs([log], Aircraft(simulator="jsbsim:J3Cub")).diagnosis.verdict == "none"
 
 
 def diagnosed(folder, **effects: dict[str, float]):
@@ -36,8 +35,7 @@ def diagnosed(folder, **effects: dict[str, float]):
         effects=effects,
     )
     record(flight_of(scenario), log)
-    with opened_simulator(Aircraft(simulator="jsbsim:c172p")) as simulator:
-        return compare_logs([log], Aircraft(), simulator).diagnosis
+    return compare_logs([log], Aircraft(simulator="jsbsim:c172p")).diagnosis
 
 
 @pytest.mark.study

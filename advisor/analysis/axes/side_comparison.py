@@ -34,35 +34,13 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 class SideCompared:
     """Gap of roll and yaw, with the flight from which it was found."""
 
-    gap: Diagnosis
+    diagnosis: Diagnosis
     state: CampaignState
     """State of the campaign at the end of the logs, with both axes."""
     aircraft: Aircraft
     """The aircraft file."""
     maneuvers: Sequence[Maneuver] = ()
     """Accepted lateral manoeuvres, as flown."""
-
-
-def compare_side_logs(
-    logs: Sequence[Path],
-    aircraft: Aircraft,
-    target_system: int | None = None,
-    marks: Sequence[Mark] = (),
-    no_marks: bool = False,
-    prior: FieldPrior = FIELD,
-    progress: Progress = lambda *_: None,
-) -> SideCompared:
-    """Read logs and compare the flight with roll and yaw of the aircraft file, or of its simulator.
-
-    Raises
-    ------
-    ConfigurationError
-        The file's simulator cannot be built.
-    UnusableInputError
-        No log can be used, no manoeuvre of aileron or rudder is accepted, or the simulator does not fly them.
-    """
-    state = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral").state
-    return compare_side_flown(state, aircraft, prior, progress)
 
 
 def compare_side_flown(

@@ -8,7 +8,6 @@ from advisor.analysis.axes.side_comparison import (
     SideCompared,
     accepted_of,
     compare_side_flown,
-    compare_side_logs,
 )
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
@@ -41,13 +40,15 @@ class SideGap(AxisGap[SideCompared]):
     def compare(self, tell: Tell) -> SideCompared:
         """Read the logs and compare the flight with the simulator."""
         asked, read = self.asked, self.asked.read
-        if self._state is not None:
-            return compare_side_flown(self._state, asked.aircraft, asked.prior, tell)
-        tell("reading", 0.0)
-        return compare_side_logs(
-            read.logs, asked.aircraft, read.target_system, read.marks,
-            no_marks=read.no_marks, prior=asked.prior, progress=tell,
-        )  # fmt: skip
+        state = self._state
+        if state is None:
+            tell("reading", 0.0)
+            target, marks = read.target_system, read.marks
+            whole = read_whole(
+                read.logs, asked.aircraft, target, marks, no_marks=read.no_marks, axis="lateral"
+            )
+            state = whole.state
+        return compare_side_flown(state, asked.aircraft, asked.prior, tell)
 
     def prove(self, compared: SideCompared, named: Sequence[Path], tell: Tell) -> Proof:
         """Fly the improved roll and yaw on the manoeuvres of logs; without any, on the last third."""
@@ -61,7 +62,7 @@ class SideGap(AxisGap[SideCompared]):
 
     def stays(self, compared: SideCompared, proof: Proof | None) -> Diagnosis:
         """Return the part of a diagnosis that a proof confirms."""
-        return stays_of_side(compared, proof).gap
+        return stays_of_side(compared.diagnosis, proof)
 
     def improved(self, compared: SideCompared, diagnosis: Diagnosis) -> FlownModel:
         """Return the model for the improved aircraft file."""
@@ -69,7 +70,7 @@ class SideGap(AxisGap[SideCompared]):
 
     def exported(self, compared: SideCompared, diagnosis: Diagnosis) -> FlownModel:
         """Return the model for other programs."""
-        return improved_side(replace(compared, gap=diagnosis))
+        return improved_side(replace(compared, diagnosis=diagnosis))
 
     def steps(
         self, diagnosis: Diagnosis, written: Path | None, outcomes: Sequence[ExportOutcome]

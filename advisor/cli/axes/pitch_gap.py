@@ -47,7 +47,7 @@ class PitchGap(AxisGap[Compared]):
     def compare(self, tell: Tell) -> Compared:
         """Read the logs and compare the flight with the simulator."""
         asked, read = self.asked, self.asked.read
-        return reading.compare_named(
+        return reading.compare_logs(
             read.logs, asked.aircraft, self._holdout, read.target_system, tell,
             self._by_hand, asked.prior, self._flown,
         )  # fmt: skip

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.gap import compare_logs, opened_simulator
+from advisor.analysis.gap import compare_logs
 from advisor.exports.models.flown import improved_model
 from advisor.exports.models.formats.matlab_format import script_text
 from advisor.exports.models.write import carry_out, order_of
@@ -59,8 +59,7 @@ def test_a_corrected_jsbsim_aircraft_flown_by_jsbsim_shows_no_gap(tmp_path: Path
     record(flight_of(scenario), log)
 
     def asked(model: str):
-        with opened_simulator(Aircraft(simulator=f"jsbsim:{model}")) as simulator:
-            return compare_logs([log], Aircraft(), simulator)
+        return compare_logs([log], Aircraft(simulator=f"jsbsim:{model}"))
 
     first = asked("c172p")
     assert first.diagnosis.causes[0].effect == "transport_delay"

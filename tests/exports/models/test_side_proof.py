@@ -30,8 +30,7 @@ PROOF = Proof(
 
 
 def stays(*taken: str) -> Diagnosis:
-    compared = SideCompared(FOUND, None, AIRCRAFT)  # type: ignore[arg-type]
-    return stays_of_side(compared, replace(PROOF, taken_back=taken)).gap
+    return stays_of_side(FOUND, replace(PROOF, taken_back=taken))
 
 
 def test_an_effect_that_raises_the_gap_of_the_proof_leaves_the_file_and_keeps_its_probability():

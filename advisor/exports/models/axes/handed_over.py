@@ -45,7 +45,7 @@ def improved_side(compared: SideCompared) -> FlownModel:
     With an effect the derivatives are those of the diagnosis' own model. The diagnosis next to a user's
     simulator lacks what that simulator adds. The derivatives are then estimated again with the servos found.
     """
-    aircraft, state, diagnosis = compared.aircraft, compared.state, compared.gap
+    aircraft, state, diagnosis = compared.aircraft, compared.state, compared.diagnosis
     model = flown_model(state, aircraft)
     unchanged = not diagnosis.improves
     if model.side is None or not any(cause.present for cause in diagnosis.causes):

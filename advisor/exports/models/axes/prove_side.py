@@ -21,6 +21,7 @@ from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.axes.lateral.comparison import compare_side
 from advisor.gap.inference.prior import FIELD, FieldPrior
+from advisor.gap.result import Diagnosis
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.estimator import estimate_lateral
@@ -125,19 +126,18 @@ def _ahead(given: SideControl, against: SideControl, side_control: SideControl) 
     return given if side_control == against else replace(given, lag_s=less("lag_s"), delay_s=less("delay_s"))
 
 
-def stays_of_side(compared: SideCompared, proof: Proof | None) -> SideCompared:
-    """Return a comparison whose improved simulator lacks the parts that a proof withdrew, which its sentence
+def stays_of_side(diagnosis: Diagnosis, proof: Proof | None) -> Diagnosis:
+    """Return a diagnosis whose improved simulator lacks the parts that a proof withdrew, which its sentence
     names.
 
     The posterior stays: a proof moves no probability.
     """
-    d = compared.gap
-    if proof is None or proof.gap_with_them is None or not d.evidence:
-        return compared
-    causes = tuple(replace(cause, present=False) for cause in d.causes)
-    sentence = f"{d.sentence} {proof.taken_back_said}"
+    if proof is None or proof.gap_with_them is None or not diagnosis.evidence:
+        return diagnosis
+    causes = tuple(replace(cause, present=False) for cause in diagnosis.causes)
+    sentence = f"{diagnosis.sentence} {proof.taken_back_said}"
     corrects = NUMBERS not in proof.taken_back
-    return replace(compared, gap=replace(d, sentence=sentence, causes=causes, corrects=corrects))
+    return replace(diagnosis, sentence=sentence, causes=causes, corrects=corrects)
 
 
 def _gap(maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: FloatArray) -> float:
