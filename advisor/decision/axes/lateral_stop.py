@@ -4,10 +4,10 @@ The joint estimate on all screens and pages also decides on the stop. Bank and i
 follow from the last input by linearity, with the amplitude and its square.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import degrees, inf, radians
+from functools import cached_property
+from math import degrees, inf, isfinite, radians
 
 import numpy as np
 
@@ -100,20 +100,19 @@ def next_lateral(
     """
     ends_deg = getattr(aircraft, control).ends_deg
     travel = min(map(abs, map(radians, ends_deg))) if ends_deg and 0.0 not in ends_deg else FULL_TRAVEL_RAD
-    before = next((one for one in reversed(flown) if one.control == control), None)
+    before = next((earlier for earlier in reversed(flown) if earlier.control == control), None)
     amplitude = GENTLE * travel if before is None else _larger(before, percent, aircraft)
-    wanted = StepInput(
-        "doublet",
-        _unit_s(control, accepted, flown, aircraft),
-        min(amplitude, ALPHA_MARGIN * travel),
-        True,
-        control,
-    ).rounded(travel)
+    unit_s = shown_unit_s(control, [estimate.modes for estimate in accepted])
+    unit_s = unit_s or side_unit_s(control, aircraft.model, aircraft.reference_airspeed_m_s)
+    unit_s = unit_s or shown_unit_s(control, [x.modes for x in flown if x.modes is not None]) or FIRST_UNIT_S
+    wanted = StepInput("doublet", unit_s, min(amplitude, ALPHA_MARGIN * travel), True, control)
+    wanted = wanted.rounded(travel)
     gently = ", to begin gently" if before is None else ""
     # A remedy belongs to the refused input, never to another control. A larger amplitude is a remedy.
     refused = before is not None and before is flown[-1] and before.too_small <= 1.0
     remedy = f"; {before.remedy}" if before is not None and refused and before.remedy else ""
-    said = f"{wanted.spoken(travel)}{gently}, {_after(control, wanted.unit_s)}{remedy}"
+    still = f"hands and feet still for {4.0 * unit_s:.0f} s" if control == "rudder" else "stick still"
+    said = f"{wanted.spoken(travel)}{gently}, then {still}{remedy}"
     return NextInput(f"next: {said}", None, holding_back, wanted)
 
 
@@ -130,22 +129,6 @@ def _larger(before: FlownInput, percent: float, aircraft: Aircraft) -> float:
     return factor * before.amplitude_rad
 
 
-def _unit_s(
-    control: str, accepted: Sequence[LateralEstimate], flown: Sequence[FlownInput], aircraft: Aircraft
-) -> float:
-    """Return the duration of a step, s: by accepted manoeuvres, the file's model, or other manoeuvres."""
-    shown = shown_unit_s(control, [one.modes for one in accepted])
-    shown = shown or side_unit_s(control, aircraft.model, aircraft.reference_airspeed_m_s)
-    shown = shown or shown_unit_s(control, [one.modes for one in flown if one.modes is not None])
-    return shown or FIRST_UNIT_S
-
-
-def _after(control: str, unit_s: float) -> str:
-    if control == "aileron":
-        return "then stick still"
-    return f"then hands and feet still for {4.0 * unit_s:.0f} s"
-
-
 JUDGED: Mapping[str, str] = {
     "L_p": "aileron",
     "L_delta_a": "aileron",
@@ -153,8 +136,6 @@ JUDGED: Mapping[str, str] = {
     "N_delta_r": "rudder",
 }
 """Control whose input determines each judged derivative best, by the derivative's name."""
-Judged = Mapping[str, str]
-"""Control for each judged derivative of an aircraft, by the derivative's name."""
 CHECKED = 2
 """Least number of accepted manoeuvres for each control. A single manoeuvre shows no scatter: nine derivatives
 of one rudder doublet were wrong by many standard errors."""
@@ -163,21 +144,17 @@ NOT_FLOWN = "No test input of the aileron or the rudder has been flown."
 """Sentence about a flight without a lateral manoeuvre."""
 
 
-def judged_by(controls: Sequence[str]) -> Judged:
-    """Return the judged derivatives of an aircraft with these controls. The other control shows the motion of
-    an aircraft that lacks one."""
-    absent = tuple(suffix for suffix, control in CONTROLS.items() if control not in controls)
-    return {
-        name: best if best in controls else controls[0]
-        for name, best in JUDGED.items() if not name.endswith(absent)
-    }  # fmt: skip
-
-
 def shares_of(
-    joint: LateralEstimate | None, tolerance_percent: float, judged: Judged = JUDGED
+    joint: LateralEstimate | None, tolerance_percent: float, judged: Mapping[str, str] = JUDGED
 ) -> Mapping[str, float]:
-    """Return each judged derivative's 95 % half-width, % of its tolerance; infinite if unknown."""
-    shares = dict.fromkeys(judged, math.inf)
+    """Return each judged derivative's 95 % half-width, % of its tolerance; infinite if unknown.
+
+    Parameters
+    ----------
+    judged
+        Control for each judged derivative of the aircraft, by the derivative's name.
+    """
+    shares = dict.fromkeys(judged, inf)
     if joint is None:
         return shares
     for name, control in judged.items():
@@ -186,6 +163,111 @@ def shares_of(
         if control in joint.flown and name not in joint.not_identifiable and size > 0.0:
             shares[name] = 100.0 * NORMAL_95 * float(joint.std[k]) / size
     return shares
+
+
+@dataclass(frozen=True)
+class _SideTest:
+    """The test of roll and yaw after its newest manoeuvre."""
+
+    history: Sequence[LateralEstimate | None]
+    joint: LateralEstimate | None
+    aircraft: Aircraft
+    flown: Sequence[FlownInput]
+    controls: Sequence[str]
+
+    @cached_property
+    def accepted(self) -> list[LateralEstimate]:
+        """Estimates of the accepted manoeuvres."""
+        return [estimate for estimate in self.history if estimate is not None]
+
+    @cached_property
+    def judged(self) -> Mapping[str, str]:
+        """Control for each judged derivative. The other control shows the motion of an aircraft that lacks
+        one."""
+        absent = tuple(suffix for suffix, control in CONTROLS.items() if control not in self.controls)
+        return {
+            name: best if best in self.controls else self.controls[0]
+            for name, best in JUDGED.items() if not name.endswith(absent)
+        }  # fmt: skip
+
+    @cached_property
+    def shares(self) -> Mapping[str, float]:
+        """Error of each judged derivative, % of its tolerance."""
+        return shares_of(self.joint, self.aircraft.campaign.tolerance_percent, self.judged)
+
+    @property
+    def worst(self) -> str:
+        """Derivative with the largest error relative to its tolerance."""
+        return max(self.shares, key=lambda name: self.shares[name])
+
+    @property
+    def holds(self) -> bool:
+        """Whether the criterion holds now."""
+        return self.shares[self.worst] < INFORMATION_LIMIT_PERCENT and not self.flown_fewer_than(CHECKED)
+
+    def times(self, control: str) -> int:
+        """Return the number of accepted manoeuvres that move a control."""
+        return sum(control in estimate.flown for estimate in self.accepted)
+
+    def flown_fewer_than(self, n: int) -> list[str]:
+        """Return the controls that fewer accepted manoeuvres move."""
+        return [name for name in self.controls if self.times(name) < n]
+
+    def percent_of(self, control: str) -> float:
+        """Return the error of the worst derivative of a control, % of its tolerance."""
+        shares = (share for name, share in self.shares.items() if self.judged[name] == control)
+        return max(shares, default=0.0)
+
+    def sentence(self, stop: bool) -> str:
+        """Return the sentence about the criterion; an aircraft without a control is named as such."""
+        if not self.history:
+            return NOT_FLOWN
+        without = "".join(
+            f" No output is the {name}'s: this aircraft has no {name}, or {name}.output must name the output."
+            for name in LATERAL.inputs if name not in self.controls
+        )  # fmt: skip
+        return f"{self._stands(stop)}{without}"
+
+    def _stands(self, stop: bool) -> str:
+        if stop:
+            known = "TEST COMPLETE: roll and yaw are known within their tolerance"
+            return f"{known} from {len(self.accepted)} accepted manoeuvres."
+        missing, worst = self.flown_fewer_than(1), self.worst
+        if missing:
+            return f"CONTINUE: no accepted manoeuvre has moved the {' or the '.join(missing)}."
+        if self.shares[worst] < INFORMATION_LIMIT_PERCENT:
+            which = " and of the ".join(self.flown_fewer_than(CHECKED))
+            return f"CONTINUE: one input of the {which} cannot show its own error; one more will."
+        share = self.shares[worst]
+        said = f"{share:.0f} % of its tolerance" if isfinite(share) else "unknown"
+        return f"CONTINUE: the error of {symbol(worst)} is {said}."
+
+    def next(self) -> NextInput:
+        """Return the next input, with the number of further manoeuvres."""
+        missing = self.flown_fewer_than(1) or self.flown_fewer_than(CHECKED)
+        newest = self.flown[-1] if self.flown else None
+        control = missing[0] if missing else self.judged[self.worst]
+        if newest and newest.remedy and (
+            newest.control in missing or self.percent_of(newest.control) >= INFORMATION_LIMIT_PERCENT
+        ):  # fmt: skip
+            control = newest.control
+        percent = self.percent_of(control)
+        advised = next_lateral(control, percent, self.accepted, self.flown, self.aircraft, self.worst)
+        return replace(advised, remaining=self._remaining())
+
+    def _remaining(self) -> Remaining | None:
+        """Return the expected number of further manoeuvres; None if that cannot be told."""
+        # The variance of a derivative falls with the number of manoeuvres that move its control.
+        controls, accepted = sorted(set(self.judged.values())), len(self.accepted)
+        scale = variance_scale(len(controls) * (accepted - 1))
+        needed = np.zeros(len(scale))
+        for control in controls:
+            times, worst = self.times(control), self.percent_of(control)
+            if not times or not isfinite(worst):
+                return None
+            within = np.ceil(times * (worst / INFORMATION_LIMIT_PERCENT) ** 2 * scale)
+            needed += np.maximum(np.maximum(within, CHECKED), times) - times
+        return until_usable(np.maximum(needed, 1.0), Share(accepted, len(self.history) - accepted))
 
 
 def lateral_flight_test(
@@ -206,108 +288,18 @@ def lateral_flight_test(
     controls
         Controls whose outputs are known. No input of another control is advised or needed.
     """
-    accepted = [one for one in history if one is not None]
-    judged = judged_by(controls)
-    shares = shares_of(joint, aircraft.campaign.tolerance_percent, judged)
-    worst = max(shares.values())
-    holds = worst < INFORMATION_LIMIT_PERCENT and not _flown_fewer_than(CHECKED, accepted, controls)
-    now = worst if math.isfinite(worst) else None
-    told = tuple(one.percent.get(_RULE) for one in heard)
+    test = _SideTest(history, joint, aircraft, flown, controls)
+    percent = {name: share if isfinite(share) else None for name, share in test.shares.items()}
+    now = percent[test.worst]
+    before = tuple(earlier.percent.get(_RULE) for earlier in heard)
     progress = RuleProgress(
-        first_stop(heard, _RULE) or (len(history) if holds else None),
-        (*told, now) if len(told) < len(history) else told,
+        first_stop(heard, _RULE) or (len(history) if test.holds else None),
+        (*before, now) if len(before) < len(history) else before,
         INFORMATION_LIMIT_PERCENT,
-        parameter_percent={k: v if math.isfinite(v) else None for k, v in shares.items()},
+        parameter_percent=percent,
         now_percent=now,
-        holds=holds,
+        holds=test.holds,
     )
-
-    def following() -> NextInput:
-        advised = _next(shares, accepted, flown, aircraft, judged)
-        return replace(advised, remaining=_remaining(shares, accepted, len(history), judged))
-
-    def said(stop: bool) -> str:
-        return f"{_sentence(shares, accepted, stop, controls)}{_without(controls)}" if history else NOT_FLOWN
-
-    criterion = Criterion(
-        _RULE, {_RULE: progress}, said,
-        following, len(history), {i for i, one in enumerate(history) if one is not None},
-    )  # fmt: skip
+    usable = {i for i, estimate in enumerate(history) if estimate is not None}
+    criterion = Criterion(_RULE, {_RULE: progress}, test.sentence, test.next, len(history), usable)
     return concluded(criterion, heard, change, () if change is None else (change.sentence,))
-
-
-def _flown_fewer_than(n: int, accepted: Sequence[LateralEstimate], controls: Sequence[str]) -> list[str]:
-    return [name for name in controls if sum(name in one.flown for one in accepted) < n]
-
-
-def _without(controls: Sequence[str]) -> str:
-    """Return a sentence about a control that no output moves; empty for an aircraft with both."""
-    return "".join(
-        f" No output is the {name}'s: this aircraft has no {name}, or {name}.output must name the output."
-        for name in LATERAL.inputs if name not in controls
-    )  # fmt: skip
-
-
-def _remaining(
-    shares: Mapping[str, float], accepted: Sequence[LateralEstimate], flown: int, judged: Judged
-) -> Remaining | None:
-    """Return the expected number of further manoeuvres; None if that cannot be told."""
-    # The variance of a derivative falls with the number of manoeuvres that move its control.
-    controls = sorted(set(judged.values()))
-    scale = variance_scale(len(controls) * (len(accepted) - 1))
-    needed = np.zeros(len(scale))
-    for control in controls:
-        times = sum(control in one.flown for one in accepted)
-        worst = _percent_of(control, shares, judged)
-        if not times or not math.isfinite(worst):
-            return None
-        within = np.ceil(times * (worst / INFORMATION_LIMIT_PERCENT) ** 2 * scale)
-        needed += np.maximum(np.maximum(within, CHECKED), times) - times
-    return until_usable(np.maximum(needed, 1.0), Share(len(accepted), flown - len(accepted)))
-
-
-def _sentence(
-    shares: Mapping[str, float], accepted: Sequence[LateralEstimate], stop: bool, controls: Sequence[str]
-) -> str:
-    if stop:
-        return (
-            f"TEST COMPLETE: roll and yaw are known within their tolerance from {len(accepted)} accepted "
-            "manoeuvres."
-        )
-    missing = _flown_fewer_than(1, accepted, controls)
-    if missing:
-        return f"CONTINUE: no accepted manoeuvre has moved the {' or the '.join(missing)}."
-    worst = max(shares, key=lambda name: shares[name])
-    if shares[worst] < INFORMATION_LIMIT_PERCENT:
-        once = _flown_fewer_than(CHECKED, accepted, controls)
-        which = " and of the ".join(once)
-        return f"CONTINUE: one input of the {which} cannot show its own error; one more will."
-    said = f"{shares[worst]:.0f} % of its tolerance" if math.isfinite(shares[worst]) else "unknown"
-    return f"CONTINUE: the error of {symbol(worst)} is {said}."
-
-
-def _next(
-    shares: Mapping[str, float],
-    accepted: Sequence[LateralEstimate],
-    flown: Sequence[FlownInput],
-    aircraft: Aircraft,
-    judged: Judged,
-) -> NextInput:
-    controls = [name for name in LATERAL.inputs if name in judged.values()]
-    missing = _flown_fewer_than(1, accepted, controls) or _flown_fewer_than(CHECKED, accepted, controls)
-    worst = max(shares, key=lambda name: shares[name])
-    control = missing[0] if missing else judged[worst]
-    if flown and flown[-1].remedy and _is_open(flown[-1].control, shares, missing, judged):
-        control = flown[-1].control
-    percent = _percent_of(control, shares, judged)
-    return next_lateral(control, percent, accepted, flown, aircraft, worst)
-
-
-def _percent_of(control: str, shares: Mapping[str, float], judged: Judged) -> float:
-    """Return the error of the worst derivative of a control, % of its tolerance."""
-    return max((share for name, share in shares.items() if judged[name] == control), default=0.0)
-
-
-def _is_open(control: str, shares: Mapping[str, float], missing: Sequence[str], judged: Judged) -> bool:
-    """Return whether a further input of a control is needed."""
-    return control in missing or _percent_of(control, shares, judged) >= INFORMATION_LIMIT_PERCENT
