@@ -3,10 +3,11 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan
 from advisor.campaign.hand_decisions import ByHand
-from advisor.campaign.single_maneuver import objection
+from advisor.campaign.single_maneuver import failed, objection
 from advisor.campaign.state import JudgedManeuver
 from advisor.decision.course import CriterionCourse
 from advisor.decision.heard import Heard
@@ -17,6 +18,7 @@ from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.process.parts import FailedPart, Parts
+from advisor.words.axes import AxisName
 
 
 @dataclass(slots=True)
@@ -50,8 +52,9 @@ class AxisCampaign(ABC):
         Computes manoeuvres, verdicts and the joint estimate, each of which may fail separately.
     """
 
-    def __init__(self, axis: str, aircraft: Aircraft, plan: CampaignPlan, parts: Parts) -> None:
-        self._axis = axis
+    def __init__(self, axis: AxisName, aircraft: Aircraft, plan: CampaignPlan, parts: Parts) -> None:
+        self.axis = axis
+        """Name of the axis."""
         self._aircraft = aircraft
         self._plan = plan
         self._parts = parts
@@ -67,8 +70,18 @@ class AxisCampaign(ABC):
         """Decision whether the test may stop, with the next manoeuvre."""
 
     @abstractmethod
+    def _examined(self, maneuver: Maneuver) -> CandidateManeuver:
+        """Estimate and examine a manoeuvre, before any rule compares it with other manoeuvres."""
+
+    @abstractmethod
     def _decided(self, history: Sequence[CandidateManeuver], heard: Sequence[Heard]) -> FlightTestVerdict:
         """Return whether the test may stop, from the examined and the ``judged`` manoeuvres."""
+
+    def take(self, maneuver: Maneuver, by_hand: ByHand) -> None:
+        """Estimate and judge a manoeuvre that has just been flown, and decide again whether to stop."""
+        self._add(maneuver, by_hand)
+        self.decide()
+        self._hear()
 
     def decide(self) -> None:
         """Judge all manoeuvres, and decide again whether to stop."""
@@ -104,11 +117,16 @@ class AxisCampaign(ABC):
         """Return the judged manoeuvre with a number."""
         return next(judged for judged in self.judged if judged.maneuver.number == number)
 
-    def _add(self, maneuver: Maneuver, examined: CandidateManeuver, by_hand: ByHand) -> None:
+    def _add(self, maneuver: Maneuver, by_hand: ByHand) -> None:
         """Add a manoeuvre that has just been flown, with the engineer's decisions on it."""
-        flown = Flown(maneuver, examined, by_hand.notes_on(maneuver))
+        flown = Flown(maneuver, self._assessed(maneuver), by_hand.notes_on(maneuver))
         flown.exclude(by_hand.excluded_because(maneuver))
         self._flown.append(flown)
+
+    def _assessed(self, maneuver: Maneuver) -> CandidateManeuver:
+        """Return an examined manoeuvre; one without an estimate after a fault of the advisor."""
+        part = f"{self.axis}, manoeuvre {maneuver.number}"
+        return self._parts.make(part, partial(self._examined, maneuver), partial(failed, maneuver))
 
     def _hear(self) -> None:
         """Record the verdicts and criteria that are announced to the crew after the newest manoeuvre."""
@@ -135,7 +153,7 @@ class AxisCampaign(ABC):
 
     def _judge(self) -> None:
         """Judge manoeuvres and flight test; after a numerical fault no manoeuvre has a verdict."""
-        self._parts.make(f"{self._axis}, verdicts", self._judged, self._unjudged)
+        self._parts.make(f"{self.axis}, verdicts", self._judged, self._unjudged)
 
     def _judged(self) -> None:
         """Judge the manoeuvres and the flight test from the examinations of the manoeuvres."""

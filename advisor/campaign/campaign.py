@@ -347,9 +347,9 @@ class Campaign:
                 case ModeChanged(mode, at_s):
                     self._whole_flights.change_mode(self.power_on, at_s, mode)
                 case ManeuverFlown(maneuver):
-                    told += self._give(self._elevator, maneuver, "pitch")
+                    told += self._give(self._elevator, maneuver)
                 case SideManeuverFlown(maneuver) if self._lateral is not None:
-                    told += self._give(self._lateral, maneuver, "lateral")
+                    told += self._give(self._lateral, maneuver)
                 case Activity():
                     joined = event.joined(self._activity[-1]) if self._activity else None
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
@@ -362,25 +362,19 @@ class Campaign:
                 self._tell(happened)
         return told
 
-    def _give(
-        self, half: ElevatorCampaign | LateralCampaign, maneuver: Maneuver, axis: AxisName
-    ) -> list[CampaignEvent]:
+    def _give(self, half: AxisCampaign, maneuver: Maneuver) -> list[CampaignEvent]:
         """Have a manoeuvre judged that has just been flown, and return the verdicts that are ready."""
         if self._aside.in_thread:
             self._so_far()
-        self._aside.do(partial(self._judge, half, maneuver, axis, self._engineer.decided))
+        self._aside.do(partial(self._judge, half, maneuver, self._engineer.decided))
         return self._heard_verdicts()
 
-    def _judge(
-        self,
-        half: ElevatorCampaign | LateralCampaign,
-        maneuver: Maneuver,
-        axis: AxisName,
-        decided: ByHand,
-    ) -> ManeuverJudged:
+    def _judge(self, half: AxisCampaign, maneuver: Maneuver, decided: ByHand) -> ManeuverJudged:
         """Judge a manoeuvre, and decide on the test."""
         half.take(maneuver, decided)
-        event = ManeuverJudged(half.judged[-1], half.flight_test, self._plan, axis, half.take_revisions())
+        event = ManeuverJudged(
+            half.judged[-1], half.flight_test, self._plan, half.axis, half.take_revisions()
+        )
         if self._aside.in_thread:
             self._shown = self._verdicts()
         return event

@@ -1,7 +1,6 @@
 """The elevator's campaign: its manoeuvres, their estimates and verdicts, and the joint estimate."""
 
 from collections.abc import Callable, Sequence
-from functools import partial
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.axis_campaign import AxisCampaign, Flown
@@ -11,7 +10,7 @@ from advisor.campaign.joint_estimate import NEWEST, Together
 from advisor.campaign.late_limits import Recount
 from advisor.campaign.learning import lag_said, may_learn, of_another_power_on
 from advisor.campaign.learning import learnt as learnt_from
-from advisor.campaign.single_maneuver import assess, failed
+from advisor.campaign.single_maneuver import assess
 from advisor.campaign.state import JudgedManeuver
 from advisor.decision.heard import Heard
 from advisor.decision.history import CandidateManeuver
@@ -39,13 +38,6 @@ class ElevatorCampaign(AxisCampaign):
         self._told_by: set[tuple[int, int]] = set()
         self._say = say
         self._together = Together(aircraft)
-
-    def take(self, maneuver: Maneuver, by_hand: ByHand) -> None:
-        """Estimate and judge a manoeuvre that has just been flown, and decide again whether to stop."""
-        self._add(maneuver, self._assess(maneuver), by_hand)
-        self._blame_instruments(maneuver)
-        self.decide()
-        self._hear()
 
     def take_better(self, maneuver: Maneuver, because: str | None) -> None:
         """Replace a manoeuvre's record by a better one; exclude the manoeuvre if a reason is given."""
@@ -90,22 +82,21 @@ class ElevatorCampaign(AxisCampaign):
     def _examine(self, flown: Flown) -> None:
         """Estimate and examine a manoeuvre again. An exclusion of the manoeuvre remains."""
         because = flown.examined.excluded_because
-        flown.examined = self._assess(flown.maneuver)
+        flown.examined = self._assessed(flown.maneuver)
         flown.exclude(because)
 
-    def _assess(self, maneuver: Maneuver) -> CandidateManeuver:
+    def _examined(self, maneuver: Maneuver) -> CandidateManeuver:
         """Estimate and examine one manoeuvre with the instruments' values from the other manoeuvres."""
-        known = self.learnt if maneuver.power_on in self._told_by else of_another_power_on(self.learnt)
-        return self._parts.make(
-            f"pitch, manoeuvre {maneuver.number}", lambda: assess(maneuver, known), partial(failed, maneuver)
-        )
+        learnt = self.learnt if maneuver.power_on in self._told_by else of_another_power_on(self.learnt)
+        return assess(maneuver, learnt)
 
-    def _blame_instruments(self, newest: Maneuver) -> None:
-        """Judge the earlier manoeuvres again if the newest one contradicts their instruments."""
+    def _add(self, maneuver: Maneuver, by_hand: ByHand) -> None:
+        """Add a manoeuvre, and judge the earlier ones again if it contradicts their instruments."""
+        super()._add(maneuver, by_hand)
         for flown in self._flown[:-1]:
-            known = as_known_by(flown.maneuver, newest)
-            if known is not flown.maneuver:
-                self._replace(known)
+            blamed = as_known_by(flown.maneuver, maneuver)
+            if blamed is not flown.maneuver:
+                self._replace(blamed)
 
     def _decided(self, history: Sequence[CandidateManeuver], heard: Sequence[Heard]) -> FlightTestVerdict:
         return flight_test(history, self._plan, self._aircraft, self._course, heard)

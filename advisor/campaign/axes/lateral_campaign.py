@@ -2,13 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.axis_campaign import AxisCampaign
-from advisor.campaign.hand_decisions import ByHand
-from advisor.campaign.single_maneuver import failed, untold
-from advisor.campaign.state import JudgedManeuver, LateralState
+from advisor.campaign.joint_estimate import NEWEST
+from advisor.campaign.single_maneuver import untold
+from advisor.campaign.state import LateralState
 from advisor.decision.axes.judge_lateral import RESPONSES, judge_lateral
 from advisor.decision.axes.lateral_stop import JUDGED, FlownInput, lateral_flight_test
 from advisor.decision.change import find_change
@@ -22,8 +21,6 @@ from advisor.oem.axes.lateral.estimator import JointSearch, estimate_lateral
 from advisor.process.parts import Parts
 from advisor.words.problems import Problem
 
-NEWEST = 7
-"""Number of newest accepted manoeuvres in a joint estimate in flight, as for the elevator."""
 OF_EACH = 3
 """Number of newest manoeuvres of each control that stay in the joint estimate, so that both controls stay
 represented. With three manoeuvres, one may contradict two that agree."""
@@ -50,20 +47,7 @@ class LateralCampaign(AxisCampaign):
         plan = replace(aircraft.campaign, rule="information", parameters=tuple(JUDGED))
         super().__init__("lateral", aircraft, plan, parts)
 
-    def take(self, maneuver: Maneuver, by_hand: ByHand) -> JudgedManeuver:
-        """Estimate and judge a manoeuvre that has just been flown, and decide again whether to stop."""
-        examined = self._parts.make(
-            f"lateral, manoeuvre {maneuver.number}",
-            lambda: self._examined(maneuver),
-            partial(failed, maneuver),
-        )
-        self._add(maneuver, examined, by_hand)
-        self.decide()
-        self._hear()
-        return self.judged[-1]
-
     def _examined(self, maneuver: Maneuver) -> CandidateManeuver:
-        """Estimate and examine a manoeuvre, before any rule compares it with other manoeuvres."""
         estimate = estimate_lateral([maneuver], self._aircraft)
         controls = estimate.flown if isinstance(estimate, LateralEstimate) else ()
         return CandidateManeuver(
