@@ -14,10 +14,14 @@ from tests.decision.campaigns import THETA, estimate, with_change
 class Told(AxisCampaign):
     """A campaign of hand-made estimates."""
 
-    def take(self, number, theta):
-        self._add(judged(number, "aileron").maneuver, CandidateManeuver(estimate(theta)), NOTHING)
-        self.decide()
-        self._hear()
+    theta = THETA
+
+    def fly(self, number, theta):
+        self.theta = theta
+        self.take(judged(number, "aileron").maneuver, NOTHING)
+
+    def _examined(self, maneuver):
+        return CandidateManeuver(estimate(self.theta))
 
     def _decided(self, history, heard):
         return flight_test(history[:0], self._plan)
@@ -26,7 +30,7 @@ class Told(AxisCampaign):
 def campaign(*thetas):
     found = Told("pitch", Aircraft(), CampaignPlan(), Parts())
     for number, theta in enumerate(thetas, 1):
-        found.take(number, theta)
+        found.fly(number, theta)
     return found
 
 
@@ -44,12 +48,12 @@ def test_a_changed_verdict_is_said_once_when_the_manoeuvre_that_changed_it_is_an
     found = campaign(ODD, THETA, THETA, THETA)
     (said,) = found.take_revisions()
     assert said.startswith("manoeuvre 1: accepted before, refused since manoeuvre 4")
-    found.take(5, THETA)
+    found.fly(5, THETA)
     assert found.take_revisions() == ()
 
 
 def test_an_exclusion_by_hand_is_no_changed_verdict():
     found = campaign(THETA, THETA)
     found.exclude(1, "gust")
-    found.take(3, THETA)
+    found.fly(3, THETA)
     assert found.take_revisions() == ()
