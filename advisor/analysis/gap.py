@@ -6,19 +6,23 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft, Estimation
+from advisor.analysis.log_series import LogSeries
 from advisor.analysis.refused import without_refused
 from advisor.analysis.table_log import SUFFIXES, table_maneuvers
-from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.hand_decisions import NOTHING, ByHand, on_all
 from advisor.flight.instruments.atmosphere import air_flown
-from advisor.flight.maneuvers.events import READER_NOTICE, ManeuverFlown, Notice
-from advisor.flight.maneuvers.maneuver import Maneuver, are_one, is_fuller
-from advisor.flight.stream.stream import FlightStream
-from advisor.flight.vehicle.one_aircraft import OneAircraft
-from advisor.flight.vehicle.surfaces import Surface
+from advisor.flight.maneuvers.events import (
+    READER_NOTICE,
+    FlightEvent,
+    ManeuverAgain,
+    ManeuverFlown,
+    Notice,
+)
+from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.stream.flights import Flights
 from advisor.gap.diagnose import examine, without_simulator
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.search.baseline import prior_derivatives
-from advisor.mavlink.logs.whole import read_whole_log
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate_jointly
 from advisor.simulators.agreed import agreeing
@@ -33,7 +37,7 @@ from advisor.simulators.static_errors import with_static_errors
 from advisor.simulators.taken_back import with_unseen_shrink
 from advisor.simulators.unseen import changes_something, unseen_of
 from advisor.words.printable import printable
-from advisor.words.problems import Problem, UnusableInputError
+from advisor.words.problems import UnusableInputError
 
 _PAUSE_S = 60.0
 """Assumed time between the last manoeuvre of one log and the first of the next, s. No clock measured the
@@ -60,75 +64,47 @@ def maneuvers_of(
 ) -> GapFlights:
     """Read the manoeuvres of all logs, with the decisions by hand on each log.
 
-    The clock begins as the first log's, and runs on where another log or the vehicle restarts.
+    The logs are taken in the order of their times, as in a campaign. The clock begins as the first log's, and
+    runs on where another log or the vehicle restarts.
 
     Raises
     ------
     UnusableInputError
         No log can be read, or a log cannot serve. One that cannot be read is left out, with a note.
     """
-    recorded, notes = _recorded(logs, aircraft, target_system, by_hand or [ByHand()] * len(logs))
-    maneuvers = _on_one_clock(_each_once(recorded))
-    return GapFlights(maneuvers, len(recorded) - len(maneuvers), notes)
+    series = LogSeries(logs, aircraft.columns)
+    decided = dict(zip(logs, by_hand or [NOTHING] * len(logs), strict=True))
+    by_hand_on_all = on_all([decided[log] for log in series.logs])
 
+    def begin() -> tuple[Flights, list[FlightEvent]]:
+        return Flights(aircraft, target_system, by_hand_on_all.marks, series.names), []
 
-def _recorded(
-    logs: Sequence[Path], aircraft: Aircraft, target_system: int | None, by_hand: Sequence[ByHand]
-) -> tuple[list[Maneuver], tuple[str, ...]]:
-    """Return the manoeuvres of the logs, log by log, and the assumptions made in reading them."""
-    found: list[Maneuver] = []
-    notes: list[str] = []
-    wrong: list[Problem] = []
-    unreadable: list[Problem] = []
-    one_aircraft = OneAircraft()
-    for flight, (log, decided) in enumerate(zip(logs, by_hand, strict=True)):
-        stream = FlightStream(aircraft, target_system, decided.marks)
-        others = [*reversed(logs[:flight]), *logs[flight + 1 :]]
-        name = printable(log.name)
-        try:
-            events = [
-                event
-                for columns in read_whole_log(log, others, columns=aircraft.columns)
-                for event in stream.feed(columns)
-            ]
-        except UnusableInputError as error:
-            unreadable.append(error.problem)
-            notes.append(f"Left out: {error.problem.about(name)}")
-            continue
-        events += stream.finish()
-        problems = stream.problems()
-        if stream.vehicle is not None and (foreign := one_aircraft.refuse(name, stream.vehicle)):
-            problems = [foreign]
-        elif stream.vehicle is not None:
-            notes.append(one_aircraft.other_system(name, stream.vehicle))
-        if isinstance(stream.elevator, Surface):
-            notes.append(one_aircraft.doubt_elevator(name, stream.elevator))
-        wrong += [Problem(p.code, f"{name}: {p.text}", p.fix) for p in problems]
-        notes += stream.elevator_notes
-        notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
-        for maneuver in (e.maneuver for e in events if isinstance(e, ManeuverFlown)):
-            because = decided.excluded_because(maneuver)
-            if because is None:
-                found.append(replace(maneuver, flight=flight))
-            else:
-                notes.append(f"{name}: manoeuvre {maneuver.number} is excluded by hand: {because}.")
-    if wrong:
+    flights, events = series.fed_to(begin, lambda read, columns: read[1].extend(read[0].feed(columns)))
+    events += flights.finish()
+    names = [printable(log.name) for log in series.logs]
+    notes = [series.order_said]
+    notes += [f"Left out: {problem.about(names[k])}" for k, problem in series.unreadable.items()]
+    if len(series.unreadable) == len(logs):
+        raise UnusableInputError.of(list(series.unreadable.values()))
+    heard = [x for x in flights.heard(flights.stream.channels, True) if x.flight not in series.unreadable]
+    if wrong := [replace(p, text=f"{names[x.flight]}: {p.text}") for x in heard for p in x.problems]:
         raise UnusableInputError.of(wrong)
-    if len(unreadable) == len(logs):
-        raise UnusableInputError.of(unreadable)
-    return found, tuple(dict.fromkeys(filter(None, notes)))
-
-
-def _each_once(recorded: Sequence[Maneuver]) -> list[Maneuver]:
-    """Return the manoeuvres without copies from a second log; of two copies the longer is used."""
-    found: list[Maneuver] = []
-    for maneuver in recorded:
-        known = next((m for m in found if m.power_on != maneuver.power_on and are_one(maneuver, m)), None)
-        if known is None:
-            found.append(replace(maneuver, number=len(found) + 1))
-        elif is_fuller(maneuver, known):
-            found[known.number - 1] = replace(maneuver, number=known.number)
-    return found
+    notes += flights.elevator_notes
+    notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
+    recorded: dict[int, Maneuver] = {}
+    for event in events:
+        if isinstance(event, ManeuverFlown) or (isinstance(event, ManeuverAgain) and event.takes_place):
+            recorded[event.maneuver.number] = event.maneuver
+    used: list[Maneuver] = []
+    for maneuver in recorded.values():
+        because = by_hand_on_all.excluded_because(maneuver)
+        if because is not None:
+            said = f"manoeuvre {maneuver.number} is excluded by hand: {because}."
+            notes.append(f"{names[maneuver.flight]}: {said}")
+        elif maneuver.flight not in series.unreadable:
+            used.append(replace(maneuver, number=len(used) + 1))
+    again = sum(x.again for x in heard)
+    return GapFlights(_on_one_clock(used), again, tuple(dict.fromkeys(filter(None, notes))))
 
 
 def _on_one_clock(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
