@@ -47,14 +47,14 @@ def command() -> None:
     show_default=True,
     help="File to write.",
 )
-@click.option("--blank", is_flag=True, help="Ask nothing: every key as a comment with its meaning.")
-@click.option("--force", is_flag=True, help="Write over a file that exists.")
+@click.option("--blank", is_flag=True, help="Ask nothing, and write every key as a comment with its meaning.")
+@click.option("--force", is_flag=True, help="Replace a file that exists.")
 @target_system_option
 def new(log: Path | None, out: Path, blank: bool, force: bool, target_system: int | None) -> None:
     """Write a commented aircraft file, from answers on the terminal or from a log.
 
-    A log gives the outputs with their functions and limits, the air speed, the pressure, and the kind of
-    angle of attack. An unknown key stands in the file as a comment with the cost of its absence.
+    A log gives the outputs with their functions and limits, the air speed, the pressure, and the source of
+    the angle of attack. An unknown key becomes a comment that states the cost of its absence.
 
     \b
     Example:
@@ -72,7 +72,7 @@ def new(log: Path | None, out: Path, blank: bool, force: bool, target_system: in
         raise ConfigurationError("--blank and --from contradict each other; give one of them.")
     refuse_unwritable("-o", out)
     if out.exists() and not force:
-        raise ConfigurationError(f"-o: {out} exists; name another file, or add --force to write over it.")
+        raise ConfigurationError(f"-o: {out} exists; name another file, or add --force to replace this one.")
     if log is None:
         head = ["Aircraft file of the inflight advisor. Remove the # in front of a key that you know."]
         draft = Draft(head=head, values={} if blank else ask())
@@ -131,7 +131,8 @@ def check(file: Path, log: Path | None, target_system: int | None, as_json: bool
 
 @command.command
 def schema() -> None:
-    """Print the JSON schema of the aircraft file, by which an editor completes and explains its keys.
+    """Print the JSON schema of the aircraft file. An editor completes and explains the file's keys by this
+    schema.
 
     \b
     Example:
@@ -153,7 +154,7 @@ def _list(title: str, lacks: "list[Lack]") -> None:
 
 
 def _contradicted(log: Path, aircraft: Aircraft, target_system: int | None) -> "list[Lack]":
-    """Return what the log's manoeuvres contradict, as ``advisor analyze`` says it."""
+    """Return the keys that the log's manoeuvres contradict, as in ``advisor analyze``."""
     from advisor.aircraft_file.lacks import contradicted
     from advisor.analysis.whole_flights import read_whole
     from advisor.words.problems import UnusableInputError

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     type=click.Choice(["pitch", "lateral", "both"]),
     default="both",
     show_default=True,
-    help="Axis that is analyzed: the elevator's, that of aileron and rudder, or both.",
+    help="Axis to analyze: pitch (elevator), lateral (aileron and rudder), or both.",
 )
 @export_option(
     "Write the model of the flight, both axes, as jsbsim, ardupilot, sdf, matlab or aircraft; repeatable."
@@ -51,7 +51,7 @@ def command(
     """Print every manoeuvre's verdict, the estimates, and stop or continue.
 
     Several logs are one campaign of several flights. Manoeuvres are numbered through all logs, and a
-    manoeuvre that two logs hold counts once.
+    manoeuvre that is in two logs counts once.
 
     \b
     Example:
@@ -126,7 +126,9 @@ def _flown_model(state: "CampaignState", aircraft: "Aircraft") -> "FlownModel":
 def _analyze(
     series: "LogSeries", make_campaign: "Callable[[], Campaign]", axis: "Axis"
 ) -> "tuple[CampaignState | None, dict[int, tuple[Problem, ...]]]":
-    """Return the campaign after its logs, None without one, and why logs do not count, by flight."""
+    """Return the campaign at the end of the logs, None without a usable log, and by flight the reasons why
+    logs do not count.
+    """
     from advisor.analysis.whole_flights import left_out_of
 
     campaign = series.fed_to(make_campaign, lambda campaign, columns: campaign.feed(columns))
@@ -141,13 +143,13 @@ def _analyze(
 
 
 _COLUMNS = 80
-"""Width of the drawing, which a narrow terminal still holds."""
+"""Width of the drawing, columns, which fits a narrow terminal."""
 
 
 def print_untested(
     state: "CampaignState", series: "LogSeries", aircraft: "Aircraft", target_system: int | None, axis: "Axis"
 ) -> None:
-    """Print the next input of each axis with its drawing, then the examination of each log."""
+    """Print the next input of each axis with its drawing, then the telemetry examination of each log."""
     from advisor.doctor.text import ExaminationText
     from advisor.report.table import PlainConsole
     from advisor.tui.stick_drawing import drawn

@@ -1,4 +1,4 @@
-"""Questions on the terminal whose answers make an aircraft file; the file's reader checks each answer."""
+"""Questions on the terminal for a new aircraft file. The reader of aircraft files checks each answer."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from advisor.words.problems import ConfigurationError
 
 
 def ask() -> dict[str, Any]:
-    """Ask for every key that a crew fills in.
+    """Ask for every key that a crew can know.
 
     Returns
     -------
@@ -22,7 +22,10 @@ def ask() -> dict[str, Any]:
     ConfigurationError
         The input ends before the last question.
     """
-    click.echo("Enter takes the answer in brackets; '-' there means: not known, left out.", err=True)
+    click.echo(
+        "Press Enter to accept the answer in brackets, or enter '-' to leave the key out.",
+        err=True,
+    )
     values: dict[str, Any] = {}
     for key in KEYS:
         has_vane = str(values.get("alpha.source", "")).startswith(("named_value:", "aoa_ssa"))
@@ -36,7 +39,7 @@ def ask() -> dict[str, Any]:
 
 
 def nested(values: dict[str, Any]) -> dict[str, Any]:
-    """Return paths with values as the sections of the aircraft file."""
+    """Return the values, given by dotted paths, as nested sections of the aircraft file."""
     content: dict[str, Any] = {}
     for path, value in values.items():
         *sections, name = path.split(".")
@@ -76,14 +79,16 @@ def _value(key: Key, text: str) -> dict[str, Any]:
     try:
         return {key.path: float(text)}
     except ValueError:
-        raise ValueError(f"{text} is no number: give one, or - to leave this out.") from None
+        raise ValueError(f"{text} is not a number: give a number, or - to leave this key out.") from None
 
 
 def _whole(word: str) -> int:
     try:
         return int(word)
     except ValueError:
-        raise ValueError(f"{word} is no output: give a number, several (1 2), or auto.") from None
+        raise ValueError(
+            f"{word} is not an output: give one number, several numbers (1 2), or auto."
+        ) from None
 
 
 def _ask_calibrations(question: str, values: dict[str, Any]) -> None:
@@ -117,7 +122,7 @@ def _taken(values: dict[str, Any]) -> bool:
 
 
 def _pairs(question: str) -> list[list[float]] | None:
-    """Ask for pairs of PWM and deflection; None: not measured."""
+    """Ask for pairs of PWM and deflection; return None if none are measured."""
     while True:
         text = _answer(question, "-")
         if text == "-":
@@ -136,7 +141,7 @@ def _answer(question: str, default: str) -> str:
         text: str = click.prompt(question, default=default, err=True)
     except click.Abort as end:
         raise ConfigurationError(
-            "The questions were not answered to the end, and nothing was written. Answer them on a terminal, "
+            "The input ended before the last question, so nothing was written. Answer them on a terminal, "
             "or let a log answer: advisor aircraft new --from LOG."
         ) from end
     return text.strip()

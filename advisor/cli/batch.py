@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 INDEX = "index.html"
 """Name of the page of all flights."""
 KEPT = "flights"
-"""Folder of each log's result, by the key of the log."""
+"""Name of the folder for the results, in which each log's file is named by the log's key."""
 
 
 @click.command
@@ -46,7 +46,7 @@ KEPT = "flights"
     "map_file",
     type=click.Path(path_type=Path),
     metavar="MAP.yaml",
-    help="For several aircraft: one line for each pattern of logs, with its aircraft file.",
+    help="File for several aircraft, with one line for each pattern of logs and its aircraft file.",
 )
 @click.option("--reports", "with_reports", is_flag=True, help="Write the page of each flight as well.")
 @running_options
@@ -94,7 +94,7 @@ def command(
 def _tasks(
     logs: Sequence[Path], aircraft_file: Path | None, map_file: Path | None
 ) -> "tuple[list[BatchTask], dict[Path, Analyzed]]":
-    """Return the logs to analyze, each once, and the results of logs that cannot be analyzed."""
+    """Return the logs to analyze without repetitions, and the results of logs that cannot be analyzed."""
     from advisor.batch.flight import BatchTask, failed, sha256_of
     from advisor.batch.logs import read_map
 
@@ -108,7 +108,7 @@ def _tasks(
             described[file] = read_aircraft(file)
         task = BatchTask(log, described[file], file.name if file else "", "", file)
         if chosen is not None and file is None:
-            fix = "Add a line for the log, or a last one for '*'."
+            fix = "Add a line for the log, or a last line for all other logs ('*')."
             problem = Problem("no_aircraft", f"{log} matches no pattern in {map_file}.", fix)
             results[log] = failed(task, [problem])
             continue
@@ -124,7 +124,7 @@ def _tasks(
 
 
 def _analyzed(tasks: "Sequence[BatchTask]", out: Path, run: "Run") -> "dict[Path, Analyzed]":
-    """Return the result of every task: kept from an earlier run, or made now and kept."""
+    """Return the result of every task. A result of an earlier run is read, and a new result is kept."""
     from advisor.batch.flight import failed, keep, kept
     from advisor.batch.tables import is_whole
 
@@ -153,7 +153,8 @@ def _fault(task: "BatchTask", error: Exception) -> Problem:
     if isinstance(error, BrokenExecutor):
         return Problem(
             "worker_died",
-            f"The process that analyzed {task.log} was ended every time, as for want of memory.",
+            f"The process that analyzed {task.log} ended early every time, possibly because memory was "
+            f"short.",
             "Repeat with fewer --workers, or analyze the log alone.",
         )
     return Problem(

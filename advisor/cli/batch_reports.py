@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     Run = Callable[[Sequence[BatchTask]], Iterator[tuple[BatchTask, str | Exception]]]
 
 REPORTS = "reports"
-"""Folder of the pages, by the key of the log's result: a page is written anew when the result changes."""
+"""Name of the folder for the pages. The key of a log's result names its page, so that a new result gets a new
+page.
+"""
 
 
 def page_of(task: "BatchTask") -> str:

@@ -17,7 +17,7 @@ MEANING = {
     "separate": "the paper's rule of separate computation, Eqs. (11) and (12)",
     "information": "the rule for real flights, which judges the model's prediction",
 }
-"""Rule to its meaning, for the first line and the title."""
+"""Meaning of each rule, for the first line and the title."""
 
 
 @click.command
@@ -37,14 +37,19 @@ MEANING = {
 @click.option(
     "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the instruments' noise."
 )
-@click.option("--record", "record_to", type=click.Path(path_type=Path), help="File for a tlog of the link.")
+@click.option(
+    "--record",
+    "record_to",
+    type=click.Path(path_type=Path),
+    help="File for the recording of the link (tlog).",
+)
 @aircraft_option
 @click.option(
     "--rule",
     type=click.Choice(RULES),
     default="continuous",
     show_default=True,
-    help="Rule that decides; the others are shown. continuous and separate are the paper's.",
+    help="Rule that decides; the other rules are shown. The paper's rules are continuous and separate.",
 )
 def command(
     flown: str, speed: float | None, seed: int, record_to: Path | None, aircraft_file: Path | None, rule: Rule

@@ -84,7 +84,7 @@ def command(asked: LogsAsked, target: str, seconds: float, request_rates: bool, 
 
 
 def _is_log(target: str) -> bool:
-    """Return whether the target can only be a file: neither a network address nor a device."""
+    """Return whether the target must be a file, because it is neither a network address nor a device."""
     from advisor.mavlink.logs.formats import ENDINGS
 
     if Path(target).is_file() or target.lower().endswith(ENDINGS):

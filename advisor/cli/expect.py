@@ -1,4 +1,4 @@
-"""``advisor expect``: a flight as a test."""
+"""``advisor expect``: compare a flight with a file of expectations."""
 
 import json
 from dataclasses import replace
@@ -28,14 +28,16 @@ if TYPE_CHECKING:
     "--junit", type=click.Path(path_type=Path), metavar="XML", help="File for the report as JUnit XML."
 )
 @click.option(
-    "--write", is_flag=True, help="Write FILE from LOG: what this flight shows, with tolerances for the next."
+    "--write",
+    is_flag=True,
+    help="Write the results of LOG as expectations into FILE, with tolerances for the next flight.",
 )
 @json_option
 def command(asked: LogsAsked, log: Path, file: Path, junit: Path | None, write: bool, as_json: bool) -> int:
     """Test a flight: compare LOG with the expectations in FILE (YAML).
 
     FILE asks for accepted manoeuvres, completion, derivatives, modes, levels, gap, pauses and alarms. The
-    exit code is 1 where an expectation does not hold.
+    exit code is 1 if an expectation does not hold.
 
     \b
     Example:
@@ -76,7 +78,7 @@ def command(asked: LogsAsked, log: Path, file: Path, junit: Path | None, write: 
 
 
 def _refuse(asked: LogsAsked, log: Path, file: Path, junit: Path | None, write: bool, as_json: bool) -> None:
-    """Refuse, before any work, orders that would fail after it."""
+    """Refuse, before any work, options that would fail after the work."""
     if write and (junit is not None or as_json):
         raise ConfigurationError(
             "--write checks nothing: leave out --junit and --json, or leave out --write."

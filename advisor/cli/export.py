@@ -39,7 +39,8 @@ from advisor.words.problems import ConfigurationError
 def command(asked: LogsAsked, out: Path, formats: str | None, cut: int | None) -> int:
     """Write channels, manoeuvres, estimates and residuals for other tools, with names and units.
 
-    The numbers are those of `advisor analyze`. The page of exports lists files, units and grid.
+    The numbers are those of `advisor analyze`. The documentation's page on exports lists the files, units and
+    the time grid.
 
     \b
     Example:

@@ -1,4 +1,6 @@
-"""Start of a flight test on a live link: anew, from a recording, or on a link that still runs."""
+"""Start of a flight test on a live link. The test is new, continues a recording, or takes over a running
+link.
+"""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -18,15 +20,15 @@ from advisor.words.problems import ConfigurationError
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Connection, recording and earlier flights with which a flight test begins."""
+    """Connection, recording and earlier flights at the start of a flight test."""
 
     campaign: CampaignFile
     recording: Path | None
-    """File of the recording. None: nothing is recorded."""
+    """File of the recording; None if nothing is recorded."""
     goes_on: bool = False
     """Whether the recording exists and is appended to."""
     earlier: tuple[Path, ...] = ()
-    """Logs of earlier flights of the campaign, only read."""
+    """Logs of earlier flights of the campaign, which are only read."""
 
 
 def start_of(
@@ -41,13 +43,14 @@ def start_of(
     Parameters
     ----------
     asked
-        Options of the command line. An empty ``master`` and None stand for options not given.
+        Options of the command line. An empty ``master`` or None means that the option is not given.
     resume
-        Recording whose flight test continues, or ``NEWEST``. None: a new flight test.
+        Recording whose flight test continues, or ``NEWEST``; None for a new flight test.
     further
-        Recordings that the flight test of ``resume`` made after its first one.
+        Recordings of the same flight test after the recording ``resume``.
     record_to
-        File or folder of the recording. None: the user's own folder, or the flight test's last recording.
+        File or folder of the recording. With None, the user's own folder or the flight test's last recording
+        is used.
 
     Raises
     ------
@@ -75,7 +78,7 @@ def start_of(
     campaign = _over(asked, before)
     if not campaign.master:
         raise ConfigurationError(
-            f"--resume: nothing next to {logs[-1]} says where the vehicle is heard; give --master."
+            f"--resume: no file of options next to {logs[-1]} says where the vehicle is heard; give --master."
         )
     if place is not None:
         return Start(campaign, place, earlier=tuple(_in_order(logs)))
@@ -89,7 +92,7 @@ def started(start: Start, keeping: Keeping) -> Iterator[LinkProcess]:
     Raises
     ------
     UnusableInputError
-        The connection cannot be opened, or the recording cannot be made or taken up.
+        The connection cannot be opened, or the recording cannot be written or continued.
     """
     running = _left_alone(start)
     if running is not None:
@@ -101,14 +104,14 @@ def started(start: Start, keeping: Keeping) -> Iterator[LinkProcess]:
 
 
 def _left_alone(start: Start) -> RunningLink | None:
-    """Return the link that still records for this flight test; end another test's link."""
+    """Return the link that still records this flight test. End a running link of another flight test."""
     mine = None
     for running in running_alone():
         if start.goes_on and running.recording and _same(running.recording, start.recording):
             mine = running
         elif running.master == start.campaign.master:
             end(running)
-            said = f"{running.master} was still open after an advisor that crashed; it is closed"
+            said = f"{running.master} was still open from an advisor that crashed. This link is now closed"
             again = f"; --resume {running.recording} continues its flight test" if running.recording else ""
             click.echo(said + again, err=True)
     return mine
@@ -125,7 +128,7 @@ def _same(a: Path, b: Path | None) -> bool:
 
 
 def _over(asked: CampaignFile, before: CampaignFile | None) -> CampaignFile:
-    """Return the options asked for, completed by the earlier ones."""
+    """Return the given options; an option that is not given takes its earlier value."""
     if before is None:
         return asked
     return CampaignFile(
@@ -137,7 +140,7 @@ def _over(asked: CampaignFile, before: CampaignFile | None) -> CampaignFile:
 
 
 def _in_folder(place: str | None) -> Path | None:
-    """Return the file of the recording. In a folder, the file is named by the time."""
+    """Return the file of the recording. In a folder, the file's name is the time."""
     if place is None:
         return None
     is_folder = Path(place).is_dir() or place.endswith(("/", "\\"))

@@ -53,7 +53,7 @@ def plan_options(hidden: bool = False) -> Callable[[F], F]:
 def command(
     aircraft_file: Path | None, plan: str, rate_hz: float, amplitude_deg: float, without: str, as_json: bool
 ) -> int:
-    """Say what a planned flight would show: the smallest size of each effect that it tells.
+    """Print the smallest size of each effect that a planned flight would detect.
 
     \b
     Example:

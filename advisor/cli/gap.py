@@ -44,7 +44,8 @@ _LATERAL = (
 @click.option(
     "--holdout",
     type=click.IntRange(1),
-    help="Number of last manoeuvres to hold out: the gap is measured there, and the fit uses the others.",
+    help="Number of last manoeuvres to hold out. The gap is measured in them, and the fit uses the other "
+    "manoeuvres.",
 )
 @click.option(
     "--simulator",
@@ -55,7 +56,7 @@ _LATERAL = (
 @click.option(
     "--out",
     type=click.Path(path_type=Path),
-    help="File for the improved simulator; without it none is written.",
+    help="File for the improved simulator. Without this option none is written.",
 )
 @click.option(
     "--figure",
@@ -66,7 +67,7 @@ _LATERAL = (
 @click.option(
     "--axis",
     type=click.Choice(["pitch", "lateral", "both"]),
-    help="Axis that is diagnosed. Default: what was flown, pitch or roll and yaw or both.",
+    help="Axis to diagnose. Default: the axes that were flown.",
 )
 @click.option(
     "--all",
@@ -75,11 +76,15 @@ _LATERAL = (
     help="Print also the gap in time and by channel, the notes, and what the flight could not show.",
 )
 @prove_option
-@click.option("--why", is_flag=True, help="Print what speaks for the answer, and every decision on the way.")
+@click.option(
+    "--why",
+    is_flag=True,
+    help="Print the evidence for the answer, and the statistics of the decision with their limits.",
+)
 @click.option(
     "--prior",
     metavar="SHARES",
-    help="How often each answer is right before the flight: none=40,parameters=20,effect=30,unknown=10.",
+    help="Prior probability of each kind of answer: none=40,parameters=20,effect=30,unknown=10.",
 )
 @click.option("--foresee", is_flag=True, hidden=True, help="The command advisor foresee.")
 @plan_options(hidden=True)
@@ -103,7 +108,8 @@ def command(
     without: str,
     as_json: bool,
 ) -> int:
-    """Diagnose the sim-to-real gap: where it lies, which effect causes it, how far it shrinks.
+    """Diagnose the sim-to-real gap: its place, the effect that causes it, and how much a correction reduces
+    it.
 
     \b
     Example:
@@ -170,7 +176,9 @@ def command(
 
 
 def _axis_flown(asked: LogsAsked, aircraft: "Aircraft", by_hand: "Sequence[ByHand]") -> "AxisFlown":
-    """Return the axes to diagnose, said where pitch is none, with what was read."""
+    """Return the axes to diagnose and the campaign read from the logs. Say so if only roll and yaw are
+    diagnosed.
+    """
     from advisor.analysis.axes.side_comparison import axis_flown
 
     with Stages() as tell:
@@ -189,8 +197,8 @@ def _refuse_out(out: Path, aircraft_file: Path | None) -> None:
 
 
 def _refuse_foreign(foreign: Mapping[str, str], where: str) -> None:
-    """Refuse options of another mode of the command, which would be ignored without a word."""
+    """Refuse options of another mode of the command, instead of ignoring them."""
     given = click.get_current_context().get_parameter_source
     for name, option in foreign.items():
         if given(name) is ParameterSource.COMMANDLINE:
-            raise ConfigurationError(f"{option} has a meaning {where} only: leave it out.")
+            raise ConfigurationError(f"{option} applies only {where}: leave it out.")

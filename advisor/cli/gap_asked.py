@@ -1,4 +1,4 @@
-"""Options of ``advisor gap`` for one axis, and the parts of an answer that all axes share."""
+"""Options of ``advisor gap``, and the parts of an answer that all axes share."""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -61,7 +61,7 @@ class GapAsked:
     as_json: bool
 
     def attempted(self, part: str, compare: Callable[[], Found]) -> Found | Unanswered:
-        """Return a comparison, or the reason for none."""
+        """Return a comparison, or the reason why there is none."""
         try:
             found = attempt(part, compare)
         except UnusableInputError as error:
@@ -71,7 +71,7 @@ class GapAsked:
         return found
 
     def refused(self, *reasons: Unanswered) -> int:
-        """Print the reasons for no answer, and return the exit code of the first."""
+        """Print why axes have no answer, and return the exit code of the first reason."""
         if self.as_json:
             problems = [one for reason in reasons for one in reason.document["problems"]]
             click.echo(json.dumps({**reasons[0].document, "problems": problems}, indent=1))
@@ -80,7 +80,9 @@ class GapAsked:
         return reasons[0].code
 
     def answered(self, *answers: AxisAnswer) -> int:
-        """Print the answers of every axis, the document as the first axis has it, and return the code."""
+        """Print the answer of every axis, and return the largest exit code. The JSON document is that of the
+        first axis.
+        """
         if self.as_json:
             click.echo(json.dumps(answers[0].document, allow_nan=False, indent=1))
         else:
@@ -89,11 +91,16 @@ class GapAsked:
         return max(answer.code for answer in answers)
 
     def improved(self, improves: bool, make: Callable[[], FlownModel]) -> Path | None:
-        """Write the improved aircraft file that was asked for, or say why not; return the written file."""
+        """Write the improved aircraft file if the user asked for one, or print why not. Return the written
+        file.
+        """
         if self.out is None:
             return None
         if not improves:
-            click.echo(f"{printable(str(self.out))} was not written: there is nothing to improve.", err=True)
+            click.echo(
+                f"{printable(str(self.out))} was not written: there is nothing to improve.",
+                err=True,
+            )
             return None
         with writing("--out", self.out):
             write_file(make(), self.out)

@@ -29,8 +29,8 @@ COMMANDS = {
     "serve": "Show the screens of live and replay in a browser, for several viewers.",
     "analyze": "Print every manoeuvre's verdict, the estimates, and stop or continue.",
     "gap": "Diagnose why the real aircraft does not fly like the simulator.",
-    "foresee": "Say what a planned flight would show of each effect, before it is flown.",
-    "simulator": "Check your own simulator: signs, units, trim, and what it answers.",
+    "foresee": "Print which effects a planned flight would detect, and at what size.",
+    "simulator": "Check your own simulator: signs, units, trim and responses.",
     "export": "Write channels, manoeuvres, estimates and residuals for other tools.",
     "batch": "Analyze many logs: one table of flights, one of manoeuvres, changes over time.",
     "expect": "Test a flight: compare a log with a file of expectations, for continuous integration.",
@@ -39,19 +39,22 @@ COMMANDS = {
     "study": "Repeat the paper's simulated campaign: Table 1, Figure 5, Monte-Carlo.",
     "mcp": "Let an assistant read logs: doctor, analyze, gap and report as tools.",
     "script": "Write the test inputs as a script that the autopilot flies.",
-    "aircraft": "Write an aircraft file, or say what one lacks and what that costs.",
+    "aircraft": "Write an aircraft file, or list its missing keys with their cost.",
     "sample": "Put a sample flight and its aircraft file into this folder.",
     "locate": "Print where settings and recordings are kept.",
-    "completion": "Print what makes a shell complete the advisor's commands.",
+    "completion": "Print the script that lets a shell complete the advisor's commands.",
 }
-"""Command name to its line in ``advisor --help``. The lines stand here, so that the help imports no
-command."""
+"""Line in ``advisor --help`` of each command. The lines stand in this module, so that the help imports no
+command.
+"""
 
 
 COMPLETION_VARIABLE = "_ADVISOR_COMPLETE"
-"""Environment variable by which a shell asks for completions."""
+"""Environment variable with which a shell requests completions."""
 WITHOUT_KERNELS = frozenset({"locate", "sample", "aircraft", "completion", "mcp"})
-"""Commands that need no compiled code, or only sometimes: the first run does not compile for them."""
+"""Commands that need no compiled code, or need it seldom. The first run of such a command
+compiles nothing.
+"""
 
 
 class LazyCommands(click.Group):
@@ -68,7 +71,8 @@ class LazyCommands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Return the command that the first word names; refuse another word with a guess.
+        """Return the command that the first word names. An unknown word raises an error that suggests a
+        command.
 
         Raises
         ------
@@ -96,7 +100,7 @@ class LazyCommands(click.Group):
 
 @cache
 def _command(name: str) -> click.Command:
-    """Import a command. One that calls compiled code compiles it first, on the first run."""
+    """Import a command. On the first run, a command that calls compiled code compiles that code first."""
     command = import_module(f"advisor.cli.{name}").command
     assert isinstance(command, click.Command)
     if name not in WITHOUT_KERNELS:
@@ -155,7 +159,7 @@ def main() -> None:
 
 
 def _run() -> int:
-    """Call the command that the user names. Raise every message or exit that click would handle itself."""
+    """Call the command that the user names. Messages and exits that click would handle are raised."""
     if asked := os.environ.get(COMPLETION_VARIABLE):
         return shell_complete(advisor, {}, "advisor", COMPLETION_VARIABLE, asked)
     words = sys.argv[1:]
@@ -168,7 +172,7 @@ def _run() -> int:
 
 
 def _ended_by(run: Callable[[], int]) -> int:
-    """Return the exit code of ``run``. Print the error that ended it, if any."""
+    """Return the exit code of ``run``. Print the error that ended ``run``, if any."""
     try:
         return run()
     except click.exceptions.Exit as end:
@@ -195,8 +199,8 @@ def _ended_by(run: Callable[[], int]) -> int:
     except OSError as error:
         where = f" ({printable(os.fsdecode(error.filename))})" if error.filename else ""
         _tell(
-            f"The system refused: {error.strerror or error}{where}. Make room or give another place, "
-            "and repeat."
+            f"The system refused: {error.strerror or error}{where}. Make room or give another place, then "
+            f"repeat the command."
         )
         return USAGE
     except Exception as error:
@@ -216,7 +220,7 @@ def _tell(sentence: str) -> None:
 
 
 def _let_go(stream: TextIO) -> None:
-    """Flush a stream. Drop text that nobody can take, so that Python's shutdown does not fail."""
+    """Flush a stream. Drop text that no reader takes any more, so that Python's shutdown does not fail."""
     try:
         stream.flush()
     except OSError:

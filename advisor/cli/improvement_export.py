@@ -34,7 +34,7 @@ def orders_of(
     Parameters
     ----------
     inputs
-        Files that the command reads, or that another option writes. No order may name one of them.
+        Files that the command reads, or that another option writes; no order may name such a file.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def orders_of(
         for file in order.files:
             if file.resolve() in taken:
                 raise ConfigurationError(
-                    f"--export: {file} is read or written by this call already; name another file."
+                    f"--export: {file} is already read or written by this command; name another file."
                 )
             taken.add(file.resolve())
         orders.append(order)

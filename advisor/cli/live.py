@@ -87,9 +87,9 @@ def command(
 ) -> None:
     """Advise during a flight. Nothing is sent to the vehicle unless an option here asks for it.
 
-    The link and its recording run in a separate process. If this program ends unasked, that process goes on
-    recording, and --resume continues the flight test. Without a terminal, or with HEADLESS=1, the verdicts
-    come as text.
+    The link and its recording run in a separate process. If the advisor ends unexpectedly, the recording
+    continues in that process, and --resume continues the flight test. Without a terminal, or with HEADLESS=1,
+    the verdicts come as text.
 
     \b
     Example:
@@ -148,14 +148,14 @@ def command(
 
 
 def _without_resume(given: str) -> str:
-    """Return the sentence on an argument that is a connection without its option, or a log."""
+    """Return the error for an argument: a connection without its option, or a log without --resume."""
     from advisor.mavlink.link.connection import parse_connection
 
     try:
         parse_connection(given)
     except ConfigurationError:
         return "LOG needs --resume, which continues the flight test of these logs."
-    return f"A connection is named by an option: advisor live --master {given}"
+    return f"Name the connection by its option: advisor live --master {given}"
 
 
 def _recorded(recordings: Sequence[Path]) -> str:
@@ -171,7 +171,7 @@ def _page(logs: Sequence[Path], aircraft_file: Path | None) -> str:
 
 
 def _ended(recordings: Sequence[Path]) -> str:
-    """Return the sentence for the crew when a signal ends the command."""
+    """Return the sentence that the crew reads when a signal ends the command."""
     return f"Stopped; the recording is {printable(str(recordings[0]))}." if recordings else STOPPED
 
 

@@ -8,7 +8,7 @@ PLACES = ("config", "recordings")
 @click.command
 @click.argument("what", type=click.Choice(PLACES), default="config")
 def command(what: str) -> None:
-    """Print the path of the settings (config) or of the recordings of live links (recordings).
+    """Print the path of the settings file (config), or of the folder of live links' recordings (recordings).
 
     The settings file need not exist. Every key in the file is optional: theme, screen, keys.
 

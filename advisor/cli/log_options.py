@@ -1,4 +1,4 @@
-"""The logs of a command and the options that say how to read them, once for every command."""
+"""The logs of a command, and the options that say how to read the logs. All commands share this module."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -28,7 +28,7 @@ _OPTIONS = {
     "rule": rule_option, "marks": maneuver_option, "no_marks": no_marks_option, "fixes": fix_option,
     "terms": term_option,
 }  # fmt: skip
-"""Name of an option that not every command has, to what adds it."""
+"""Decorator that adds each option that only some commands have, by the option's name."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,8 @@
-"""A campaign without a screen: estimated in a separate process, and printed line by line.
+"""A campaign without a screen: a separate process estimates, and this process prints lines.
 
     python -m advisor.cli.narrator
 
-When the estimating process dies, the next one reads the source from its beginning and comes to equal lines.
+If the estimating process dies, the next process reads the source from its beginning and makes equal lines.
 Lines that were printed before are not printed again.
 """
 
@@ -47,12 +47,12 @@ def narrate(task: ConductorTask, say: Callable[[str], object], warn: Callable[[s
     Parameters
     ----------
     task
-        Campaign and source; the source can be read from its beginning again.
+        Campaign and source. The source must be readable again from its beginning.
 
     Raises
     ------
     UnusableInputError
-        The source can never serve, or has ended without anything to judge.
+        The source can never be used, or has ended without a manoeuvre to judge.
     """
     said: Counter[str] = Counter()
     deaths = hangs = 0
@@ -77,7 +77,7 @@ class Backlog:
         """Host time of the newest record that was given to the campaign, seconds since 1970."""
 
     def hear_link(self, link: LinkStatistics) -> None:
-        """Take the health of the link, told by its process."""
+        """Receive the health of the link from the link's process."""
         if sentence := self._teller.hear(backlog_s(link, self.read_to_s)):
             self._warn(f"{sentence}: the newest line above is that old" if "behind" in sentence else sentence)
             if self.observer is not None:
@@ -98,7 +98,7 @@ def _narrate_once(
 
     def grow_old(age_s: float) -> None:
         if not old:
-            warn(f"ESTIMATOR NOT ANSWERING for {age_s:.0f} s: what stands above is old")
+            warn(f"ESTIMATOR NOT ANSWERING for {age_s:.0f} s: the lines above are old")
         old.append(age_s)
 
     with (
@@ -145,12 +145,13 @@ def narrate_here(
     Parameters
     ----------
     beat
-        Called after each wait for data, at most every ``BEAT_S``. None: a backlog is printed here.
+        Function that is called after each wait for data, at most every ``BEAT_S``. With None, a backlog is
+        printed.
 
     Raises
     ------
     UnusableInputError
-        The source can never be used, or has ended without anything to judge.
+        The source can never be used, or has ended without a manoeuvre to judge.
     """
     from advisor.report.follow import follow
     from advisor.session.replay import LogPlayer
@@ -163,7 +164,7 @@ def narrate_here(
 
 
 def _printing_backlog() -> Callable[[Beat], None]:
-    """Return a function that hears the state of the link and prints a backlog on standard error."""
+    """Return a function that receives the state of the link and prints a backlog on standard error."""
     teller = BehindTeller()
 
     def listen(beat: Beat) -> None:
@@ -186,7 +187,7 @@ def _batches(source: Source, beat: Callable[[Beat], object]) -> Iterator[Sequenc
 
 
 def _end_with(requests: IO[bytes]) -> None:
-    """End the work when the other process is gone, for then nobody reads the estimates."""
+    """End the work when the other process has ended, because nobody reads the estimates any more."""
     requests.read()
     os._exit(0)
 

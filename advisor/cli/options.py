@@ -1,4 +1,4 @@
-"""Options that commands share, so that they read and behave alike in every command."""
+"""Options that several commands share, with one text and one behaviour in all commands."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from advisor.flight.maneuvers.marks import Mark
 
 UNMET, USAGE, UNUSABLE, INTERNAL = 1, 2, 3, 70
-"""Exit codes: an expectation that does not hold; wrong usage or configuration; unusable input; a fault of the
-advisor itself."""
+"""Exit codes for an expectation that does not hold, wrong usage or configuration, unusable input, and a fault
+of the advisor.
+"""
 NEWEST = "the newest"
 """Value of ``--resume`` without a recording."""
 RULES = ("continuous", "separate", "information")
@@ -46,7 +47,7 @@ target_system_option = click.option(
     "--target-system",
     type=click.IntRange(1, 255),
     metavar="N",
-    help="System id of the vehicle, where several are on the link.",
+    help="System id of the vehicle, needed if several vehicles are on the link.",
 )
 """Adds the option ``--target-system N``, named as in MAVProxy."""
 maneuver_option = click.option(
@@ -55,8 +56,8 @@ maneuver_option = click.option(
     multiple=True,
     metavar="START:END",
     callback=lambda ctx, parameter, texts: parse_marks(texts),
-    help="Mark this stretch as a manoeuvre: seconds since power-on, or with + since the log's first "
-    "ATTITUDE (+12:+24). Minutes and seconds are understood too (1:20.4:1:33). Repeatable.",
+    help="Mark this stretch as a manoeuvre, in seconds since power-on, or with + since the log's first "
+    "ATTITUDE (+12:+24). Minutes and seconds are valid too (1:20.4:1:33). Repeatable.",
 )
 """Adds the option ``--maneuver START:END``, which the command receives as ``marks``."""
 no_marks_option = click.option(
@@ -69,8 +70,8 @@ fix_option = click.option(
     "fixes",
     multiple=True,
     metavar="NAME[=VALUE]",
-    help="Hold a parameter, such as M_q=-2.0, instead of estimating it. Without a value: at the aircraft "
-    "file's model. Repeatable.",
+    help="Hold a parameter, such as M_q=-2.0, instead of estimating it. Without a value, the aircraft "
+    "file's model gives the value. Repeatable.",
 )
 """Adds the option ``--fix NAME[=VALUE]``, which the command receives as ``fixes``."""
 term_option = click.option(
@@ -78,8 +79,9 @@ term_option = click.option(
     "terms",
     multiple=True,
     metavar="EQUATION:EXPRESSION",
-    help="Estimate one more term, such as M:q*abs(q), Z:alpha**2 or L:beta**3, and tell what it gains. "
-    "Angles of attack and pitch, controls and thrust count from their mean. Repeatable.",
+    help="Estimate one more term, such as M:q*abs(q), Z:alpha**2 or L:beta**3, and print its gain in log "
+    "likelihood. "
+    "Angle of attack, pitch angle, controls and thrust are measured from their means. Repeatable.",
 )
 """Adds the option ``--term EQUATION:EXPRESSION``, which the command receives as ``terms``."""
 
@@ -90,7 +92,7 @@ def parse_marks(texts: Sequence[str]) -> "tuple[Mark, ...]":
     Raises
     ------
     ConfigurationError
-        As :func:`parse_mark`, and where two stretches share time.
+        A stretch is wrong, as in :func:`parse_mark`, or two stretches overlap.
     """
     marks = tuple(map(parse_mark, texts))
     for a, b in combinations(marks, 2):
@@ -105,7 +107,7 @@ def parse_mark(text: str) -> "Mark":
     Raises
     ------
     ConfigurationError
-        The text is no stretch of time that can be a manoeuvre.
+        The text is not a stretch of time, or the stretch is too long for a manoeuvre.
     """
     from advisor.flight.maneuvers.marks import LONGEST_S, Mark
 
@@ -116,11 +118,11 @@ def parse_mark(text: str) -> "Mark":
     if not (isfinite(start_s) and isfinite(end_s) and start_s >= 0.0 and relative[0] == relative[1]):
         raise ConfigurationError(
             f"--maneuver {text}: give START:END in seconds since power-on, or both with + from the start "
-            "of the log, e.g. --maneuver +12:+24; minutes:seconds are understood too, e.g. --maneuver "
+            "of the log, e.g. --maneuver +12:+24; minutes:seconds are valid too, e.g. --maneuver "
             "1:20.4:1:33."
         )
     if end_s <= start_s:
-        raise ConfigurationError(f"--maneuver {text}: END must lie after START; exchange or correct them.")
+        raise ConfigurationError(f"--maneuver {text}: END must be later than START; correct the two times.")
     if end_s - start_s > LONGEST_S:
         raise ConfigurationError(
             f"--maneuver {text}: a manoeuvre lasts {LONGEST_S:.0f} s at most; mark each input separately."
@@ -129,7 +131,9 @@ def parse_mark(text: str) -> "Mark":
 
 
 def _seconds(parts: Sequence[str]) -> float:
-    """Read seconds, ``["80.4"]``, or minutes and seconds, ``["1", "20.4"]``; NaN where it is no time."""
+    """Read seconds, ``["80.4"]``, or minutes and seconds, ``["1", "20.4"]``; return NaN for any
+    other text.
+    """
     try:
         *minutes, seconds = map(float, parts)
     except ValueError:
@@ -187,7 +191,7 @@ def read_aircraft(aircraft_file: Path | None, rule: Rule | None = None) -> Aircr
 
 
 def refuse_unwritable(option: str, path: Path) -> None:
-    """Refuse, before any work, a path that could not be written after it.
+    """Refuse, before any work, a path that could not be written after the work.
 
     Raises
     ------
@@ -205,12 +209,12 @@ def refuse_unwritable(option: str, path: Path) -> None:
 
 
 def refuse_unwritable_folder(option: str, folder: Path) -> None:
-    """Refuse before the work a folder that is none, and one that could not be made or written to.
+    """Refuse, before any work, a path that is no folder, or a folder that could not be made or written to.
 
     Raises
     ------
     ConfigurationError
-        The path is a file, lies below one, or may not be written.
+        The path is a file, lies below a file, or may not be written.
     """
     if folder.exists() and not folder.is_dir():
         raise ConfigurationError(f"{option}: {folder} is a file; name a folder.")

@@ -1,4 +1,6 @@
-"""Content of the page of ``advisor report``: logs as one campaign, telemetry examined, gap diagnosed."""
+"""Content of the page of ``advisor report``: the campaign of all logs, the examined telemetry,
+and the gap.
+"""
 
 import platform
 import shlex
@@ -28,7 +30,7 @@ from advisor.words.printable import printable
 from advisor.words.problems import UnusableInputError
 
 _COUNTED = ("numpy", "scipy", "matplotlib", "jinja2", "pymavlink")
-"""Libraries that numbers and pictures depend on; the page lists their versions."""
+"""Libraries on which numbers and pictures depend. The page lists their versions."""
 
 
 def gather(
@@ -44,7 +46,7 @@ def gather(
     Parameters
     ----------
     command
-        Command line that repeats the page; None: the one that this process was started with.
+        Command line that repeats the page; None for the command line of this process.
 
     fields
         Fields that are asked for by name, by the path of the log.
@@ -102,7 +104,7 @@ def _examined(log: Path, aircraft: Aircraft, target_system: int | None) -> Docum
 
 
 def _gap(flights: WholeFlights, aircraft: Aircraft, asked: LogsAsked, tell: Progress) -> Document:
-    """Return the diagnosis of pitch; of roll and yaw where they alone have accepted manoeuvres."""
+    """Return the diagnosis of pitch, or of roll and yaw if only these have accepted manoeuvres."""
     if flights.state.lateral_alone is not None:
         return document_of(
             "lateral", lambda: compare_side_flown(flights.state, aircraft, progress=tell).diagnosis
@@ -114,7 +116,7 @@ def _gap(flights: WholeFlights, aircraft: Aircraft, asked: LogsAsked, tell: Prog
 
 
 def _date(log: Path) -> str:
-    """Return the date and time at which a log began; a sentence where the log has no date."""
+    """Return the date and time at which a log began, or a sentence if the log has no date."""
     at_s = began_s(log)
     if not SINCE_1970_S <= at_s < inf:
         return "no date in the log"

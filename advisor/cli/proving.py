@@ -20,7 +20,8 @@ prove_option = click.option(
     is_flag=False,
     flag_value="",
     metavar="[LOG]",
-    help="Fly the improved simulator on manoeuvres that no fit has used: those of LOG, else the last third.",
+    help="Fly the improved simulator on manoeuvres that no fit has used. These are the manoeuvres of LOG, "
+    "else the last third.",
 )
 
 
@@ -34,18 +35,20 @@ def refuse_proving(proving: Sequence[str]) -> None:
     """
     missing = next((log for log in proving if log and not Path(log).is_file()), None)
     if missing is not None:
-        raise ConfigurationError(f"--prove: there is no log {missing}; name another one, or none.")
+        raise ConfigurationError(f"--prove: cannot find the log {missing}; name another one, or none.")
 
 
 def proof_of(
     proving: Sequence[str], prove: "Callable[[list[Path], Callable[[str, float], None]], Proof]"
 ) -> "Proof | None":
-    """Return the proof that was asked for; None where none was, or nothing can be proved, which is said.
+    """Return the proof; None if the user asked for none, or if nothing can be proved, whose reason is
+    printed.
 
     Parameters
     ----------
     prove
-        Proves on named logs, none for the last third of the flight, and tells its progress.
+        Function that proves on the given logs, or without logs on the last third of the flight. It reports
+        its progress.
     """
     if not proving:
         return None

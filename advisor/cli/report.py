@@ -22,14 +22,14 @@ _NEEDED = ("jinja2", "matplotlib")
     "--format",
     "form",
     type=click.Choice(["html", "md"]),
-    help="Format of the page. Default: md where the file ends in .md, else html.",
+    help="Format of the page. Default: md if the file ends in .md, else html.",
 )
 @click.option(
     "--field",
     "names",
     multiple=True,
     metavar="MESSAGE.FIELD[+...]",
-    help="Draw a field of the log, or a sum such as RCOU.C1+RCOU.C3. Several share one chart. Repeatable.",
+    help="Draw a field of the log, or a sum such as RCOU.C1+RCOU.C3. All fields share one chart. Repeatable.",
 )
 @click.option("--gap", "with_gap", is_flag=True, help="Diagnose the sim-to-real gap as well.")
 def command(asked: LogsAsked, out: Path, form: str | None, names: tuple[str, ...], with_gap: bool) -> int:
@@ -66,7 +66,7 @@ def command(asked: LogsAsked, out: Path, form: str | None, names: tuple[str, ...
 
 
 def _refuse(inputs: Sequence[Path], out: Path) -> None:
-    """Refuse, before any work, orders that would fail after it."""
+    """Refuse, before any work, options that would fail after the work."""
     refuse_missing_libraries("advisor report")
     refuse_unwritable("-o", out)
     for given in inputs:

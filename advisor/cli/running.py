@@ -1,4 +1,4 @@
-"""``--workers`` and ``--scheduler``: the place where tasks are done, and their progress."""
+"""``--workers`` and ``--scheduler``, which choose where tasks run, and the progress of the tasks."""
 
 import os
 import sys
@@ -33,12 +33,12 @@ def running_options(command: F) -> F:
 
 
 def runner_of(workers: int | None, scheduler: str | None, guarded: bool = True) -> "Runner":
-    """Return the way to do tasks that the options ask for.
+    """Return the function that runs tasks as the options say.
 
     Parameters
     ----------
     guarded
-        Whether a single worker also gets a process of its own, so that its death costs its task only.
+        Whether a single worker also gets its own process, so that its death loses only one task.
 
     Raises
     ------

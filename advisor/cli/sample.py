@@ -15,8 +15,8 @@ from advisor.words.problems import ConfigurationError
 def command(folder: Path) -> None:
     """Write a sample flight and its aircraft file into FOLDER, by default the current one.
 
-    The flight holds seven elevator 3-2-1-1 of an ArduPlane in calm air. A second log has streams that are
-    too slow, and doctor says so. Files of these names are kept.
+    The flight holds seven elevator 3-2-1-1 of an ArduPlane in calm air. A second log has streams that are too
+    slow, which doctor reports. Files that exist already are kept.
 
     \b
     Example:

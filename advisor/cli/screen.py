@@ -1,4 +1,4 @@
-"""Run of a campaign on screens, or as lines of text where there is no screen."""
+"""Run a campaign on screens, or as lines of text without a screen."""
 
 import os
 import sys
@@ -28,9 +28,11 @@ if TYPE_CHECKING:
 
 Listener = Callable[[object], object]
 _HANGS = 4
-"""Columns by which the second row of a wrapped line lies behind the first."""
+"""Indentation, in columns, of the second row of a wrapped line."""
 Show = Callable[["ConductorTask", Aircraft, str, Tempo | None], object]
-"""Shows the campaign of a task until it is left: aircraft, title, and how a replay starts."""
+"""Function that shows the campaign of a task until the user leaves. It receives the aircraft, the title, and
+the tempo of a replay.
+"""
 
 
 def headless() -> bool:
@@ -60,28 +62,30 @@ def advise(
     aircraft_file: "Path | None" = None,
     door: "Door | None" = None,
 ) -> None:
-    """Run a campaign on a source: on screens, as lines of text, or as ``show`` does.
+    """Run a campaign on a source, on screens, as lines of text, or with ``show``.
 
     Parameters
     ----------
     open_source
-        Makes the source in the estimating process. Both ``open_source`` and ``tell`` must be picklable.
+        Function that opens the source in the estimating process. Both ``open_source`` and ``tell`` must be
+        picklable.
     tell
-        Called with every event of the campaign, in the estimating process.
+        Function that receives every event of the campaign, in the estimating process.
     tempo
-        Start settings of a replay. None: the source is no replay.
+        Start settings of a replay; None if the source is no replay.
     kept
         Reads the decisions by hand since the start, for a source that can be read again from its
         beginning. A picklable source survives the death of the estimating process.
     logs
-        Logs and recordings, flight by flight; panes are saved into the folder of theirs.
+        Logs and recordings of each flight. Panes are saved next to their log.
     show
-        Shows the campaign elsewhere; None: the terminal does, or lines of text come without a terminal.
+        Function that shows the campaign elsewhere. With None the terminal shows the campaign, or prints lines
+        of text.
 
     Raises
     ------
     UnusableInputError
-        The source can never serve, or has ended without anything to judge.
+        The source can never be used, or has ended without a manoeuvre to judge.
     """
     from advisor.campaign.hand_decisions import NOTHING
     from advisor.cli.narrator import narrate, narrate_here
@@ -102,7 +106,7 @@ def advise(
 
 
 def say(line: str) -> None:
-    """Print a line; on a terminal, wrap the line between words, as a terminal does not."""
+    """Print a line. A terminal would break the line inside words, so it is wrapped between words."""
     if sys.stdout.isatty():
         behind = " " * (len(line) - len(line.lstrip()) + _HANGS)
         line = fill(line, get_terminal_size().columns, subsequent_indent=behind, break_on_hyphens=False)
@@ -147,8 +151,9 @@ def _show(
 
 
 def so_far(state: "CampaignState") -> Iterator[str]:
-    """Yield each verdict of a flight test that was left, and stop or continue; nothing before the first
-    verdict of an axis."""
+    """Yield each verdict so far and stop or continue, after the user left. An axis without a verdict yields
+    nothing.
+    """
     from advisor.report.facts.decision import decisions
     from advisor.report.result_rows import SIDE_ROOM, maneuver_line
 

@@ -60,7 +60,7 @@ def _switch(_: click.Context, __: click.Parameter, channel: int) -> int:
     "period_s",
     type=click.FloatRange(0.2, 10.0),
     metavar="S",
-    help="Short period of the aircraft, s, in place of the file's model and the log's.",
+    help="Short period of the aircraft, s. This value replaces that of the file's model and of the log.",
 )
 @click.option(
     "--switch",
@@ -69,7 +69,8 @@ def _switch(_: click.Context, __: click.Parameter, channel: int) -> int:
     show_default=True,
     metavar="CHANNEL",
     callback=_switch,
-    help="Radio channel of the switch: above 1700 us the next input starts, below 1300 it ends at once.",
+    help="Radio channel of the switch. Above 1700 us the next input starts, and below 1300 us the input "
+    "ends at once.",
 )
 @click.option(
     "--inputs",
@@ -86,7 +87,7 @@ def _switch(_: click.Context, __: click.Parameter, channel: int) -> int:
     default=30.0,
     show_default=True,
     metavar="M",
-    help="Height above home below which no input is flown, m. 0: a script for the check on the ground.",
+    help="Height above home below which no input is flown, m. 0 makes a script for the check on the ground.",
 )
 @target_system_option
 @json_option
@@ -161,7 +162,7 @@ def _left_out(names: tuple[str, ...], table: "ScriptTable", source: "Source") ->
 
     absent = [control for control in CONTROLS if control not in source.controls]
     left_out = [name for name in names if name not in {entry.test.name for entry in table.entries}]
-    lacking = f"The log names no output of the {' and the '.join(absent)}"
+    lacking = f"The log states no output for the {' and the '.join(absent)}"
     keys = " and ".join(f"{control}.output" for control in absent)
     fix = f"Set SERVOn_FUNCTION, or give {keys} in the aircraft file."
     if not table.entries:

@@ -29,7 +29,7 @@ def command() -> None:
 
 
 def _web_options(command: F) -> F:
-    """Add the options of ``advisor.web.serving.place``: where pages are served, and to whom."""
+    """Add the options of ``advisor.web.serving.place``: the address of the pages, and who may open them."""
     for option in reversed(
         [
             click.option(
@@ -68,7 +68,9 @@ def _web_options(command: F) -> F:
 
 @command.command("live", params=list(live.command.params))
 @_web_options
-@click.option("--watch-only", is_flag=True, help="No page decides by hand or asks the link for anything.")
+@click.option(
+    "--watch-only", is_flag=True, help="Allow no page to decide by hand or to send requests on the link."
+)
 def on_link(
     host: str,
     port: int,
@@ -80,8 +82,9 @@ def on_link(
 ) -> None:
     """Advise on a live link, in browsers. All pages show one campaign on one link.
 
-    The link is opened once, however many pages there are, and is recorded as by advisor live. A mark or an
-    exclusion made on one page is seen on all. Closing a page ends nothing; Ctrl-C here ends everything.
+    The link is opened once for all pages, and is recorded as in advisor live. All pages show a mark or an
+    exclusion that is made on one page. Closing a page ends nothing. Ctrl-C on this terminal ends the
+    campaign.
 
     \b
     Example:
@@ -108,7 +111,7 @@ def of_logs(
 ) -> None:
     """Replay logs in browsers. Each page has a replay of its own, with its own pause, speed and marks.
 
-    A decision by hand holds until its page is closed. Nothing is written to the folder of the log.
+    A decision by hand is lost when its page is closed. Nothing is written to the folder of the log.
 
     \b
     Example:
@@ -123,7 +126,7 @@ def of_logs(
 
 
 def _refuse_unreadable(logs: Sequence[Path]) -> None:
-    """Refuse logs of which none can be read, before a page does."""
+    """Refuse the logs before a page opens if none of them can be read."""
     from advisor.analysis.log_series import LogSeries
     from advisor.words.problems import UnusableInputError
 

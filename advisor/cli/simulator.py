@@ -14,7 +14,7 @@ from advisor.words.problems import ConfigurationError, UnusableInputError
 
 @click.group
 def command() -> None:
-    """Check your own simulator: signs, units, trim, and what it answers.
+    """Check your own simulator: signs, units, trim and responses.
 
     \b
     Example:
@@ -27,10 +27,10 @@ def command() -> None:
 @command.command
 @click.argument("specification", metavar="SPEC")
 @click.option(
-    "--airspeed", type=click.FloatRange(min=1.0), help="True air speed, m/s; else the aircraft file's."
+    "--airspeed", type=click.FloatRange(min=1.0), help="True air speed, m/s. Default: the aircraft file's."
 )
 @click.option(
-    "--height", type=float, help="Height in the standard atmosphere, m; else the aircraft file's, or 0."
+    "--height", type=float, help="Height in the standard atmosphere, m. Default: the aircraft file's, or 0."
 )
 @aircraft_option
 @json_option
@@ -41,10 +41,10 @@ def check(
     aircraft_file: Path | None,
     as_json: bool,
 ) -> None:
-    """Load a simulator, trim it, step its elevator, and print what answers.
+    """Load a simulator, trim it, step its elevator, and print the responses.
 
-    The simulator flies 5 s at rest and one 3-2-1-1. A wrong sign or unit ends with exit code 3 and one
-    sentence, as it does in advisor gap.
+    The simulator flies 5 s at rest and one 3-2-1-1. A wrong sign or unit ends the command with exit code 3
+    and one sentence, as in advisor gap.
 
     \b
     Example:
@@ -78,9 +78,9 @@ def check(
 def fly(log: Path, master: str, target_system: int | None) -> None:
     """Replay the sticks of a flight into a simulation of ArduPilot or PX4, as an override of its receiver.
 
-    The log's RC_CHANNELS go out in their own time. Nothing is sent to a vehicle without a parameter that only
-    a simulation has. Fly the simulation straight and level in MANUAL first, and record it: its log then has
-    inputs of the flight's kind for --simulator log:FILE.
+    The log's RC_CHANNELS are sent at their recorded times. Nothing is sent to a vehicle without a parameter
+    that only a simulation has. First fly the simulation straight and level in MANUAL, and record it. The log
+    of the simulation then serves as --simulator log:FILE.
 
     \b
     Example:
@@ -102,7 +102,7 @@ def fly(log: Path, master: str, target_system: int | None) -> None:
         raise UnusableInputError(
             "no_simulation",
             f"The vehicle on {master} has no parameter of a simulation: nothing was sent.",
-            "Start ArduPilot's or PX4's simulation in the loop there.",
+            "Start ArduPilot's or PX4's software in the loop on this connection.",
         )
 
 

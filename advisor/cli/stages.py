@@ -1,4 +1,4 @@
-"""Progress of a command on the terminal: one line that the next stage replaces."""
+"""Progress of a command on the terminal, as one line that each stage replaces."""
 
 import sys
 import time
@@ -7,13 +7,13 @@ from collections.abc import Callable
 import click
 
 _TELLS = 0.1
-"""Least share of the work that is done before the time of its end is shown."""
+"""Fraction of the work after which the expected end is shown."""
 
 
 class Stages:
-    """Stages of a command's work on standard error, seen on a terminal only.
+    """Stages of a command's work, printed on standard error only on a terminal.
 
-    The line is erased when the context is left, so that the results stand alone.
+    Leaving the context erases the line, so that only results remain.
     """
 
     def __init__(self, clock: Callable[[], float] = time.time) -> None:
@@ -27,9 +27,9 @@ class Stages:
         self._write("")
 
     def __call__(self, what: str, share: float) -> None:
-        """Show what is done now, the share of the work that is done, 0 to 1, and when the work ends.
+        """Show the present stage, the fraction of the work that is done, and when the work ends.
 
-        A share below the last one begins another piece of work.
+        A fraction below the last one begins another piece of work.
         """
         now = self._clock()
         if share < self._done:

@@ -43,7 +43,7 @@ def campaign_options(command: F) -> F:
     type=click.Choice(["std", "peak", "rms", "sample"]),
     default="std",
     show_default=True,
-    help="Reference of the noise's percentage: the response's standard deviation, its peak, ...",
+    help="Quantity to which the noise's percentage refers: the response's standard deviation, its peak, ...",
 )
 @click.option(
     "--figure", type=click.Path(path_type=Path), metavar="FILE", help="File for Figure 5, .png or .svg."
@@ -61,7 +61,7 @@ def command(
 ) -> int:
     """Print Table 1 and Figure 5 of the paper, as medians and spread over many simulated campaigns.
 
-    Equal seeds give equal studies, whatever --workers and --scheduler are.
+    Equal seeds give equal studies for any --workers and --scheduler.
 
     \b
     Example:
@@ -104,7 +104,8 @@ def fly(study: "Study[Any, Any]", run: "Runner") -> "StudyReport":
         )
     except BrokenExecutor:
         raise ConfigurationError(
-            "A process of the study was ended every time, as for want of memory. Repeat with fewer --workers."
+            "A process of the study ended early every time, possibly because memory was short. Repeat with "
+            "fewer --workers."
         ) from None
     return study.report(results)
 

@@ -1,1 +1,1 @@
-"""Results without a screen: text, JSON, pictures."""
+"""Results as text, JSON documents, pages and pictures."""

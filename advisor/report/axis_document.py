@@ -1,4 +1,4 @@
-"""Parts of ``advisor.analyze/1`` that manoeuvres and estimates of every axis have, in SI units."""
+"""Parts of the document ``advisor.analyze/1`` that every axis has, in SI units."""
 
 from typing import Any
 
@@ -49,7 +49,7 @@ def concluded(verdict: FlightTestVerdict) -> dict[str, Any]:
 
 
 def fitted(estimate: Estimate | None) -> dict[str, Any]:
-    """Return the cost of an estimate, and measures of its fit by output."""
+    """Return the cost of an estimate, and measures of the fit for each output."""
     fits = estimate.fits[0].items() if estimate else ()
     return {
         "cost": plain(estimate.cost) if estimate else None,
@@ -58,8 +58,9 @@ def fitted(estimate: Estimate | None) -> dict[str, Any]:
 
 
 def parameters(estimate: object) -> dict[str, Any] | None:
-    """Return every parameter as ``{value, std, std_cr}``. An unidentifiable parameter has None as value, and
-    the reason."""
+    """Return every parameter as ``{value, std, std_cr}``. A parameter that is not identifiable has the value
+    None and a reason.
+    """
     if not isinstance(estimate, Estimate):
         return None
     return {
@@ -73,7 +74,9 @@ def parameters(estimate: object) -> dict[str, Any] | None:
 
 
 def terms_of(estimate: Estimate) -> dict[str, Any]:
-    """Return the coefficients of the terms that the user added, each with its 95 % interval and its gain."""
+    """Return the coefficients of the terms that the user added, with their 95 % intervals and their gains in
+    log likelihood.
+    """
     return {
         term.name: {
             **picked(term, "value std"),
@@ -85,7 +88,7 @@ def terms_of(estimate: Estimate) -> dict[str, Any]:
 
 
 def with_intervals(estimate: Estimate) -> dict[str, Any]:
-    """Return every parameter with its 95 % interval ``ci95``, None if unknown."""
+    """Return every parameter with its 95 % interval ``ci95``; the interval is None if unknown."""
     document: dict[str, Any] = {}
     for name, entry in (parameters(estimate) or {}).items():
         if name in estimate.fixed:

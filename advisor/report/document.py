@@ -1,4 +1,4 @@
-"""The ``advisor.analyze/1`` document for scripts, in SI units, with None for missing values and NaN."""
+"""The document ``advisor.analyze/1`` for scripts, in SI units. A missing or undefined number is None."""
 
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
@@ -31,7 +31,7 @@ def analysis_document(
     Parameters
     ----------
     state
-        Campaign at the end of the logs. None if no log could be read.
+        State of the campaign at the end of the logs; None if no log could be read.
     files
         Names of the logs as the user gave them, flight by flight.
     left_out
@@ -137,7 +137,7 @@ def instruments(estimate: Estimate | None) -> dict[str, Any]:
 
 
 def instrument_document(finding: InstrumentFinding) -> dict[str, Any]:
-    """Return the document part about one instrument finding."""
+    """Return the document part about one contradiction between an instrument and the others."""
     return {
         **picked(finding, "code channel quantity stated contradicts used text fix"),
         "found": picked(finding, "value std"),

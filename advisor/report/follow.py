@@ -1,4 +1,4 @@
-"""A campaign without a screen: each verdict is printed as a line of text."""
+"""Campaign without a screen, whose verdicts are printed as lines of text."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -30,7 +30,7 @@ def follow(
     """Feed a campaign to the end of a stream and print every verdict.
 
     A log often begins with slow streams, which the crew corrects before the flight. An alarm about a log is
-    therefore printed only after its data have been usable once.
+    therefore printed only after the log's data have been usable once.
 
     Parameters
     ----------
@@ -56,11 +56,11 @@ def follow(
 def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
     match event:
         case FlightBegan(_, name):
-            say(f"{name}: its times count from its own power-on")
+            say(f"{name}: times of this log count from its own power-on")
         case ManeuverAgain(maneuver, takes_place):
-            better = ", and this record replaces it" if takes_place else ""
+            better = ", with this better record" if takes_place else ""
             at = clock(maneuver.span.start_s)
-            say(f"{maneuver.number:2d}  {at:>7}  comes again and counts once{better}")
+            say(f"{maneuver.number:2d}  {at:>7}  is already recorded and counts once{better}")
         case InputEnough(number):
             say(f"ENOUGH: each derivative is within its tolerance in input {number} of the script")
         case VehicleFound(vehicle):
@@ -83,7 +83,7 @@ def _say(event: CampaignEvent, say: Callable[[str], object]) -> None:
 
 
 def _say_decision(verdict: FlightTestVerdict, plan: CrewPlan | None, say: Callable[[str], object]) -> None:
-    """Print stop or continue, and the next input, for both axes once one is complete."""
+    """Print stop or continue and the next input. After one axis is complete, print both axes."""
     if plan is not None and plan.done:
         say(f"    {plan.announced}")
         say(f"    {plan.advice}")

@@ -1,4 +1,4 @@
-"""Causes of the gap: ranking with sizes, similar effects, undetectable effects, and reasons."""
+"""Causes of the gap as text: ranking with sizes, similar effects, undetectable effects, and reasons."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -18,26 +18,27 @@ from advisor.report.facts.reasons import in_percent, weighed
 from advisor.report.facts.sizes import marked, sizes_of
 
 _LIKELY = 0.01
-"""Probability below which alternatives are joined in one line."""
+"""Probability below which all alternatives stand on one line."""
 PRESENT = "●"
 
 
 def ranking(causes: Sequence[Cause], before: float, what: str = "simulator") -> Iterator[RenderableType]:
-    """Yield the causes as a table, the unlikely ones in one line, and sentences about similar effects.
+    """Yield a table of the likely causes, one line with the unlikely causes, and sentences about similar
+    effects.
 
     Parameters
     ----------
     before
-        Gap of the simulator as given; a larger gap is marked.
+        Gap of the simulator as given. A cause whose gap is larger has a mark.
     what
-        What is improved: a simulator, or the model of the flight without one.
+        Noun for the thing that is improved: the simulator, or without a simulator the model of the flight.
     """
     likely = [c for c in causes if c.present or c.probability >= _LIKELY]
     if likely:
         yield _table(likely, before)
-        kept = f"{PRESENT} part of the improved {what}; " if any(c.present for c in likely) else ""
+        kept = f"{PRESENT} in the improved {what}; " if any(c.present for c in likely) else ""
         several = sum(c.present for c in likely) > 1
-        asked = "that it acts with the causes above it" if several else "that it is the main cause"
+        asked = "that it acts with the causes above" if several else "that this is the main cause"
         yield Text(f"{kept}prob.: {asked}; ±: 95 %", style="dim")
     unlikely = [called(c) for c in causes if c not in likely]
     if unlikely:
@@ -48,20 +49,22 @@ def ranking(causes: Sequence[Cause], before: float, what: str = "simulator") -> 
 
 
 def called(c: Cause) -> str:
-    """Return the name of a cause for people, with its control or sensor on an axis with several."""
+    """Return the name of a cause for people. On an axis with several controls or sensors, the name contains
+    the control or sensor.
+    """
     return c.named or spelled(c.effect)
 
 
 def confusion_sentence(c: Cause) -> str:
-    """Return a sentence about effects that look alike, and the way to distinguish them."""
+    """Return a sentence about effects with similar responses, and the way to distinguish them."""
     others = [spelled(name) for name in c.cannot_be_told_from]
     listed = others[0] if len(others) == 1 else f"{', '.join(others[:-1])} or {others[-1]}"
-    way = f" To tell them apart, {c.tell_apart_by}." if c.tell_apart_by else ""
-    return f"{called(c).capitalize()} cannot be told from {listed} here.{way}"
+    way = f" To distinguish them, {c.tell_apart_by}." if c.tell_apart_by else ""
+    return f"{called(c).capitalize()} cannot be distinguished from {listed} here.{way}"
 
 
 def unseen(effects: Sequence[Unseen]) -> Table:
-    """Return the undetectable effects with the data that would show them, grouped by reason."""
+    """Yield lines with the undetectable effects and the data that would show them, grouped by reason."""
     table = Table.grid(padding=(0, 2))
     table.add_column(max_width=26)
     table.add_column()
@@ -104,7 +107,9 @@ def why_of(d: Weighed) -> Iterator[RenderableType]:
         yield Panel(Group(*lines), title=heading(d), title_align="left")
     if d.decisions:
         decided = [Text(decision_in_words(decision)) for decision in d.decisions]
-        yield Panel(Group(*decided), title="every decision on the way", title_align="left")
+        yield Panel(
+            Group(*decided), title="statistics of the decision, with their limits", title_align="left"
+        )
 
 
 _SAID: Mapping[str, str] = {

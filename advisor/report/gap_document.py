@@ -78,7 +78,7 @@ def gap_document(
 
 
 def axis_document(d: Diagnosis) -> dict[str, Any]:
-    """Return the document part about one axis; without a fit the evidence is missing."""
+    """Return the document part about one axis. Without a fit the part has no evidence."""
     tested = d.verdict != "untested"
     document: dict[str, Any] = NOTHING | plain({
         "verdict": d.verdict if tested else None,
@@ -125,7 +125,7 @@ def _of_the_sides(d: Diagnosis) -> dict[str, Any]:
 
 
 def missing_law_document(law: MissingLaw) -> dict[str, Any]:
-    """Return the document part about the law without a name, SI."""
+    """Return the document part about the missing force or moment that no candidate explains, SI."""
     return {
         "text": law_said(law),
         **picked(law, "equation variable share nearest runner_up term"),
@@ -142,7 +142,7 @@ def structure_of(estimate: Estimate) -> dict[str, Any]:
 
 
 def numbers_document(verdict: str, gap: Gap, where: Where, shrink: Shrink | None) -> dict[str, Any]:
-    """Return the document part about the size of a gap, its place and its shrink, for every axis."""
+    """Return the document part about the size, the place and the reduction of a gap, for every axis."""
     return {
         "gap": {
             "text": size_of_gap(verdict, gap),
@@ -163,7 +163,9 @@ def numbers_document(verdict: str, gap: Gap, where: Where, shrink: Shrink | None
 
 
 def weighed_document(d: Diagnosis) -> dict[str, Any]:
-    """Return the document part with the alternatives' probabilities, their evidence, and the reasons."""
+    """Return the document part with the probability and the evidence of each alternative, and with the
+    reasons.
+    """
     answers = answers_of(d.evidence)
     return {
         "how_sure": sure_of(d),

@@ -1,4 +1,6 @@
-"""Size of the gap by phase, frequency and manoeuvre, the worst manoeuvre, and fidelity measures."""
+"""Text on the size of the gap by phase, frequency and manoeuvre, on the worst manoeuvre, and on fidelity
+measures.
+"""
 
 from collections.abc import Iterator, Sequence
 from itertools import zip_longest
@@ -20,7 +22,7 @@ _LEGEND = (
     "Band: q ±2 deg/s, θ ±1.5 deg, a_z ±0.10 g."
 )
 _BESIDE_BARS = 34
-"""Number of columns for the letters before the bars and the numbers after them."""
+"""Number of columns for the letters before the bars and for the numbers after the bars."""
 
 
 def errors(d: Diagnosis, width: int) -> Text:
@@ -104,13 +106,15 @@ def _bars(error: FloatArray, top: float, width: int) -> str:
 _BAR = 12
 _EIGHTHS = "▏▎▍▌▋▊▉"
 _AS_LOUD_AS_NOISE = 1.0
-"""Least gap for a full bar. A smaller gap must not look large."""
+"""Least gap that fills a bar. A smaller gap must not look large."""
 _LEFT = 38
 """Number of columns for the text left of the bars."""
 
 
 def whereabouts(gap: Gap) -> Text:
-    """Return phases and frequencies side by side, then every manoeuvre before and after, with bars."""
+    """Return bars of the gap by phase and by frequency side by side, then bars of every manoeuvre before and
+    after.
+    """
     beside = [*_beside(list(_phases(gap)), list(_bands(gap))), ""] if gap.by_phase or gap.by_band_hz else []
     lines = [*beside, *_maneuvers(gap)]
     return Text("\n".join(lines), no_wrap=True, overflow="crop")

@@ -35,12 +35,13 @@ _ALIKE = 2
 def print_foresight(
     aircraft: Aircraft, plan: str, rate_hz: float, amplitude_deg: float, without: str, as_json: bool
 ) -> int:
-    """Print the smallest detectable size and the similar effects of every effect, and return exit code 0.
+    """Print each effect's smallest detectable size and the effects with a similar response; return exit code
+    0.
 
     Raises
     ------
     ConfigurationError
-        The aircraft file has no complete ``model``, or the plan cannot be flown or sampled.
+        The aircraft file has no complete ``model``, or the planned flight or its sample rate is impossible.
     """
     inputs = [name.strip() for name in plan.split(",") if name.strip()]
     absent = [name.strip() for name in without.split(",") if name.strip()]
@@ -79,7 +80,7 @@ class ForesightScreen:
         hidden = [(spelled(f.effect), f.add) for f in self.found if not math.isfinite(f.smallest)]
         if hidden:
             yield ""
-            yield Text("Not with this plan (→ what would show it):", style="bold")
+            yield Text("This plan cannot show (→ data that would show it):", style="bold")
             yield _listed([(name, f"→ {add}") for name, add in hidden])
 
 
@@ -108,7 +109,7 @@ def _table(shown: Sequence[Foreseen]) -> Table:
 
 
 def _ways(found: Sequence[Foreseen]) -> list[tuple[str, str]]:
-    """Return each pair of similar effects once, with the way to distinguish both."""
+    """Return each pair of similar effects once, with the way to distinguish the two effects."""
     ways: dict[frozenset[str], tuple[str, str]] = {}
     for f in found:
         twins = [name for name, cosine in f.confused_with if cosine > CONFUSED_AT]

@@ -1,4 +1,4 @@
-"""Diagnosis on a terminal: answer, place, causes and steps; on request also its details."""
+"""Diagnosis as text on a terminal: answer, place, causes and next steps. Details are printed on request."""
 
 import shlex
 from collections.abc import Iterator, Sequence
@@ -49,7 +49,7 @@ _AS_GOOD = "100 % elsewhere: the data alone can hardly distinguish the two block
 _ROUNDS_TO_ALL = 0.995
 _BAR = 40
 _SPEED = "airspeed_variation"
-"""Effect that is no step if the simulator already uses the measured speed."""
+"""Effect that needs no next step if the simulator already uses the measured air speed."""
 
 
 class GapScreen:
@@ -78,7 +78,7 @@ class GapScreen:
         if d.gap.by_channel:
             yield _numbers(d)
         if d.instruments:
-            yield Text("Nuisance parameters of the fit, no part of the answer:")
+            yield Text("Nuisance parameters of the fit, which are not part of the answer:")
             yield from (Text(f"  {named(name)} {with_error(name, x)}") for name, x in d.instruments.items())
         if d.structured is not None:
             yield from map(Text, structure_lines(d.structured))
@@ -124,7 +124,7 @@ class GapScreen:
     def _errors(self, width: int) -> Iterator[RenderableType]:
         """Yield the error in the worst manoeuvre, and the fidelity measures by channel."""
         d = self.diagnosis
-        title = f"error in manoeuvre {worst_maneuver(d)}, the one with the largest gap (its size, no sign)"
+        title = f"error in manoeuvre {worst_maneuver(d)}, the one with the largest gap (absolute value)"
         yield ""
         yield Panel(errors(d, width), title=title, title_align="left")
         yield ""
@@ -136,7 +136,7 @@ class GapScreen:
         yield from (_hanging("·", note, width) for note in _notes(self.diagnosis))
         if self.diagnosis.cannot_see:
             yield ""
-            yield Text("This flight could not show (→ what would):", style="bold")
+            yield Text("This flight could not show (→ data that would show it):", style="bold")
             yield unseen(self.diagnosis.cannot_see)
 
     def _more(self) -> str:
@@ -173,7 +173,9 @@ def _improved(d: Diagnosis) -> str:
 
 
 def _numbered(steps: Sequence[GapStep], width: int) -> Iterator[Text]:
-    """Yield each step with its command line; a shell would take a blank after a backslash for a word."""
+    """Yield each step with its command line. No blank follows a backslash, because a shell would read the
+    blank as a word.
+    """
     for number, step in enumerate(steps, start=1):
         mark = f"{number}."
         yield _hanging(mark, step.text, width)
@@ -184,7 +186,7 @@ def _numbered(steps: Sequence[GapStep], width: int) -> Iterator[Text]:
 
 
 def command_lines(command: str, width: int) -> list[str]:
-    """Return a command in shell lines, as wide as the terminal if words allow."""
+    """Return a command in lines for a shell. Lines break between words at the width of the terminal."""
     lines, words = [""], list(map(shlex.quote, shlex.split(command)))
     for word, value in zip(words, [*words[1:], ""], strict=True):
         # An option stays with its value.
@@ -207,14 +209,18 @@ def _numbers(d: Diagnosis) -> Text:
     if d.shrink is not None and d.verdict not in ("none", "untested"):
         lines.append(shrink_said(d.shrink, d.gap))
         if d.shrink.beyond_air_percent is not None:
-            lines.append(f"without the air's own course: {d.shrink.beyond_air_percent:.0f} % less")
+            lines.append(
+                f"without the corrections for this flight's air: {d.shrink.beyond_air_percent:.0f} % less"
+            )
     if d.verdict != "untested" and (grown := grown_said(d.verdict, d.gap)):
         lines.append(f"{WORSE} {grown}")
     return Text("\n".join(lines))
 
 
 def _picture(d: Diagnosis) -> Iterator[RenderableType]:
-    """Yield the simulator as blocks, with the gap's block between arrows and scores of the others."""
+    """Yield the simulator as blocks. The block with the gap stands between arrows; other blocks
+    have a score.
+    """
     table = Table.grid(expand=True, padding=(0, 1))
     guilty = d.where.block if d.verdict in ("effect", "unknown") else ""
     places = {block for row in _PICTURES[d.axis] for block, _ in row}
@@ -238,7 +244,7 @@ def _picture(d: Diagnosis) -> Iterator[RenderableType]:
         table.add_row(*cells)
     yield table
     if taking_part:
-        yield Text(f"{PRESENT} part of the improved {_improved(d)}, too", style="dim")
+        yield Text(f"{PRESENT} also in the improved {_improved(d)}", style="dim")
     if scores:
         yield Text(_SCORES, style="dim")
     if guilty and any(score >= _ROUNDS_TO_ALL for score in scores.values()):

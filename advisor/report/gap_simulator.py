@@ -1,4 +1,4 @@
-"""Gap in the user's own simulator, and its qualification as a training simulator, as text."""
+"""Text on the gap in the user's own simulator, and on the simulator's qualification as a training device."""
 
 from collections.abc import Iterator
 
@@ -20,7 +20,9 @@ _LEGEND = (
 
 
 def simulated(found: InSimulator, with_table: bool) -> Iterator[RenderableType]:
-    """Yield the simulator's gap as given and with the effects; on request the table of qualification."""
+    """Yield the simulator's gap before and after the effects are added. On request yield the table of
+    qualification too.
+    """
     yield Text(f"in your simulator, {found.simulator}", style="bold")
     yield Text("\n".join(_shrunk(found)))
     if with_table:
@@ -37,16 +39,16 @@ def _shrunk(found: InSimulator) -> Iterator[str]:
         yield f"gap {short(found.before)} times the noise floor's power; nothing was changed, so 0 % less"
     else:
         yield (
-            f"gap {short(found.before)} → {short(found.after)} with the findings in it, {found.percent:.1f} %"
-            f" less, flown in manoeuvres that no search has used ({numbers})"
+            f"gap {short(found.before)} → {short(found.after)} with the corrections, {found.percent:.1f} % "
+            f"less, in manoeuvres that no search has used ({numbers})"
         )
         yield (
-            f"gap {short(found.after_air_and_instruments)} without what this flight's air explains there, "
-            "which is no shrink"
+            f"gap {short(found.after_air_and_instruments)} if this flight's air is taken into account, "
+            f"which does not count as a reduction"
         )
     if found.on_paper:
         names = ", ".join(spelled(name) for name in found.on_paper)
-        yield f"on paper only, because this simulator cannot take it: {names}"
+        yield f"not flown, because this simulator cannot take them: {names}"
 
 
 def _table(found: InSimulator) -> Table:

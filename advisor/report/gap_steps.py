@@ -1,4 +1,4 @@
-"""Next steps of a diagnosis: three steps, each with its command."""
+"""Next steps after a diagnosis, with the command of each step."""
 
 import shlex
 from collections.abc import Sequence
@@ -19,9 +19,9 @@ from advisor.report.improved import improved_name
 from advisor.words.certainty import Answers, doubt_of, is_decided
 
 _PROVE = "Prove the change: {after} again, then on manoeuvres that no fit has used."
-_FLY = "fly as many manoeuvres again, with another time unit and another amplitude"
+_FLY = "fly the same number of manoeuvres again, with another time unit and another amplitude"
 _TELLS = 0.1
-"""Words: log odds of the fit, nats, below which a repetition of the manoeuvres decides nothing."""
+"""Absolute log odds of the fit, nats, below which repeated manoeuvres would not decide."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ def next_steps(
 def _improvement(
     better: str, aircraft_file: str | None, simulator: str | None
 ) -> tuple[list[str], list[str], str]:
-    """Return the options that write and fly the improved simulator, and words about formats."""
+    """Return the options that write and fly the improved simulator, and a sentence about other formats."""
     aircraft = ["--aircraft", aircraft_file] if aircraft_file else []
     kind, _, _ = (simulator or "linear").partition(":")
     if kind == "linear":
@@ -95,9 +95,9 @@ def _improvement(
 
 
 def to_decide(answers: Answers, way: str = "", why: Sequence[Contribution] = ()) -> GapStep:
-    """Return the flight that separates the two likeliest answers, with the expected probability.
+    """Return the flight that distinguishes the two likeliest answers, with the expected probability.
 
-    Evidence adds up, so an equal number of manoeuvres would add the fit's log odds once more.
+    Log odds add up, so an equal number of new manoeuvres adds the fit's log odds once more.
     """
     (ours, _), (other, _) = answers[:2]
     step = f"To separate {ours} from {other}: {way or _FLY}."
@@ -107,12 +107,13 @@ def to_decide(answers: Answers, way: str = "", why: Sequence[Contribution] = ())
         return GapStep(step)
     likelier, p = (ours, expit(odds)) if odds >= 0.0 else (other, expit(-odds))
     return GapStep(
-        f"{step} Of the two, as many manoeuvres again are expected to make {likelier} {in_percent(p)} likely."
+        f"{step} The same number of manoeuvres is expected to raise {likelier} to {in_percent(p)} between "
+        f"these two."
     )
 
 
 def steps_to_decide(d: Diagnosis) -> list[GapStep]:
-    """Return the flight that separates the two likeliest answers; empty for a decided answer."""
+    """Return the flight that distinguishes the two likeliest answers; empty for a decided answer."""
     answers = answers_of(d.evidence)
     return [to_decide(answers, _way_of(d))] if answers and not is_decided(answers) else []
 
@@ -128,7 +129,7 @@ def _way_of(d: Diagnosis) -> str:
 def _to_put(d: Diagnosis) -> str:
     """Return the effects or derivatives to change in the improved simulator; empty if there are none.
 
-    The air of one day is no part of a simulator.
+    The list omits the air of the day, which no simulator should contain.
     """
     if not d.improves:
         return ""

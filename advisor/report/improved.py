@@ -30,7 +30,7 @@ def file_content(
     model: Mapping[str, float],
     effects: Mapping[str, Mapping[str, float]],
 ) -> dict[str, Any]:
-    """Return an aircraft file with other derivatives, at an air speed as read, and with other effects.
+    """Return an aircraft file with new derivatives, their air speed, and new effects.
 
     Derivatives of roll and yaw that ``model`` lacks are unchanged.
     """

@@ -39,7 +39,7 @@ NAMES: Mapping[str, str] = {
 
 
 def qualities_of(state: CampaignState, reference: Reference) -> FlyingQualities | None:
-    """Return flying qualities of the joint estimate; None without an estimate."""
+    """Return the flying qualities of the joint estimate; None without an estimate."""
     return None if state.model is None else flying_qualities(state.model, _air(state, reference), reference)
 
 
@@ -55,7 +55,9 @@ def _air(state: CampaignState | LateralState, reference: Reference) -> AirData:
 
 
 def reference_speed(state: CampaignState | LateralState) -> str:
-    """Return the speed of an axis's derivatives for a heading, with its kind; empty without a speed."""
+    """Return the text of the air speed of an axis's derivatives and its kind, for a heading; empty without a
+    speed.
+    """
     if state.model is None or state.model.airspeed_m_s is None:
         return ""
     kind = "true" if _air(state, Reference()).speed_kind == "true" else "as logged"
@@ -135,7 +137,7 @@ MODES: Mapping[str, tuple[str, str]] = {
 """Name and unit for people of each field of `LateralModes`."""
 MODE_NAMES = {"dutch_roll": "Dutch roll", "roll": "roll", "spiral": "spiral"}
 OPTIONAL = frozenset({"Y_p", "Y_r", "Y_delta_a"})
-"""Derivatives that are taken as zero if the aircraft file states the others."""
+"""Derivatives that count as zero if the aircraft file states all other derivatives."""
 
 
 def mode_facts(state: LateralState) -> list[Fact]:
@@ -166,7 +168,8 @@ def levels_document(found: tuple[LateralLevels, ...]) -> dict[str, Any] | None:
 
 
 def tests_of(state: LateralState, aircraft: Aircraft) -> tuple[LateralTest, ...]:
-    """Return the qualification tests of the file's model against the joint estimate; empty without either.
+    """Return the qualification tests of the file's model against the joint estimate; empty without model or
+    estimate.
 
     The file must state every derivative except those of ``OPTIONAL``.
     """
@@ -193,7 +196,7 @@ def tests_document(tests: tuple[LateralTest, ...]) -> list[dict[str, Any]]:
 
 
 def trim_of(joined: Sequence[Maneuver], airspeed_m_s: float) -> Trim:
-    """Return the mean attitude of the manoeuvres; level flight without an angle of attack."""
+    """Return the mean attitude of the manoeuvres. Without an angle of attack, return level flight."""
     theta = _mean(joined, "theta", 0.0)
     return Trim(airspeed_m_s, _mean(joined, "alpha", theta), theta)
 
@@ -204,7 +207,7 @@ def _mean(joined: Sequence[Maneuver], name: str, otherwise: float) -> float:
 
 
 def _step(rolled: list[JudgedManeuver]) -> tuple[float, float]:
-    """Return size and duration of the largest flown aileron step, rad and s."""
+    """Return the size, rad, and the duration, s, of the largest aileron step that was flown."""
     steps = [
         (abs(level), after - onset)
         for one in rolled

@@ -17,7 +17,7 @@ from advisor.words.quantities import symbol
 from advisor.words.vehicle_time import clock
 
 SIDE_ROOM = 18
-"""Columns of the name of an input of aileron or rudder."""
+"""Width of the name of an aileron or rudder input, in columns."""
 
 
 def maneuver_line(judged: JudgedManeuver, room: int = 15) -> str:
@@ -30,24 +30,24 @@ def maneuver_line(judged: JudgedManeuver, room: int = 15) -> str:
 def joint_table(
     state: CampaignState | LateralState, prior: Mapping[str, float], name: str = "joint"
 ) -> Table | None:
-    """Return the joint estimate of an axis against the simulator's model; None where nothing is accepted.
+    """Return the table of an axis's joint estimate next to the simulator's model; None without an accepted
+    manoeuvre.
 
-    ``name`` is that of the table, which is unique on a page.
+    ``name`` names the table and is unique on a page.
     """
     if state.model is None:
         return None
     if isinstance(state, CampaignState):
         return joint_of(name, reference_speed(state), [of_all(one, state, prior) for one in PARAMETERS])
     rows = [of_all(one, state, prior) for one in SIDE_PARAMETERS]
-    return joint_of(name, reference_speed(state), rows, " L and N hold the products of inertia.")
+    return joint_of(name, reference_speed(state), rows, " L and N include the products of inertia.")
 
 
 def joint_of(name: str, at: str, rows: Sequence[EstimatedParameter], more: str = "") -> Table:
-    """Return the table ``name`` of a joint estimate, at an air speed in words.
+    """Return the table ``name`` of a joint estimate, with the air speed as text.
 
-    The column of the simulator is left out where the aircraft file has no model.
-
-    ``more`` follows the sentence above the table.
+    The simulator has no column if the aircraft file has no model. ``more`` follows the sentence above the
+    table.
     """
     compared = any(row.prior is not None for row in rows)
     head = ("parameter", "estimate ± 95 %", "± 95 % if white", *(["simulator"] if compared else []), "unit")
@@ -81,7 +81,7 @@ def structure_table(estimate: Estimate, name: str) -> Iterator[Table]:
 
 
 def regression_table(estimate: Estimate, name: str) -> Iterator[Table]:
-    """Yield the table of equation error next to output error, if there is any."""
+    """Yield the table that compares equation error with output error, if equation error was computed."""
     rows = []
     for one, regressed in estimate.equation_error.items():
         here = estimated_parameter(one, "", estimate, {})
@@ -109,4 +109,4 @@ def message_table(name: str, messages: Sequence[Mapping[str, Any]]) -> Table:
     decimals = {"rate_hz": 1, "lowest_hz": 1, "renewed_hz": 1, "jitter_ms": 1, "largest_gap_s": 3}
     head = ("message", "rate [Hz]", "lowest [Hz]", "new [Hz]", "jitter [ms]", "gap [s]")
     rows = tuple((one["name"], *(digits(one[k], n) for k, n in decimals.items())) for one in messages)
-    return Table(name, "How the messages arrive; gap: the largest.", head, rows, frozenset(range(1, 6)))
+    return Table(name, "Rates of the messages; gap: the largest.", head, rows, frozenset(range(1, 6)))

@@ -11,10 +11,10 @@ from advisor.words.quantiles import NORMAL_95
 
 SCHEMA = "advisor.simulator/1"
 _LACKS = {
-    "increments": "effects of force and moment stay on paper",
-    "mass": "it flies at its own mass",
-    "wind": "it flies in still air",
-    "throttle": "a moved throttle of the flight is not flown",
+    "increments": "the diagnosis cannot fly effects of force and moment",
+    "mass": "the simulator flies at its own mass",
+    "wind": "the simulator flies in still air",
+    "throttle": "the flight's throttle movements are not flown",
     "aileron": "the flight's aileron is not flown",
     "rudder": "the flight's rudder is not flown",
 }
@@ -48,11 +48,11 @@ def lines(found: CheckedSimulator) -> Iterator[str]:
         hertz = found.omega_rad_s / tau
         yield f"short period {found.omega_rad_s:.2f} rad/s ({hertz:.2f} Hz), damping {found.damping:.2f}"
     else:
-        yield "short period none: it is statically unstable here"
+        yield "short period none: the simulator is statically unstable at this speed"
     yield f"numbers     {_with_errors(found.derivatives, found.std)}"
     if found.side:
         yield f"roll, yaw   {_with_errors(found.side, found.std)}"
-    yield "            ±: half the 95 % interval, for the motion that no linear model describes"
+    yield "            ±: half the 95 % interval, including motion that a linear model does not describe"
     yield f"takes       elevator{''.join(f', {name}' for name in found.takes)}"
     for name in found.lacks:
         yield f"does not take {name}: {_LACKS[name]}"

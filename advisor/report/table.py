@@ -1,4 +1,4 @@
-"""Tables of results as text cells, for the terminal and for the page, and the console that prints them."""
+"""Tables of results as text cells, for terminal and page, and the console that prints them."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -22,7 +22,9 @@ class Table:
     numbers: frozenset[int] = frozenset()
     """Indices of the columns with numbers, from 0."""
     anchored: bool = False
-    """Whether each row is an anchor in the page: the table's name, a hyphen and the row's first cell."""
+    """Whether each row has an anchor in the page. The anchor is the table's name, a hyphen and the row's
+    first cell.
+    """
 
     def on_console(self, title: str | None = None) -> console.Table:
         """Return the table for a terminal, without frame, under a title."""
@@ -47,10 +49,9 @@ def digits(value: float | None, count: int) -> str:
 
 
 class PlainConsole(Console):
-    """Console on standard output that shows text literally, as names in files and vehicles may have brackets.
+    """Console on standard output that shows text literally, because names may contain brackets.
 
-    Without Unicode, cells are spelled in ASCII before their widths are measured, so that columns stay
-    aligned.
+    Without Unicode, cells become ASCII before their widths are measured, so that columns stay aligned.
 
     Parameters
     ----------

@@ -1,4 +1,6 @@
-"""Analysis as text for people: stop or continue first, angles in degrees, a sentence for each verdict."""
+"""Analysis as text for people. Stop or continue comes first, angles are in degrees, and each verdict has a
+sentence.
+"""
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
@@ -22,7 +24,7 @@ from advisor.words.vehicle_time import CLOCK, clock
 
 
 def activity_line(activity: Activity) -> str:
-    """Return one line for a movement of the elevator that was no test input: time and description."""
+    """Return one line, with time and description, for a movement of the elevator that was no test input."""
     return f" -  {clock(activity.start_s):>7}  to {clock(activity.end_s):<12}  {activity.text}"
 
 
@@ -49,7 +51,9 @@ def _apart(lines: Iterable[Text]) -> Iterator[Text]:
 
 
 class AnalysisText:
-    """Text of the whole analysis, printed at the width of the terminal, without unwanted colour."""
+    """Text of the whole analysis, at the width of the terminal. Colour is left out if the user does not want
+    any.
+    """
 
     def __init__(
         self,
@@ -63,7 +67,7 @@ class AnalysisText:
         self.every_movement, self.pitch = every_movement, pitch
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the decisions on both axes first, then the results behind them."""
+        """Yield the decisions on both axes, then the results on which the decisions rest."""
         for line in decisions(self.state, pitch=self.pitch):
             yield Text(line, style="" if line.startswith(INDENT) else "bold")
         yield Text()
@@ -72,7 +76,7 @@ class AnalysisText:
             yield Text(f"{self.files[flight.flight]}: {vehicle}", style="bold")
             yield channel_table("channels", "", flight.channels).on_console()
             if flight.again:
-                yield Text(f"note: {flight.again} of its manoeuvres came before: they count once.")
+                yield Text(f"note: {flight.again} of its manoeuvres are in an earlier log: they count once.")
         yield from (
             Text(f"note: {note}", style="yellow")
             for note in (*self.state.elevator_notes, *self.state.reader_notes, *self.state.mark_notes)
@@ -97,7 +101,7 @@ class AnalysisText:
         yield from _apart(self._rules())
 
     def _lateral(self) -> RenderResult:
-        """Yield the lateral half, where it was asked for and flown."""
+        """Yield roll and yaw, if the user asked for them and they were flown."""
         side = self.state.lateral
         if side is None or not side.maneuvers:
             return
@@ -112,7 +116,7 @@ class AnalysisText:
             yield from map(Text, side_quality_lines(side, self.aircraft))
 
     def _regressed(self, model: Estimate) -> RenderResult:
-        """Yield equation error next to output error, on request."""
+        """Yield the comparison of equation error with output error, on request."""
         if self.every_movement:
             yield from (one.on_console(one.caption) for one in regression_table(model, "equation-error"))
 
@@ -168,7 +172,7 @@ _PAPERS: tuple[Rule, ...] = ("continuous", "separate")
 
 
 def _papers_rules(verdict: FlightTestVerdict) -> str:
-    """Return one line on the paper's rules, which decide only where the crew chooses one of them."""
+    """Return one line on the paper's rules, which decide only if the crew chooses one of them."""
     said = []
     for name in _PAPERS:
         progress = verdict.by_rule[name]
@@ -176,4 +180,4 @@ def _papers_rules(verdict: FlightTestVerdict) -> str:
         stop = "" if progress.stopped_at is None else f", stop after manoeuvre {progress.stopped_at}"
         said.append(f"{name} {now}{stop}")
     limit = f"limit {verdict.by_rule[_PAPERS[0]].limit_percent:g} %"
-    return f"the paper's rules: {'; '.join(said)} ({limit}); --all has their course"
+    return f"the paper's rules: {'; '.join(said)} ({limit}); --all prints their history"

@@ -76,7 +76,7 @@ WRONG = {
     "+12:24": "both with +",
     "nan:24": "give START:END",
     "-3:4": "give START:END",
-    "24:12": "END must lie after START",
+    "24:12": "END must be later than START",
     "12:400": "lasts 100 s at most",
 }
 

@@ -22,7 +22,7 @@ def test_a_command_that_is_nearly_right_is_guessed(typed: str, meant: str) -> No
 def test_a_connection_without_its_option_is_answered_with_the_option() -> None:
     result = CliRunner().invoke(advisor, ["live", "udpin:0.0.0.0:14550"], standalone_mode=False)
     assert str(result.exception) == (
-        "A connection is named by an option: advisor live --master udpin:0.0.0.0:14550"
+        "Name the connection by its option: advisor live --master udpin:0.0.0.0:14550"
     )
 
 

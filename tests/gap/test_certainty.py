@@ -92,7 +92,9 @@ def test_the_first_step_of_an_undecided_answer_is_the_flight_that_separates_the_
     found = diagnosis(evidence=evidence((DELAY, 0.55), (LAG, 0.45)), why=reasons)
     (step,) = next_steps(found, ["flight.tlog"], None)
     assert step.text.startswith("To separate transport delay from actuator lag: ")
-    assert step.text.endswith("as many manoeuvres again are expected to make transport delay 77 % likely.")
+    assert step.text.endswith(
+        "The same number of manoeuvres is expected to raise transport delay to 77 % between these two."
+    )
     assert "NOT DECIDED BETWEEN TRANSPORT DELAY AND ACTUATOR LAG" in box(found)
 
 
@@ -102,8 +104,8 @@ def test_manoeuvres_that_fit_both_alike_promise_no_probability():
         diagnosis(evidence=evidence((DELAY, 0.55), (LIFT, 0.45)), why=reasons), ["flight.tlog"], None
     )
     assert step.text == (
-        "To separate transport delay from something without a name in the lift: fly as many manoeuvres "
-        "again, with another time unit and another amplitude."
+        "To separate transport delay from something without a name in the lift: fly the same "
+        "number of manoeuvres again, with another time unit and another amplitude."
     )
 
 

@@ -163,7 +163,7 @@ def test_a_shrink_of_other_gaps_than_those_above_it_states_its_own():
 
 def test_the_error_says_that_its_size_is_shown_and_an_interval_that_it_holds_95_percent():
     text = " ".join(printed(diagnosis(), 140))
-    assert "the one with the largest gap (its size, no sign)" in text
+    assert "the one with the largest gap (absolute value)" in text
     assert text.count("±: 95 %") == 1
 
 
@@ -176,8 +176,8 @@ def test_a_cause_takes_a_line_with_its_size_in_units_people_use():
 
 def test_what_a_cause_is_tied_with_is_a_sentence():
     assert confusion_sentence(DELAY) == (
-        "Transport delay cannot be told from actuator lag here. "
-        "To tell them apart, log the measured surface position."
+        "Transport delay cannot be distinguished from actuator lag here. "
+        "To distinguish them, log the measured surface position."
     )
 
 

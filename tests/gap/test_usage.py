@@ -71,8 +71,8 @@ def test_a_plan_is_foreseen_by_a_command_of_its_own_out_of_the_help_of_the_gap()
 
 
 @pytest.mark.parametrize(("arguments", "option"), [
-    (["flight.tlog", "--rate", "20"], "--rate has a meaning with --foresee only"),
-    (["--foresee", "--holdout", "2"], "--holdout has a meaning without --foresee only"),
+    (["flight.tlog", "--rate", "20"], "--rate applies only with --foresee"),
+    (["--foresee", "--holdout", "2"], "--holdout applies only without --foresee"),
 ])  # fmt: skip
 def test_an_option_of_the_other_half_of_the_command_is_refused_for_it_would_be_ignored(
     capsys, monkeypatch, arguments, option
@@ -88,7 +88,7 @@ def test_an_option_of_the_other_half_of_the_command_is_refused_for_it_would_be_i
         (("--out", "a.yaml"), "is the aircraft file itself"),
         (("--export", "ardupilot:my-jet.json"), "takes -jet in my-jet.json for one of its frames"),
         (("--export", "ardupilot:plane.json"), "give them under reference: in the aircraft file"),
-        (("--prove", "nowhere.tlog"), "there is no log nowhere.tlog"),
+        (("--prove", "nowhere.tlog"), "cannot find the log nowhere.tlog"),
     ],
 )
 def test_files_of_roll_and_yaw_are_ordered_as_those_of_pitch(

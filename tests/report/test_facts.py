@@ -24,7 +24,7 @@ def test_a_fact_is_known_with_both_its_value_and_its_interval(value, half, known
     ("provenance", "name"),
     [
         ("vane", "vane ahead of the centre of gravity"),
-        ("derived", "α reads like a vane ahead of the centre of gravity"),
+        ("derived", "apparent distance of the α vane ahead of the centre of gravity"),
     ],
 )
 def test_an_aircraft_without_a_vane_has_no_vane_arm_among_its_nuisance_parameters(provenance, name):

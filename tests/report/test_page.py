@@ -125,7 +125,9 @@ def test_a_full_disk_leaves_the_old_page_and_no_half_one(
 
 def test_the_last_manoeuvre_is_predicted_by_those_before_it(reported: Reported) -> None:
     assert "Manoeuvre 3 is held out: manoeuvres 1, 2 predict its response." in reported.page.text
-    captions = re.findall(r"Manoeuvre 3, (\S+): the prediction's band is ±", reported.page.text)
+    captions = re.findall(
+        r"Manoeuvre 3, (\S+): the largest half-width of the prediction's band is", reported.page.text
+    )
     assert captions == ["α", "q", "a_z"]
 
 

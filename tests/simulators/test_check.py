@@ -171,7 +171,7 @@ def test_the_command_prints_what_answers_and_what_is_not_taken(capsys, monkeypat
     assert code == 0
     assert "at rest     a_z -9.79 m/s²" in out
     assert "dead time" in out
-    assert "does not take mass: it flies at its own mass" in out
+    assert "does not take mass: the simulator flies at its own mass" in out
 
 
 def test_the_check_says_which_effects_of_the_file_it_leaves_out(capsys, monkeypatch, tmp_path):

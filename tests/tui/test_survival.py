@@ -77,7 +77,7 @@ def test_text_says_as_well_that_the_estimator_hangs_and_is_replaced(tmp_path: Pa
     with pytest.raises(KeyboardInterrupt):
         narrator.narrate(ConductorTask(source, elsewhere.campaign, kept=ByHand), warned.append, warn)
     assert [re.sub(r"\d+ s", "N s", sentence) for sentence in warned] == [
-        "ESTIMATOR NOT ANSWERING for N s: what stands above is old",
+        "ESTIMATOR NOT ANSWERING for N s: the lines above are old",
         "the estimating process did not answer for N s and was ended; it is started again",
     ]
 

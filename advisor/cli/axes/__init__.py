@@ -1,1 +1,1 @@
-"""``advisor gap`` on each axis."""
+"""``advisor gap`` for pitch, and for roll and yaw."""

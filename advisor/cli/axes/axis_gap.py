@@ -28,11 +28,13 @@ from advisor.words.printable import printable
 
 C = TypeVar("C")
 Tell = Callable[[str, float], None]
-"""Called with the name of a stage, and with the share of it that is done."""
+"""Function that receives the name of a stage, and the fraction of the stage that is done."""
 
 
 class AxisGap(ABC, Generic[C]):
-    """``advisor gap`` of one axis. The parameter is the comparison of a flight with a simulator."""
+    """``advisor gap`` of one axis. The type parameter is the result of comparing a flight with a
+    simulator.
+    """
 
     name: str
     """Name of the axis for people."""
@@ -50,7 +52,9 @@ class AxisGap(ABC, Generic[C]):
 
     @abstractmethod
     def prove(self, compared: C, named: Sequence[Path], tell: Tell) -> Proof:
-        """Fly the improved simulator on the manoeuvres of logs; without any, on the last third."""
+        """Fly the improved simulator on the manoeuvres of the logs, or without logs on the last third of the
+        flight.
+        """
 
     @abstractmethod
     def stays(self, compared: C, proof: Proof | None) -> Diagnosis:
@@ -75,7 +79,7 @@ class AxisGap(ABC, Generic[C]):
         """Return the next steps after the files are written."""
 
     def diagnosed(self) -> C | Unanswered:
-        """Return the comparison, or the reason for none."""
+        """Return the comparison, or the reason why there is none."""
         with Stages() as tell:
             return self.asked.attempted(f"{self.part}, diagnosis", partial(self.compare, tell))
 
@@ -87,7 +91,7 @@ class AxisGap(ABC, Generic[C]):
 
 @dataclass(frozen=True)
 class Proved(Generic[C]):
-    """A diagnosis after the proof that was asked for."""
+    """A diagnosis, and the proof if the user asked for one."""
 
     axis: AxisGap[C]
     compared: C
@@ -131,7 +135,7 @@ class Proved(Generic[C]):
 
 
 def answered(axes: Sequence[AxisGap[Any]], everything: bool) -> int:
-    """Diagnose axes, print the results and write the files. An axis without an answer says why.
+    """Diagnose axes, print the results and write the files. An axis without an answer prints the reason.
 
     The first axis with an answer writes the files.
     """

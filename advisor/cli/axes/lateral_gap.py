@@ -28,7 +28,7 @@ class SideGap(AxisGap[SideCompared]):
     Parameters
     ----------
     state
-        State of the campaign with both axes, if the logs are already read.
+        State of the campaign with both axes; None before the logs are read.
     """
 
     name, part = "Roll and yaw", "lateral"
@@ -51,7 +51,9 @@ class SideGap(AxisGap[SideCompared]):
         return compare_side_flown(state, asked.aircraft, asked.prior, tell)
 
     def prove(self, compared: SideCompared, named: Sequence[Path], tell: Tell) -> Proof:
-        """Fly the improved roll and yaw on the manoeuvres of logs; without any, on the last third."""
+        """Fly the improved simulator of roll and yaw on the manoeuvres of the logs, or without logs on the
+        last third.
+        """
         tell("flying for the proof", 0.0)
         fresh = None
         if named:
@@ -75,5 +77,5 @@ class SideGap(AxisGap[SideCompared]):
     def steps(
         self, diagnosis: Diagnosis, written: Path | None, outcomes: Sequence[ExportOutcome]
     ) -> list[GapStep]:
-        """Return the flight that separates the two likeliest answers."""
+        """Return the flight that distinguishes the two likeliest answers."""
         return steps_to_decide(diagnosis)

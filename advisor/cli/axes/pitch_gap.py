@@ -27,9 +27,9 @@ class PitchGap(AxisGap[Compared]):
     Parameters
     ----------
     holdout
-        Number of manoeuvres to hold out; None for the diagnosis' own choice.
+        Number of manoeuvres to hold out; with None the diagnosis chooses the number.
     flown
-        Manoeuvres of the elevator, if the logs are already read.
+        Manoeuvres of the elevator; None before the logs are read.
     """
 
     name, part = "Pitch", "pitch"
@@ -53,7 +53,9 @@ class PitchGap(AxisGap[Compared]):
         )  # fmt: skip
 
     def prove(self, compared: Compared, named: Sequence[Path], tell: Tell) -> Proof:
-        """Fly the improved simulator on the manoeuvres of logs; without any, on the last third."""
+        """Fly the improved simulator on the manoeuvres of the logs, or without logs on the last third of the
+        flight.
+        """
         asked, read = self.asked, self.asked.read
         aircraft = asked.aircraft
         tell("reading for the proof", 0.0)
@@ -72,7 +74,9 @@ class PitchGap(AxisGap[Compared]):
         return FlownModel(compared.aircraft, None, self._side, diagnosis)
 
     def exported(self, compared: Compared, diagnosis: Diagnosis) -> FlownModel:
-        """Return the model for other programs. The simulator's own servo is no part of the improvement."""
+        """Return the model for other programs, without the simulator's own servo, which is no part of the
+        improvement.
+        """
         given = self.asked.aircraft
         as_given = replace(compared.aircraft, simulator=given.simulator, elevator=given.elevator)
         model = improved_model(diagnosis, as_given, self._side)
@@ -92,7 +96,9 @@ class PitchGap(AxisGap[Compared]):
 
     @cached_property
     def _side(self) -> SideModel | None:
-        """Roll and yaw for the files, by their diagnosis or as the logs tell them; None without either."""
+        """Roll and yaw for the files, from their diagnosis or from the estimate of the logs; None without
+        both.
+        """
         if self.beside is not None:
             return next((other.exported().side for other in self.beside), None)
         read = self.asked.read

@@ -1,4 +1,4 @@
-"""The lateral half of the analysis: its JSON block, and the lines on its modes."""
+"""Roll and yaw in the analysis: the JSON block ``lateral``, and the text lines on the modes."""
 
 from collections.abc import Iterator
 from functools import partial
@@ -73,7 +73,9 @@ def _modes(modes: LateralModes) -> dict[str, Any]:
 
 
 def side_quality_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
-    """Yield the modes, the levels of light aircraft, and the tests of the aircraft file's model."""
+    """Yield text lines: the modes, the levels for light aircraft, and the tests of the aircraft
+    file's model.
+    """
     yield from (f"  {fact.name:<18} {fact.sentence}" for fact in mode_facts(state))
     levels = [one for one in levels_of(state) if one.group == next(iter(GROUPS))]
     if levels:

@@ -1,1 +1,1 @@
-"""Facts: each number and sentence that several screens and pages state, made in one place."""
+"""Numbers and sentences that several screens and pages state. One function makes each of them."""

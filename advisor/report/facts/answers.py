@@ -17,13 +17,13 @@ _TITLES = {
     "untested": ("NOTHING TO COMPARE WITH", "NOTHING TO COMPARE WITH"),
 }
 _BEFORE_THE_FLIGHT = frozenset({"prior", "air"})
-"""Parts of the log weight that say how often an alternative is right before the flight."""
+"""Columns of the evidence that hold the prior log probability of an alternative."""
 
 
 def by_flight_alone(evidence: Sequence[AlternativeEvidence]) -> Answers:
     """Return the answers with the probabilities that this flight alone gives, the likeliest first.
 
-    Every alternative is then as likely as the next one before the flight.
+    All alternatives then have equal prior probabilities.
     """
     if not evidence:
         return []
@@ -36,7 +36,7 @@ def by_flight_alone(evidence: Sequence[AlternativeEvidence]) -> Answers:
 
 
 def is_turned(evidence: Sequence[AlternativeEvidence]) -> bool:
-    """Return whether another answer is likeliest without the frequency of each answer before the flight."""
+    """Return whether another answer is the likeliest with equal prior probabilities."""
     answers, alone = answers_of(evidence), by_flight_alone(evidence)
     return bool(answers) and answers[0][0] != alone[0][0]
 
@@ -48,7 +48,7 @@ def sure_of(d: Diagnosis) -> str:
 
 
 def title_of(d: Diagnosis) -> str:
-    """Return the title of a diagnosis. An answer that the flight alone does not give is only likely."""
+    """Return the title of a diagnosis. An answer that is likeliest only by its prior is called likely."""
     stated, likely = _TITLES[d.verdict]
     shown = title(likely if is_turned(d.evidence) else stated, likely, answers_of(d.evidence))
     # Only pitch says in its title that a gap is not visible.

@@ -1,4 +1,4 @@
-"""Stop or continue and the next input, as text for terminal, page and announcements."""
+"""Texts of the decision, stop or continue, and of the next input, for terminal, page and announcements."""
 
 from collections.abc import Iterator
 

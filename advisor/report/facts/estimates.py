@@ -1,4 +1,6 @@
-"""Numbers of a flight as they are stated everywhere: name, source, value, 95 % interval, unit, sentence."""
+"""Numbers of a flight with name, source, value, 95 % interval, unit and sentence. All screens and pages state
+these.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -65,8 +67,9 @@ def fact_of(name: str, source: str, value: float, std: float, unit: str = "", fa
 QUANTITIES = {**PITCH, **SIDE}
 """Symbol and unit of each parameter of either axis, by its name."""
 LEAST_GAIN = 0.5 * NORMAL_95**2
-"""Log likelihood, nats, that one needless parameter gains in one of twenty flights: half the 95 % point of
-chi-squared (Wilks, 1938)."""
+"""Gain in log likelihood, nats, that one needless parameter exceeds in one of twenty flights. The value is
+half the 95 % point of chi-squared (Wilks, 1938).
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,12 +85,14 @@ class EstimatedParameter(Fact):
 
     @property
     def cell(self) -> str:
-        """Value with the half-width of its 95 % interval, or the value at which the user holds it."""
+        """Value with the half-width of its 95 % interval, or the value at which the user holds
+        the parameter.
+        """
         return f"{signed(self.value, 3)}, held" if self.held else cell_of(self)
 
     @property
     def prior_cell(self) -> str:
-        """Value of the aircraft file with the decimals of the estimate."""
+        """Value of the aircraft file, written with as many decimals as the estimate."""
         return "–" if self.prior is None else signed(self.prior, decimals_for(self.half))
 
     @property
@@ -130,7 +135,7 @@ def of_all(name: str, state: CampaignState | LateralState, prior: Mapping[str, f
 
 
 def of_one(name: str, judged: JudgedManeuver | None, prior: Mapping[str, float]) -> EstimatedParameter:
-    """Return one parameter of a single manoeuvre; without numbers if there is no manoeuvre."""
+    """Return one parameter of a single manoeuvre; the numbers are NaN if there is no manoeuvre."""
     if judged is None:
         return estimated_parameter(name, "no manoeuvre", None, prior)
     return estimated_parameter(
@@ -163,7 +168,9 @@ def _held(name: str, estimate: Estimate) -> str:
 
 
 def _gain_line(term: TermEstimate) -> str:
-    """Return the sentence on a term: its coefficient with its interval, and what the record says of it."""
+    """Return the sentence on a term: the coefficient with its interval, and whether the record supports the
+    term.
+    """
     half = NORMAL_95 * term.std
     told = f"The term {term.name} has the coefficient {with_half(term.value, half)}"
     if not isfinite(term.gained):
@@ -173,14 +180,14 @@ def _gain_line(term: TermEstimate) -> str:
         chance = f"chance alone gains {LEAST_GAIN:.1f} in one of 20 flights"
         return f"{told}. This flight does not show the term: {gained}; {chance}."
     if abs(term.value) < half:
-        return f"{told}. This flight does not tell the term from zero, although {gained}."
-    return f"{told}, the 95 % interval. With the term the flight is likelier: {gained}."
+        return f"{told}. The 95 % interval of the coefficient contains zero, although {gained}."
+    return f"{told}, the 95 % interval. The flight supports the term: {gained}."
 
 
 def instrument_facts(state: CampaignState) -> list[tuple[Fact, str]]:
     """Return the nuisance parameters of the joint estimate, each with the aircraft file's value or a dash.
 
-    Without a vane, the place is that of a vane with equal readings.
+    Without a vane, the vane's distance is that of a vane with equal readings.
     """
     if state.model is None:
         return []
@@ -200,7 +207,7 @@ _INSTRUMENTS: Mapping[str, tuple[str, str, float]] = {
     "servo_lag_s": ("servo lag, by which the estimate delays the command", "ms", 1e3),
     "command_delay_s": ("delay of the command", "ms", 1e3),
     "vane_arm_m": ("vane ahead of the centre of gravity", "m", 1.0),
-    "no_vane_arm_m": ("α reads like a vane ahead of the centre of gravity", "m", 1.0),
+    "no_vane_arm_m": ("apparent distance of the α vane ahead of the centre of gravity", "m", 1.0),
     "alpha_delay_s": ("delay of α", "ms", 1e3),
     "accelerometer_arm_m": ("accelerometer ahead of the centre of gravity", "m", 1.0),
     "steady_moment_rad": ("steady moment, as elevator", "deg", DEG),

@@ -1,4 +1,4 @@
-"""Sentences about a gap: its size, its shrink, its place, and the derivatives that differ."""
+"""Sentences about a gap: its size, its reduction, its place, and the derivatives that differ."""
 
 from collections.abc import Sequence
 from math import isnan
@@ -13,14 +13,14 @@ from advisor.words.quantities import CHANNELS, PARAMETERS, SIDE_PARAMETERS
 
 _QUANTITIES = {**PARAMETERS, **SIDE_PARAMETERS}
 _WORTH_SAYING = 0.005
-"""Share of a gap below which the sentence omits the share, because it rounds to 0 %."""
+"""Fraction of a gap below which a sentence omits the fraction, because the text would say 0 %."""
 
 
 def size_of_gap(verdict: str, gap: Gap) -> str:
     """Return the gap of the simulator as given and after the corrections: ``gap 119 → 0.116 times ...``."""
     before, after = short(gap.before), short(gap.after)
     if verdict == "untested":
-        return f"what the fitted model leaves: {after} times the noise floor's power"
+        return f"residual of the fitted model: {after} times the noise floor's power"
     if isnan(gap.after):
         return f"gap {before} times the noise floor's power; no manoeuvre can be held out"
     if verdict == "none":
@@ -29,10 +29,10 @@ def size_of_gap(verdict: str, gap: Gap) -> str:
 
 
 def shrink_said(shrink: Shrink, gap: Gap) -> str:
-    """Return the sentence about the gap's shrink, with the 95 % interval and the held-out manoeuvres.
+    """Return the sentence about the gap's reduction, with the 95 % interval and the held-out manoeuvres.
 
-    The gap after the corrections has the flight's nuisance parameters, and the shrink by an export has not.
-    The sentence states the second gap where the two differ in two digits.
+    The gap after the corrections includes the flight's nuisance parameters. An export cannot contain them,
+    and its gap can be larger. The sentence states the larger gap if the two differ in two digits.
     """
     low, high = shrink.ci95_percent
     differ = f"{shrink.after:.2g}" != f"{gap.after:.2g}"
@@ -44,8 +44,9 @@ def shrink_said(shrink: Shrink, gap: Gap) -> str:
 
 
 def where_said(where: Where, shrink: Shrink | None) -> str:
-    """Return the place of a gap: ``in the lift, 93 % of the gap``. With a shrink, its share is stated
-    instead."""
+    """Return the place of a gap: ``in the lift, 93 % of the gap``. The fraction is omitted if a reduction of
+    the gap is stated.
+    """
     says = shrink is None and where.share >= _WORTH_SAYING
     return f"{place(where.block)}{f', {100 * where.share:.0f} % of the gap' if says else ''}"
 
@@ -62,14 +63,16 @@ def grown_said(verdict: str, gap: Gap) -> str:
 
 
 _LAWS = {"Z": ("force", "1/s"), "M": ("moment", "rad/s²")}
-"""Missing quantity of each equation, and its unit, by the letter of the equation."""
+"""Force or moment that each equation can lack, with its unit, by the letter of the equation."""
 _OVER = {
     "q": "pitch rate", "alpha": "angle of attack", "delta_e": "elevator deflection", "t": "time of flight"
 }  # fmt: skip
 
 
 def law_said(law: MissingLaw) -> str:
-    """Return the sentence about a law without a name: its quantity, and the nearest formula."""
+    """Return the sentence about an effect that no candidate explains: the variable on which it depends, and
+    the nearest formula.
+    """
     what, unit = _LAWS[law.equation]
     told = f"The missing {what} depends most on the {_OVER[law.variable]}, by {100.0 * law.share:.0f} %"
     if not law.nearest:
@@ -82,8 +85,9 @@ def law_said(law: MissingLaw) -> str:
 
 
 def changed(one: ComparedDerivative) -> str:
-    """Return the text of one derivative: the simulator's value, the flight's with its error, and the
-    change."""
+    """Return the text of one derivative: the simulator's value, the flight's value with its error, and the
+    change.
+    """
     quantity = _QUANTITIES[one.name]
     given, found, half = (quantity.factor * x for x in (one.given, one.found.value, one.half))
     share = ""
@@ -94,7 +98,7 @@ def changed(one: ComparedDerivative) -> str:
 
 
 def changes(derivatives: Sequence[ComparedDerivative]) -> list[str]:
-    """Return a line for each derivative that differs, then a line with the agreeing ones."""
+    """Return a line for each derivative that differs, then one line with all derivatives that agree."""
     agree = [_QUANTITIES[derivative.name].symbol for derivative in derivatives if not derivative.differs]
     lines = [changed(derivative) for derivative in derivatives if derivative.differs]
     return [*lines, *([f"{', '.join(agree)} agree{'s' if len(agree) == 1 else ''}"] if agree else [])]

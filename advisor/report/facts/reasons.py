@@ -1,12 +1,12 @@
-"""Sentences about the certainty of a diagnosis' answer, and about the evidence for it."""
+"""Sentences about the certainty of a diagnosis, and about the evidence for its answer."""
 
 import math
 from collections.abc import Iterable
 
 _SAYABLE_NATS = 12.0
-"""Log odds, nats, above which odds are not written as a number: 160,000 to 1."""
+"""Log odds, nats, above which the text says no odds: 160,000 to 1."""
 _NOTHING = 0.005
-"""Probability below which a row is omitted, because it rounds to 0 %."""
+"""Probability below which a row is omitted, because the row would say 0 %."""
 _MOST = 4
 """Largest number of alternatives in one sentence."""
 
@@ -29,7 +29,7 @@ def how_sure(alternatives: Iterable[tuple[str, float]], alone: Iterable[tuple[st
     Parameters
     ----------
     alone
-        Probabilities that this flight alone gives, without the frequency of each answer before the flight.
+        Probabilities from this flight alone, with equal prior probabilities of all answers.
     """
     by_flight = dict(alone)
     shown = [f"{words} {in_percent(p)}" for words, p in alternatives if is_shown(p)]
@@ -43,7 +43,7 @@ def how_sure(alternatives: Iterable[tuple[str, float]], alone: Iterable[tuple[st
 
 
 def weighed(reasons: Iterable[tuple[float, str]]) -> list[tuple[str, str]]:
-    """Return the reasons with their nats as text, then a row with the sum and the odds.
+    """Return one row for each reason with its nats, then a row with the sum and the odds.
 
     A reason of 0.0 nats has no row.
     """

@@ -23,7 +23,7 @@ applies."""
 _OWN_UNITS = {"at_s": (1.0, "s"), "over_s": (1.0, "s"), "omega_rad_s": (0.5 / math.pi, "Hz")}
 """Parameters whose unit for people does not follow from the name's ending."""
 _LEAST, _ROUNDING = 1e-3, 1e-9
-"""Gap below which no number is written, and gap that is only rounding."""
+"""Gap below which the text says "<", and gap below which only rounding is left."""
 _SHARES = frozenset({"scale", "step", "inertia", "change", "share", "damping", "lift_h", "airspeed_excess"})
 _ICE = frozenset({"Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e"})
 """Names of ice parameters, which are relative changes of derivatives."""
@@ -39,7 +39,7 @@ _SYMBOLS = {
     "M_throttle": "M_throttle", "M_h": "M_h", "Z_h": "Z_h", "omega_rad_s": "frequency",
     "skew_s": "lateness", **{name: PARAMETERS[name].symbol for name in _ICE},
 }  # fmt: skip
-"""Name for people of each parameter whose file spelling is unsuitable."""
+"""Name for people of each parameter whose name in the file is hard to read."""
 _SIGNED = frozenset({"scale", "step", "inertia", "change", "skew_s", "bias_rad", "bias_rad_s", *_ICE})
 """Parameters whose sign is stated."""
 
@@ -50,7 +50,7 @@ _IN_WORDS = {
     "with_attitude": "the attitude, too",
     "stability_only": "of the stability alone",
 }
-"""Words for each parameter that only states a fact."""
+"""Words for each parameter that has no size."""
 
 
 def short(x: float) -> str:
@@ -77,7 +77,7 @@ def marked(after: float, before: float) -> str:
 
 
 def has_grown(after: float, before: float) -> bool:
-    """Return whether a gap has visibly grown in its printed digits."""
+    """Return whether the printed digits show a larger gap than before."""
     return after > before and short(after) != short(before)
 
 

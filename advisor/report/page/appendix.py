@@ -28,13 +28,13 @@ def assumptions(content: Content) -> Iterator[Block]:
     model = analysis["model"]
     said = [*analysis.get("notes", ()), *analysis["log"]["notes"], *(model["notes"] if model else ())]
     said = [entered_once(note, content.gap) for note in said]
-    yield from listing(said) or (Paragraph("Neither the logs nor the joint estimate leave a note."),)
+    yield from listing(said) or (Paragraph("Nothing beyond the aircraft file was assumed."),)
     for flight, (name, heard) in enumerate(zip(content.names, content.state.flights, strict=True)):
         yield channel_table(f"channels-{flight}", f"Channels of {name}.", heard.channels)
 
 
 def entered_once(note: str, gap: Document | None) -> str:
-    """Return a note without its line for the aircraft file where the diagnosis names the number to enter."""
+    """Return a note without its line for the aircraft file, if the diagnosis names the number to enter."""
     said, line, entry = note.partition(FOR_THE_FILE)
     causes = gap["causes"] if line and gap is not None and gap["usable"] else ()
     stated = {EFFECTS[c["effect"]].stated for c in causes if c["in_model"] and c["effect"] in EFFECTS}

@@ -21,7 +21,9 @@ from advisor.report.table import Table
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 
 _MOST_LABELS = 16
-"""Largest number of labels in a forest plot. With more manoeuvres every second one is named, or fewer."""
+"""Largest number of labels in a forest plot. With more manoeuvres only every second manoeuvre has a label, or
+fewer.
+"""
 _NARROW = "±\N{NO-BREAK SPACE}"
 """Separator in cells of a narrow table, with one place for a line break."""
 _TALLEST_IN = 3.2
@@ -30,7 +32,7 @@ _TALLEST_IN = 3.2
 
 @section("estimates", "Estimates")
 def estimates(content: Content) -> Iterator[Block]:
-    """Yield the instruments as a table, a forest plot per parameter, then the table of manoeuvres."""
+    """Yield a table of the instruments, a forest plot of each parameter, and a table of the manoeuvres."""
     model, prior = content.state.model, content.aircraft.model
     if model is None:
         yield Paragraph("No manoeuvre is accepted, so there is no joint estimate.")

@@ -16,9 +16,9 @@ from advisor.words.vehicle_time import CLOCK, clock
 
 _LOOKS = ((BLUE, "-"), (ORANGE, "--"), (BLACK, ":"), (GREY, "-."))
 _BINS = 500
-"""Number of stretches of a drawn field."""
+"""Number of bins in which a field is drawn."""
 _SCALE_IN = 0.6
-"""Width of each further scale, inches."""
+"""Width of the scale of each field after the first, inches."""
 _WIDTH_IN = 7.4
 
 

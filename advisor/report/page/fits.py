@@ -23,7 +23,7 @@ _EXPLAINED = (
     "A pattern in the residual shows an effect that the model lacks."
 )
 _SMALL = ("alpha", "q", "p", "r")
-"""Outputs in a small picture."""
+"""Outputs that a small picture shows."""
 
 _FEW = 8
 """Largest number of small pictures in rows of four. More pictures are in rows of six, so that thirty fill one
@@ -42,7 +42,7 @@ def fits(content: Content) -> Iterator[Block]:
 def fit_blocks(
     maneuvers: Sequence[JudgedManeuver], controls: Sequence[str], model: str, name: str = "fit"
 ) -> Iterator[Block]:
-    """Yield the best and the worst fit of an axis as large pictures, then all others as small ones.
+    """Yield the best and the worst fit of an axis as large pictures, then all other fits as small pictures.
 
     Parameters
     ----------

@@ -31,9 +31,9 @@ _OF_PITCH, _OF_SIDE, _OF_BOTH = (
 )
 """Channels of the picture for each tested axis, from the top."""
 _BINS, _LAYER_BINS = 500, 120
-"""Number of stretches of a drawn channel, and of a channel shown as a layer."""
+"""Number of bins in which a channel is drawn, as a row and as a layer."""
 _BAND = 0.3
-"""Height of the row of flight modes, relative to that of a channel."""
+"""Height of the row of flight modes, relative to the height of a channel."""
 _MODES = ("#dbe5ef", "#f1e3c8", "#eadcea", "#e4e4e4", "#f5dad4", "#d5ebe9")
 """Colours of the flight modes in their order of appearance."""
 _LETTER_IN, _SCALE_IN, _OUTSIDE_IN = 0.062, 0.5, 1.0
@@ -99,7 +99,7 @@ def _paint(drawing: Drawing, power_on: PowerOn, judged: Sequence[Sequence[Judged
 
 
 def _lay_out(drawing: Drawing) -> None:
-    """Place all rows, with room for a layer's scale on the right."""
+    """Lay out all rows, with room for a layer's scale on the right."""
     engine = drawing.get_layout_engine()
     if isinstance(engine, ConstrainedLayoutEngine):
         engine.set(rect=(0.0, 0.0, 1.0 - _SCALE_IN / drawing.get_figwidth(), 1.0))
@@ -170,7 +170,7 @@ def _mark(axes: Axes, judged: Sequence[JudgedManeuver]) -> None:
 
 
 def _as_judged(channel: Channel, judged: Sequence[JudgedManeuver]) -> Channel:
-    """Return the elevator with the sign of the manoeuvres, where nothing else states a sign."""
+    """Return the elevator with the sign that the manoeuvres use, if no calibration states the sign."""
     flown = [j.maneuver.channels["elevator"] for j in judged if "elevator" in j.maneuver.channels]
     alike = sum(
         float(np.dot(e.y - e.y.mean(), np.interp(e.t, channel.t, channel.y) - channel.y.mean()))
@@ -182,12 +182,13 @@ def _as_judged(channel: Channel, judged: Sequence[JudgedManeuver]) -> Channel:
 
 
 def thinned(channel: Channel, bins: int) -> tuple[FloatArray, FloatArray]:
-    """Return times and values that draw an equal curve from the extremes of each bin, with breaks in gaps.
+    """Return times and values of a shorter curve through the extremes of each bin. The curve has breaks in
+    gaps.
 
     Parameters
     ----------
     bins
-        Number of stretches with equal numbers of samples.
+        Number of bins. All bins have equal numbers of samples.
     """
     t, y = channel.t, channel.y
     if len(t) > 2 * bins:

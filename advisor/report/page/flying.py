@@ -70,7 +70,9 @@ _FILLS = ("#c6dbef", "#e1ecf7", "#f3f7fb")
 _LINES: tuple[Literal["-", "--", ":"], ...] = ("-", "--", ":")
 """Styles of the bounds of Levels 1 to 3, so that a print without colour shows them."""
 _ROOM = 2.0
-"""Least factor from the short period to the ends of the axes, so that nearby bounds are visible."""
+"""Least ratio between the ends of the axes and the short period's values, so that nearby bounds
+are visible.
+"""
 _WIDTH_IN, _HEIGHT_IN = 7.4, 2.6
 _PHONE_IN, _OF_A_PANEL_IN = 3.8, 2.4
 
@@ -89,7 +91,7 @@ def flying_chart(found: Document) -> Figure | None:
 
 
 def _drawn(name: str, found: Document, *, across: bool) -> Callable[[], str]:
-    """Return the chart with its panels in a row, or stacked."""
+    """Return a function that draws the chart with its panels in a row, or stacked for a phone."""
     panels = len(CATEGORIES) + 1
     size = (_WIDTH_IN, _HEIGHT_IN) if across else (_PHONE_IN, _OF_A_PANEL_IN * panels)
     return picture(name, *size, _paint, found, across)

@@ -1,4 +1,4 @@
-"""Section about the sim-to-real gap, if requested: verdict, size, steps, causes."""
+"""Section about the sim-to-real gap: verdict, size, next steps and causes."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -59,7 +59,7 @@ def gap(content: Content) -> Iterator[Block]:
     if steps:
         rows = [("as it is", size["before"]), *((f"+ {name}", after) for name, after in steps)]
         svg = picture("waterfall", 4.4, 0.8 + 0.28 * len(rows), _paint, rows)
-        yield Gallery((Figure(svg, "Gap left as effects are added, one after another.", "half"),))
+        yield Gallery((Figure(svg, "Gap after each effect is added in turn.", "half"),))
     causes = shown_causes(found) if found["verdict"] != "none" else []
     if causes:
         yield Table(
@@ -72,7 +72,8 @@ def gap(content: Content) -> Iterator[Block]:
         title = found["why_heading"]
         yield Table(
             "gap-why",
-            f"{title[0].upper()}{title[1:]}. First the value of the answer, then that of the rival.",
+            f"{title[0].upper()}{title[1:]}. Each reason states the answer's value first, then the rival's "
+            f"value.",
             ("nats", "reason"),
             tuple(reasons),
             frozenset({0}),
@@ -91,12 +92,16 @@ def gap(content: Content) -> Iterator[Block]:
 
 
 def _law(law: Mapping[str, Any] | None) -> Iterator[Block]:
-    """Yield the law without a name, as a sentence and as a curve with its band; nothing without one."""
+    """Yield the missing force or moment that no candidate explains, as a sentence and as a curve with its
+    band.
+    """
     if law is None:
         return
     yield Paragraph(law["text"])
     svg = picture("missing-law", 4.4, 2.4, _paint_law, law)
-    yield Gallery((Figure(svg, "The missing law over the quantity on which it depends most.", "half"),))
+    yield Gallery(
+        (Figure(svg, "Missing force or moment over the variable on which it depends most.", "half"),)
+    )
 
 
 def _paint_law(drawing: Drawing, law: Mapping[str, Any]) -> None:
@@ -131,7 +136,9 @@ def answer(document: Document) -> Iterator[Block]:
 
 
 def shown_causes(document: Document) -> list[Mapping[str, Any]]:
-    """Return the causes with a table row: part of the improved simulator, or of a probability above 0 %."""
+    """Return the causes that get a table row. They are in the improved simulator, or their printed
+    probability is above 0 %.
+    """
     return [cause for cause in document["causes"] if cause["in_model"] or is_shown(cause["probability"])]
 
 

@@ -1,4 +1,6 @@
-"""Picture of the gap: the worst manoeuvre measured and simulated, its residuals, and all manoeuvres small."""
+"""Picture of the gap: the worst manoeuvre measured and simulated, its residuals, and small pictures of all
+manoeuvres.
+"""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -14,7 +16,7 @@ from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import CHANNELS
 
 _ACROSS = 2
-"""Number of channels side by side in a detailed picture; an overview has all in one row."""
+"""Number of channels side by side in a detailed picture. An overview has all channels in one row."""
 _SMALL_ACROSS, _SMALL_ON_A_PHONE = 7, 3
 """Number of small pictures side by side, on a page and on a phone."""
 _WIDTH_IN, _ON_A_PHONE_IN = 7.4, 3.8
@@ -27,7 +29,7 @@ _LEFT_IN, _LABEL_IN, _RIGHT_IN = 0.62, 0.42, 0.06
 _LEGEND_IN, _TITLE_IN = 0.35, 0.25
 """Height of the legend, and of the numbers above the small pictures, inches."""
 _SHOWN_SMALL = ("q", "p")
-"""Channels for the small pictures, of which the first available one is used."""
+"""Channels for the small pictures, in order of preference. The first available channel is drawn."""
 
 Trace = Mapping[str, Any]
 

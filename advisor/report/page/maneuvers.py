@@ -27,7 +27,9 @@ def maneuvers(content: Content) -> Section:
 
 
 def maneuver_row(maneuver: Mapping[str, Any], *, several: bool) -> tuple[str, ...]:
-    """Return number, start, input, mode, verdict and sentence of a manoeuvre, and its log among several."""
+    """Return number, start, input, mode, verdict and sentence of a manoeuvre. With several logs, add the name
+    of its log.
+    """
     accepted = maneuver["verdict"] == "accepted"
     why = [maneuver["sentence"], *(f"note: {note}" for note in maneuver.get("notes", ()))]
     if maneuver.get("excluded_because") is not None:

@@ -1,4 +1,4 @@
-"""Prediction of the last accepted manoeuvre from the earlier ones."""
+"""Prediction of the last accepted manoeuvre from the earlier manoeuvres."""
 
 from collections.abc import Iterator, Mapping
 
@@ -34,7 +34,8 @@ def prediction(content: Content) -> Iterator[Block]:
         yield Paragraph(
             f"A prediction needs at least {FEWEST + 1} accepted manoeuvres."
             if few
-            else "The manoeuvres before the last leave a derivative open, so they predict nothing."
+            else "The manoeuvres before the last do not determine every derivative, so there is no "
+            "prediction."
         )
         return
     last = accepted[-1]
@@ -52,8 +53,9 @@ def _figures(last: JudgedManeuver, predicted: Mapping[str, PredictedOutput]) -> 
         within = np.mean(np.abs(output.measured - output.predicted) <= output.half_of_samples)
         yield Figure(
             svg,
-            f"Manoeuvre {number}, {quantity.symbol}: the prediction's band is ±{widest} at its widest; "
-            f"{100.0 * within:.0f} % of the samples lie within their band.",
+            f"Manoeuvre {number}, {quantity.symbol}: the largest half-width of the prediction's band is "
+            f"{widest}; "
+            f"{100.0 * within:.0f} % of the samples lie within the samples' band.",
             "half",
         )
 

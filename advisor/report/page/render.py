@@ -1,4 +1,4 @@
-"""From the data of a flight to the page, as HTML or Markdown."""
+"""Turn the data of a flight into the page, as HTML or Markdown."""
 
 from functools import partial
 from importlib.resources import files

@@ -59,8 +59,8 @@ def gap(folder: Path, monkeypatch, *arguments: str, content: object = FILE, answ
         ("matlab:", "name the file behind a colon"),
         ("matlab:nowhere/x.m", "there is no folder nowhere"),
         ("matlab:.", "is a folder; name a file in it"),
-        ("aircraft:mine.yaml", "is read or written by this call already"),
-        ("matlab:flight.tlog", "is read or written by this call already"),
+        ("aircraft:mine.yaml", "is already read or written by this command"),
+        ("matlab:flight.tlog", "is already read or written by this command"),
         (
             "ardupilot:plane.txt",
             r"must end in \.json \(coefficients, with the servos in plane\.parm\) or \.parm",
@@ -81,7 +81,7 @@ def test_an_order_that_cannot_be_carried_out_is_refused_before_the_log_is_read(
 
 def test_two_orders_for_one_file_are_refused(tmp_path, monkeypatch):
     result = gap(tmp_path, monkeypatch, "--export", "matlab:x.m", "--export", "sdf:x.m")
-    assert "is read or written by this call already" in str(result.exception)
+    assert "is already read or written by this command" in str(result.exception)
 
 
 @pytest.mark.parametrize("order", ["sdf:x.sdf", "ardupilot:x.json"])
@@ -104,7 +104,7 @@ def test_without_a_flight_there_is_nothing_to_export(tmp_path, monkeypatch):
     result = CliRunner().invoke(
         cli.advisor, ["gap", "--foresee", "--export", "matlab:x.m"], standalone_mode=False
     )
-    assert "--export has a meaning without --foresee only" in str(result.exception)
+    assert "--export applies only without --foresee" in str(result.exception)
 
 
 def test_the_document_lists_the_files_written_and_what_they_do_not_carry(tmp_path, monkeypatch):

@@ -20,7 +20,7 @@ from advisor.words.vehicle_time import CLOCK
 
 @section("roll-and-yaw", "Roll and yaw")
 def lateral(content: Content) -> Iterator[Block]:
-    """Yield roll and yaw; nothing where no aileron and no rudder was flown."""
+    """Yield the section on roll and yaw; nothing if neither aileron nor rudder was flown."""
     state = content.state.lateral
     if state is None or not state.maneuvers:
         return

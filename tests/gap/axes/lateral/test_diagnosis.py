@@ -106,7 +106,7 @@ def test_without_a_simulator_the_screen_has_neither_probabilities_nor_a_gap_befo
     assert "aileron actuator backlash" not in text
     assert "before" not in text
     assert "▲" not in text
-    assert "Nuisance parameters of the fit, no part of the answer:" in text
+    assert "Nuisance parameters of the fit, which are not part of the answer:" in text
     assert "rudder lag 60.0 ± 5.9 ms" in text
     assert "airspeed excess 3.0 ± 2.0 %" in text
 
@@ -118,7 +118,7 @@ def test_an_undecided_answer_is_not_decided_in_the_document_and_has_the_flight_t
     assert document["title"] == "NOT DECIDED BETWEEN NOTHING TO CORRECT AND AILERON ACTUATOR BACKLASH"
     (step,) = document["next"]
     assert step["text"].startswith(
-        "To separate nothing to correct from aileron actuator backlash: fly as many"
+        "To separate nothing to correct from aileron actuator backlash: fly the same"
     )
     assert axis_document(FOUND)["decided"] is True
     assert axis_document(FOUND)["next"] == []
