@@ -109,13 +109,13 @@ def maneuvers_of(
 
 def _on_one_clock(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
     """Return the manoeuvres with continuous times, also after a restart of the vehicle's clock."""
-    found: list[Maneuver] = []
+    on_clock: list[Maneuver] = []
     ahead = 0.0
     for maneuver in maneuvers:
-        if found and maneuver.span.record_from_s + ahead < found[-1].span.end_s:
-            ahead = found[-1].span.end_s + _PAUSE_S - maneuver.span.record_from_s
-        found.append(maneuver.later(ahead) if ahead else maneuver)
-    return found
+        if on_clock and maneuver.span.record_from_s + ahead < on_clock[-1].span.end_s:
+            ahead = on_clock[-1].span.end_s + _PAUSE_S - maneuver.span.record_from_s
+        on_clock.append(maneuver.later(ahead) if ahead else maneuver)
+    return on_clock
 
 
 def compare_logs(
@@ -170,17 +170,17 @@ def compare_flown(
             compared = replace(compared, diagnosis=agreeing(compared.diagnosis, logged))
     else:
         whole = stays = examine(chosen.maneuvers, at_true_speed, holdout, progress, prior)
-        told = whole.diagnosis
+        diagnosis = whole.diagnosis
         if prior_derivatives(aircraft) is None:
-            told = without_simulator(told, aircraft)
-        elif changes_something(told):
+            diagnosis = without_simulator(diagnosis, aircraft)
+        elif changes_something(diagnosis):
             progress("measuring the shrink on manoeuvres kept apart", 0.9)
             unseen = unseen_of(whole, holdout)
             if unseen is not None:
                 stays = with_unseen_shrink(whole, unseen, at_true_speed)
-                told = stays.diagnosis
-        told = with_static_errors(told, whole)
-        compared = Compared(told, aircraft, stays.findings)
+                diagnosis = stays.diagnosis
+        diagnosis = with_static_errors(diagnosis, whole)
+        compared = Compared(diagnosis, aircraft, stays.findings)
     notes = [*chosen.notes, *flown.notes]
     if flown.again:
         every = len(flown.maneuvers) + flown.again
@@ -190,11 +190,11 @@ def compare_flown(
     structured = _structured(chosen.maneuvers, aircraft)
     every_note = (*notes, *compared.diagnosis.notes)
     air = replace(air, excess=compared.diagnosis.airspeed_excess)
-    found = replace(
+    noted = replace(
         compared.diagnosis, notes=every_note, air=air, structured=structured,
         although_refused=chosen.although_refused,
     )  # fmt: skip
-    return replace(compared, diagnosis=found)
+    return replace(compared, diagnosis=noted)
 
 
 def _structured(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estimate | None:

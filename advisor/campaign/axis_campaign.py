@@ -10,10 +10,9 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.single_maneuver import failed, objection
 from advisor.campaign.state import JudgedManeuver
 from advisor.decision.course import CriterionCourse
-from advisor.decision.heard import Heard
+from advisor.decision.heard import Heard, revision
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.judge import judge_campaign
-from advisor.decision.revised import revision
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
@@ -83,6 +82,11 @@ class AxisCampaign(ABC):
         self.decide()
         self._hear()
 
+    def take_better(self, maneuver: Maneuver, because: str | None) -> None:
+        """Replace a manoeuvre's record by a better one; exclude the manoeuvre if a reason is given."""
+        self._replace(maneuver)
+        self.exclude(maneuver.number, because)
+
     def decide(self) -> None:
         """Judge all manoeuvres, and decide again whether to stop."""
         self._judge()
@@ -123,6 +127,18 @@ class AxisCampaign(ABC):
         flown.exclude(by_hand.excluded_because(maneuver))
         self._flown.append(flown)
 
+    def _replace(self, maneuver: Maneuver) -> None:
+        """Examine a new record of a manoeuvre, and replace the record with the same number."""
+        flown = self._of(maneuver.number)
+        flown.maneuver = maneuver
+        self._examine(flown)
+
+    def _examine(self, flown: Flown) -> None:
+        """Estimate and examine a manoeuvre again. An exclusion of the manoeuvre remains."""
+        because = flown.examined.excluded_because
+        flown.examined = self._assessed(flown.maneuver)
+        flown.exclude(because)
+
     def _assessed(self, maneuver: Maneuver) -> CandidateManeuver:
         """Return an examined manoeuvre; one without an estimate after a fault of the advisor."""
         part = f"{self.axis}, manoeuvre {maneuver.number}"
@@ -131,7 +147,7 @@ class AxisCampaign(ABC):
     def _hear(self) -> None:
         """Record the verdicts and criteria that are announced to the crew after the newest manoeuvre."""
         self._note_revisions()
-        usable = [i for i, one in enumerate(self._flown) if one.examined.usable]
+        usable = [i for i, flown in enumerate(self._flown) if flown.examined.usable]
         self._heard.append(Heard.of(self.flight_test, usable))
 
     def _of(self, number: int) -> Flown:
@@ -148,7 +164,7 @@ class AxisCampaign(ABC):
     @property
     def _still_heard(self) -> Sequence[Heard]:
         """Return announced criteria; none after an exclusion by hand, which repeats every decision."""
-        excluded = any(one.examined.excluded_because is not None for one in self._flown)
+        excluded = any(flown.examined.excluded_because is not None for flown in self._flown)
         return () if excluded else self._heard
 
     def _judge(self) -> None:
@@ -175,7 +191,7 @@ class AxisCampaign(ABC):
                 self._revised.append(f"manoeuvre {flown.maneuver.number}: {said}")
         if self._revised:
             self.judged = tuple(
-                flown.judged(one.verdict) for flown, one in zip(self._flown, self.judged, strict=True)
+                flown.judged(judged.verdict) for flown, judged in zip(self._flown, self.judged, strict=True)
             )
         self._spoken = self.judged
 
@@ -188,5 +204,5 @@ class AxisCampaign(ABC):
         """Accept no manoeuvre after a failed part, and continue."""
         why = objection(part)
         verdict = ManeuverVerdict(False, why.text, (why,), {})
-        self.judged = tuple(one.judged(verdict) for one in self._flown)
+        self.judged = tuple(flown.judged(verdict) for flown in self._flown)
         self.flight_test = self._decided((), ())

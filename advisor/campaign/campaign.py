@@ -131,14 +131,15 @@ class Campaign:
         self._parts = Parts(lambda failed: self._journal.write(str(failed.problem)))
         self._elevator = ElevatorCampaign(aircraft, self._journal.write, self._parts)
         self._lateral = LateralCampaign(aircraft, self._parts, advises) if lateral else None
-        self._aircraft = aircraft
-        self._tell = tell
-        self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names, lateral)
-        axes: Mapping[AxisName, AxisCampaign] = {
+        self._axes: Mapping[AxisName, AxisCampaign] = {
             "pitch": self._elevator,
             "lateral": self._lateral or self._elevator,
         }
-        self._engineer = Engineer(self._flights, self._journal, axes, by_hand)
+        """Campaign of each axis; without roll and yaw, both are the elevator's."""
+        self._aircraft = aircraft
+        self._tell = tell
+        self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names, lateral)
+        self._engineer = Engineer(self._flights, self._journal, self._axes, by_hand)
         self._aside: Aside[ManeuverJudged] = Aside(aside)
         self._arriving: Aside[Arriving | None] = Aside(aside)
         self._newest_arrived: Arriving | None = None
@@ -154,13 +155,13 @@ class Campaign:
     def feed(self, columns: Sequence[Columns]) -> list[CampaignEvent]:
         """Process the next messages, in order of arrival. The result does not depend on how the messages are
         grouped."""
-        told = self._take(self._flights.feed(columns))
+        events = self._take(self._flights.feed(columns))
         if (enough := self._enough()) is not None:
-            told.append(enough)
+            events.append(enough)
             if self._tell is not None:
                 self._tell(enough)
         self._engineer.repeat_remarks()
-        return told
+        return events
 
     @property
     def is_judging(self) -> bool:
@@ -186,16 +187,16 @@ class Campaign:
         """End the stream: a manoeuvre without only its quiet end is still used."""
         if self._stream.marks.by_hand_since_s is not None:
             self._engineer.end_maneuver()
-        told = self._take(self._flights.finish())
+        events = self._take(self._flights.finish())
         self.wait()
-        told += self._take(())
+        events += self._take(())
         self._ended = True
         for campaign in filter(None, (self._elevator, self._lateral)):
             campaign.finish()
-            told += self._revised_at_the_end(campaign)
+            events += self._revised_at_the_end(campaign)
         for problem in self._stream.marks.problems():
             self._journal.write(str(problem))
-        return told
+        return events
 
     @property
     def state(self) -> CampaignState:
@@ -203,7 +204,7 @@ class Campaign:
         stream, flights = self._stream, self._flights
         flying, channels = flights.so_far(), stream.channels
         heard = flights.heard(channels, self._ended)
-        unknown = [one.sides_unknown for one in heard]
+        unknown = [flight.sides_unknown for flight in heard]
         self._outputs_unknown = unknown[-1] if all(unknown) else None
         shown = self._so_far()
         settled = self._settled(flying, shown)
@@ -329,10 +330,10 @@ class Campaign:
 
         Manoeuvres of aileron and rudder do not need the elevator's messages.
         """
-        found = self._flights.problems()
+        problems = self._flights.problems()
         if self._lateral is None or not self._lateral.maneuvers:
-            return found
-        return [problem for problem in found if problem.code not in OF_ELEVATOR]
+            return problems
+        return [problem for problem in problems if problem.code not in OF_ELEVATOR]
 
     def log(self, sentence: str) -> None:
         """Write a sentence from outside the campaign, such as a link's report, into the event log."""
@@ -394,10 +395,10 @@ class Campaign:
 
     def _revised_at_the_end(self, half: AxisCampaign) -> list[CampaignEvent]:
         """Log the verdicts that the estimate of all manoeuvres together has changed."""
-        told = [Notice("verdict_revised", said) for said in half.take_revisions()]
-        for notice in told:
+        notices = [Notice("verdict_revised", said) for said in half.take_revisions()]
+        for notice in notices:
             self._journal.take(notice)
-        return [*told]
+        return [*notices]
 
     @property
     def _plan(self) -> CrewPlan | None:
@@ -411,24 +412,22 @@ class Campaign:
     def _heard_again(self, event: ManeuverAgain) -> list[CampaignEvent]:
         """Keep the better record of a manoeuvre that arrived twice; an exclusion of either remains."""
         self.wait()
-        maneuver = event.maneuver
+        maneuver, half = event.maneuver, self._axes[event.axis]
         where = f" in {self._flights.name}" if self._flights.name else ""
         better = "; this record holds more and takes the place" if event.takes_place else ""
         self._journal.write_of_past(
-            f"manoeuvre {maneuver.number} ({clock(maneuver.span.start_s)}) comes again{where}: "
-            f"it counts once{better}",
+            f"{OF[event.axis]}manoeuvre {maneuver.number} ({clock(maneuver.span.start_s)}) comes again{where}"
+            f": it counts once{better}",
             maneuver.span.end_s,
         )
-        known = self._elevator.numbered(maneuver.number).excluded_because
-        because = known if known is not None else self._engineer.decided.excluded_because(maneuver)
+        before = half.numbered(maneuver.number).excluded_because
+        because = before if before is not None else self._engineer.decided.excluded_because(maneuver)
         if not event.takes_place:
-            if because != known:
-                self._elevator.exclude(maneuver.number, because)
+            if because != before:
+                half.exclude(maneuver.number, because)
             return []
-        self._elevator.take_better(maneuver, because)
-        return [
-            ManeuverJudged(self._elevator.numbered(maneuver.number), self._elevator.flight_test, self._plan)
-        ]
+        half.take_better(maneuver, because)
+        return [ManeuverJudged(half.numbered(maneuver.number), half.flight_test, self._plan, half.axis)]
 
     def _count_anew(self, event: ElevatorRescaled) -> list[CampaignEvent]:
         """Scale earlier manoeuvres by an elevator limit that arrived late, so that all use one scale."""

@@ -3,8 +3,8 @@
 import math
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.air_speed import is_speed_carried
 from advisor.decision.axes.judge_pitch import judge_pitch, natural_period
-from advisor.decision.carried_speed import is_speed_carried
 from advisor.decision.envelope import with_gap
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.verdict import Reason

@@ -51,7 +51,7 @@ def command(asked: LogsAsked, log: Path, file: Path, junit: Path | None, write: 
     if write:
         return _write(asked, aircraft, file)
     from advisor.expectations.document import expect_document
-    from advisor.expectations.junit import junit as junit_report
+    from advisor.expectations.document import junit as junit_report
     from advisor.expectations.read import read_expectations
 
     expected = read_expectations(file, aircraft)

@@ -1,14 +1,18 @@
 """``advisor serve``: the screens in a browser."""
 
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from advisor.cli import live, replay
 from advisor.process.interrupt import in_order
+
+if TYPE_CHECKING:
+    from advisor.web.serving import PageAddress
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -66,20 +70,20 @@ def _web_options(command: F) -> F:
     return command
 
 
+def _placed(options: dict[str, Any], watch_only: bool = False) -> "AbstractContextManager[PageAddress]":
+    """Take the options of the web away from those of a command, and reserve the port."""
+    from advisor.web.serving import place
+
+    asked = {name: options.pop(name) for name in ("host", "port", "password_file", "origin", "viewers")}
+    return place(**asked, watch_only=watch_only)
+
+
 @command.command("live", params=list(live.command.params))
 @_web_options
 @click.option(
     "--watch-only", is_flag=True, help="Allow no page to decide by hand or to send requests on the link."
 )
-def on_link(
-    host: str,
-    port: int,
-    password_file: Path | None,
-    origin: str | None,
-    viewers: int,
-    watch_only: bool,
-    **options: Any,
-) -> None:
+def on_link(watch_only: bool, **options: Any) -> None:
     """Advise on a live link, in browsers. All pages show one campaign on one link.
 
     The link is opened once for all pages, and is recorded as in advisor live. All pages show a mark or an
@@ -91,24 +95,16 @@ def on_link(
       advisor serve live --master udpin:0.0.0.0:14550 --aircraft my-aircraft.yaml
       advisor serve live --resume --host 0.0.0.0 --password-file crew.txt --watch-only
     """
-    from advisor.web.serving import place, serve
+    from advisor.web.serving import serve
 
     assert live.command.callback is not None
-    with place(host, port, password_file, origin, viewers, watch_only) as here:
+    with _placed(options, watch_only) as here:
         live.command.callback(**options, show=partial(serve, here))
 
 
 @command.command("replay", params=list(replay.command.params))
 @_web_options
-def of_logs(
-    logs: Sequence[Path],
-    host: str,
-    port: int,
-    password_file: Path | None,
-    origin: str | None,
-    viewers: int,
-    **options: Any,
-) -> None:
+def of_logs(logs: Sequence[Path], **options: Any) -> None:
     """Replay logs in browsers. Each page has a replay of its own, with its own pause, speed and marks.
 
     A decision by hand is lost when its page is closed. Nothing is written to the folder of the log.
@@ -117,11 +113,11 @@ def of_logs(
     Example:
       advisor serve replay logs/arduplane-calm.tlog --speed 10
     """
-    from advisor.web.serving import place, serve
+    from advisor.web.serving import serve
 
     assert replay.command.callback is not None
     _refuse_unreadable(logs)
-    with place(host, port, password_file, origin, viewers) as here, in_order():
+    with _placed(options) as here, in_order():
         replay.command.callback(logs, **options, show=partial(serve, here))
 
 

@@ -9,7 +9,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.carried_speed import is_speed_carried
+from advisor.decision.air_speed import is_speed_carried
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.hand_flying import OTHER_CONTROLS_DEG, THROTTLE_PERCENT
 from advisor.flight.maneuvers.maneuver import Maneuver, Span

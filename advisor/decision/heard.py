@@ -10,7 +10,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from math import inf
 
-from advisor.decision.verdict import FlightTestVerdict, Remaining, RuleProgress
+from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict, Remaining, RuleProgress
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +31,8 @@ class Heard:
         """Return the criterion of every rule in a verdict on the newest manoeuvre."""
         rules = verdict.by_rule.items()
         return cls(
-            {rule: one.now_percent for rule, one in rules},
-            frozenset(rule for rule, one in rules if one.holds),
+            {rule: progress.now_percent for rule, progress in rules},
+            frozenset(rule for rule, progress in rules if progress.holds),
             frozenset(usable),
             verdict.next.remaining if verdict.next is not None else None,
         )
@@ -41,7 +41,7 @@ class Heard:
 def first_stop(heard: Sequence[Heard], rule: str) -> int | None:
     """Return the number of manoeuvres at the first stop of a rule that the crew heard; None without a
     stop."""
-    return next((n for n, one in enumerate(heard, start=1) if rule in one.stops), None)
+    return next((n for n, earlier in enumerate(heard, start=1) if rule in earlier.stops), None)
 
 
 def stays(heard: Sequence[Heard], rule: str, usable: AbstractSet[int]) -> bool:
@@ -50,27 +50,27 @@ def stays(heard: Sequence[Heard], rule: str, usable: AbstractSet[int]) -> bool:
     return stopped is not None and heard[stopped - 1].usable <= usable
 
 
-def as_heard(found: RuleProgress, rule: str, heard: Sequence[Heard]) -> RuleProgress:
+def as_heard(progress: RuleProgress, rule: str, heard: Sequence[Heard]) -> RuleProgress:
     """Return the progress of a rule with the history that the crew heard.
 
     Parameters
     ----------
     heard
         Criterion that the crew heard after each of the first manoeuvres. All other fields are equal to those
-        of ``found``.
+        of ``progress``.
     """
-    n, flown = len(heard), len(found.hindsight_percent)
+    n, flown = len(heard), len(progress.hindsight_percent)
     stopped = first_stop(heard, rule)
-    if stopped is None and found.hindsight_stopped_at is not None:
+    if stopped is None and progress.hindsight_stopped_at is not None:
         # A stop that only the newest estimates show is heard now, after the newest manoeuvre.
-        stopped = found.hindsight_stopped_at if found.hindsight_stopped_at > n else None
-        stopped = flown if stopped is None and found.holds else stopped
-    told = tuple(one.percent.get(rule) for one in heard)
-    return replace(found, stopped_at=stopped, history_percent=(*told, *found.hindsight_percent[n:]))
+        stopped = progress.hindsight_stopped_at if progress.hindsight_stopped_at > n else None
+        stopped = flown if stopped is None and progress.holds else stopped
+    said = tuple(earlier.percent.get(rule) for earlier in heard)
+    return replace(progress, stopped_at=stopped, history_percent=(*said, *progress.hindsight_percent[n:]))
 
 
 def spoken_after(
-    before: Heard | None, found: Remaining | None, rule: str, now: float | None
+    before: Heard | None, forecast: Remaining | None, rule: str, now: float | None
 ) -> Remaining | None:
     """Return the forecast to speak: a number whenever there was one before.
 
@@ -81,21 +81,21 @@ def spoken_after(
     ----------
     before
         Criterion that the crew heard after the manoeuvre before the newest one.
-    found
+    forecast
         Forecast from the present estimates; None without one.
     rule, now
         Rule that decides, and its present criterion, per cent.
     """
     last = before.remaining if before is not None else None
     if before is None or last is None or last.median is None:
-        return found
+        return forecast
     expected = max(last.median - 1, 1)
     most = None if last.p90 is None else max(last.p90 - 1, 1)
-    if found is None:
+    if forecast is None:
         return Remaining(expected, most, "the newest manoeuvre tells no other number")
-    if found.median is not None and (most is None or _most(found) <= most):
-        return found
-    return replace(found, why=_why(before.percent.get(rule), now))
+    if forecast.median is not None and (most is None or _most(forecast) <= most):
+        return forecast
+    return replace(forecast, why=_why(before.percent.get(rule), now))
 
 
 def _most(forecast: Remaining) -> float:
@@ -108,3 +108,30 @@ def _why(before: float | None, now: float | None) -> str:
     if before is None or now is None or now <= before:
         return "the newest manoeuvre taught less than foretold"
     return f"the criterion rose from {before:.0f} to {now:.0f} %"
+
+
+def revision(before: ManeuverVerdict, after: ManeuverVerdict, newest: int) -> str:
+    """Return a sentence about a verdict that changed; empty where the manoeuvre is judged as before.
+
+    Parameters
+    ----------
+    before, after
+        Verdict that the crew heard, and the present verdict on the same manoeuvre.
+    newest
+        Number of the newest manoeuvre, whose data changed the verdict.
+    """
+    if before.accepted == after.accepted:
+        return ""
+    if after.accepted:
+        return f"refused before, accepted since manoeuvre {newest}: it no longer {_fault(before)}"
+    return f"accepted before, refused since manoeuvre {newest}: {_objection(after)}"
+
+
+def _objection(refused: ManeuverVerdict) -> str:
+    return refused.reasons[0].text if refused.reasons else refused.sentence
+
+
+def _fault(refused: ManeuverVerdict) -> str:
+    """Return the former objection without its remedy, as a clause."""
+    said = _objection(refused).partition("; ")[0]
+    return said if said.startswith("contradicts") else f"counts against it that {said}"

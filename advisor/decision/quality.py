@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.decision.air_speed import leaping_speed
 from advisor.decision.envelope import (
     above,
     changed_speed,
@@ -24,7 +25,6 @@ from advisor.decision.envelope import (
     not_heard,
     short_response,
 )
-from advisor.decision.leaping_speed import leaping_speed
 from advisor.decision.response import Response, explained_share, half_range
 from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver

@@ -105,13 +105,13 @@ def document_of(
 def diagnose_elsewhere(task: GapTask) -> Document:
     """Diagnose the gap in another process. The call returns when the process has ended."""
     with start_child("advisor.session.diagnosis") as process:
-        told, _ = process.communicate(pickle.dumps(task))
-    if process.returncode or not told:
+        answer, _ = process.communicate(pickle.dumps(task))
+    if process.returncode or not answer:
         from advisor.report.gap_document import gap_document
 
         said = f"The process of the diagnosis ended with exit code {process.returncode}."
         return gap_document(None, [Problem("diagnosis", said, "Run advisor gap in another terminal.")])
-    document: Document = pickle.loads(told)
+    document: Document = pickle.loads(answer)
     return document
 
 

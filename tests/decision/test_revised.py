@@ -1,6 +1,6 @@
 """A verdict that changes has a sentence of its own, with the reason."""
 
-from advisor.decision.revised import revision
+from advisor.decision.heard import revision
 from advisor.decision.verdict import ManeuverVerdict, Reason
 
 ACCEPTED = ManeuverVerdict(True, "ACCEPTED: good manoeuvre", (), {})

@@ -7,10 +7,10 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.expectations.check import check
+from advisor.expectations.document import junit
 from advisor.expectations.draft import draft
 from advisor.expectations.expected import Expectations, Near
 from advisor.expectations.flown import Flown, Measured
-from advisor.expectations.junit import junit
 from advisor.expectations.modes import mode_of
 from advisor.expectations.read import read_expectations
 from advisor.model.axes.lateral import Trim

@@ -60,9 +60,9 @@ def compare_side_flown(
     progress("comparing", 1.0)
     assert state.lateral is not None
     as_logged = compared is accepted and against is aircraft
-    found = answered(compare_side(compared, against, prior, state.lateral.model, as_logged))
-    found = replace(found, traces=side_traces(found.traces, accepted, compared))
-    return SideCompared(found, state, aircraft, accepted)
+    diagnosis = answered(compare_side(compared, against, prior, state.lateral.model, as_logged))
+    diagnosis = replace(diagnosis, traces=side_traces(diagnosis.traces, accepted, compared))
+    return SideCompared(diagnosis, state, aircraft, accepted)
 
 
 def side_traces(
@@ -182,24 +182,24 @@ def _identified(log: Path, aircraft: Aircraft) -> Aircraft:
     if not log.is_file():
         raise ConfigurationError(f"--simulator log:{log}: there is no such file; name the simulator's log.")
     flown = accepted_of(read_whole([log], aircraft, no_marks=True, axis="lateral").state)
-    found = answered(estimate_lateral(flown, aircraft))
-    return with_derivatives(aircraft, found, found.airspeed_m_s)
+    estimate = answered(estimate_lateral(flown, aircraft))
+    return with_derivatives(aircraft, estimate, estimate.airspeed_m_s)
 
 
 def with_derivatives(aircraft: Aircraft, estimate: Estimate, airspeed_m_s: float | None) -> Aircraft:
     """Return the aircraft file with the identifiable derivatives of an estimate, at a given air speed."""
-    told = zip(SIDE_PARAMETERS, estimate.theta.tolist(), strict=True)
-    model = {name: value for name, value in told if name not in estimate.not_identifiable}
+    values = zip(SIDE_PARAMETERS, estimate.theta.tolist(), strict=True)
+    model = {name: value for name, value in values if name not in estimate.not_identifiable}
     return replace(aircraft, model=model, reference_airspeed_m_s=airspeed_m_s)
 
 
-_Found = TypeVar("_Found")
+_Answer = TypeVar("_Answer")
 
 
 def answered(
-    found: _Found | NoEstimate, fix: str = "Fly an aileron doublet and a rudder doublet.", option: str = ""
-) -> _Found:
+    answer: _Answer | NoEstimate, fix: str = "Fly an aileron doublet and a rudder doublet.", option: str = ""
+) -> _Answer:
     """Return the gap found, or refuse manoeuvres without one; ``option`` begins the message."""
-    if isinstance(found, NoEstimate):
-        raise UnusableInputError(found.code, f"{option}{found.text}", fix)
-    return found
+    if isinstance(answer, NoEstimate):
+        raise UnusableInputError(answer.code, f"{option}{answer.text}", fix)
+    return answer

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.axis_campaign import AxisCampaign, Flown
+from advisor.campaign.axis_campaign import AxisCampaign
 from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.instruments import as_known_by
 from advisor.campaign.joint_estimate import NEWEST, Together
@@ -39,11 +39,6 @@ class ElevatorCampaign(AxisCampaign):
         self._say = say
         self._together = Together(aircraft)
 
-    def take_better(self, maneuver: Maneuver, because: str | None) -> None:
-        """Replace a manoeuvre's record by a better one; exclude the manoeuvre if a reason is given."""
-        self._replace(maneuver)
-        self.exclude(maneuver.number, because)
-
     def count_anew(self, again: Recount) -> None:
         """Scale manoeuvres by an elevator limit that arrived late, and omit those that become useless."""
         for maneuver in again.anew:
@@ -72,18 +67,6 @@ class ElevatorCampaign(AxisCampaign):
         return self._parts.make(
             "pitch, joint estimate", lambda: self._together.estimate(joined), lambda _: None
         )
-
-    def _replace(self, maneuver: Maneuver) -> None:
-        """Examine a new record of a manoeuvre, and replace the record with the same number."""
-        flown = self._of(maneuver.number)
-        flown.maneuver = maneuver
-        self._examine(flown)
-
-    def _examine(self, flown: Flown) -> None:
-        """Estimate and examine a manoeuvre again. An exclusion of the manoeuvre remains."""
-        because = flown.examined.excluded_because
-        flown.examined = self._assessed(flown.maneuver)
-        flown.exclude(because)
 
     def _examined(self, maneuver: Maneuver) -> CandidateManeuver:
         """Estimate and examine one manoeuvre with the instruments' values from the other manoeuvres."""

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.axis_campaign import AxisCampaign
+from advisor.campaign.axis_campaign import AxisCampaign, Flown
 from advisor.campaign.joint_estimate import NEWEST
 from advisor.campaign.single_maneuver import untold
 from advisor.campaign.state import LateralState
@@ -58,6 +58,10 @@ class LateralCampaign(AxisCampaign):
             responses=tuple(RESPONSES[control].output for control in controls),
         )
 
+    def _examine(self, flown: Flown) -> None:
+        super()._examine(flown)
+        self._joint = None  # it holds the former record
+
     def state(self, unknown: Problem | None = None) -> LateralState:
         """Return the lateral state after the newest manoeuvre; the identical object until a manoeuvre is
         added.
@@ -102,7 +106,9 @@ class LateralCampaign(AxisCampaign):
     @property
     def _inputs(self) -> list[FlownInput]:
         """Inputs of all lateral manoeuvres, accepted or not."""
-        return [FlownInput.of(one.maneuver, one.verdict.reasons, one.estimate) for one in self.judged]
+        return [
+            FlownInput.of(judged.maneuver, judged.verdict.reasons, judged.estimate) for judged in self.judged
+        ]
 
     @property
     def _controls(self) -> tuple[str, ...]:
@@ -142,7 +148,7 @@ class LateralCampaign(AxisCampaign):
 
     def _joined(self) -> tuple[int, ...]:
         """Return indices of manoeuvres in the joint estimate: newest accepted in flight; all at the end."""
-        accepted = [i for i, one in enumerate(self.judged) if one.verdict.accepted]
+        accepted = [i for i, judged in enumerate(self.judged) if judged.verdict.accepted]
         if self._ended:
             return tuple(accepted)
         kept: set[int] = set()

@@ -62,12 +62,12 @@ class LateralLevels:
     @property
     def governing(self) -> LevelFound:
         """Level of the worst mode."""
-        found = self.by_mode.values()
+        levels = self.by_mode.values()
         return LevelFound(
             self.category,
-            max(one.level for one in found),
-            max(one.best_level for one in found),
-            max(one.worst_level for one in found),
+            max(level.level for level in levels),
+            max(level.best_level for level in levels),
+            max(level.worst_level for level in levels),
         )
 
 
@@ -92,17 +92,17 @@ def lateral_levels(modes: LateralModes) -> tuple[LateralLevels, ...]:
 
 def _values(modes: LateralModes) -> dict[Mode, list[Measured]]:
     """Return the parameters of each mode in the order of its limits."""
-    found: dict[Mode, list[Measured]] = {}
+    values: dict[Mode, list[Measured]] = {}
     zeta, omega = modes.dutch_roll_zeta, modes.dutch_roll_omega
     if zeta is not None and omega is not None:
         (low, high), (slow, fast) = zeta.ci95, omega.ci95
         product = zeta.value * omega.value, (low * slow, high * fast)
-        found["dutch_roll"] = [(zeta.value, zeta.ci95), product, (omega.value, omega.ci95)]
+        values["dutch_roll"] = [(zeta.value, zeta.ci95), product, (omega.value, omega.ci95)]
     if (roll := modes.roll_time_constant) is not None:
-        found["roll"] = [(roll.value, roll.ci95)]
+        values["roll"] = [(roll.value, roll.ci95)]
     if (spiral := modes.spiral_pole) is not None:
-        found["spiral"] = [(spiral.value, spiral.ci95)]
-    return found
+        values["spiral"] = [(spiral.value, spiral.ci95)]
+    return values
 
 
 def _limits(mode: Mode, group: Group, category: Category) -> list[list[Range]]:

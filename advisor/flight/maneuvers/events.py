@@ -6,6 +6,7 @@ from math import nan
 from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.axes import AxisName
 from advisor.words.printable import printable
 from advisor.words.problems import Problem
 
@@ -72,6 +73,7 @@ class ManeuverAgain:
     """New record of the manoeuvre, with the known number."""
     takes_place: bool
     """Whether the new record has more samples than the known one, and replaces it."""
+    axis: AxisName = "pitch"
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,6 +25,7 @@ from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.one_aircraft import OneAircraft
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.axes import AXES, AxisName
 from advisor.words.problems import Problem
 
 
@@ -72,8 +73,7 @@ class Flights:
         self._lateral = lateral
         self._aircraft, self._target_system = aircraft, target_system
         self._marks, self._names = tuple(marks), tuple(names) if len(names) > 1 else ()
-        self._found: list[Maneuver] = []
-        self._side_found: list[Maneuver] = []
+        self._recorded: dict[AxisName, list[Maneuver]] = {axis: [] for axis in AXES}
         self._past: list[FlightHeard] = []
         self._notes: list[str] = []
         self._one_aircraft = OneAircraft()
@@ -100,7 +100,7 @@ class Flights:
     def so_far(self) -> Maneuver | None:
         """Return the present manoeuvre, cut at the newest sample; None between manoeuvres."""
         flying = self.stream.so_far() if self._foreign is None else None
-        return flying and replace(flying, number=len(self._found) + 1, flight=self.flight)
+        return flying and replace(flying, number=len(self._recorded["pitch"]) + 1, flight=self.flight)
 
     def problems(self) -> list[Problem]:
         """Return the reasons why none of the flights so far can be used; empty if one can."""
@@ -109,7 +109,9 @@ class Flights:
             return []
         name = self._name(self.flight)
         here = [replace(p, text=f"{name}: {p.text}") for p in now] if name else now
-        before = [replace(p, text=f"{one.name}: {p.text}") for one in self._past for p in one.problems]
+        before = [
+            replace(p, text=f"{flight.name}: {p.text}") for flight in self._past for p in flight.problems
+        ]
         return [*before, *here]
 
     def feed(self, columns: Sequence[Columns]) -> list[FlightEvent]:
@@ -172,9 +174,9 @@ class Flights:
         for event in events:
             match event:
                 case ManeuverFlown(maneuver):
-                    through.append(self._once(replace(maneuver, flight=self.flight)))
+                    through.append(self._once(maneuver, "pitch", ManeuverFlown))
                 case SideManeuverFlown(maneuver):
-                    through += self._side_once(replace(maneuver, flight=self.flight))
+                    through.append(self._once(maneuver, "lateral", SideManeuverFlown))
                 case Activity() | ElevatorRescaled():
                     through.append(replace(event, flight=self.flight))
                 case VehicleFound(vehicle):
@@ -185,26 +187,21 @@ class Flights:
                     through.append(event)
         return through
 
-    def _once(self, maneuver: Maneuver) -> FlightEvent:
-        """Return the event of a manoeuvre, new or known, with its number in the campaign."""
-        for i, known in enumerate(self._found):
-            if known.power_on != maneuver.power_on and are_one(maneuver, known):
+    def _once(
+        self, maneuver: Maneuver, axis: AxisName, new: type[ManeuverFlown | SideManeuverFlown]
+    ) -> FlightEvent:
+        """Return the event of a manoeuvre of an axis, new or recorded before, with its campaign's number."""
+        maneuver, recorded = replace(maneuver, flight=self.flight), self._recorded[axis]
+        for i, before in enumerate(recorded):
+            if before.power_on != maneuver.power_on and are_one(maneuver, before):
                 self._again += 1
-                again = replace(maneuver, number=known.number)
-                takes_place = is_fuller(again, known)
+                again = replace(maneuver, number=before.number)
+                takes_place = is_fuller(again, before)
                 if takes_place:
-                    self._found[i] = again
-                return ManeuverAgain(again, takes_place)
-        self._found.append(replace(maneuver, number=len(self._found) + 1))
-        return ManeuverFlown(self._found[-1])
-
-    def _side_once(self, maneuver: Maneuver) -> list[FlightEvent]:
-        """Return the event of a lateral manoeuvre with its number in the campaign; empty for a known one."""
-        known = self._side_found
-        if any(one.power_on != maneuver.power_on and are_one(maneuver, one) for one in known):
-            return []
-        known.append(replace(maneuver, number=len(known) + 1))
-        return [SideManeuverFlown(known[-1])]
+                    recorded[i] = again
+                return ManeuverAgain(again, takes_place, axis)
+        recorded.append(replace(maneuver, number=len(recorded) + 1))
+        return new(recorded[-1])
 
     def _compare_vehicles(self, vehicle: Vehicle) -> Iterator[FlightEvent]:
         """Yield notices about a vehicle unlike the first flight's; refuse another aircraft."""

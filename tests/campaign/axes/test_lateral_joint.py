@@ -51,6 +51,16 @@ def test_at_the_end_all_manoeuvres_count(joint: list[int]) -> None:
     assert campaign.state().estimate_from == tuple(range(1, 11))
 
 
+def test_a_fuller_record_from_another_log_takes_the_place_of_a_manoeuvre(joint: list[int]) -> None:
+    campaign = flown("rudder", "aileron")
+    before = campaign.state()
+    fuller = replace(campaign.maneuvers[1], flight=1)
+    campaign.take_better(fuller, None)
+    assert campaign.maneuvers == (campaign.maneuvers[0], fuller)
+    assert campaign.state() is not before
+    assert joint == [2, 2]
+
+
 def test_no_joint_estimate_is_made_before_both_controls_were_flown(joint: list[int]) -> None:
     flown("aileron", "aileron", "aileron")
     assert joint == []

@@ -50,14 +50,14 @@ def improved_side(compared: SideCompared) -> FlownModel:
     unchanged = not diagnosis.improves
     if model.side is None or not any(cause.present for cause in diagnosis.causes):
         return replace(model, unchanged=unchanged)
-    side, found = model.side, _servos_found(diagnosis, aircraft)
+    side, servos = model.side, _servos_found(diagnosis, aircraft)
     if aircraft.simulator in (None, "linear"):
         side = replace(side, values={name: diagnosis.model[name] for name in side.values})
-    elif found:
-        behind = _behind(found, aircraft)
+    elif servos:
+        behind = _behind(servos, aircraft)
         again = estimate_lateral(accepted_of(state), behind)
         side = side if isinstance(again, NoEstimate) else side_of(again, side.trim, side.air, behind)
-    return replace(model, side=replace(side, servos={**side.servos, **found}), unchanged=unchanged)
+    return replace(model, side=replace(side, servos={**side.servos, **servos}), unchanged=unchanged)
 
 
 def behind_found(diagnosis: Diagnosis, aircraft: Aircraft) -> Aircraft:
@@ -65,10 +65,10 @@ def behind_found(diagnosis: Diagnosis, aircraft: Aircraft) -> Aircraft:
     return _behind(_servos_found(diagnosis, aircraft), aircraft)
 
 
-def _behind(found: Mapping[str, ExportedServo], aircraft: Aircraft) -> Aircraft:
+def _behind(servos: Mapping[str, ExportedServo], aircraft: Aircraft) -> Aircraft:
     changed: dict[str, Any] = {
         name: replace(getattr(aircraft, name), lag_s=servo.lag_s, delay_s=servo.delay_s)
-        for name, servo in found.items()
+        for name, servo in servos.items()
     }
     return replace(aircraft, **changed)
 

@@ -31,7 +31,7 @@ from advisor.process.arrays import FloatArray
 from advisor.simulators.flying import Progress
 from advisor.words.quantiles import NORMAL_95
 
-_Found = TypeVar("_Found")
+_Answer = TypeVar("_Answer")
 
 
 def prove_side(
@@ -54,15 +54,15 @@ def prove_side(
     """
     fitted, kept = (compared.maneuvers, fresh) if fresh is not None else parted(compared.maneuvers)
     fitted, against = beside_simulator(fitted, compared.aircraft, progress)
-    told = _flown(compare_side(fitted, against, prior))
-    refuse_unimproved(told.improves, told.sentence, len(fitted))
-    behind = behind_found(told, against)
-    plain, found = (_flown(estimate_lateral(fitted, one)) for one in (against, behind))
-    present = tuple(cause.name for cause in told.causes if cause.present)
+    diagnosis = _flown(compare_side(fitted, against, prior))
+    refuse_unimproved(diagnosis.improves, diagnosis.sentence, len(fitted))
+    behind = behind_found(diagnosis, against)
+    plain, improved = (_flown(estimate_lateral(fitted, file)) for file in (against, behind))
+    present = tuple(cause.name for cause in diagnosis.causes if cause.present)
     parts = (*present, NUMBERS)
 
     def flown_without(gone: tuple[str, ...]) -> Kept:
-        model, servos = (plain, against) if gone else (found, behind)
+        model, servos = (plain, against) if gone else (improved, behind)
         with tempfile.TemporaryDirectory() as folder:
             better = compared.aircraft
             left: tuple[str, ...] = ()
@@ -79,7 +79,7 @@ def prove_side(
 
         return Kept(float(np.mean([*gaps.values()])), gaps, floor, answer, left)
 
-    first = " + ".join(present) or told.verdict
+    first = " + ".join(present) or diagnosis.verdict
     return proved(ImprovedAxis(first, parts, [present] if present else [], flown_without))
 
 
@@ -99,12 +99,12 @@ def _improved(
         read = None if speed is None else air_flown(fitted).read_speed(speed)
         return replace(with_derivatives(servos, estimate, read), simulator="linear"), ()
     ahead: dict[str, Any] = {
-        name: _ahead(*(getattr(one, name) for one in (given, against, servos))) for name in LATERAL.inputs
+        name: _ahead(*(getattr(file, name) for file in (given, against, servos))) for name in LATERAL.inputs
     }
     better = replace(given, **ahead)
-    told = zip(SIDE_PARAMETERS, estimate.theta, estimate.std, strict=True)
+    values = zip(SIDE_PARAMETERS, estimate.theta, estimate.std, strict=True)
     wrong = tuple(
-        n for n, x, std in told if n in against.model and abs(x - against.model[n]) > NORMAL_95 * std
+        n for n, x, std in values if n in against.model and abs(x - against.model[n]) > NORMAL_95 * std
     )
     model = flown_model(compared.state, given) if kind == "jsbsim" else None
     if model is None or model.side is None:
@@ -120,7 +120,7 @@ def _ahead(given: SideControl, against: SideControl, side_control: SideControl) 
     """Return the servo ahead of a simulator that has ``against`` behind ``given``, for ``found`` in all."""
 
     def less(name: str) -> float:
-        first, own, whole = (getattr(one, name) or 0.0 for one in (given, against, side_control))
+        first, own, whole = (getattr(servo, name) or 0.0 for servo in (given, against, side_control))
         return max(first + whole - own, 0.0)
 
     return given if side_control == against else replace(given, lag_s=less("lag_s"), delay_s=less("delay_s"))
@@ -150,6 +150,6 @@ def _gap(maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: 
     return float(np.mean([max(0.0, (fit.rms / noise[name]) ** 2 - 1.0) for name, fit in fits.items()]))
 
 
-def _flown(found: _Found | NoEstimate) -> _Found:
+def _flown(answer: _Answer | NoEstimate) -> _Answer:
     """Return an estimate, or refuse manoeuvres that give none."""
-    return answered(found, "Fly aileron and rudder in both parts of the flight.", "--prove: ")
+    return answered(answer, "Fly aileron and rudder in both parts of the flight.", "--prove: ")

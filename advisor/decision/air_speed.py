@@ -1,4 +1,4 @@
-"""A jump of the air speed within one sample, which a change of sensor makes and no flying."""
+"""The air speed of a manoeuvre: a jump within one sample, and a gap that the accelerometers fill."""
 
 import numpy as np
 
@@ -6,7 +6,9 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.steady_speed import speed_before
+from advisor.oem.airspeed import LARGEST_DISAGREEMENT, LONGEST_LAG_S, airspeed
 from advisor.words.digits import distinct_texts
+from advisor.words.quantiles import NORMAL_95
 from advisor.words.vehicle_time import clock
 
 FASTEST_CHANGE_M_S2 = 2.0 * GRAVITY_M_S2
@@ -41,3 +43,21 @@ def leaping_speed(maneuver: Maneuver, limit: float) -> list[Reason]:
         f"by {percent[k]:.0f} % (limit {limit:.0f}); check which air speed sensor flew, and its tube"
     )
     return [Reason("airspeed_jump", text, float(percent[k]), limit, by_instrument=True)]
+
+
+def is_speed_carried(maneuver: Maneuver) -> bool:
+    """Return whether the air speed is the integral of the accelerometers, with a small error everywhere.
+
+    The sensor gives level and drift of the integral. Their error grows with the distance from the sensor's
+    samples. The sensor is filtered: its error is renewed once in ``LONGEST_LAG_S``, not with each sample.
+    """
+    integrated = airspeed(maneuver.channels)
+    if integrated is None or not integrated.smooth:
+        return False
+    sensor = maneuver.channels["airspeed"]
+    sampled = sensor.t - integrated.lag_s
+    std = float(np.std(sensor.y - integrated.signal.at(sampled)))
+    independent = max(1.0, float(np.ptp(sampled)) / LONGEST_LAG_S)
+    ends = integrated.signal.t[[0, -1]] - float(np.mean(sampled))
+    largest = std * np.sqrt((1.0 + np.max(ends**2) / float(np.var(sampled))) / independent)
+    return bool(NORMAL_95 * largest <= LARGEST_DISAGREEMENT * float(np.mean(sensor.y)))
