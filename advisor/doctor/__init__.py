@@ -1,2 +1,3 @@
-"""Check of telemetry before a flight: whether it suffices to identify a short period, and which settings to
-change."""
+"""Check of telemetry before a flight: whether the telemetry suffices to identify a short period, and which
+settings to change.
+"""

@@ -1,7 +1,7 @@
-"""Conditions of the expected errors, as the flown manoeuvres give them: amplitude, noise, colour and lag.
+"""Conditions of the expected errors from the flown manoeuvres: amplitude, noise, colour and lag.
 
-A joint estimate's errors contain the scatter between the manoeuvres and the model's error, which no single
-manoeuvre has. Noise and colour therefore come from the manoeuvres' own estimates.
+A joint estimate's errors also contain the scatter between the manoeuvres and the model's error. Noise and
+colour therefore come from the manoeuvres' own estimates.
 """
 
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ def as_flown(assumed: Assumed, maneuvers: Sequence[Maneuver], joint: Estimate) -
     maneuvers
         Manoeuvres in the order flown, at least one.
     joint
-        Their joint estimate, whose servo's lag is the surest.
+        Joint estimate of the manoeuvres, which determines the servo's lag best.
     """
     newest = maneuvers[-NEWEST:]
     singles = [one for m in newest if isinstance(one := estimate(m, assumed.aircraft), Estimate)] or [joint]

@@ -26,8 +26,7 @@ class Limit:
     stops: bool = False
     """Whether the defect prevents any identification."""
     std_ratio: Mapping[str, float] = field(default_factory=dict)
-    """Cost of the defect alone: parameter name to its expected error, divided by the error without the
-    defect."""
+    """Cost of this defect, by parameter name: the expected error divided by the error without the defect."""
 
 
 _OF_THE_FILE = frozenset({"servo_limits", "calibration", "resolution", "servo_unknown"})
@@ -36,8 +35,9 @@ data."""
 
 
 def in_order(limits: Sequence[Limit]) -> tuple[Limit, ...]:
-    """Return the limits in the order of a report: what prevents identification, then the data, then
-    parameters and aircraft file. Within these they keep their order."""
+    """Return the limits in the order of a report. Limits that prevent identification come first, then limits
+    of the data, then of parameters and aircraft file.
+    """
     return tuple(sorted(limits, key=lambda limit: (not limit.stops, limit.code in _OF_THE_FILE)))
 
 

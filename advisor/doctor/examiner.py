@@ -1,4 +1,4 @@
-"""The telemetry examination: messages in, findings out, without reading files or printing."""
+"""Examination of telemetry. It turns messages into findings, and neither reads files nor prints."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -54,7 +54,7 @@ class Examiner:
     Parameters
     ----------
     target_system
-        System id of the vehicle; None: the first one heard.
+        System id of the vehicle; None for the first vehicle that sends.
     """
 
     def __init__(self, aircraft: Aircraft, target_system: int | None = None) -> None:
@@ -93,9 +93,9 @@ class Examiner:
         Parameters
         ----------
         lost_percent
-            Share of packets lost, when a live link counted them.
+            Fraction of packets lost; None if no live link counted them.
         repeated_percent, repeated_after_s
-            Share of the vehicle's packets that came twice, and the delay of the second copy.
+            Fraction of the vehicle's packets that came twice, and the delay of the second copy.
         """
         self._keep(self._stream.finish())
         vehicle = self._stream.vehicle
@@ -176,7 +176,9 @@ class Examiner:
         self._notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
 
     def _assumed(self) -> Assumed:
-        """Return the assumed aircraft and noise: the file's model, flown manoeuvres, or typical ones."""
+        """Return the assumed aircraft and noise, from the file's model, the flown manoeuvres, or typical
+        values.
+        """
         flown = estimate_jointly(self._maneuvers, self._aircraft) if self._maneuvers else None
         if not isinstance(flown, Estimate) or not is_believable(flown):
             flown = None
@@ -213,14 +215,16 @@ class Examiner:
         return paced
 
     def _surveyed(self, message: str) -> str:
-        """Return a message's name in the survey; the last servo outputs complete an elevator sample."""
+        """Return a message's name in the survey. For SERVO_OUTPUT_RAW this is the last bank of outputs, which
+        completes a sample of the elevator.
+        """
         elevator = self._stream.elevator
         if message != "SERVO_OUTPUT_RAW" or not isinstance(elevator, Surface):
             return message
         return bank_name(elevator.ports[-1])
 
     def _airspeed(self, paced: dict[str, Paced]) -> float | None:
-        """Return an air speed for the specific force; None if none is measured or given."""
+        """Return the air speed with which a_z is computed; None if no air speed is measured or given."""
         if self._aircraft.airspeed_m_s is not None:
             return self._aircraft.airspeed_m_s
         recent = self._stream.tracks.recent("airspeed", 60.0)
@@ -261,7 +265,7 @@ class Examiner:
     ) -> list[Limit]:
         """Return the limits from a missing air speed or specific force, which increase some errors."""
         if speed is None:
-            text = "No air speed arrives: derivatives cannot be referred to one speed, nor a_z be used"
+            text = "No air speed arrives: derivatives have no common speed, and a_z cannot be used"
             fix = _fast("VFR_HUD", vehicle) + "; or give airspeed_m_s in the aircraft file"
             cost = cost_of_missing("a_z", paced, assumed, None)
             return [Limit("no_airspeed", text, fix, std_ratio=cost)]
@@ -276,8 +280,9 @@ class Examiner:
 
 
 def is_believable(flown: Estimate) -> bool:
-    """Return whether an estimate may represent the aircraft: it explains the motion, and M_α and control
-    effect are significant."""
+    """Return whether an estimate may represent the aircraft. It must explain the motion, and M_α and the
+    control derivative must be significant.
+    """
     low, high = _PLAUSIBLE_RAD_S
     pace = frequency(ShortPeriod(flown.theta))
     moved = low < pace < high and abs(flown.value("M_delta_e")) > _LEAST_EFFECT * pace**2
@@ -288,7 +293,7 @@ def is_believable(flown: Estimate) -> bool:
 
 
 def _fast(message: str, vehicle: Vehicle) -> str:
-    """Return the way to request a missing message at a good rate."""
+    """Return the remedy for a missing message: how to request it at a good rate."""
     if vehicle.carrier == "telemetry":
         return vehicle.mends.faster(message)
     return vehicle.mends.present([message])
@@ -302,7 +307,9 @@ def _stopping(problem: Problem, vehicle: Vehicle | None) -> Limit:
 
 
 def _message(status: ChannelStatus, arrivals: Mapping[str, Arrival]) -> str:
-    """Return the message that determines the rate of a channel, the slower of two for a derived channel."""
+    """Return the message that determines the rate of a channel. For a derived channel this is the slower of
+    two messages.
+    """
     if not status.source.startswith("theta"):
         return status.source.partition(".")[0]
     both = [arrivals[name] for name in ("VFR_HUD", "ATTITUDE") if name in arrivals]

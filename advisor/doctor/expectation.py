@@ -1,9 +1,9 @@
 """Expected errors of a standard manoeuvre at given rates, from the model's sensitivities.
 
 Nothing is simulated with noise. A measurement's information follows from its sensitivity to each parameter
-(Cramér-Rao). A sampled command adds an uncertainty: the edges of the input lie somewhere between two samples.
-Natural lateness and places of instruments, and a servo's lag, are estimated with the derivatives, as in
-flight. The flown manoeuvres give the amplitude, the noise and its colour, each manoeuvre by its own estimate.
+(Cramér-Rao). A sampled command adds an uncertainty, because the edges of the input lie between two samples.
+The delays and places of instruments and the servo's lag are estimated with the derivatives, as in flight. The
+flown manoeuvres give the amplitude, the noise and its colour, each manoeuvre by its own estimate.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -28,9 +28,13 @@ from advisor.process.arrays import FloatArray
 
 UNITS_OF_TIME = (3, 2, 1, 1)
 RESPONSE_ALPHA_DEG = 4.0
-"""Largest change of the angle of attack by the expected input, deg: above the noise and below the stall."""
+"""Largest change of the angle of attack by the expected input, deg. The change is above the noise and below
+the stall.
+"""
 NOISE = {"alpha": np.radians(0.2), "q": np.radians(0.2), "a_z": 0.3, "theta": np.radians(0.1)}
-"""Noise that is assumed without a measurement, rad, rad/s, m/s², rad: small autopilots in calm air."""
+"""Noise that is assumed without a measurement, rad, rad/s, m/s², rad. The values are typical of small
+autopilots in calm air.
+"""
 
 _LEAD_IN_S = 1.0
 _EDGES_S = (0.04, 0.05, 0.06, 0.07, 0.08)
@@ -60,7 +64,7 @@ class Assumed:
     lag_s: float | None = None
     """Servo's lag of the flown manoeuvres, s; None before the first one."""
     aircraft: Aircraft = field(default_factory=Aircraft)
-    """The crew's aircraft file, which states or leaves open a servo's lag and a vane's place."""
+    """The crew's aircraft file, which may state the servo's lag and the vane's place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +72,7 @@ class ExpectedErrors:
     """Expected errors from one standard 3-2-1-1."""
 
     std: Mapping[str, float]
-    """Parameter name to its expected standard deviation; NaN where these rates do not identify the
-    parameter."""
+    """Expected standard deviation, by parameter name; NaN if these rates do not identify the parameter."""
     unit_s: float
     """One unit of time of the manoeuvre, s."""
     amplitude_deg: float
@@ -84,8 +87,7 @@ def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float 
     rates_hz
         Rates of new values of ``elevator``, ``q`` and, where measured, ``alpha`` and ``a_z``.
     airspeed_m_s
-        Air speed at which the specific force a_z is computed, m/s.
-        None: not measured, so that a_z cannot be used.
+        Air speed for the specific force a_z, m/s. None if it is not measured; then a_z is not used.
     """
     model = assumed.model
     unit_s = matched_unit_s(model)
@@ -151,8 +153,9 @@ def _errors(
 
 
 def _estimated(unknown: Iterable[Instrument]) -> Iterator[Instrument]:
-    """Yield the instruments that an estimate has as parameters. A stated lag is known to a tenth,
-    and other statements hold."""
+    """Yield the instruments that an estimate has as parameters. A stated lag is taken as known to a tenth of
+    its value, and all other stated values as exact.
+    """
     for x in unknown:
         if x.stated is None:
             yield x
@@ -161,8 +164,7 @@ def _estimated(unknown: Iterable[Instrument]) -> Iterator[Instrument]:
 
 
 def edge_error_s(rate_hz: float) -> float:
-    """Return the root mean square error in time of a command's edge that is sampled and joined by straight
-    lines.
+    """Return the root mean square timing error of a command's edge after sampling and linear interpolation.
 
     The mean covers edges of several lengths and all positions of the samples. The error is the area between
     the edge and the lines, divided by the edge's height.

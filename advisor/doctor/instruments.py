@@ -16,17 +16,20 @@ COARSE_DEG = 0.5
 """Resolution of the command, deg, above which small steps are not reproduced as steps."""
 LOSSY_PERCENT = 5.0
 REPEATED_PERCENT = 1.0
-"""Fraction of repeated packets, %, above which a second network path is assumed. A network alone repeats only
-single packets."""
+"""Fraction of repeated packets, %, above which a second network path is assumed. A network with one path
+repeats only single packets.
+"""
 DRIFTING_PERCENT = 1.0
 SIMULATED_PERCENT = 10.0
-"""Clock drift above which the clock is a simulator's, %. Crystal clocks err by .01 %, the worst RC
-oscillators by 5 %."""
+"""Clock drift, %, above which the clock must be a simulator's. The error of a crystal is .01 %, of the worst
+RC oscillator 5 %.
+"""
 _MOTION = ("ATTITUDE", "RAW_IMU", "SCALED_IMU", "HIGHRES_IMU")
 """Messages whose values change with every sample of a sensor in flight."""
 _MOSTLY_NEW = 0.7
-"""Least ratio of the rate of renewal to the rate of arrival of a message that repeats no values, as in
-``renewal.py``. Two copies have 0.5; records of sound messages have 0.95 to 1."""
+"""Least ratio of the rate of new values to the rate of messages, above which values are not repeated, as in
+``renewal.py``. Messages that come twice have 0.5, sound messages 0.95 to 1.
+"""
 STRAYED_SHARE = 0.01
 """Largest fraction of a message's stamps that may fit neither clock. Around a reboot a few stamps always fit
 neither clock."""
@@ -41,9 +44,11 @@ def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
     vane = _A_VANE.format(vehicle.mends.called("NAMED_VALUE_FLOAT"))
     if alpha.source.startswith("AOA_SSA"):
         name = vehicle.mends.called("AOA_SSA")
-        text = f"{name} is the autopilot's own estimate, not a vane: late, and blind to gusts"
+        text = f"{name} is the autopilot's own estimate and no vane, so it is late and shows no gusts"
         return [Limit("alpha_derived", text, f"fly in calm air, or {vane}")]
-    text = "Angle of attack is derived from pitch, climb rate and air speed: late, and blind to gusts"
+    text = (
+        "The angle of attack is derived from pitch, climb rate and air speed: it is late and shows no gusts"
+    )
     better = ""
     if vehicle.autopilot == "ardupilot":
         over_link = f"ask for AOA_SSA over MAVLink 2: {vehicle.mends.faster('AOA_SSA')}"
@@ -53,12 +58,12 @@ def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
 
 
 def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
-    """Return defects of the elevator's calibration, resolution and servo."""
+    """Return the defects of the elevator's calibration, resolution and servo."""
     limits = [
         Limit(d.code, d.text.rstrip("."), f"{d.fix[:1].lower()}{d.fix[1:].rstrip('.')}") for d in found.doubts
     ]
     if not found.calibrated:
-        given = "whose pulses are assumed" if found.doubts else "as the parameters have it"
+        given = "whose pulses are assumed" if found.doubts else "as the parameters state"
         listed = joined_numbers(found.outputs)
         several = len(found.outputs) > 1
         outputs = f"Outputs {listed} are" if several else f"Output {listed} is"
@@ -66,8 +71,8 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
         limits.append(
             Limit(
                 "calibration",
-                f"{outputs} not calibrated: full travel, {given}, counts as 25 deg, "
-                "so Z_δe and M_δe have an assumed scale",
+                f"{outputs} not calibrated: full travel, {given}, is assumed to be 25 deg, so the scale of "
+                f"Z_δe and M_δe is assumed",
                 f"measure the deflection at three pulse widths and give {key} in the aircraft file",
             )
         )
@@ -93,8 +98,9 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
 
 
 def distrust_limits(found: Iterable[Distrust]) -> list[Limit]:
-    """Return a defect for each channel whose values cannot be right. A frozen pitch rate is reported
-    elsewhere as a problem."""
+    """Return a defect for each channel whose values cannot be right. Another function reports a frozen pitch
+    rate.
+    """
     told = {d.channel: d for d in found if not (d.stops and d.code == "frozen")}
     return [Limit(d.code, d.sentence, d.fix, stops=d.stops) for d in told.values()]
 
@@ -121,7 +127,7 @@ def clock_limits(clocks: Clocks) -> list[Limit]:
             Limit(
                 "reboot",
                 f"The vehicle was switched on {clocks.boots} times within the record",
-                "each power-on counts as a flight of its own; check the supply if it was not meant",
+                "each power-on counts as a separate flight; check the power supply if this was not intended",
             )
         )
     for name, share in clocks.strayed.items():
@@ -131,7 +137,7 @@ def clock_limits(clocks: Clocks) -> list[Limit]:
             Limit(
                 "clock",
                 f"{100.0 * share:.1f} % of the stamps of {name} lie more than 5 s off the clock of ATTITUDE",
-                f"check that one vehicle alone sends {name} under this system id",
+                f"check that only one vehicle sends {name} under this system id",
             )
         )
     if abs(clocks.drift_percent) > DRIFTING_PERCENT and not _is_simulated(clocks):
@@ -139,7 +145,8 @@ def clock_limits(clocks: Clocks) -> list[Limit]:
             Limit(
                 "clock_drift",
                 f"The vehicle's clock runs {clocks.drift_percent:+.1f} % against the host's",
-                "compare both with GPS time; a wrong clock of the vehicle makes every rate wrong by as much",
+                "compare both clocks with GPS time; a wrong clock of the vehicle makes every rate wrong by "
+                "this percentage",
             )
         )
     return limits
@@ -150,8 +157,8 @@ def clock_notes(clocks: Clocks) -> list[str]:
     if not _is_simulated(clocks):
         return []
     times = 1.0 + 0.01 * clocks.drift_percent
-    runs = f"The vehicle's clock runs {times:.2g} times as fast as the host's, as a simulator's does"
-    return [f"{runs}: rates count on the vehicle's clock."]
+    runs = f"The vehicle's clock runs {times:.2g} times as fast as the host's, so it is a simulator's clock"
+    return [f"{runs}: rates refer to the vehicle's clock."]
 
 
 def _is_simulated(clocks: Clocks) -> bool:
@@ -159,7 +166,7 @@ def _is_simulated(clocks: Clocks) -> bool:
 
 
 def sender_limits(two_senders: Problem | None) -> list[Limit]:
-    """Return a defect if two senders share one system id, by the rule of the flight stream."""
+    """Return a defect if two senders share one system id. The flight stream has the same rule."""
     if two_senders is None:
         return []
     return [Limit(two_senders.code, two_senders.text.rstrip("."), two_senders.fix.rstrip("."))]
@@ -173,7 +180,8 @@ def company_limits(other_systems: Collection[int]) -> list[Limit]:
     return [
         Limit(
             "several_vehicles",
-            f"Other vehicles are heard too (system {others}); the first one heard is examined",
+            f"Other vehicles are heard too (system {others}); the examination uses the first vehicle that "
+            f"was heard",
             f"choose one, e.g. --target-system {min(other_systems)}",
         )
     ]
@@ -188,20 +196,22 @@ def loss_limits(lost_percent: float | None) -> list[Limit]:
         Limit(
             "loss",
             f"{shown} % of the packets are lost (limit {most} %)",
-            "lower the rates of messages nobody needs, or check the radio link",
+            "lower the rates of messages that nobody needs, or check the radio link",
         )
     ]
 
 
 def path_limits(repeated_percent: float, after_s: float) -> list[Limit]:
-    """Return a defect for a second path that repeats packets. A repeated packet is nevertheless used only
-    once."""
+    """Return a defect for a second network path that repeats packets. The advisor uses a repeated packet only
+    once.
+    """
     if repeated_percent <= REPEATED_PERCENT:
         return []
     return [
         Limit(
             "second_path",
             f"a second path repeats {repeated_percent:.0f} % of the packets, {after_s:.1f} s late",
-            "listen to one path only: one radio, one output of the router, one --master; the earlier one",
+            "listen to one path only, with one radio, one output of the router and one --master; the "
+            "earlier one",
         )
     ]

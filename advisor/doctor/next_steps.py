@@ -1,4 +1,4 @@
-"""The three commands after an examination, with its log or connection and the suitable options."""
+"""The three commands to run after an examination, with its log or connection and suitable options."""
 
 import shlex
 from dataclasses import dataclass
@@ -89,7 +89,9 @@ def _after_link(findings: Examination, examined: ExaminedInput) -> tuple[str, st
 
 
 def _chosen(findings: Examination, examined: ExaminedInput) -> str:
-    """Return the option that names the vehicle, if the user selected one or several are received."""
+    """Return the option that names the vehicle, if the user selected a vehicle or several vehicles are
+    received.
+    """
     system = examined.target_system
     if system is None and findings.vehicle and any(x.code == "several_vehicles" for x in findings.limits):
         system = findings.vehicle.system

@@ -16,13 +16,15 @@ from advisor.words.digits import distinct_texts
 from advisor.words.mends import GOOD_HZ, Carrier
 
 ENOUGH_PER_PERIOD = 20.0
-"""Samples in one natural period above which faster telemetry hardly improves the errors."""
+"""Number of samples in one natural period above which faster telemetry hardly improves the errors."""
 GAP_INTERVALS = 3.0
-"""Shortest gap of a message, in its usual intervals."""
+"""Shortest interval that counts as a gap, in multiples of the message's usual interval."""
 FALLEN = 0.6
 """Fraction of the usual rate below which a message is considered interrupted."""
 EVEN = 0.9
-"""Least mean rate, over that of the best ten seconds, that is told alone. Jitter costs less."""
+"""Ratio of the mean rate to the rate of the best ten seconds above which only the mean rate is stated. Jitter
+costs less.
+"""
 
 _DROPPED = (
     "the autopilot could not write all records: log fewer or use a faster card; a manoeuvre with such a "
@@ -52,11 +54,11 @@ class Paced:
 
     @property
     def arrives(self) -> str:
-        """Mean rate in words, with that of the best ten seconds where the rate falls."""
+        """Mean rate in words. If the rate falls, the rate of the best ten seconds follows."""
         mean = f"{self.rate_hz:.1f} Hz"
         if self.rate_hz > EVEN * self.best_hz:
             return mean
-        return f"{mean} in the mean ({self.best_hz:.1f} Hz over its best ten seconds)"
+        return f"{mean} on average ({self.best_hz:.1f} Hz over its best ten seconds)"
 
 
 def rate_limits(
@@ -67,8 +69,8 @@ def rate_limits(
     Parameters
     ----------
     paced
-        Rates of elevator and q, and of alpha and a_z where these are measured. A slow alpha prevents nothing
-        where a_z and air speed are measured.
+        Rates of elevator and q, and of alpha and a_z where these are measured. A slow angle of attack
+        prevents no identification if a_z and air speed are measured.
     """
     period_s = 2.0 * np.pi / frequency(assumed.model)
     fewest_hz = max(SLOWEST_HZ, needed_hz(period_s))
@@ -100,7 +102,7 @@ def rate_limits(
 
 
 def _samples(hz: float, fewest_hz: float, enough_hz: float, plain: str, period_s: float) -> str:
-    """Return the number of samples in a natural period, with the limits that it misses."""
+    """Return the number of samples in a natural period as text, with the limits that this number misses."""
     samples, fewest, enough = hz * period_s, fewest_hz * period_s, enough_hz * period_s
     if hz < fewest_hz:
         shown, least = distinct_texts(samples, fewest, 1)

@@ -1,4 +1,4 @@
-"""Whether the vehicle can fly a script of ``advisor script``, by its parameters."""
+"""Check of the vehicle's parameters: whether the vehicle can fly a script of ``advisor script``."""
 
 from collections.abc import Mapping, Sequence
 
@@ -9,8 +9,10 @@ from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
 
 LEAST_HEAP = 65_536
-"""Least SCR_HEAP_SIZE, bytes. The script of all inputs takes 86 kB in an interpreter of 64 bits. A board's
-32 bits halve the size of most values, and the rest is for memory between two collections."""
+"""Least SCR_HEAP_SIZE, bytes. Least value of SCR_HEAP_SIZE, bytes, for a script of all inputs. The script
+takes 86 kB in an interpreter of 64 bits. Most values take half of this on a board of 32 bits; the rest is
+reserve between two garbage collections.
+"""
 _PREFIX = "SCR_"
 _FUNCTION = "SERVO{}_FUNCTION"
 
@@ -36,7 +38,7 @@ class ScriptParameters:
 
 
 def script_notes(stated: Mapping[str, float], elevator: object) -> list[str]:
-    """Return a sentence for each stated value with which the vehicle flies no script.
+    """Return a sentence for each parameter whose value prevents the vehicle from flying a script.
 
     Parameters
     ----------

@@ -31,15 +31,15 @@ _TELLING = {
     "NAMED_VALUE_FLOAT": ("value",),
 }
 _EVENTS = frozenset({"PARAM_VALUE", "STATUSTEXT", "COMMAND_ACK", "COMMAND_LONG", "AUTOPILOT_VERSION"})
-"""Messages that come on events and so have no rate."""
+"""Messages that the vehicle sends on events, so that they have no rate."""
 _SILENCE = 5.0
-"""Multiple of the typical interval above which an interval is a gap of the link, not the pace of a
-message."""
+"""Multiple of the typical interval above which an interval counts as a gap of the link."""
 _LIVELY_S = 0.5
-"""Time, s, after which an unchanged value counts as at rest. A value at rest says nothing about its
-renewal."""
+"""Time, s, after which an unchanged value counts as constant. A constant value says nothing about how often
+new values come.
+"""
 _WINDOW_S = 5.0
-"""Stretch, s, over which the lowest rate is counted."""
+"""Length of the window, s, over which the lowest rate is counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,14 +49,13 @@ class Arrival:
     name: str
     count: int
     rate_hz: float
-    """Messages per second while they came. NaN with fewer than three messages."""
+    """Rate of the message, 1/s, from the first to the last one. NaN with fewer than three messages."""
     jitter_ms: float
     """Standard deviation of the intervals between stamps, without gaps."""
     largest_gap_s: float
     """Longest time between two messages within one boot, without pauses of the log."""
     renewed_hz: float
-    """Rate at which the message's value changes, while it changes. NaN if no field of the message shows
-    changes."""
+    """Rate of new values, Hz, while the values change. NaN if no field of the message shows changes."""
     lowest_hz: float
     """Rate of the slowest five seconds within the stretch in which the message came."""
 
@@ -70,14 +69,16 @@ class Clocks:
     drift_percent: float
     """Excess of the vehicle clock's speed over the host clock's, in percent. NaN if the drift is unknown."""
     arrival_jitter_ms: float
-    """Standard deviation of arrival relative to the vehicle's clock, which the link causes."""
+    """Standard deviation, ms, of the arrival times relative to the vehicle's clock. The link causes this
+    jitter.
+    """
     strayed: Mapping[str, float]
     """Fraction of stamps that do not fit the vehicle's clock, by the message's name."""
 
 
 @dataclass(slots=True)
 class _Sender:
-    """Stamps of the messages of one type from one system, and whether each brought a new value."""
+    """Stamps of the messages of one type from one system, and for each message whether its value is new."""
 
     t: list[FloatArray] = field(default_factory=list)
     boot: list[NDArray[np.int64]] = field(default_factory=list)
@@ -107,8 +108,8 @@ class _Pause:
 class Survey:
     """Counts every message of one vehicle.
 
-    ATTITUDE is the clock, as everywhere in the advisor. A message without a stamp takes the stamp of the
-    ATTITUDE before it. A stream without ATTITUDE is counted by its times of arrival.
+    The stamps of ATTITUDE are the clock, as in all parts of the advisor. A message without a stamp takes the
+    stamp of the ATTITUDE before it. A stream without ATTITUDE is counted by its times of arrival.
     """
 
     def __init__(self, vehicle: Vehicle) -> None:
@@ -198,7 +199,9 @@ class Survey:
         ]
 
     def _pauses(self) -> list[_Pause]:
-        """Return stretches without any message; none for a link, where such stretches are faults."""
+        """Return the time intervals without any message. A link has none, because such intervals are its
+        faults.
+        """
         if self._carrier == "telemetry" or not self._clock_pairs:
             return []
         _, t, boot = np.concatenate(self._clock_pairs).T
@@ -231,7 +234,7 @@ def _banks(part: Columns) -> Iterator[tuple[str, NDArray[np.bool_]]]:
 
 
 def _telling(part: Columns) -> FloatArray:
-    """Return the fields that show by their change that a value is new, shape (n, fields)."""
+    """Return the fields whose changes show that a value is new, shape (n, fields)."""
     names = [name for name in _TELLING.get(part.name, ()) if name in part.fields]
     columns = [np.asarray(part.fields[name], dtype=np.float64).reshape(len(part), -1) for name in names]
     return np.column_stack(columns) if columns else np.empty((len(part), 0))
@@ -268,7 +271,7 @@ def _intervals(t: FloatArray, boot: NDArray[np.int64]) -> FloatArray:
 
 
 def _lowest_rate(t: FloatArray, boot: NDArray[np.int64]) -> float:
-    """Return the lowest rate over ``_WINDOW_S`` that begins with a message, messages per second."""
+    """Return the lowest rate, 1/s, over windows of ``_WINDOW_S`` that begin with a message."""
     rates = []
     for n in np.unique(boot):
         mine = t[boot == n]
@@ -279,7 +282,9 @@ def _lowest_rate(t: FloatArray, boot: NDArray[np.int64]) -> float:
 
 
 def _typical(steps: FloatArray) -> float:
-    """Return the interval, s, below which half of the time passes, without silences over ``_WINDOW_S``."""
+    """Return the interval, s, below which the intervals make up half of the time. Silences over ``_WINDOW_S``
+    are left out.
+    """
     ordered = np.sort(steps[steps <= _WINDOW_S])
     if len(ordered) == 0:
         return float(np.median(steps))

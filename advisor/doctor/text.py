@@ -1,4 +1,4 @@
-"""The findings for people: first the verdict, then the remedies, then the tables."""
+"""The findings as text: first the verdict, then the remedies, then the tables."""
 
 import math
 from collections.abc import Sequence
@@ -49,14 +49,14 @@ class ExaminationText:
                 f"Expected errors of one 3-2-1-1, steps of {found.expectation.unit_s:.2f} s and "
                 f"±{found.expectation.amplitude_deg:.1f} deg, computed from {found.assumed.source}, "
                 f"natural frequency {frequency(found.assumed.model):.1f} rad/s. "
-                "Half of the 95 % interval (1.96 standard deviations), where the model lacks nothing; "
-                "analyze adds what the model lacks in all manoeuvres:"
+                "Half of the 95 % interval (1.96 standard deviations), if the model is complete; analyze "
+                "adds the error of the model:"
             )
             for name in PARAMETERS:
                 quantity = QUANTITIES[name]
                 half = NORMAL_95 * found.expectation.std[name] * quantity.factor
                 unit = "" if quantity.unit == "1" else quantity.unit
-                said = f"± {half:.2g} {unit}" if math.isfinite(half) else "not told by these rates"
+                said = f"± {half:.2g} {unit}" if math.isfinite(half) else "not identifiable at these rates"
                 yield Text(f"  {quantity.symbol:<10} {said}".rstrip())
         if self._commands:
             yield Text("\nNext:")

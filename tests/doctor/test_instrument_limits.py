@@ -60,7 +60,7 @@ def test_outputs_without_calibration_are_told_by_their_number() -> None:
     assert servo(2) == []
     (one,) = servo(2, calibrated=False)
     (two,) = servo(1, 2, calibrated=False)
-    assert one.startswith("Output 2 is not calibrated: full travel, as the parameters have it")
+    assert one.startswith("Output 2 is not calibrated: full travel, as the parameters state")
     assert "give elevator.calibration in" in one
     assert two.startswith("Outputs 1 and 2 are not")
     assert "elevator.outputs, each with its calibration," in two

@@ -80,5 +80,5 @@ def test_a_slow_message_misses_three_intervals() -> None:
 
 def test_a_rate_that_falls_is_told_with_that_of_its_best_ten_seconds():
     falls = Paced("q", "ATTITUDE", 8.8, 8.8, best_hz=12.8)
-    assert falls.arrives == "8.8 Hz in the mean (12.8 Hz over its best ten seconds)"
+    assert falls.arrives == "8.8 Hz on average (12.8 Hz over its best ten seconds)"
     assert Paced("q", "ATTITUDE", 12.4, 12.4, best_hz=12.8).arrives == "12.4 Hz"

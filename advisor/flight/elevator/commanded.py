@@ -42,8 +42,8 @@ class Commanded:
 def commanded(
     surfaces: Mapping[str, Surface], pulses: Pulses, t: FloatArray, autopilot: str
 ) -> list[Commanded]:
-    """Return the deflection that pulses command for each surface, where one output of each demand has a
-    pulse.
+    """Return the deflection of each surface that pulses command. The result needs a pulse of one output of
+    each demand.
 
     Pulses outside a calibration give the deflection at its end.
 
@@ -71,7 +71,7 @@ def commanded(
 
 
 def _alike(alive: NDArray[np.bool_], rows: IntArray) -> list[IntArray]:
-    """Return the rows in stretches within which equal outputs carry a pulse."""
+    """Return the rows in stretches. Within a stretch the same outputs carry pulses."""
     if len(rows) == 0:
         return []
     changes = np.flatnonzero(np.any(alive[rows[1:]] != alive[rows[:-1]], axis=1))

@@ -1,4 +1,6 @@
-"""Guess of a control's servo output without a parameter: the output that the control's rate responds to."""
+"""Guess of a control's servo output without a parameter. The guess is the output that explains the control's
+angular rate best.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,8 +13,9 @@ from advisor.flight.signals.record import Channel
 from advisor.process.arrays import FloatArray
 
 KEEP_S = 60.0
-"""Length of flight from which a guess of the elevator's output is made, s: two test inputs with their
-pauses."""
+"""Length of flight that a guess of the elevator's output uses, s. The length holds two test inputs with their
+pauses.
+"""
 EVERY_S = 10.0
 """Vehicle time between two guesses of the elevator's output, s."""
 LATE_S = 1.0
@@ -23,8 +26,9 @@ LEAST_TRAVEL_US = 10.0
 """Least travel of an output for a guess, us, above the resolution of a pulse."""
 LEAST_SHARE = 0.05
 """Least share of the pitch rate's one-step prediction error that the guessed output must explain. On the
-recorded flights of this project elevators explain 0.06 (turbulence) to 0.9, all other outputs at most
-0.02."""
+recorded flights of this project elevators explain 0.06 (turbulence) to 0.9, and all other outputs at most
+0.02.
+"""
 LEAST_LEAD = 5.0
 """Least ratio of the best output's share to the next output's share. At 4 Hz a wrong output led by 2.7."""
 _OUTPUTS = 16
@@ -110,7 +114,7 @@ class ElevatorGuesses:
     def __init__(self, sides: bool = False) -> None:
         self.guesses_sides = sides
         self.sides: dict[str, Guess] = {}
-        """Surest guess of the aileron's and of the rudder's output."""
+        """Best guess of the aileron's and of the rudder's output."""
         self.newest: Guess | None = None
         """Newest guess of the elevator's output. The guess is kept over a power-on, because the wiring does
         not change."""
@@ -143,7 +147,9 @@ class ElevatorGuesses:
             self._at_s = at_s
             guess = self._outputs.made(cut("q", at_s - KEEP_S, at_s - LATE_S))
             if guess is not None and (self.newest is None or guess.output != self.newest.output):
-                events.append(Notice("elevator_guess", f"Nothing says which is the elevator; {guess}."))
+                events.append(
+                    Notice("elevator_guess", f"No parameter says which output is the elevator; {guess}.")
+                )
             self.newest = guess or self.newest
             if self.guesses_sides:
                 self._guess_sides(cut, at_s)

@@ -67,7 +67,7 @@ def _as_given(output: int, calibration: Pairs | None, wiring: Wiring, why: str) 
                 "no_elevator",
                 f"Output {output} is one half of a mixed {mixed} pair, not an elevator.",
                 "Set elevator.output to auto: both halves are then read together. "
-                "Or list both in elevator.outputs.",
+                "The other choice is to list both in elevator.outputs.",
             )
         return _uncalibrated(Part(output, wiring.scale(output)), why, wiring)
     said = (
@@ -102,7 +102,7 @@ def _carried_over(
             "no_elevator",
             f"elevator.calibration describes one output, but outputs {joined_numbers((first, *others))} act "
             f"together, and {wiring.words.sense.format(n=unknown[0])} is not known.",
-            "Give elevator.outputs in place of it, with a calibration for each output.",
+            "Replace elevator.output by elevator.outputs, with a calibration for each output.",
         )
     measured = wiring.scale(first)
     found = tuple(
@@ -164,7 +164,7 @@ def _has_known_direction(n: int, wiring: Wiring) -> bool:
 
 
 def _formed(parts: Sequence[Part], why: str, kinds: Sequence[str]) -> str:
-    """Return a sentence on the outputs that make the elevator."""
+    """Return a sentence on the outputs that together form the elevator."""
     if len({part.share for part in parts}) == 1:
         made = f"the mean of outputs {joined_numbers(_numbers(parts))}"
     else:

@@ -17,8 +17,8 @@ _EXPLAINED = 0.7
 _OTHER: dict[InputKind, InputKind] = {"3-2-1-1": "reverse 3-2-1-1", "reverse 3-2-1-1": "3-2-1-1"}
 
 SAID = (
-    "The nose went the other way than the elevator's output suggests: its deflections count with the other "
-    "sign. Give a calibration if that is wrong, as for a canard."
+    "The nose moved opposite to the direction that the elevator's output suggests, so its deflections have "
+    "the opposite sign. Give a calibration if that is wrong, as for a canard."
 )
 
 
@@ -67,7 +67,7 @@ def turned(maneuver: Maneuver) -> Maneuver:
 
 
 def answers_backwards(maneuver: Maneuver) -> bool | None:
-    """Return whether a trailing edge that goes down raises the nose, M_δe > 0; None if uncertain.
+    """Return whether a trailing edge that moves down raises the nose (M_δe > 0); None if this is uncertain.
 
     The sign comes from least squares of the pitch rate on the integrals of elevator, pitch rate and α.
     """

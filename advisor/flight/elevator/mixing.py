@@ -47,7 +47,9 @@ class Mixing:
         self._open_since_s = -np.inf
 
     def said(self, surface: Surface) -> str:
-        """Return a sentence about the known signs of several outputs; empty without a doubt."""
+        """Return a sentence about the signs of several outputs that the response has shown; empty if the
+        signs were certain.
+        """
         if self._answered or not surface.unsure:
             return self._answered
         listed = joined_numbers(surface.unsure)

@@ -15,8 +15,9 @@ of independent samples follows from the correlation of successive residuals. For
 outputs that also roll, manoeuvres reach values of 10 to
 120. A wrong sign never exceeded a value of 8."""
 _LEAST_S = 4.0
-"""Shortest flight from which the outputs' signs are determined, s. In one to three seconds slow movements
-look alike, and a wrong sign reached a value of 22."""
+"""Shortest flight from which the outputs' signs are determined, s. In records of one to three seconds slow
+movements look alike, and a wrong sign reached a value of 22.
+"""
 _EXPLAINED = 0.7
 """Least share of the pitch rate's power that the regression must explain, as in ``elevator_sign.py``."""
 _MOST = 8
@@ -89,7 +90,9 @@ def _fitted(signs: FloatArray, free: FloatArray, left: FloatArray) -> tuple[Floa
 
 
 def _independent(residual: FloatArray) -> float:
-    """Return how many independent samples would tell as much about a mean, by lag-one correlation."""
+    """Return the number of independent samples with equal information about a mean, from the correlation at
+    lag one.
+    """
     power = float(residual @ residual)
     correlation = float(residual[1:] @ residual[:-1]) / power if power > 0.0 else 0.0
     correlation = min(max(correlation, 0.0), 1.0)

@@ -11,9 +11,10 @@ from advisor.flight.signals.motion import channel_at, gravity_in_plane
 from advisor.process.arrays import FloatArray
 
 _BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0
-"""Length of a record's beginning, s. Largest difference between the offsets of beginning and whole record, as
-a share of the mean offset. A larger difference must also exceed this multiple of the scatter between
-manoeuvres."""
+"""Length of a record's beginning, s; limit as a share; limit in scatters. An offset stays if the beginning's
+offset differs from the record's by at most the share of the mean offset. A larger difference must also exceed
+the last number of scatters between manoeuvres.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +80,7 @@ def mean_offset(offsets: Sequence[AlphaOffset]) -> AlphaOffset:
 
 
 def speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> FloatArray | None:
-    """Return the logged air speed at ``t``, else the given one, shape (n,); None without either."""
+    """Return the logged air speed at ``t``, else the given air speed, shape (n,); None without both."""
     logged = maneuver.channels.get("airspeed")
     if logged is not None and len(logged) > 1:
         return np.interp(t, logged.t, logged.y)

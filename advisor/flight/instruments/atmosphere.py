@@ -47,9 +47,9 @@ class AirData:
     speed_said: str = "the air speed is as logged"
     """Origin of the air speed in words."""
     true_over_read: float = 1.0
-    """Factor from the air speed that the aircraft reads to that of the manoeuvres."""
+    """Ratio of the manoeuvres' air speed to the air speed that the aircraft reads."""
     excess: float = 0.0
-    """Relative excess of the true air speed over that of the manoeuvres, from a fit of the motion."""
+    """Relative excess of the true air speed over the manoeuvres' air speed, from a fit of the motion."""
 
     def true_speed(self, airspeed_m_s: float) -> float:
         """Return the true air speed in m/s for an air speed of the manoeuvres."""
@@ -73,7 +73,7 @@ class AirData:
 
     @property
     def speed_note(self) -> str:
-        """Sentence about the ratio of the true air speed to the one that the aircraft reads."""
+        """Sentence about the ratio of the true air speed to the air speed that the aircraft reads."""
         ratio = self.true_over_read * self.true_speed(1.0)
         shown = f", {100.0 * self.excess:+.1f} % of it by the motion" if self.excess else ""
         return f"True air speed is {ratio:.4f} times the one that the aircraft reads{shown}."
@@ -84,9 +84,9 @@ class AirData:
         told = {
             "pressure and temperature": "from static pressure and the aircraft file's temperature",
             "height and temperature": "from the height flown and the aircraft file's temperature",
-            "pressure": "of the standard atmosphere at the static pressure flown in",
+            "pressure": "of the standard atmosphere at the measured static pressure",
             "height": "of the standard atmosphere at the height flown",
-            "sea level": "of the standard atmosphere at sea level, for neither pressure nor height is logged",
+            "sea level": "of the standard atmosphere at sea level, because no pressure or height is logged",
         }[self.source]
         return f"air density {self.density_kg_m3:.3f} kg/m³ {told}; {self.speed_said}"
 

@@ -11,7 +11,7 @@ from advisor.flight.signals.motion import integrated
 from advisor.process.arrays import FloatArray
 
 LONGEST_DELAY_S = 0.3
-"""Longest delay in the search, s. A longer delay of telemetry shows as a gap or as a separate clock."""
+"""Longest delay in the search, s. A longer delay of telemetry appears as a gap or as a separate clock."""
 _STARTS_S = (0.0, 0.12, -0.12)
 """Delays, s, at which the search starts. Every delay in the search is within half a period of the fastest
 short period (3 Hz) of one of these starts."""
@@ -43,8 +43,9 @@ class DelayedFit:
     delays_s: FloatArray
     """Shape (k,): delays of the summands, s."""
     delay_covariance: FloatArray
-    """Shape (k, k): covariance of the delays, s². The covariance allows for a coloured residual and for a
-    residual that belongs to the delays."""
+    """Shape (k, k): covariance of the delays, s². The covariance includes the effect of a coloured residual,
+    and of a residual with the shape of the delays' effects.
+    """
     factors: FloatArray
     """Shape (k,): factors of the summands."""
     factor_stds: FloatArray
@@ -82,7 +83,7 @@ def fit_delays(
 ) -> DelayedFit | None:
     """Fit y(t) = Σ f·S(t − τ) + b_0 + b_1 t + b_2 t² by Gauss-Newton in the delays τ.
 
-    None is returned with too few samples, or if nothing moved.
+    Return None if samples are too few, or if no summand moved.
 
     Parameters
     ----------
@@ -151,7 +152,9 @@ def _descended(
 
 
 def _covariance(jacobian: FloatArray, residual: FloatArray) -> FloatArray:
-    """Return the parameters' covariance for coloured residuals, plus that of a motion-shaped residual."""
+    """Return the parameters' covariance for coloured residuals, plus the covariance for a residual shaped
+    like the motion.
+    """
     # A parameter may absorb an error with the motion's shape, at most ‖r‖·√((JᵀJ)⁻¹), taken as uniform.
     mistaken = float(residual @ residual) / 3.0 * inverse_information(jacobian)
     return np.asarray(coloured_covariance(jacobian, residual) + mistaken)

@@ -56,10 +56,10 @@ _STEP = 0.05
 
 
 def rate_against_attitude(channels: Channels) -> Evidence:
-    """Return ``theta_scale``, the pitch angle's change over the integral of the pitch rate, and ``q_delay``.
+    """Return ``theta_scale``, the pitch angle's change over the integral of the pitch rate, and ``q_delay``,
+    the pitch rate's delay relative to the attitude, s.
 
-    The delay in s is that of the pitch rate relative to the attitude. The result is empty if the angle hardly
-    moves.
+    The result is empty if the angle hardly moves.
     """
     if not usable(channels, "q", "theta"):
         return {}
@@ -91,7 +91,9 @@ def force_against_climb(channels: Channels) -> Evidence:
 
 
 def force_against_gravity(channels: Channels) -> Evidence:
-    """Return ``a_z_scale``, the mean vertical specific force over that from the motion; empty if unknown."""
+    """Return ``a_z_scale``, the ratio of the measured mean vertical specific force to the force from the
+    motion; empty if unknown.
+    """
     if not usable(channels, "a_z", "theta"):
         return {}
     force, t = channels["a_z"], channels["a_z"].t
@@ -115,7 +117,8 @@ def force_against_gravity(channels: Channels) -> Evidence:
 
 
 def speed_against_force(channels: Channels) -> Evidence:
-    """Return ``speed_scale``, the change of the air speed over that from the accelerometers.
+    """Return ``speed_scale``, the ratio of the measured change of air speed to the change from the
+    accelerometers.
 
     V̇ = a_x cos α + a_z sin α − g sin γ holds in steadily moving air. An error of α cancels to first order.
     """
@@ -133,9 +136,9 @@ def speed_against_force(channels: Channels) -> Evidence:
 
 
 def alpha_against_motion(channels: Channels) -> Evidence:
-    """Return ``alpha_scale``, the measured angle of attack over that from the motion.
+    """Return ``alpha_scale``, the ratio of the measured angle of attack to the angle from the motion.
 
-    The result is empty without a measured angle of attack, or if nothing moves.
+    The result is empty without a measured angle of attack, or without motion.
     """
     parts = _parts(channels)
     if parts is None or channels["alpha"].source == DERIVED_ALPHA:

@@ -87,7 +87,8 @@ def hold_rate(work: Work, known: Measured | None, rate: str, angle: str) -> str 
     Returns
     -------
     str or None
-        None if sign and unit agree; the ratio in words for a reversed sign; else an empty string.
+        None if sign and unit agree. Otherwise the ratio in words for a reversed sign, and an empty string for
+        any other error.
     """
     if known is None or not work.has(rate, angle):
         return None
@@ -253,14 +254,16 @@ def _force_behind_climb(work: Work) -> None:
 
 
 def _speed_unit(work: Work) -> bool:
-    """Compare the change of the air speed with the accelerometers; return whether its unit is as stated."""
+    """Compare the change of the air speed with the accelerometers; return whether the air speed has the
+    stated unit.
+    """
     known = work.learn(speed_against_force(work.channels)).get("speed_scale")
     if known is None or not work.has("airspeed"):
         return True
     weighed = _weighed_speed(known)
     # A gust changes the air speed by any amount, which is no unit.
     if weighed.contradicts and weighed.best != ANY:
-        _name_speed(work, weighed, known, "it changes {} times as much as the accelerometers say")
+        _name_speed(work, weighed, known, "its change is {} times the change that the accelerometers give")
         return False
     return True
 
@@ -277,7 +280,7 @@ def _airspeed(work: Work, told: Mapping[str, Measured]) -> bool:
         return False
     weighed = _weighed_speed(known)
     if weighed.contradicts:
-        by = "it reads {} times the speed by pitch rate, specific force and alpha"
+        by = "it reads {} times the speed that pitch rate, specific force and alpha give"
         _name_speed(work, weighed, known, by)
     return weighed.contradicts
 

@@ -17,7 +17,7 @@ FILTER_S = 0.015
 """Longest delay, s, of a gyro or an accelerometer by an autopilot's filters: 11 ms at 20 Hz, 15 ms at 15
 Hz."""
 SIGMAS = 3.0
-"""Distance of a delay from its normal range, in standard deviations, that counts as a contradiction."""
+"""Least distance of a delay from its normal range, in standard deviations, for a contradiction."""
 ALLOWED = "; estimates use the shifted stamps"
 PLAIN = {
     "q": "the pitch rate", "theta": "the pitch angle", "a_z": "the specific force", "alpha": "alpha",
@@ -38,10 +38,12 @@ class Examined:
     findings: tuple[InstrumentFinding, ...]
     """Contradictions of the instruments, from this and earlier evidence."""
     corrections: tuple[tuple[str, Correction], ...] = ()
-    """Changes that turn recorded channels into ``channels``, each with its channel's name, in their order."""
+    """Corrections of the recorded channels that give ``channels``, in their order, each with the channel's
+    name.
+    """
 
     def of_longer(self, recorded: Mapping[str, Channel]) -> "Examined":
-        """Return the examination of the first part of a record for the whole of its recorded channels."""
+        """Return this examination of a record's first part, applied to the whole record."""
         channels = dict(recorded)
         for name, correction in self.corrections:
             if name in channels:
@@ -192,7 +194,9 @@ def be_late(
 
 
 def half_intervals(work: Work, *names: str) -> float:
-    """Return half of the longest sampling interval, s: a sample may stand for any time within it."""
+    """Return half of the longest sampling interval, s, because a sample may represent any time within its
+    interval.
+    """
     return 0.5 / min(work.channels[name].rate_hz for name in names)
 
 

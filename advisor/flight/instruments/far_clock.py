@@ -1,7 +1,7 @@
 """A clock error that looks like a reversed sign.
 
-An oscillation that is late by half a period has the opposite sign. A wrong sign is therefore certain only
-where no shift of the stamps explains the signal with the right sign.
+An oscillation that is late by half a period has the opposite sign. A wrong sign is therefore certain only if
+no shift of the stamps explains the signal with the right sign.
 """
 
 from collections.abc import Sequence

@@ -115,7 +115,9 @@ def check_alpha(
 
 
 def _followers(t: FloatArray, command: FloatArray) -> FloatArray:
-    """Return the command after two equal lags, for several lags, shape (n, k), like the response."""
+    """Return the command after two equal first-order lags in series, for several time constants, shape (n,
+    k).
+    """
     moved = command - command[0]
     first = np.zeros(len(_FOLLOW_S))
     found = np.zeros((len(t), len(_FOLLOW_S)))
@@ -140,7 +142,9 @@ def _compare(
     inside = (t_alpha >= t[0] + 0.3) & (t_alpha <= t[-1] - 0.3)
     tm, y = t_alpha[inside], alpha[inside]
     if len(tm) < 12 or np.ptp(y) < 1e-4:
-        return KinematicCheck("not possible", "alpha cannot be checked against the motion: it hardly moved.")
+        return KinematicCheck(
+            "not possible", "alpha cannot be checked against the motion, because alpha hardly moved."
+        )
     s = (tm - tm.mean()) / max(np.ptp(tm), 1e-9)
     slow = np.column_stack([np.ones_like(s), s, s**2])
     instruments = None
@@ -183,7 +187,9 @@ def _orthogonal(columns: FloatArray) -> FloatArray:
 
 
 def _told_by(instruments: FloatArray | None, columns: FloatArray) -> FloatArray:
-    """Return the projection of the columns on the instruments' span, or the columns without instruments."""
+    """Return the projection of the columns on the span of the instruments' columns. Without instruments
+    return the columns.
+    """
     return columns if instruments is None else np.asarray(instruments @ (instruments.T @ columns))
 
 
@@ -223,7 +229,9 @@ def combine(checks: Sequence[KinematicCheck]) -> KinematicCheck:
     offset = mean_offset([c.offset for c in checks])
     usable = [c for c in checks if c.possible and np.isfinite(c.lag_std_s) and c.lag_std_s > 0.0]
     if not usable:
-        first = checks[0] if checks else KinematicCheck("not possible", "No manoeuvre to check alpha on.")
+        first = (
+            checks[0] if checks else KinematicCheck("not possible", "No manoeuvre allows a check of alpha.")
+        )
         return replace(first, offset=offset)
     lag, lag_std = weighted([c.lag_s for c in usable], [c.lag_std_s for c in usable])
     scale, scale_std = weighted([c.scale for c in usable], [c.scale_std for c in usable])

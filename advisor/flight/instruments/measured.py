@@ -1,4 +1,5 @@
-"""A measured value with its error, the mean of several, and hypotheses about an instrument's scale.
+"""A measured value with its error, the weighted mean of several values, and hypotheses about an instrument's
+scale.
 
 A reading is the true value times a factor: 1 as stated, −1 for a reversed sense, 57.3 for degrees that are
 read as radians. Around each factor the scale of an instrument scatters by a known share. All hypotheses have

@@ -30,7 +30,7 @@ lasts .2 s, and its input with two steps and their response lasts longer than th
 SWITCH = "switch"
 """Reason of a script for the early end of an input by its switch."""
 _REPEAT_S = 0.5
-"""Longest time after which an equal text is the same text, received by a second path, s."""
+"""Longest time, s, between two equal texts that count as one text over two paths."""
 _BY_HAND = "mark the stretch by hand if it was flown"
 
 PITCH_KINDS: frozenset[str] = frozenset({"3-2-1-1", "reverse 3-2-1-1", "doublet", "pulse", "multisine"})
@@ -46,7 +46,7 @@ class Announcement:
     word: Literal["begin", "end", "script", "unread"]
     number: int = 0
     said: str = ""
-    """Name of the input, reason for the early end, or the whole text that is unread."""
+    """Name of the input, reason for the early end, or the whole text that was not understood."""
     aborted: bool = False
     script: ScriptIdentity | None = None
     """Identity of the aircraft file that a script was written from."""
@@ -72,7 +72,7 @@ class Announced:
         return self.input if self.input in names else seen  # type: ignore[return-value]
 
     def moves(self, control: str) -> bool:
-        """Return whether the announced name is that of an input of this control, or names no control."""
+        """Return whether the announced name is an input of this control, or names no control."""
         if self.input in PITCH_KINDS ^ SIDE_KINDS:
             return (self.input in PITCH_KINDS) == (control == "elevator")
         return True

@@ -1,4 +1,6 @@
-"""A control in bins, from the seconds before a movement to its end, and the motion that hands respond to."""
+"""A control in bins, from the seconds before a movement to the movement's end, and the motion to which hands
+respond.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,7 +38,7 @@ class Bins:
     first: int
     """Index of the movement's first bin."""
     hands: IntArray
-    """Indices of the bins before the movement that show the hands, and whose neighbour before does."""
+    """Indices of the bins before the movement that show the hands, like the bin before each of them."""
 
     @property
     def movement(self) -> slice:

@@ -105,7 +105,9 @@ class Activity:
     """Number of the campaign's log or link, 0 for the first."""
 
     def joined(self, earlier: "Activity") -> "Activity | None":
-        """Return one activity for this and the earlier one; None if reason, boot or mode differ."""
+        """Return one activity that joins this one and the earlier one; None if reason, boot or
+        mode differ.
+        """
         stay = (self.reason, self.flight, self.boot, self.stay_s)
         if stay != (earlier.reason, earlier.flight, earlier.boot, earlier.stay_s):
             return None

@@ -35,7 +35,8 @@ Cut = Callable[[str, float, float], Channel | None]
 
 
 def why_on_ground(span: Span, cut: Cut, limits: Limits) -> str | None:
-    """Return the evidence in words that the aircraft did not fly; None if it flew or without evidence.
+    """Return in words the evidence that the aircraft did not fly. Return None if the aircraft flew, or
+    without evidence.
 
     Parameters
     ----------
@@ -66,7 +67,9 @@ def why_on_ground(span: Span, cut: Cut, limits: Limits) -> str | None:
 
 
 def _stands(span: Span, cut: Cut) -> bool:
-    """Return whether no speed shows motion; exactly zero ground speed may mean no receiver."""
+    """Return whether no speed shows motion. A ground speed of exactly zero counts as missing, because the
+    receiver may be missing.
+    """
     over_ground = _median("groundspeed", span, cut)
     through_air = _median("airspeed", span, cut)
     if over_ground is None or over_ground >= STANDING_M_S or (through_air or 0.0) > WINDY_M_S:

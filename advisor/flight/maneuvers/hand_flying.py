@@ -1,7 +1,7 @@
 """Movements of the elevator during other flying: climbs, turns, changes of speed.
 
-A test input begins abruptly, and a bad one is refused with its remedy. A slow movement outside the model's
-limits is no test, but other flying.
+A test input begins abruptly, and an unusable test input is refused with a remedy. A slow movement outside the
+model's limits is no test, but other flying.
 """
 
 from collections.abc import Iterator

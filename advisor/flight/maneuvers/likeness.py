@@ -1,4 +1,4 @@
-"""Properties that the tests of a flight share: they begin from rest, and are of like size."""
+"""Properties that the tests of a flight share: each begins from rest, and their sizes are similar."""
 
 from collections.abc import Sequence
 
@@ -13,16 +13,16 @@ _BEFORE_S = 0.5
 """Length before an input over which the rate is averaged, s: the least rest of the control."""
 _OF_TESTS = 0.25
 """Least amplitude of a test, over the median of the tests before it. 250 flown tests have at least 0.39.
-Hands between them have up to 0.23 where nothing else tells them."""
+Movements of the hands between tests, which no other criterion recognises, have up to 0.23."""
 _STEADY = 0.5
 """Largest mean rate before a test, over half the range of the rate within. 260 flown tests of eleven aircraft
-have at most 0.31. Hands that answer a rotation have up to 1.5."""
+have at most 0.31. Movements of hands that counter a rotation have up to 1.5."""
 
 
 def begun_in_motion(span: Span, rate: Channel, loop: Loop) -> str | None:
-    """Return the reason that an input does not begin from steady flight; None if it does.
+    """Return the reason why an input does not begin from steady flight; None if it does.
 
-    A rotation that goes on after the input is a turn, which is steady flight.
+    A rotation that continues after the input is a turn, which is steady flight.
     """
     before = rate.cut(span.start_s - _BEFORE_S, span.start_s).y
     within = rate.cut(span.start_s, span.end_s).y
@@ -40,9 +40,9 @@ def begun_in_motion(span: Span, rate: Channel, loop: Loop) -> str | None:
 
 
 def much_smaller(span: Span, tests: Sequence[Span], control: str) -> str | None:
-    """Return the reason that an input is much smaller than the tests before; None if it is not.
+    """Return the reason why an input is much smaller than the tests before; None if it is not.
 
-    Hands fly no 3-2-1-1 by accident, however small.
+    A 3-2-1-1 of any size is accepted, because hands fly no 3-2-1-1 by accident.
     """
     if "3-2-1-1" in span.kind:
         return None

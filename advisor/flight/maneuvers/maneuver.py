@@ -99,7 +99,7 @@ class Maneuver:
         return self.flight, self.boot
 
     def later(self, by_s: float) -> "Maneuver":
-        """Return the manoeuvre with all times later by ``by_s``."""
+        """Return the manoeuvre with ``by_s`` added to all times."""
         span = replace(
             self.span,
             record_from_s=self.span.record_from_s + by_s,

@@ -21,12 +21,15 @@ from advisor.words.vehicle_time import clock, stretch
 Marker = Literal["hand", "switch", "text", "system id", "script"]
 
 LONGEST_S = 100.0
-"""Longest mark, s. With its lead-in a mark must fit into the two minutes of channels that a stream keeps."""
+"""Longest mark, s. Longest mark, s. With its lead-in a mark must fit into the two minutes of channels that a
+stream keeps.
+"""
 MARK_NOTICES = frozenset({"mark_length", "marked_already", "mark_dropped", SCRIPT_NOTICE})
 """Codes of the notices on marks that cannot be used."""
 FREE_S = 3.0
-"""Free response after the END of a script, s: the surfaces rest there, and the motion tells the servos' lags.
-Three seconds are the least free response of an unmarked lateral input."""
+"""Length of the free response after the END of a script, s. The surfaces rest there, and the motion shows the
+servos' lags. Three seconds are the least free response of an unmarked lateral input.
+"""
 EDGE_S = 2.0
 """Largest distance by which a mark may exceed the end of the log, s. A power cut loses the last second of a
 recording."""

@@ -1,4 +1,5 @@
-"""Probability that a movement of a control is an input of its own, and not a response of the hands.
+"""Probability that a movement of a control is a separate input, and not a response of the hands to the
+motion.
 
 Two models of the control compete. In the first, hands go on as in the seconds before: a loop with a delay,
 
@@ -27,8 +28,9 @@ from advisor.process.arrays import FloatArray
 _DELAYS_S = (0.0, 0.1, 0.2, 0.3)
 """Delays of the loop, s: that of a damper, and those of hands, 0.1 to 0.3 (McRuer & Krendel 1974)."""
 _TAKEN_OVER = ((0.0, 0.1), (0.1, 0.1), (0.0, 0.9))
-"""Begin and length of ramps, s, whose mixture is the course of a take-over: at any time within the first two
-bins, or slowly."""
+"""Begin and length, s, of the ramps whose mixture describes how hands take over. Hands take over within the
+first two bins, or slowly.
+"""
 _KEEPS = (0.5, 0.8, 0.95)
 """Correlations of the remnant from bin to bin: time constants of 0.15, 0.45 and 2 s."""
 _GAINS = 4
@@ -104,12 +106,12 @@ class _Rivals:
 
 @dataclass(frozen=True, slots=True)
 class _Loop:
-    """Loop of one delay, fitted to the seconds before and to the movement."""
+    """Loop with one delay, fitted to the seconds before the movement and to the movement."""
 
     before: float
-    """Sum of squares of the seconds before, with gains from them."""
+    """Sum of squares of the seconds before the movement, with gains fitted to these seconds."""
     within: float
-    """Sum of squares of the movement, with gains of its own."""
+    """Sum of squares of the movement, with gains fitted to the movement."""
     terms: FloatArray
     """Shape (k, m + n): the loop's terms in the seconds before and in the movement."""
 

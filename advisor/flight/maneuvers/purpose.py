@@ -35,17 +35,19 @@ LARGEST_ERROR = 0.3
 Recorded test inputs have an error of 0.01 to 0.12 in calm air, and of 0.16 in gusts of 0.5 m/s. For the
 external input alone they have up to 0.21, and an attitude hold in gusts has 0.3 to 2."""
 LEAST_PROBABILITY = 0.95
-"""Least probability of an own input, for a test: the level of all intervals. Below it a stretch counts for
-nothing. Below one minus it, the hands are said to have moved the control."""
+"""Least probability of an own input, for a test: the level of all intervals. Below this probability a stretch
+is not used. Below one minus this probability, the message says that hands moved the control.
+"""
 _LATER_S = 0.5
-"""Time after the movement's begin, s, from which an own input's begin cuts the movement: the edge of a
-hand-flown step."""
+"""Least time from the movement's begin to the begin of a separate input that cuts the movement, s. The time
+is the edge of a hand-flown step.
+"""
 _WHAT = {
     "ground": "movements without flight",
     "small": "corrections",
     "elsewhere": "movements in turns, climbs and changes of speed",
     "feedback": "movements of the hands that hold the attitude",
-    "undecided": "movements that may be the hands' own",
+    "undecided": "movements that the hands or a test may have made",
     "no_information": "movements without a visible effect",
     "unsettled": "movements that never came to rest",
     "aborted": "inputs that a script ended early",
@@ -99,7 +101,7 @@ def judged(
         Earlier tests of the control in this power-on.
     passed_over
         Whether a script in the autopilot announces its inputs, but not this movement. In a mode with a closed
-        loop the movement is then the loop's.
+        loop the loop then made the movement.
     """
     control = loop.control
     if on_ground is not None:
@@ -196,16 +198,16 @@ def _told(
 
 
 def _as_hands(odds: Odds, control: str) -> Because:
-    """Return the reason why a movement may be one of the hands that hold the attitude."""
+    """Return the reason why hands that hold the attitude may have made a movement."""
     shown, least = distinct_texts(100.0 * odds.probability, 100.0 * LEAST_PROBABILITY)
-    own = f"an input of its own has a probability of {shown} % (at least {least})"
+    own = f"the probability of a separate input is {shown} % (at least {least})"
     if odds.probability < 1.0 - LEAST_PROBABILITY:
         return Because("feedback", f"hands held the attitude with the {control}: {own}; not a test input")
     return Because("undecided", f"hands, or a test, moved the {control}: {own}; counts for nothing")
 
 
 def _part(span: Span, odds: Odds, control: Channel) -> Span:
-    """Return the span of the own input within a movement that begins or ends with the hands."""
+    """Return the span of the separate input within a movement that begins or ends with the hands."""
     if odds.begins_s - span.start_s <= _LATER_S and odds.ends_s >= span.last_step_s:
         return span
     ends_s = min(odds.ends_s, span.last_step_s)

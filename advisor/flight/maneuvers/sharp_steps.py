@@ -1,4 +1,4 @@
-"""Sharp steps of a control: someone outside a control loop moves it."""
+"""Sharp steps of a control, which show that someone outside a control loop moves the control."""
 
 from itertools import pairwise
 

@@ -1,7 +1,8 @@
-"""Commands of sines between their samples.
+"""Commands that consist of sines, between their samples.
 
-Lines between the samples of a sine are too small by (πf/f_s)²/3 on average: 1 % at 2.8 Hz and 50 samples a
-second. The loss grows with the frequency as that by a servo's lag does. On a fast roll it moved L_p by 5 %.
+Straight lines between the samples of a sine lose the fraction (πf/f_s)²/3 on average: 1 % at 2.8 Hz and 50
+samples a second. The loss grows with the frequency like the loss by a servo's lag. On a fast roll the loss
+moved L_p by 5 %.
 """
 
 from dataclasses import replace
@@ -13,11 +14,13 @@ from advisor.flight.signals.record import Channel
 from advisor.process.arrays import FloatArray
 
 _PARTS = 4
-"""Numerical: lines between two samples. Their loss is a sixteenth of that of one line."""
+"""Number of straight lines between two samples. Four lines lose a sixteenth of the loss of one line."""
 
 
 def command_of(maneuver: Maneuver, control: str) -> Channel:
-    """Return the command of a control; a command of sines has corners between its samples."""
+    """Return the command of a control. A command that consists of sines gets further points between its
+    samples.
+    """
     command = maneuver.channels[control]
     if maneuver.span.kind != "multisine":
         return command
@@ -27,7 +30,7 @@ def command_of(maneuver: Maneuver, control: str) -> Channel:
 
 
 def between_samples(t: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return times and values of a cubic spline through samples, with corners between them."""
+    """Return times and values of a cubic spline through samples, with further points between the samples."""
     from scipy.interpolate import CubicSpline  # not on the start path
 
     part = np.arange(_PARTS) / _PARTS

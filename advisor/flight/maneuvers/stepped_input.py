@@ -23,13 +23,15 @@ _SMALL = 0.2
 """Least height of an edge of the input, over the highest edge. The first edge of a 3-2-1-1 with balanced
 areas has a quarter."""
 _NEW = 1e-6
-"""Least part of a step's shape that earlier steps do not have already."""
+"""Least fraction of a step's shape that earlier steps do not contain."""
 _ROUNDING = 1e-8
 """Least variance of a model's residual, over that of the movement: rounding of the samples' means."""
 _LEAST = 1e-16
 """Least sum of squares of a residual, rad²."""
 _SHOWN = log(19.0)
-"""Least log-odds at which hands have flown before the input: the level of all intervals."""
+"""Least log-odds for the conclusion that hands have flown before the input. The level is that of all
+intervals.
+"""
 _MOST_STEPS = 14
 """Largest number of steps of an own input: two edges for each step of a 3-2-1-1 and its return, twice."""
 
@@ -53,7 +55,7 @@ class Cost:
         self._floor = _REMNANT * (1.0 - keep**2) * size
         self._least = _ROUNDING * size + _LEAST
         self.ratio = 1.0
-        """Variance of the remnant before the movement over that within."""
+        """Ratio of the remnant's variance before the movement to the variance within."""
         self.step = 1.5 * log(bins.within)
         """Cost of a step: half of log n for its size, and log n for its time."""
         self.loop = loop
@@ -135,9 +137,9 @@ def stepped_input(
 def _extent(cost: Cost, order: IntArray) -> tuple[int, int]:
     """Return the first bin of the input that the steps form, and the bin of its last step.
 
-    Hands before the input hold no level away from that before. Hands that rest for a free response after the
-    input stay near that level. Where hands flew until the first step, the level is theirs. The extent is 0
-    to n, shape of the movement, where no hands are told apart.
+    Before the input, hands hold no level away from the earlier level. Hands that rest for a free response
+    after the input stay near that level. If hands flew until the first step, their level is the reference. If
+    no hands are recognised, the extent is the whole movement, 0 to n.
     """
     n = cost.bins.within
     control = cost.bins.moved[cost.bins.movement]
@@ -173,7 +175,8 @@ def _height(steps: FloatArray) -> float:
 
 
 def _steps(cost: Cost, before: float) -> tuple[FloatArray, list[int]]:
-    """Return the movement's residual after its steps, and the steps' bins: one after another while each pays.
+    """Return the movement's residual after its steps, and the steps' bins. Steps are added while each lowers
+    the cost.
 
     Parameters
     ----------

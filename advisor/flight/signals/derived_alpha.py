@@ -94,8 +94,8 @@ class DerivedAlpha:
 def derived_alpha(
     climb_m_s: FloatArray, airspeed_m_s: FloatArray, theta: FloatArray, bank: FloatArray
 ) -> FloatArray:
-    """Return θ − γ with sin γ = climb rate / air speed, rad; in a bank, the α that gives γ. The angle is NaN
-    at too low an air speed.
+    """Return θ − γ with sin γ = climb rate / air speed, rad. In a bank, return the angle of attack that gives
+    this γ. The angle is NaN at too low an air speed.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def promised(hud: Columns, airspeed_m_s: float | None) -> IntArray:
 def _angles(
     climb: Channel, around: dict[str, Channel], airspeed_m_s: float | None
 ) -> tuple[FloatArray, FloatArray]:
-    """Return stamps and angles at which the attitude is known before and after."""
+    """Return stamps and angles, only at stamps with an attitude before and after."""
     theta, bank, speed = around.get("theta"), around.get("bank"), around.get("airspeed")
     if theta is None or len(theta) == 0:
         return np.empty(0), np.empty(0)

@@ -1,4 +1,6 @@
-"""A whole power-on of the vehicle: every channel from its first stamp to its last, in bounded memory."""
+"""Record of a whole power-on of the vehicle: every channel from its first stamp to its last, in bounded
+memory.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

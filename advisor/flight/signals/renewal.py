@@ -40,7 +40,8 @@ def counted_once(channel: Channel) -> Channel:
     """Return a channel without the copies of a sender that sends each value several times.
 
     A fit would weight the noise of k copies k times. With k copies only every k-th sample can change. A
-    constant value, such as the elevator's at trim, keeps its samples, because the pattern decides.
+    constant value, such as the elevator's at trim, keeps its samples, because only a pattern of copies
+    counts.
     """
     rows = _originals(channel.y)
     return channel if rows is None else replace(channel, t=channel.t[rows], y=channel.y[rows])

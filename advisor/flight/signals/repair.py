@@ -1,7 +1,8 @@
 """Removal or correction of samples that no aircraft can have flown, with a sentence on each repair.
 
 A single sample may deviate from the motion by more than the range of all other samples. Such an outlier is a
-fault of a memory card, a radio or a driver. An angle between 0 and 360 deg is converted to one about zero.
+fault of a memory card, a radio or a driver. An angle between 0 and 360 deg is converted to an angle about
+zero.
 """
 
 from dataclasses import dataclass, replace
@@ -56,7 +57,9 @@ def repaired(channel: Channel) -> Repaired:
     found, said = channel, []
     if channel.name == "alpha" and np.any(channel.y > pi):
         found = replace(channel, y=np.where(channel.y > pi, channel.y - 2.0 * pi, channel.y))
-        said.append("The angle of attack is counted from 0 to 360 deg: above 180 deg it counts as negative.")
+        said.append(
+            "The angle of attack is sent from 0 to 360 deg: values above 180 deg are read as negative."
+        )
     if channel.name == "airspeed" and (dead := _dropped_out(found)).any():
         at = f"{clock(float(found.t[dead][0]))} to {clock(float(found.t[dead][-1]))}"
         said.append(f"The air speed drops out from {at} and is bridged.")

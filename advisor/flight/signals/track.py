@@ -114,7 +114,7 @@ class Track:
         self._lowest, self._highest = np.inf, -np.inf
         self._extremes = Extremes()
         self._counted, self._counted_s = 0, np.nan
-        """Number of samples in the buffer that are counted, and the newest stamp among all counted ones."""
+        """Number of samples in the buffer that are counted, and the newest stamp of all counted samples."""
         self._t = np.empty(1024)
         self._y = np.empty(1024)
         self._order = np.empty(1024, dtype=np.int64)

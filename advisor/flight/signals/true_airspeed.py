@@ -78,7 +78,7 @@ def is_true(airspeed: Channel) -> bool:
 def true_airspeed(
     logged: Channel, pressure: Channel | None, altitude: Channel | None, temperature_c: float | None
 ) -> Channel:
-    """Return the true air speed for a logged one; unchanged without a density.
+    """Return the true air speed for a logged air speed; unchanged without a density.
 
     Parameters
     ----------

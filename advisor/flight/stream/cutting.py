@@ -74,7 +74,9 @@ class Cutting:
         self._claimed: list[SideStretch] = []
         self._tests: dict[str, list[Span]] = {}
         self._passed_over: tuple[tuple[float, ...], bool] = ((), False)
-        """Finished input that is being flown, with the second of its newest sample; whether it is no test."""
+        """Manoeuvre in flight whose input is over, with the second of its newest sample, and whether the
+        input is no test.
+        """
 
     @property
     def is_backwards(self) -> bool:
@@ -277,7 +279,7 @@ class Cutting:
     ) -> tuple[Maneuver, Evidence]:
         """Return the manoeuvre, with its evidence about the instruments.
 
-        The instruments of a record that ``grows`` are examined at times, not at every sample.
+        The instruments of a record that ``grows`` are examined now and then, not at every sample.
         """
         earlier_boot, earlier_s = self._released
         if earlier_boot == boot and earlier_s > span.record_from_s:
@@ -366,7 +368,8 @@ class Cutting:
             return [self._who.airspeed_doubt]
         if self._tracks.speeds_are_one(span.record_from_s, span.end_s, up_to_order):
             return [
-                "Air speed and ground speed are equal in every sample, so that one stands for the other. "
+                "Air speed and ground speed are equal in every sample, so one of them is copied from the "
+                "other. "
                 "If no sensor measured the air speed, wind makes the derivatives wrong."
             ]
         return []

@@ -103,7 +103,7 @@ class Flights:
         return flying and replace(flying, number=len(self._recorded["pitch"]) + 1, flight=self.flight)
 
     def problems(self) -> list[Problem]:
-        """Return the reasons why none of the flights so far can be used; empty if one can."""
+        """Return the reasons why none of the flights so far can be used; empty if at least one is usable."""
         now = self._problems()
         if not now or any(not past.problems for past in self._past):
             return []

@@ -142,7 +142,9 @@ class Identity:
         return self._finder.may_choose
 
     def _choose(self, piece: Sequence[Columns]) -> list[FlightEvent]:
-        """Follow another vehicle if the present vehicle's data cannot be used and the other's can."""
+        """Follow another vehicle if the present vehicle's data cannot be used and the other vehicle's data
+        can.
+        """
         before = self._finder.vehicle
         if before is None or not piece:
             return []

@@ -1,4 +1,4 @@
-"""Present usability of the stream: its newest stretch, judged by times of arrival.
+"""Present usability of the stream, judged from the newest stretch by times of arrival.
 
 A stream that was usable at the first manoeuvre may become too slow, or lose its elevator. Times of arrival
 are used, because the vehicle's clock stops when ATTITUDE stops. Judgements happen at fixed steps of arrival,
@@ -50,7 +50,9 @@ class Service:
         self._since_s: float | None = None
         self._standing: frozenset[str] = frozenset()
         self.problems: tuple[Problem, ...] = ()
-        """Reasons why the stream cannot be used now; empty if it can, or before a judgement."""
+        """Reasons why the stream cannot be used now; empty for a usable stream, or before the first
+        judgement.
+        """
         self.serves = False
         """Whether the newest judgement found no problem, and no problem is reported. False before the first
         judgement."""

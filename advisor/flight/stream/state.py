@@ -215,7 +215,7 @@ class StreamState:
         return self._guesses.sides
 
     def _wanting(self, channels: Mapping[str, ChannelStatus], now_s: float) -> list[Problem]:
-        """Return the problems of a stream with these channels, whatever manoeuvres were flown."""
+        """Return the problems of a stream with these channels, without a test for manoeuvres."""
         wrong = self._mixing.contradiction if not self._cutting.pitch.counted else None
         two = self.senders.problem(self._system, now_s) if self._system is not None else None
         # Problems of the vehicle followed come first. The screens offer the other vehicles themselves.

@@ -2,9 +2,10 @@
 
 The necessary message rate depends on the aircraft. Before the first estimate, only a minimum rate can be
 required. A 3-2-1-1 is matched to the short period, and its shortest step is about a third of the natural
-period. With fewer than four samples in that step, the step and its response have no certain time. The minimum
-is eight samples per second. A slow jet passes at 10 Hz, and the default rates of autopilots (2 to 4 Hz) fail.
-After an estimate, each manoeuvre is judged by its own natural frequency (`advisor.decision.quality`).
+period. With fewer than four samples in that step, the times of the step and of its response are uncertain.
+The minimum is eight samples per second. A slow jet passes at 10 Hz, and the default rates of autopilots (2 to
+4 Hz) fail. After an estimate, each manoeuvre is judged by its own natural frequency
+(`advisor.decision.quality`).
 """
 
 from collections.abc import Collection, Mapping
@@ -79,8 +80,9 @@ def _no_maneuver(activities: Mapping[str, int]) -> Problem:
     if not activities:
         return Problem(
             "no_maneuver",
-            "No test manoeuvre was found: the elevator kept still.",
-            "Fly a 3-2-1-1 on the elevator in MANUAL, the stick still for a second before and some after.",
+            "No test manoeuvre was found, because the elevator did not move.",
+            "Fly a 3-2-1-1 on the elevator in MANUAL. Hold the stick still for one second before and some "
+            "seconds after.",
         )
     counted = "; ".join(f"{text} ({n} times)" if n > 1 else text for text, n in activities.items())
     return Problem(
@@ -96,7 +98,7 @@ def _perhaps_another(vehicle: Vehicle, other_systems: Collection[int]) -> Proble
     return Problem(
         "other_vehicles",
         f"Vehicle {vehicle.system} was followed, which cannot be used; heard too: {others}.",
-        f"Choose the one that flew the manoeuvres, e.g. --target-system {min(other_systems)}.",
+        f"Choose the vehicle that flew the manoeuvres, e.g. --target-system {min(other_systems)}.",
     )
 
 
@@ -111,7 +113,7 @@ def _no_vehicle(other_systems: Collection[int]) -> Problem:
     return Problem(
         "no_vehicle",
         "No vehicle was heard: there is no HEARTBEAT of an autopilot.",
-        "Check that the log or link is that of an aircraft, not of a ground station alone.",
+        "Check that the log or link comes from an aircraft, not only from a ground station.",
     )
 
 
@@ -190,7 +192,9 @@ def _sent(seen: Collection[str]) -> dict[str, ChannelStatus]:
 def _not_logged(
     elevator: Surface | Problem, channels: Mapping[str, ChannelStatus], vehicle: Vehicle, idle: bool
 ) -> list[Problem]:
-    """Return one problem that lists all missing messages; ``idle``: a missing pulse is reported apart."""
+    """Return one problem that lists all missing messages. With ``idle``, another problem reports the missing
+    pulse.
+    """
     lacks: dict[str, tuple[str, str]] = {}
     if "q" not in channels:
         lacks["no_pitch_rate"] = ("pitch rate", "ATTITUDE")

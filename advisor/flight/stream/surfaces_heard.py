@@ -148,7 +148,7 @@ class SurfacesHeard:
             return vehicle.no_elevator
         found = find_elevator(self._aircraft.elevator, wiring)
         if isinstance(found, Problem) and self._taken is not None:
-            return find_elevator(self._taken, wiring, "by a guess that a hand has taken")
+            return find_elevator(self._taken, wiring, "by a guess that the crew has accepted")
         return found
 
     def _count(self) -> None:
@@ -175,7 +175,7 @@ class SurfacesHeard:
 
 
 def _follows(was: Surface, now: Surface | Problem) -> bool:
-    """Return whether one output in one direction gives the angle on both the old and the new scale."""
+    """Return whether the old and the new scale have the same single output with the same direction."""
     if isinstance(now, Problem) or now.outputs != was.outputs or now.scale is None or was.scale is None:
         return False
     return now.scale.reversed == was.scale.reversed

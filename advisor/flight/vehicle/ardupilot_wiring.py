@@ -32,7 +32,7 @@ WORDS = Words(
     limits="SERVOn_MIN/TRIM/MAX",
     trim="SERVOn_TRIM",
     sense="SERVO{n}_REVERSED",
-    unknown="Nothing says which servo output is the elevator: no SERVOn_FUNCTION was received.",
+    unknown="The elevator's servo output is unknown: no SERVOn_FUNCTION was received.",
     usual="on most ArduPlane aircraft 2",
 )
 

@@ -15,7 +15,7 @@ LEAP_S = 600.0
 """Least step of the stamps that counts as a jump of the clock, s. A movement of the elevator never contains a
 silence of ten minutes."""
 _READ_WITHIN_S = 2.0
-"""Largest time of arrival after the text, s, of a gap that the advisor caused. Packets from the socket's
+"""Longest time from the text to the arrival of a gap that the advisor caused, s. Packets from the socket's
 queue arrive first, within milliseconds."""
 _LEAST_S = 0.5
 """Least gap in the elevator's stamps that is recorded, s: two samples at 4 Hz."""

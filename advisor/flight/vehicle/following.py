@@ -109,8 +109,9 @@ once."""
 NO_PACKET_S = 5.0
 """Largest delay of a packet, s. A larger backward step shows another clock, even if it occurs once."""
 LARGEST_SPREAD_S, LEAST_SHARE = 0.5, 0.25
-"""Two close clocks keep their distance and alternate. The values are the largest spread of the backward
-steps, s, and the least share of such steps. Late packets fulfil neither condition."""
+"""Largest spread of the backward steps, s, and least fraction of such steps, for two close clocks. Two clocks
+keep their distance and alternate. Late packets meet neither condition.
+"""
 
 
 class SenderWatch:

@@ -82,13 +82,15 @@ PART_SPAN_SPOILERS = _spoilers(
     {"elevator": 0.5, "aileron": 0.5},
     {"elevator": 0.5, "aileron": 0.5, "rudder": -1.0},
 )
-"""Differential spoilers whose outer halves alone are elevons. The inner halves move with the rudder demand
-only."""
+"""Differential spoilers whose outer halves alone are elevons. A demand in roll or pitch does not move the
+inner halves, which follow only the rudder demand.
+"""
 OUTER_SPOILERS = _pair(
     "outer differential spoiler", {"elevator": 0.5, "aileron": -0.5}, {"elevator": 0.5, "aileron": 0.5}
 )
-"""Outer halves of differential spoilers without inner halves. Their mean interprets an opening for yaw as
-pitch."""
+"""Outer halves of differential spoilers without inner halves. The mean of both wings' outer halves reads an
+opening for yaw as pitch.
+"""
 
 ROWS: tuple[Role, ...] = (
     *(ELEVATOR, AILERON, RUDDER, FLAP),

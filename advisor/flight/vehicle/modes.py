@@ -35,7 +35,7 @@ _ERRANDS = frozenset({
     "TAKEOFF", "RTL", "CIRCLE", "THERMAL", "AVOID_ADSB", "AUTOLAND",
     "Takeoff", "VTOL Takeoff", "Return", "Land", "Precision Land", "Orbit", "Follow Me", "Termination",
 })  # fmt: skip
-"""Modes in which the autopilot has a task of its own, so that no test input is flown."""
+"""Modes in which the autopilot flies its own task, so that no test input is flown."""
 _HOVER = ", hovering"
 _HOVERING = frozenset(name for name in _PLANE.values() if name.startswith("Q") or name.endswith("QLAND"))
 _COPTERS = frozenset({2, 3, 4, 13, 14, 15, 29, 35})

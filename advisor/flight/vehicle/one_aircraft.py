@@ -27,7 +27,7 @@ class OneAircraft:
         return Problem(
             "other_vehicle",
             f"The vehicle is {_kind(vehicle)}, and {_kind(first)} in {first_name}:"
-            " two aircraft are no campaign.",
+            " one campaign needs one aircraft.",
             "Give the logs of one aircraft only.",
         )
 

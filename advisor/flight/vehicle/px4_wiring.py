@@ -46,8 +46,8 @@ WORDS = Words(
     limits="PWM_MAIN_MINn/MAXn",
     trim="the middle of PWM_MAIN_MINn and MAXn",
     sense="CA_SV_CSn_TRQ_P and PWM_MAIN_REV of output {n}",
-    unknown="Nothing says which servo output is the elevator: no CA_SV_CSn_TYPE was received, and no output "
-    "follows a pitch command.",
+    unknown="The elevator's servo output is unknown: no CA_SV_CSn_TYPE was received, and no output follows "
+    "a pitch command.",
     usual="its place in actuator_outputs, from 1",
 )
 
@@ -190,9 +190,9 @@ def _followers(parameters: Parameters) -> Wiring:
     senses = {n: sense for n, sense in numbered if sense is not None}
     assumed = ""
     if senses:
-        assumed = "a guess: it follows the pitch command"
+        assumed = "a guess, because this output follows the pitch command"
     if STANDS_FOR_ELEVATOR in senses.values():
-        assumed = "the pitch command, which stands for the elevator"
+        assumed = "the pitch command, which replaces the elevator"
     return Wiring(
         WORDS,
         dict.fromkeys(senses, ELEVATOR),

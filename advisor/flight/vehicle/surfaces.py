@@ -157,7 +157,9 @@ class Surface:
         return self.combined(self.angles(pwm_us))
 
     def without(self, silent: Collection[int]) -> "Surface | None":
-        """Return the surface with only the outputs that carry a pulse; None if a demand has none left."""
+        """Return the surface with only the outputs that carry a pulse; None if a demand has no output with a
+        pulse.
+        """
         kept = [part for part in self.parts if part.output not in silent]
         if len(kept) == len(self.parts):
             return self

@@ -42,7 +42,7 @@ class Vehicle:
 
     @property
     def no_elevator(self) -> Problem | None:
-        """Reason why the vehicle has no elevator, whatever its outputs; None if it can have one."""
+        """Reason why the vehicle's kind has no elevator; None if the vehicle can have an elevator."""
         if not self.is_multicopter:
             return None
         return Problem(

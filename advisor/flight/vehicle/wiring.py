@@ -54,7 +54,7 @@ def assumed_limits(output: int, scale: Scale) -> Problem:
 
 
 def _contradiction(names: Names, known: list[float | None]) -> str:
-    """Return the reason in words why no linkage can have the stated limits; empty if one can."""
+    """Return the reason in words why no linkage can have the stated limits; empty for possible limits."""
     given = [(name, value) for name, value in zip(names, known, strict=True) if value is not None]
     for name, value in given:
         if value <= 0.0:

@@ -14,7 +14,7 @@ from advisor.mavlink.records.equivalent import nearest
 from advisor.process.arrays import FloatArray, IntArray
 
 _AIR_SPEED = {"ARSP": "Airspeed", "CTUN": "As", "NTUN": "Arspd"}
-"""Name of a record to its field with the air speed, the best record first."""
+"""Field with the air speed of each record, the best record first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,9 +32,9 @@ def air(tables: Mapping[str, RecordTable], interrupted: bool) -> AirRecords:
     Parameters
     ----------
     tables
-        Records by name, each of the sensor or estimator in use.
+        Records by name. Each holds only the sensor or estimator in use.
     interrupted
-        Whether no air speed sensor was healthy at some times.
+        Whether at some times no air speed sensor was healthy.
     """
     speed, said = _airspeed(tables, interrupted)
     descent = _first(tables, [(f"{family}1", "VD") for family in families(tables)])
@@ -68,7 +68,7 @@ def _airspeed(
         stand_in, spare_field = spare[0]
         rows = _away_from(time_us, stand_in.time_us)
         if rows.any():
-            text = f"Air speed: the autopilot's own ({spare_field}) stands in where no sensor was healthy"
+            text = f"Air speed: {spare_field} of the autopilot replaces the sensor while none is healthy"
             said.append(Said(int(stand_in.order[rows][0]), int(stand_in.time_us[rows][0]), text))
         order = np.concatenate([order, stand_in.order[rows]])
         time_us = np.concatenate([time_us, stand_in.time_us[rows]])
@@ -88,7 +88,9 @@ def _first(
 
 
 def _away_from(time_us: IntArray, other_us: IntArray) -> NDArray[np.bool_]:
-    """Return whether each of the other times is farther from every time than three sampling intervals."""
+    """Return whether each of the other times is more than three sampling intervals away from all
+    ``times``.
+    """
     if len(time_us) < 2:
         return np.ones(len(other_us), dtype=np.bool_)
     apart_us = np.abs(other_us - time_us[nearest(other_us, time_us)])

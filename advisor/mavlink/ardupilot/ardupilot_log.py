@@ -58,7 +58,7 @@ _FIELDS = frozenset[str]().union(*_RECORDS.values(), *SDLOG2_RECORDS.values()) |
     *(former for renamed in RENAMED.values() for former in renamed),
     *(today for renamed in RENAMED.values() for today in renamed.values()),
 }
-"""Fields that are read: the necessary ones, stamps, sensor numbers, and those of some versions."""
+"""Fields that are read: necessary fields, stamps, sensor numbers, and fields of single versions."""
 _OF_WHOLE_LOG = (*VEHICLE_RECORDS, *HEALTH_RECORDS, *SYSTEM_ID_RECORDS)
 """Records of a log that later stretches of the log also need. All these records are rare."""
 _UNDIVIDED = ("TIME",)
@@ -112,7 +112,9 @@ def _after(newest: int, batch: Sequence[Columns], columns: Columns) -> Columns:
 
 
 def _messages(stored: Mapping[str, RecordTable], known: Known) -> tuple[Iterator[Columns] | None, Known]:
-    """Return a stretch's messages, and the facts of its log; none without attitude, inertia and outputs."""
+    """Return the messages of a stretch, and the facts of its log; no messages without attitude, inertial
+    sensors and outputs.
+    """
     if is_sdlog2(stored):
         return Sdlog2Messages(stored).columns(), known
     read = in_todays_names(stored, known.epoch_s)
@@ -128,7 +130,7 @@ def _messages(stored: Mapping[str, RecordTable], known: Known) -> tuple[Iterator
 
 
 def _believable(table: RecordTable) -> RecordTable:
-    """Return the fields whose value types fit their names, which a damaged definition may not."""
+    """Return the fields whose value types fit their names. A damaged definition can have other types."""
     fields = {
         name: values
         for name, values in table.fields.items()

@@ -27,7 +27,7 @@ from advisor.mavlink.records.equivalent import air_data, message, milliseconds, 
 from advisor.process.arrays import IntArray
 
 _NOT_LOGGED = 255
-"""MAV_SEVERITY of a text of MSG, which does not keep the severity (0 to 7)."""
+"""MAV_SEVERITY that each text of MSG gets, because MSG does not keep the severity (0 to 7)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ class Translation:
         self._tables = dict(read.tables)
         self._said: list[Said] = []
         if read.epoch_s:
-            self._said.append(Said(0, 0, "Stamps count from 1970: times are given since the first record"))
+            self._said.append(Said(0, 0, "Stamps count from 1970, so times are given since the first record"))
         healthy: dict[str, set[str]] = dict(known.health)
         silences: dict[str, list[Silence]] = {}
         for name, kind in KINDS.items():

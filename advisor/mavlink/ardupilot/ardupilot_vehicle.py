@@ -24,7 +24,7 @@ _TITLES = {"ArduPlane": MAV_TYPE_FIXED_WING, "ArduCopter": 2, "ArduRover": 10, "
 _STICKS = {"RCMAP_ROLL": (1, 4), "RCMAP_PITCH": (2, 19), "RCMAP_YAW": (4, 21)}
 """Default and present SERVOn_FUNCTION of each stick's output parameter, for old firmware (ArduPlane 3.7)."""
 _MIXERS = ("ELEVON_MIXING", "ELEVON_OUTPUT", "VTAIL_OUTPUT")
-"""Parameters of old firmware with which outputs move in two axes. The role of each output is then unknown."""
+"""Parameters of old firmware that mix two axes onto one output. The role of each output is then unknown."""
 
 
 def system_of(tables: Mapping[str, RecordTable]) -> int:

@@ -44,7 +44,9 @@ class Rates:
 
 
 def body_rates(tables: Mapping[str, RecordTable]) -> Rates | None:
-    """Return the rates of IMU, else of GYR, PIDP or RATE, else those derived from ATT; None without any."""
+    """Return the rates of IMU, else of GYR, PIDP or RATE, else rates derived from ATT; None without all of
+    these.
+    """
     if "IMU" in tables:
         return _read(tables["IMU"], ("GyrX", "GyrY", "GyrZ"), 1.0, "")
     if "GYR" in tables:
@@ -96,7 +98,7 @@ def _read(
 
 
 def _stands_still(pid: RecordTable) -> bool:
-    """Return whether the controller's rate is ever constant over ``_FROZEN_S``."""
+    """Return whether the controller's rate is constant over ``_FROZEN_S`` at any time."""
     moved = np.flatnonzero(np.diff(pid.fields["Act"]) != 0.0) + 1
     edges_us = pid.time_us[np.concatenate(([0], moved, [len(pid) - 1]))]
     return bool(np.max(np.diff(edges_us)) > 1e6 * _FROZEN_S)

@@ -136,12 +136,14 @@ def _doubts(every: RecordTable, quantity: str, health: Collection[str]) -> list[
     """Return a sentence if no record states any sensor as healthy. All sensors are then taken as healthy."""
     if len(every) == 0 or set(_stated(every)) <= set(health):
         return []
-    text = f"{quantity}: no sensor is ever stated to be healthy, and they are used all the same"
+    text = f"{quantity}: the log states no sensor as healthy, and all sensors are used"
     return [Said(int(every.order[0]), int(every.time_us[0]), text)]
 
 
 def changes(table: RecordTable, quantity: str, noun: str = "sensor") -> list[Said]:
-    """Return sentences about the first instance in use and its changes; none if instance 0 alone flew."""
+    """Return sentences about the first instance in use and its changes; none if only instance 0
+    was in use.
+    """
     instance = _numbers(table)
     rows = np.flatnonzero(np.diff(instance, prepend=-1))
     if instance[rows].tolist() in ([], [0]):

@@ -1,4 +1,4 @@
-"""Which of several like sensors and estimators an ArduPilot log says that the autopilot flew with.
+"""Choice of the sensor and estimator with which the autopilot flew, among several in an ArduPilot log.
 
 One row of ``KINDS`` states, for each record, the fields of health and use, the field or record that names the
 primary, and the parameters. The names are those of ArduPilot's log messages and parameters.
@@ -17,10 +17,10 @@ from advisor.process.arrays import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """How a log states which instance of a record the autopilot flew with."""
+    """Fields and parameters with which a log states the instance of a record that the autopilot used."""
 
     quantity: str
-    """Measured quantity, for sentences; empty where another record of the same instance is named."""
+    """Measured quantity, for sentences; empty if the sentence about another record names the instance."""
     noun: str = "sensor"
     primary_field: str = ""
     """Field of the record with the number of the primary instance."""
@@ -31,7 +31,7 @@ class Kind:
     use_parameters: tuple[str, ...] = ()
     """Parameter of each instance that is 0 if the instance is not used."""
     needs_health: bool = True
-    """Whether a time without a healthy instance is told."""
+    """Whether a time without a healthy instance is reported."""
 
 
 _LANES_3, _LANES_2 = ("XKF4", "PI"), ("NKF4", "PI")
@@ -56,7 +56,9 @@ FAMILIES = {2: "NKF", 3: "XKF"}
 
 
 def named_primary(kind: Kind, table: RecordTable, tables: Mapping[str, RecordTable]) -> FloatArray:
-    """Return the number of the primary instance at each record, shape (n,); NaN where the log names none."""
+    """Return the number of the primary instance at each record, shape (n,); NaN if the log names
+    no instance.
+    """
     name, field = kind.selector
     if name in tables and field in tables[name].fields and len(tables[name]):
         stated = tables[name]
@@ -78,14 +80,14 @@ def unused(kind: Kind, tables: Mapping[str, RecordTable]) -> Collection[int]:
 
 
 def families(tables: Mapping[str, RecordTable]) -> tuple[str, ...]:
-    """Return the estimators' records by the begin of their names, the one that flew first."""
+    """Return the records of the estimators by the begin of their names; the estimator in use comes first."""
     stated = parameter_value(tables, "AHRS_EKF_TYPE")
     flew = FAMILIES.get(int(stated)) if stated is not None else None
     return tuple(dict.fromkeys((*((flew,) if flew else ()), "XKF", "NKF", "EKF")))
 
 
 def said_family(tables: Mapping[str, RecordTable]) -> list[Said]:
-    """Return a sentence if a log holds several estimators, and not the newest one flew."""
+    """Return a sentence if a log holds several estimators, and the autopilot did not use the newest."""
     first = families(tables)[0]
     if first == "XKF" or not {f"{first}1", "XKF1"} <= tables.keys():
         return []

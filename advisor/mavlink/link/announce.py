@@ -55,7 +55,7 @@ class Announcer(Talker):
         self._stops_told: set[str] = set()
 
     def judged(self, maneuver: int, sentence: str, stop: str = "", axis: str = "", about: str = "") -> None:
-        """Take the verdict on a manoeuvre, for an announcement.
+        """Queue the verdict on a manoeuvre for an announcement.
 
         Parameters
         ----------
@@ -78,7 +78,7 @@ class Announcer(Talker):
         self.say(sentence)
 
     def say(self, sentence: str) -> None:
-        """Take a sentence that is no verdict, for an announcement."""
+        """Queue a sentence that is no verdict for an announcement."""
         self._waiting.append(SPOKEN + sentence)
 
     def source(self, own: Ids, vehicle: Ids) -> Ids:

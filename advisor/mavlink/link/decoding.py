@@ -18,7 +18,8 @@ class Decoding:
     Parameters
     ----------
     elevator
-        Elevator of the aircraft file, which shows which vehicle has one. None to decide by parameters.
+        Elevator of the aircraft file, by which the vehicle with an elevator is found. None to decide by
+        parameters.
     target_system
         System id of the vehicle; None for the first autopilot that sends.
     """

@@ -133,13 +133,13 @@ class Request(Enum):
     """Request of a caller to the link's process."""
 
     LISTEN = "listen"
-    """All records so far, and all later ones."""
+    """Request for all records so far, and for all later records."""
     OBSERVE = "observe"
-    """The link's health only, without records and notices."""
+    """Request for the link's health only, without records and notices."""
     GUARD = "guard"
-    """The caller guards the process. A caller that ends without ``STOP`` leaves the process unguarded. The
+    """Request to guard the process. A caller that ends without ``STOP`` leaves the process unguarded. The
     answer states whether the descriptor of a UDP socket follows."""
     ALIVE = "alive"
-    """Time since the link's slowest thread last worked, s."""
+    """Request for the time since the link's slowest thread last worked, s."""
     STOP = "stop"
-    """Close the link and the recording, and end the process."""
+    """Request to close the link and the recording, and to end the process."""

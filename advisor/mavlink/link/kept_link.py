@@ -33,7 +33,7 @@ RETRY_EVERY_S = 0.1
 class KeptLink:
     """Reader of all records of a link's process, from the beginning.
 
-    A restarted reader therefore arrives at an equal campaign. After a restart of the link's process, the
+    A restarted reader therefore makes an equal campaign. After a restart of the link's process, the
     reader continues at its position.
 
     Parameters

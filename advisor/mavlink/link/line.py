@@ -1,4 +1,4 @@
-"""Connection of a link: opened, interrupted, and opened again."""
+"""Connection of a link, which is opened again after an interruption."""
 
 import contextlib
 import time

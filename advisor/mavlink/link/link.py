@@ -134,7 +134,7 @@ class Link:
         if self._goes_on:
             self._orders.append(DOWN)
         if self.address.speaks_first:
-            text = f"{self.address.text} is told our address by a heartbeat once a second"
+            text = f"{self.address.text} learns the advisor's address from a heartbeat once a second"
             self._say([text])
         self._thread.start()
         return self

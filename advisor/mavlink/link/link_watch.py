@@ -1,5 +1,6 @@
-"""Sentences for the crew about its link: silence, interruption, recovery, a second vehicle, a slower
-stream."""
+"""Sentences for the crew about the link: silence, interruption, recovery, a second vehicle, a
+slower stream.
+"""
 
 import struct
 from collections.abc import Collection
@@ -45,7 +46,9 @@ class LinkWatch:
         self._reboots = RebootWatch()
 
     def silent_s(self, now_s: float) -> float:
-        """Return the time since the vehicle's last frame, s; without a vehicle, since any sender's."""
+        """Return the time since the vehicle's last frame, s. Without a vehicle, return the time since any
+        sender's last frame.
+        """
         return max(0.0, now_s - self._heard_s)
 
     def cut(self, why: str, now_s: float) -> str:

@@ -16,7 +16,7 @@ Ids = tuple[int, int]
 
 
 class Talker(ABC):
-    """Source of messages for the vehicle: a state machine without a clock."""
+    """Source of messages for the vehicle, as a state machine whose caller gives the time."""
 
     def source(self, own: Ids, vehicle: Ids) -> Ids:
         """Return the ids of the sender of the messages; by default the advisor's own."""

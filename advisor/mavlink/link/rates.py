@@ -111,7 +111,9 @@ class RateRequest(Talker):
         return []
 
     def leave(self, now_s: float) -> list[Any] | None:
-        """Restore every requested rate; return None when the vehicle has answered, or never will."""
+        """Restore every requested rate. Return None after the vehicle has answered, or if no answer is
+        expected any more.
+        """
         asked = [
             request for request in self._requests.values() if request.answer or request is self._standing
         ]
@@ -144,7 +146,7 @@ class RateRequest(Talker):
             return
         self._began_s = now_s
         self._forget()
-        self._said.append("the vehicle rebooted: every rate is asked for again")
+        self._said.append("the vehicle rebooted: every rate is requested again")
 
     def _forget(self) -> None:
         """Reset the requests for a vehicle without earlier requests."""

@@ -99,7 +99,7 @@ def open_transport(address: Address, inherited: int | None = None) -> Transport:
     Raises
     ------
     OSError
-        The connection cannot be opened now: port taken, nobody answers, no such device.
+        The connection cannot be opened now. The port is taken, nobody answers, or the device does not exist.
     """
     match address.kind:
         case "udpin" | "udpout":

@@ -58,7 +58,7 @@ class Uplink(Talker):
         self._said: list[str] = []
 
     def order(self, which: int, size_deg: float, unit_s: float) -> None:
-        """Take the next input, to be sent unless the script has confirmed the identical one."""
+        """Take the next input. The uplink sends it unless the script has confirmed an identical input."""
         wanted = NextOrder(which, size_deg, unit_s)
         if wanted not in (self._wanted, self._confirmed):
             if which == 0:
@@ -69,7 +69,7 @@ class Uplink(Talker):
         self._wanted, self._tries, self._due_s = wanted, 0, float("-inf")
 
     def _go_on(self) -> None:
-        """Forget the order, and send the one that waited behind an end."""
+        """Forget the order, and send the next input that waited for the end of the present one."""
         waiting, self._waiting = self._waiting, None
         self._begin(waiting)
 

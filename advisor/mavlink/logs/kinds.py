@@ -6,8 +6,9 @@ from advisor.mavlink.logs.formats import FORMATS, GIVE, LogFormat
 from advisor.words.problems import Problem
 
 BEGINNING_BYTES = 1 << 20
-"""Number of bytes of a file within which its log must begin. Text in front of a log is a few lines. A
-megabyte is read in milliseconds, so huge and packed files are refused quickly."""
+"""Number of bytes at the start of a file in which the log must begin. A few lines of text may stand in front
+of a log. A megabyte is read in milliseconds, so huge and packed files are refused quickly.
+"""
 
 _ARCHIVES = {
     b"BZh": "bzip2",
@@ -54,7 +55,7 @@ class Found:
 def recognised(beginning: bytes) -> Found | None:
     """Return the log that begins first within the first ``BEGINNING_BYTES`` of a file; None for no log.
 
-    A format without first bytes of its own is tried if no other format begins.
+    A format without fixed first bytes is tried if no other format begins.
     """
     for has_magic in (True, False):
         there = [

@@ -39,7 +39,7 @@ def open_log(
     Raises
     ------
     UnusableInputError
-        The file is missing or no regular file. During the reading: the file contains no messages.
+        The file is missing, or is not a regular file. The reading has found no messages.
     """
     return _read(path, beginning_of(path), wanted, scanner or FrameScanner(wanted), columns)
 
@@ -63,7 +63,8 @@ def _read(
     except Exception as error:
         raise UnusableInputError(
             "damaged",
-            f"{path.name} cannot be read: its bytes break the reader ({type(error).__name__}: {error}).",
+            f"{path.name} cannot be read, because the reader failed on its bytes ({type(error).__name__}: "
+            f"{error}).",
             "Copy the log from the vehicle once more, or leave it out; and please report it.",
         ) from error
 

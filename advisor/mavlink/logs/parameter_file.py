@@ -19,15 +19,18 @@ MESSAGE = "FILE_TRANSFER_PROTOCOL"
 _ACK, _OPEN, _READ, _BURST = 128, 4, 5, 15
 """Operations of MAVLink FTP: the answer, opening of a file, and reading of one or many pieces."""
 _HEAD = struct.Struct("<HBBBBBxI")
-"""Fields: sequence number, session, operation, size, answered operation, end of a burst, padding, offset."""
+"""Fields of the head: sequence number, session, operation, size, answered operation, end of a burst, padding,
+offset.
+"""
 _PLAIN, _WITH_DEFAULTS = 0x671B, 0x671C
-"""First number of the file, without and with the parameters' default values."""
+"""First number of a parameter file, without and with the parameters' default values."""
 _KINDS = {1: "<b", 2: "<h", 3: "<i", 4: "<f"}
 """Binary form of a parameter's value, by its kind."""
 _HAS_DEFAULT = 1
 MOST_BATCHES = 500
-"""Largest number of batches with file pieces that are kept. A download of parameters takes some seconds; one
-of a log may take an hour."""
+"""Largest number of batches with file pieces that are kept. A download of parameters takes some seconds, but
+a download of a log may take an hour.
+"""
 _REAL32 = 9
 """Value of MAV_PARAM_TYPE_REAL32. A value from the file is a number already."""
 

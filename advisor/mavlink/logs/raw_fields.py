@@ -23,7 +23,9 @@ _INSTANCES = ("I", "IMU")
 """Fields of a dataflash record that contain the number of the sensor."""
 _OF_MAVLINK = {"time_boot_ms": 1e-3, "time_usec": 1e-6}
 _LATE_S = 5.0
-"""Difference from the time of arrival, s, beyond which a stamp belongs to another clock; links are faster."""
+"""Difference from the time of arrival, s, beyond which a stamp belongs to another clock. The delay of a link
+is smaller.
+"""
 _STAMPS = ("TimeUS", "TimeMS", "time_boot_ms", "time_usec")
 
 
@@ -116,7 +118,9 @@ def _of_messages(path: Path, names: Collection[str], columns: TableColumns | Non
 
 
 def _clock_s(part: Columns, late_s: float) -> FloatArray:
-    """Return a message's own stamps, s since power-on; times of arrival where these do not fit the clock."""
+    """Return a message's own stamps, s since power-on. A stamp that does not fit the clock is replaced by the
+    time of arrival.
+    """
     arrived = part.arrival_s - late_s
     for field, factor in _OF_MAVLINK.items():
         if field in part.fields:

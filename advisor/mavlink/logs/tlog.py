@@ -23,12 +23,12 @@ def read_tlog(
     wanted : iterable of str, optional
         Names of the messages to decode. None for all defined messages.
     chunk_bytes : int
-        Number of bytes read at a time, without influence on the messages.
+        Number of bytes read at a time. The messages do not depend on this number.
 
     Raises
     ------
     UnusableInputError
-        The file contains no MAVLink, which is known only at its end.
+        The file contains no MAVLink. The error is raised at the end of the file.
     """
     return scan_tlog(path, FrameScanner(wanted), chunk_bytes)
 

@@ -1,4 +1,4 @@
-"""Access to a log's file: refused if unreadable, unpacked if packed (gzip, zip)."""
+"""Access to a log's file. An unreadable file is refused, and a packed file (gzip, zip) is unpacked."""
 
 import gzip
 import stat
@@ -15,8 +15,9 @@ from advisor.words.problems import UnusableInputError
 LARGEST_UNPACKED_BYTES = (1 << 32) - 1
 """Largest log that is unpacked, bytes. Autopilots write to FAT32 cards, on which no file is larger."""
 MOST_TIMES = 100
-"""Largest ratio of a log's size to the size of its packed file. This project's logs are packed to between a
-half and a tenth, and a standing vehicle's log to a fiftieth."""
+"""Largest ratio of a log's size to the size of its packed file. Packing shrinks this project's logs to
+between a half and a tenth, and the log of a standing vehicle to a fiftieth.
+"""
 _SMALL_BYTES = 64_000_000
 """Size of a log up to which any ratio is accepted, bytes."""
 _MOST_MEMBERS = 1000

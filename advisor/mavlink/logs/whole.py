@@ -1,8 +1,8 @@
-"""A log known as a whole: the flown vehicle and its parameters apply from the first message.
+"""Reading of a whole log, in which the flown vehicle and its parameters apply from the first message.
 
 Ground stations write PARAM_VALUE after a download, sometimes only after landing. The first vehicle in a log
-may have stood idle. A link cannot know the flown vehicle and its parameters from the start. A reader of a
-file can.
+may have stood idle. A reader of a file knows the flown vehicle and its parameters from the start, which a
+link does not.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -71,13 +71,17 @@ def read_whole_log(
             )
     flew = _flew_though_heard_later(telling)
     if flew is not None:
-        notes.append(f"Vehicle {flew.system} is followed: it alone was armed. Another one was heard first")
+        notes.append(
+            f"Vehicle {flew.system} is followed: it alone was armed. Another vehicle was heard first"
+        )
     yield [*_in_front(first, [*([flew] if flew else []), *known], notes), *first]
     yield from batches
 
 
 def _flew_though_heard_later(batches: Iterable[Sequence[Columns]]) -> Columns | None:
-    """Return the first heartbeat of the one armed winged vehicle; None if the first or several were armed."""
+    """Return the first heartbeat of the only armed winged vehicle. Return None if the first vehicle or
+    several vehicles were armed.
+    """
     first: dict[Sender, Columns] = {}
     armed: set[Sender] = set()
     for columns in (c for batch in batches for c in batch if c.name == "HEARTBEAT" and len(c)):

@@ -26,9 +26,9 @@ _SENSORS = (1, 2, 3)
 _CALIBRATED, _INDICATED = "calibrated_airspeed_m_s", "indicated_airspeed_m_s"
 _TRUE = "true_airspeed_m_s"
 _STANDS_IN = (
-    "Air speed: no sensor measured it. The autopilot's own estimate stands in, which does not see gusts"
+    "Air speed: no sensor measured it. The autopilot's own estimate is used instead; it does not show gusts"
 )
-_REFUSED = "Air speed: the autopilot calls its sensor invalid, and nothing else tells the air speed"
+_REFUSED = "Air speed: the autopilot calls its sensor invalid, and no other source gives the air speed"
 
 BoolArray = NDArray[np.bool_]
 Speed = dict[str, NDArray[Any]]
@@ -51,7 +51,7 @@ def air(topics: Topics) -> tuple[list[TimedMessages], list[str]]:
 
 
 def _airspeed(topics: Topics) -> tuple[Speed | None, list[str]]:
-    """Return the faster one of the validated air speed and its sensor's, while a sensor is valid."""
+    """Return the validated or the sensor's air speed, whichever is faster, while a sensor is valid."""
     validated, raw = first(topics, "airspeed_validated"), topics.get("airspeed", [])
     measured = [] if validated is None else [samples_of(validated, _is_measured(validated))]
     sensor = joined(
@@ -124,7 +124,7 @@ def _climb(topics: Topics) -> Series | None:
 
 
 def _wind(topics: Topics) -> list[TimedMessages]:
-    """Return WIND_COV: the estimated wind, of the topic since 1.12 or the one before."""
+    """Return WIND_COV, the estimated wind, from the topic since version 1.12 or from the earlier topic."""
     estimated = first(topics, "wind") or first(topics, "wind_estimate")
     if estimated is None:
         return []

@@ -47,8 +47,7 @@ class Outputs:
 
 
 def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
-    """Return the outputs from the parameters that describe them, else from agreement with the pitch
-    command."""
+    """Return the outputs that the parameters describe, else the outputs that follow the pitch command."""
     moving = _moving(topics.get("actuator_outputs", []))
     if any(role.surface for role in px4_wiring(parameters).roles.values()):
         return _of_surfaces(topics, moving, parameters)
@@ -116,7 +115,9 @@ def _varies(values: FloatArray) -> bool:
 
 
 def _assigned(instances: Sequence[Topic], parameters: Mapping[str, float]) -> dict[int, Topic]:
-    """Return each output group's instance, from 0, whose functions fit the moving outputs best."""
+    """Return, for each output group, the instance (from 0) in which the moving outputs fit the group's
+    functions best.
+    """
     agreements = []
     for bank, group in enumerate(banks(parameters) or ["PWM_MAIN"]):
         used = {k for k in OUTPUTS if parameters.get(f"{group}_FUNC{k}")}

@@ -84,7 +84,7 @@ def published_us(topic: Topic) -> IntArray:
 
 
 def sampled_us(topic: Topic) -> IntArray:
-    """Return the times of the sensor's reading if the topic has them, else those of publication."""
+    """Return the times of the sensor's readings if the topic has them, else the times of publication."""
     published = published_us(topic)
     if "timestamp_sample" not in topic:
         return published
@@ -120,7 +120,7 @@ def rate_hz(topic: Topic) -> float:
 
 
 def best(candidates: Iterable[Topic | None]) -> Topic | None:
-    """Return the first topic that is fast enough, else the fastest; None without any."""
+    """Return the first topic that is fast enough, else the fastest topic; None without a topic."""
     found = [topic for topic in candidates if topic is not None]
     fast = [topic for topic in found if rate_hz(topic) >= ENOUGH_HZ]
     return fast[0] if fast else max(found, key=rate_hz, default=None)

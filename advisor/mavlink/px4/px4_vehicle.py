@@ -86,7 +86,9 @@ def _on_rotors(status: Topic) -> NDArray[np.bool_]:
 
 
 def _mav_type(parameters: Mapping[str, Any], status: Topic | None) -> int:
-    """Return MAV_TYPE of the parameters, else of vehicle_status, where a hovering VTOL is no aeroplane."""
+    """Return MAV_TYPE of the parameters, else of vehicle_status. In vehicle_status a hovering VTOL is no
+    aeroplane.
+    """
     stated = parameters.get("MAV_TYPE")
     if isinstance(stated, int | float) and stated in range(1, 256):
         return int(stated)

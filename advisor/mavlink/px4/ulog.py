@@ -44,7 +44,7 @@ def motion(topics: Topics, is_turned: bool = False) -> Iterator[TimedMessages]:
     Parameters
     ----------
     is_turned
-        Whether the board is mounted rotated, so that a raw sensor's axes differ from the body's.
+        Whether the board is mounted rotated. A raw sensor's axes then differ from the body axes.
     """
     yield from _attitude(topics)
     yield from _highres_imu(topics, is_turned)
@@ -64,7 +64,9 @@ def motion(topics: Topics, is_turned: bool = False) -> Iterator[TimedMessages]:
 
 
 def _attitude(topics: Topics) -> Iterator[TimedMessages]:
-    """Yield angles at the stamps of the attitude, rates at those of the angular velocity or of the gyro."""
+    """Yield angles at the stamps of the attitude, and rates at the stamps of the angular velocity or of the
+    gyro.
+    """
     records = []
     attitude = first(topics, "vehicle_attitude")
     if attitude is not None:
@@ -108,8 +110,8 @@ MAGIC = b"ULog\x01\x12\x35"
 class WholeFile(io.BufferedReader):
     """A file in which a read beyond the end fails.
 
-    Without this failure, pyulog 1.3 steps back by the bytes it wanted to read, not by those it got. Its
-    search in a damaged file would then never end.
+    Without this failure, pyulog 1.3 steps back by the bytes that it requested, not by the bytes that it got.
+    The search in a damaged file would then never end.
     """
 
     def read(self, size: int | None = -1, /) -> bytes:

@@ -1,4 +1,4 @@
-"""Which of several sensors and estimators a PX4 log says that the autopilot flew with.
+"""Choice of the sensors and the estimator with which the autopilot flew, among several in a PX4 log.
 
 ``estimator_selector_status.primary_instance`` numbers the estimator. ``sensor_selection`` names sensors by
 device. Topics are those of PX4's message definitions (msg/*.msg).
@@ -19,7 +19,9 @@ _ESTIMATES = {
     "vehicle_global_position": "estimator_global_position",
     "wind": "estimator_wind",
 }
-"""Topic of each single estimator, by the topic of the estimator in use, which is read where it is logged."""
+"""Topic of the single estimators, by the topic of the estimator in use. The topic of the estimator in use is
+preferred.
+"""
 _DEVICES = {
     "sensor_accel": (
         ("Accelerometer", "device_id"),
@@ -32,8 +34,9 @@ _DEVICES = {
         ("sensors_status_baro", "device_id_primary"),
     ),
 }
-"""Sensor and its field with the device, then topics and fields with the device in use, by the sensor's topic.
-The first logged one counts."""
+"""Sensor's field with the device, then topics and fields with the device in use, by the sensor's topic. The
+first topic that is logged counts.
+"""
 SELECTORS: Mapping[str, set[str]] = {
     "estimator_selector_status": {"primary_instance"},
     "estimator_attitude": {"q[3]"},
@@ -50,7 +53,9 @@ _MOST_CHANGES = 5
 
 
 def as_flown(topics: Topics) -> tuple[dict[str, list[Topic]], list[str]]:
-    """Return the topics with the instance in use at each time first, and sentences about changes."""
+    """Return the topics, with the instance in use at each time as the first instance, and sentences about
+    changes.
+    """
     flown = {name: list(instances) for name, instances in topics.items()}
     said: list[str] = []
     status = first(topics, "estimator_selector_status")
@@ -82,7 +87,9 @@ def as_flown(topics: Topics) -> tuple[dict[str, list[Topic]], list[str]]:
 
 
 def _in_use(instances: Sequence[Topic], names: Sequence[float], at_us: IntArray, stated: FloatArray) -> Topic:
-    """Return the samples of the stated instance at each time; the first instance's if none is ever stated."""
+    """Return the samples of the stated instance at each time. If no instance is ever stated, return the first
+    instance.
+    """
     parts = []
     for name, instance in zip(names, instances, strict=True):
         now = latest(published_us(instance), at_us, stated)
@@ -92,7 +99,9 @@ def _in_use(instances: Sequence[Topic], names: Sequence[float], at_us: IntArray,
 
 
 def _changes(what: str, at_us: IntArray, numbers: FloatArray) -> list[str]:
-    """Return sentences about the first instance in use and its changes; none if instance 0 alone flew."""
+    """Return sentences about the first instance in use and its changes; none if only instance 0
+    was in use.
+    """
     rows = np.flatnonzero(np.diff(numbers, prepend=np.nan) != 0.0)
     if numbers[rows].tolist() in ([], [0.0]):
         return []

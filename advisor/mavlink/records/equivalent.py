@@ -122,7 +122,9 @@ def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:
 
 
 def nearest(at_us: IntArray, time_us: IntArray) -> IntArray:
-    """Return the index of the record nearest to each given time, the earlier one of two."""
+    """Return the index of the record nearest to each given time. Of two equally near records, return the
+    earlier.
+    """
     after = np.clip(np.searchsorted(time_us, at_us), 1, max(len(time_us) - 1, 1))
     before = after - 1
     after = np.minimum(after, len(time_us) - 1)

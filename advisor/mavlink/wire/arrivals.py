@@ -1,8 +1,8 @@
-"""Classification of packets: repeats by a second path are dropped, and losses and late packets counted.
+"""Classification of packets. Repeats by a second path are dropped, and losses and late packets are counted.
 
 Two radios, a router's loop or a duplicated output deliver packets twice, up to `REPEAT_US` apart. A repeat
 has source, sequence number, message and checksum of an earlier packet. A single repeat proves no second path,
-because sequence numbers recur and heartbeats are alike. A number of `_RUN` successive repeats proves a second
+because sequence numbers recur and heartbeats are equal. A number of `_RUN` successive repeats proves a second
 path.
 
 A late path also delivers packets that the first path lost. Such a packet arrives among repeats and continues

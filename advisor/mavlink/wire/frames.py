@@ -1,4 +1,4 @@
-"""From bytes to columns: the one reader for logs and live links."""
+"""Reader of logs and live links, which turns bytes into columns."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -103,7 +103,7 @@ class FrameScanner:
         Returns
         -------
         list of Columns
-            One column set per message and sender; ``order`` is the frame's position in the stream, bytes.
+            Columns of each message and sender; ``order`` is the frame's position in the stream, bytes.
         """
         return self._scan(self._tail + data, final=False)
 

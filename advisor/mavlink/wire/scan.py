@@ -102,7 +102,9 @@ def _frame_length(stream: Bytes, at: int, final: bool, seeds: Ints) -> int:
 
 @kernel()
 def _stamp(stream: Bytes, at: int, last: int) -> int:
-    """Return the time stamp at ``at`` in microseconds; the last good stamp in place of an impossible one."""
+    """Return the time stamp at ``at`` in microseconds. An impossible stamp is replaced by the last good
+    stamp.
+    """
     stamp = 0
     for i in range(at, at + STAMP_BYTES):
         stamp = stamp << 8 | int(np.int64(stream[i]))

@@ -1,4 +1,4 @@
-"""MAVLink 2 message signing: the acceptance of frames.
+"""Acceptance of signed frames (MAVLink 2 message signing).
 
 Source: MAVLink guide, "Message signing". The last 13 bytes of a signed frame are a link id, a time stamp and
 a signature. The time stamp has 48 bits, in 10 us since 2015-01-01, and only rises. The signature is the first
@@ -30,7 +30,7 @@ SignatureVerdict = Literal["ok", "unsigned", "forged", "replayed"]
 
 
 def read_key(path: Path) -> bytes:
-    """Return the key in a file: 32 bytes unchanged, anything else as a passphrase.
+    """Return the key in a file. A file of 32 bytes is the key itself, and any other content is a passphrase.
 
     A passphrase is hashed with SHA-256 after removal of the line end. Mission Planner and MAVProxy do the
     same, so that one passphrase gives one key everywhere.

@@ -60,7 +60,7 @@ def test_a_guess_decides_nothing_until_a_hand_takes_it():
 def test_a_guess_that_a_hand_took_serves_from_there_on_and_the_stream_keeps_it():
     stream, events = run(passive_flight(taken_at_s=25.0))
     assert sum(isinstance(e, ManeuverFlown) for e in events) >= 2
-    assert "by a guess that a hand has taken" in stream.elevator_notes[0]
+    assert "by a guess that the crew has accepted" in stream.elevator_notes[0]
 
 
 def test_parameters_that_come_later_outweigh_the_guess():

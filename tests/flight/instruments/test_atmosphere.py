@@ -56,7 +56,7 @@ def test_the_height_serves_where_the_pressure_is_that_of_no_air() -> None:
 def test_sea_level_is_said_where_nothing_is_logged() -> None:
     found = air_flown([flown({})])
     assert found.density_kg_m3 == 1.225
-    assert "neither pressure nor height is logged" in found.sentence
+    assert "no pressure or height is logged" in found.sentence
 
 
 def test_an_indicated_air_speed_is_raised_to_the_true_one_and_a_given_one_is_not() -> None:

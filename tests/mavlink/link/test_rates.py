@@ -117,7 +117,7 @@ def test_after_a_reboot_everything_is_asked_again_and_no_rate_is_called_fallen()
             answer(request, dialect.MAV_RESULT_ACCEPTED, now_s)
     assert {message for at_s, message in asked if 10.0 < at_s < 12.0} == {30, 11020}
     said = " ".join(request.report())
-    assert "the vehicle rebooted: every rate is asked for again" in said
+    assert "the vehicle rebooted: every rate is requested again" in said
     assert "ATTITUDE fell" not in said
 
 

@@ -48,7 +48,7 @@ def elevator(path: Path):
     """Outputs of the elevator, and its deflection in the first step, nose up."""
     stream, maneuvers, said = flown(path)
     assert isinstance(stream.elevator, Surface), stream.elevator
-    assert not any("The nose went the other way" in text for text in said)
+    assert not any("The nose moved opposite" in text for text in said)
     (one,) = maneuvers
     channel = one.maneuver.channels["elevator"]
     return stream.elevator.outputs, float(np.interp(20.5, channel.t, channel.y))
@@ -198,7 +198,9 @@ def test_without_parameters_the_output_that_follows_the_pitch_command_is_a_guess
     log = commanded(with_outputs(flight(), moved), topic, 20.0)
     path = log.write(tmp_path)
     assert elevator(path) == ((3,), pytest.approx(first, rel=0.05))
-    assert any("output 3 (a guess: it follows the pitch command)" in text for text in flown(path)[2])
+    assert any(
+        "output 3 (a guess, because this output follows the pitch command)" in text for text in flown(path)[2]
+    )
 
 
 def test_mixed_elevons_of_an_old_firmware_both_follow_the_pitch_command(tmp_path: Path) -> None:
@@ -215,7 +217,7 @@ def test_the_pitch_command_stands_for_the_elevator_where_no_output_is_as_fast(tm
     stream, _, said = flown(path)
     assert first == pytest.approx(-STEP_RAD, rel=1e-3)
     assert stream.channels["elevator"].rate_hz == pytest.approx(50.0, rel=0.01)
-    assert any("the pitch command, which stands for the elevator" in text for text in said)
+    assert any("the pitch command, which replaces the elevator" in text for text in said)
 
 
 def test_an_instance_in_which_nothing_moves_is_not_counted(tmp_path: Path) -> None:

@@ -43,10 +43,10 @@ jumps."""
 
 
 def rate_against_bank(channels: Channels) -> Evidence:
-    """Return ``bank_scale``, the bank's change over the integral of its rate, and ``p_delay``, s.
+    """Return ``bank_scale``, the bank's change over the integral of its rate, and ``p_delay``, the roll
+    rate's delay relative to the bank, s.
 
-    The delay is that of the roll rate relative to the bank. The result is empty if the bank hardly moves, or
-    turns over.
+    The result is empty if the bank hardly moves, or turns over.
     """
     if not usable(channels, "p", "bank", "theta"):
         return {}
@@ -243,12 +243,18 @@ def _side_force_unit(work: Work, evidence: Evidence) -> None:
         weighed = weigh(by_vane, others, _FORCE_WIDTH)
         if weighed.contradicts:
             unit = "an unknown unit" if weighed.best == ANY else weighed.best
-            _in_unit(work, stated, unit, by_vane, "the sideslip needs it times")
+            _in_unit(work, stated, unit, by_vane, "the ratio that the sideslip requires is")
     elif in_g is not None and _resolved(in_g):
         likely = {unit: _likelihood(abs(in_g.value) * factor) for unit, factor in factors.items()}
         best = max(likely, key=lambda unit: likely[unit])
         if likely[stated] < EXCLUDED * sum(likely.values()):
-            _in_unit(work, stated, best, in_g, "its part of the weight in a radian of sideslip is")
+            _in_unit(
+                work,
+                stated,
+                best,
+                in_g,
+                "the ratio of the side force to the weight, for one radian of sideslip, is",
+            )
 
 
 def _likelihood(in_g: float) -> float:

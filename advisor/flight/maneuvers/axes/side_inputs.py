@@ -12,14 +12,16 @@ from advisor.flight.maneuvers.markers import RESTING_S
 from advisor.flight.signals.record import Channel
 
 TOGETHER_S = 1.5
-"""Longest rest between two movements that form one input, s. A Dutch roll has not been free for a period by
-then, so the first movement alone would have no response."""
+"""Longest rest between two movements that form one input, s. After so short a rest the Dutch roll
+has not been free for one period. The first movement would have no response of its own.
+"""
 BESIDE = 0.25
 """Least amplitude of a part of an input, over the largest movement's amplitude. Hands that hold the wings
 level during a rudder doublet of 3 to 6 deg move the aileron by at most 0.4 deg."""
 _NEXT = 0.5
-"""Least amplitude of a movement that ends the free response, over that of the input. The model includes every
-movement of both controls, so that a smaller movement does no harm."""
+"""Least amplitude of a movement that ends the free response, over the input's amplitude. The model includes
+every movement of both controls, so that a smaller movement does no harm.
+"""
 _MEANWHILE = 0.5
 """Least common time of two movements that form one input, over the longer movement's time. Hands that hold
 the wings level move for a part of an elevator test. A multisine moves all surfaces for the whole time."""
@@ -50,7 +52,7 @@ class SideMovement:
         return max((abs(level) for _, level in self.span.steps), default=0.0)
 
     def rests_by(self, at_s: float) -> bool:
-        """Return whether the control has rested at trim for the least time of a rest at a time, s."""
+        """Return whether the control has been at rest at trim long enough at a time, s."""
         return self.span.last_step_s + RESTING_S <= at_s
 
 
@@ -108,7 +110,7 @@ def _is_meanwhile(one: Span, other: Span) -> bool:
 
 
 def at_once(span: Span, found: SideInput) -> Span:
-    """Return the extent of one control's movement as that of all controls that move at once."""
+    """Return the extent of all controls that move at once, with the steps of one control's movement."""
     return replace(span, start_s=found.start_s, last_step_s=found.last_step_s)
 
 

@@ -20,7 +20,7 @@ the bytes before the first record, and a scanner."""
 
 
 def nothing_refused(name: str, beginning: bytes) -> Problem | None:
-    """Return None, because the format has no relative that a user may give instead."""
+    """Return None, because the format has no unreadable variant that a user may give."""
     return None
 
 
@@ -33,16 +33,18 @@ class LogFormat:
     given: str
     """Words with which a user names such a log: ``an ArduPilot .bin``."""
     ending: str
-    """Usual file ending. The content decides, never the name."""
+    """Usual file ending. Usual ending of the file's name; only the content decides on the format."""
     begins_at: Callable[[bytes], int | None]
     """Function that returns the bytes before the first record; None for another kind of file."""
     read: Read
     refusal: Callable[[str, bytes], Problem | None] = nothing_refused
-    """Function that returns a problem for an unreadable relative of the format, from file name and beginning.
-    An encrypted log is an example."""
+    """Function that returns a problem for an unreadable variant of the format, such as an encrypted log. The
+    arguments are the file's name and its beginning.
+    """
     read_columns: Callable[[Path, TableColumns], Iterator[list[Columns]]] | None = None
-    """Function that streams the messages of a table, whose columns the aircraft file may name; None for a log
-    with names of its own."""
+    """Function that streams the messages of a table, whose columns the aircraft file may name. None for a log
+    whose own names are fixed.
+    """
     has_magic: bool = True
     """Whether the format has fixed first bytes. Telemetry has none, and is tried last."""
 

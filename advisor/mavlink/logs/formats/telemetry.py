@@ -6,7 +6,7 @@ from advisor.mavlink.wire.frames import FrameScanner
 from advisor.mavlink.wire.scan import STAMP_BYTES
 
 _BLOCK_BYTES = 1 << 14
-"""Numerical: bytes that are scanned at once for the first message."""
+"""Number of bytes that are scanned together for the first message."""
 
 
 def _begins_at(beginning: bytes) -> int | None:

@@ -27,7 +27,7 @@ _LATEST_BOOT_S = 1e6
 
 
 def with_outputs(aircraft: Aircraft, surfaces: tuple[str, ...] = ("elevator",)) -> Aircraft:
-    """Return the aircraft whose outputs are the surfaces of a table, and whose angles are the table's.
+    """Return the aircraft with the surfaces of a table as outputs, and with the table's angles.
 
     Lag, delay, and places of the instruments stay as the aircraft file states them. A source of the angle of
     attack or of the sideslip other than ``auto`` stays, too.
@@ -55,7 +55,7 @@ def messages_of(given: Mapping[str, FloatArray], as_stamped: bool) -> Iterator[C
     Parameters
     ----------
     as_stamped
-        Whether times stay as the table has them, unless they are dates. Otherwise the first time becomes 0.
+        Whether times stay unchanged, unless they are dates. Otherwise the first time becomes 0.
     """
     begins = float(given["time"][0])
     t = given["time"] - (0.0 if as_stamped and 0.0 <= begins <= _LATEST_BOOT_S else begins)

@@ -104,6 +104,6 @@ def _without_unit(quantity: str, name: str) -> str:
 
 
 def is_flight(columns: Iterable[str]) -> bool:
-    """Return whether names of columns tell a time, a rate of turn and a control surface."""
+    """Return whether the names of columns include a time, an angular rate and a control surface."""
     found = recognised_columns(columns).keys()
     return "time" in found and bool(found & RATES) and bool(found & {"elevator", "aileron", "rudder"})

@@ -1,4 +1,6 @@
-"""Quantities of a table in SI units: the columns that the aircraft file names, then those of usual names."""
+"""Quantities of a table in SI units, from the columns that the aircraft file names, then from columns with
+usual names.
+"""
 
 from collections.abc import Mapping
 from dataclasses import fields
@@ -11,7 +13,7 @@ from advisor.process.arrays import FloatArray
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 _HALF_TURN = ("elevator", "aileron", "rudder", "alpha", "beta", "theta")
-"""Angles that never exceed a quarter of a turn."""
+"""Angles that never exceed a quarter of a turn, so that larger values cannot be in rad."""
 _SHOWN = 20
 """Largest number of a table's columns that a sentence lists."""
 
@@ -51,7 +53,9 @@ def quantities_of(
 
 
 def _one_group(table: Mapping[str, FloatArray]) -> Mapping[str, FloatArray]:
-    """Return the columns of the one structure of a MAT file that is a flight; all columns without one."""
+    """Return the columns of the only structure of a MAT file that holds a flight; all columns if there is no
+    such structure.
+    """
     groups: dict[str, dict[str, FloatArray]] = {}
     for name, column in table.items():
         groups.setdefault(name.rpartition(".")[0], {})[name] = column
