@@ -105,7 +105,7 @@ def test_the_autopilots_own_air_speed_stands_in_for_a_failed_tube(tmp_path: Path
     t, speed = hud.fields["time_usec"][measured] * 1e-6, hud.fields["airspeed"][measured]
     assert set(speed[(t > 21.2) & (t < 23.8)].tolist()) == {24.5}
     assert set(speed[(t < 20.5) | (t > 24.5)].tolist()) == {25.0}
-    assert any("the autopilot's own (As) stands in" in sentence for sentence in said(read))
+    assert any("As of the autopilot replaces the sensor" in sentence for sentence in said(read))
 
 
 def pid(t: float) -> dict[str, float]:
