@@ -77,7 +77,7 @@ class Observer:
     rows: tuple[KeptRow, ...] = ()
     heat: float = 1.0
     residuals: dict[int, tuple[Residual, float]] = field(default_factory=dict)
-    """Residual of a model and its size by data sheets, by the identity of the model's solution."""
+    """Residual of a model and its size by data sheets, by the identity of the model."""
 
     def take(self, rows: Sequence[Row[Any]]) -> None:
         """Keep the rows of the first posterior."""
@@ -85,14 +85,27 @@ class Observer:
             self.rows = tuple(self._kept(row) for row in rows)
 
     def _kept(self, row: Row[Any]) -> KeptRow:
-        nearest = next(iter(self.residuals.values()))
-        residual, sheet = self.residuals.get(id(row.model.solution), nearest)
-        size = residual.beside_air if row.in_moving_air else residual.size
-        lacks = abs(row.terms["residual"] - if_right(size)) > _EXACT
+        size, residual, sheet, lacks = self._as_weighed(row)
         of_size = if_lacking(size) if lacks else if_right(size)
         sheet_size = size * sheet / max(residual.size, 1e-12)
         nats = row.weight - of_size
         return KeptRow(row.alternative.name, nats, size, sheet_size, lacks, self._natural(row, lacks))
+
+    def _as_weighed(self, row: Row[Any]) -> tuple[float, Residual, float, bool]:
+        """Return the size of the residual in a row's weight, the residual, its size by data sheets, and
+        whether the row takes its model as one that lacks a law.
+
+        Models of one alternative share the residual of the likeliest, so a row may have another model's.
+        """
+        own = self.residuals.get(id(row.model))
+        every = [*([own] if own is not None else []), *self.residuals.values()]
+        sized = [(r.beside_air if row.in_moving_air else r.size, r, sheet) for r, sheet in every]
+        for lacks, density in ((False, if_right), (True, if_lacking)):
+            for size, residual, sheet in sized:
+                if abs(row.terms["residual"] - density(size)) < _EXACT:
+                    return size, residual, sheet, lacks
+        # A disturbance that every model may have is lacking with a share of the density.
+        return (*sized[0], True)
 
     def _natural(self, row: Row[Any], lacks: bool) -> tuple[float, ...]:
         """Return the change of evidence of a natural effect at other natural sizes."""
@@ -123,7 +136,7 @@ class _Watched:
         sheet = residual.size
         if isinstance(model, PitchModel):
             sheet = residual_of(_by_data_sheets(self._flight.problem), model.fitted, heat).size
-        self._observer.residuals[id(model.solution)] = residual, sheet
+        self._observer.residuals[id(model)] = residual, sheet
         return residual
 
 

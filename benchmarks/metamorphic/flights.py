@@ -75,7 +75,8 @@ class PitchFlight:
                 compared = compare_flown(flown, self.aircraft, simulator)
         except UnusableInputError as error:
             return Answer({}, str(error))
-        return answer_of(compared.diagnosis)
+        told = compared.diagnosis
+        return answer_of(told) if told.evidence else Answer({}, told.sentence)
 
 
 @dataclass(frozen=True)
