@@ -19,8 +19,9 @@ from typing import Any
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.axes.side_comparison import compare_side_logs
-from advisor.analysis.gap import compare_named
+from advisor.analysis.axes.side_comparison import compare_side_flown
+from advisor.analysis.gap import compare_logs
+from advisor.analysis.whole_flights import read_whole
 from advisor.cli.options import read_aircraft
 from advisor.exports.models.axes.handed_over import improved_side
 from advisor.exports.models.flown import FlownModel, write_file
@@ -80,9 +81,9 @@ def fed_back(log: Path, aircraft: Aircraft, axis: AxisName, improved: Path) -> F
 def _diagnosed(log: Path, aircraft: Aircraft, axis: AxisName) -> tuple[Diagnosis, FlownModel]:
     """Return the answer of ``advisor gap``, and the model that its option ``--out`` writes."""
     if axis == "lateral":
-        beside = compare_side_logs([log], aircraft)
-        return beside.gap, replace(improved_side(beside), pitch=None)
-    compared = compare_named([log], aircraft)
+        beside = compare_side_flown(read_whole([log], aircraft, axis="lateral").state, aircraft)
+        return beside.diagnosis, replace(improved_side(beside), pitch=None)
+    compared = compare_logs([log], aircraft)
     return compared.diagnosis, FlownModel(compared.aircraft, None, None, compared.diagnosis)
 
 
