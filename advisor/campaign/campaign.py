@@ -6,16 +6,15 @@ from functools import partial
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.arriving_information import ArrivingInformation
 from advisor.campaign.axes.elevator_campaign import ElevatorCampaign
 from advisor.campaign.axes.lateral_campaign import LateralCampaign
 from advisor.campaign.axis_campaign import AxisCampaign
+from advisor.campaign.being_flown import Axes, BeingFlown, InputEnough
 from advisor.campaign.engineer import OF, Engineer
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.campaign.instruments import side_signs, together, with_fit
 from advisor.campaign.journal import Journal
 from advisor.campaign.late_limits import recount
-from advisor.campaign.running_estimate import Settled, Settling
 from advisor.campaign.state import (
     OF_ELEVATOR,
     AxisState,
@@ -24,10 +23,8 @@ from advisor.campaign.state import (
     WholeFlights,
     has_begun,
 )
-from advisor.decision.arriving import Arriving
 from advisor.decision.crew_plan import CrewPlan, crew_plan
 from advisor.decision.verdict import FlightTestVerdict
-from advisor.flight.maneuvers.announced import Announced
 from advisor.flight.maneuvers.events import (
     Activity,
     ElevatorRescaled,
@@ -78,14 +75,6 @@ class _Verdicts:
     """Manoeuvres of all axes."""
     estimates: tuple[Estimate | NoEstimate, ...]
     """Estimates of the elevator's manoeuvres."""
-
-
-@dataclass(frozen=True, slots=True)
-class InputEnough:
-    """The data of a multisine that a script flies are enough: the script may end it."""
-
-    number: int
-    """Number of the input in the script's texts."""
 
 
 CampaignEvent = FlightEvent | ManeuverJudged | InputEnough
@@ -141,14 +130,11 @@ class Campaign:
         self._flights = Flights(aircraft, target_system, (*marks, *by_hand.marks), names, lateral)
         self._engineer = Engineer(self._flights, self._journal, self._axes, by_hand)
         self._aside: Aside[ManeuverJudged] = Aside(aside)
-        self._arriving: Aside[Arriving | None] = Aside(aside)
-        self._newest_arrived: Arriving | None = None
         self._activity: tuple[Activity, ...] = ()
         self._whole_flights = WholeFlights()
         self._ended = False
-        self._settling = Settling() if settle else None
-        self._information = ArrivingInformation(aircraft) if settle or tell is not None else None
-        self._heard_enough: Announced | None = None
+        informs = settle or tell is not None
+        self._being_flown = BeingFlown(aircraft, self._flights, self._parts, settle, informs, aside)
         self._outputs_unknown: Problem | None = None
         self._shown: _Verdicts | None = None
 
@@ -156,7 +142,7 @@ class Campaign:
         """Process the next messages, in order of arrival. The result does not depend on how the messages are
         grouped."""
         events = self._take(self._flights.feed(columns))
-        if (enough := self._enough()) is not None:
+        if (enough := self._being_flown.enough(self._axes_before)) is not None:
             events.append(enough)
             if self._tell is not None:
                 self._tell(enough)
@@ -207,8 +193,8 @@ class Campaign:
         unknown = [flight.sides_unknown for flight in heard]
         self._outputs_unknown = unknown[-1] if all(unknown) else None
         shown = self._so_far()
-        settled = self._settled(flying, shown)
         pitch, side = shown.axes["pitch"], shown.axes.get("lateral")
+        settled = self._being_flown.settled(flying, shown.learnt, pitch.model)
         sideways = side is not None and side.has_begun and not pitch.has_begun
         instruments = self._parts.make("instruments", lambda: self._contradictions(shown), lambda _: ())
         return CampaignState(
@@ -222,7 +208,7 @@ class Campaign:
             settling=settled.estimate if settled else None,
             readable=settled is not None and settled.readable,
             enough=settled.enough if settled and not sideways else None,
-            arriving=self._arrived(flying),
+            arriving=self._being_flown.arrived(flying, self._axes_before),
             judging=self._aside.is_busy,
             elevator_notes=flights.elevator_notes,
             reader_notes=(
@@ -262,50 +248,10 @@ class Campaign:
         sideways = lateral.maneuvers if lateral is not None else ()
         return _Verdicts(axes, elevator.learnt, (*elevator.maneuvers, *sideways), elevator.estimates)
 
-    def _settled(self, flying: Maneuver | None, shown: _Verdicts) -> Settled | None:
-        """Return the estimate of the manoeuvre that is being flown, for live displays."""
-        settling = self._settling
-        if settling is None:
-            return None
-        return self._parts.make(
-            "estimate of the manoeuvre being flown",
-            lambda: settling.follow(flying, shown.learnt, shown.axes["pitch"].model),
-            lambda _: None,
-        )
-
-    def _arrived(self, flying: Maneuver | None) -> Arriving | None:
-        """Return the errors with the information of the manoeuvre that is being flown, for live displays.
-
-        They add to the estimate of all manoeuvres before, and wait for it.
-        """
-        information = self._information
-        if information is None or self._aside.is_busy:
-            return None
-        if not self._arriving.is_busy and (flying is None or information.is_due(self._stream.now_s)):
-            shown = self._so_far()
-            pitch, lateral = shown.axes["pitch"], shown.axes.get("lateral")
-            follow = partial(information.follow, flying, pitch.model, pitch.flight_test, lateral)
-            part = "information of the manoeuvre being flown"
-            self._arriving.do(lambda: self._parts.make(part, follow, lambda _: None))
-        for arrived in self._arriving.made():
-            self._newest_arrived = arrived
-        newest = self._newest_arrived
-        of_earlier = newest is None or flying is None or newest.until_s < flying.span.start_s
-        return None if of_earlier else newest
-
-    def _enough(self) -> InputEnough | None:
-        """Return the event of a multisine of a script whose data have become enough; None else."""
-        flown = self._stream.marks.announced_now
-        if flown is None or flown.input != "multisine" or self._information is None:
-            self._heard_enough = None
-            return None
-        if flown == self._heard_enough or not self._information.is_due(self._stream.now_s):
-            return None
-        arrived = self._arrived(self._flights.so_far())
-        if arrived is None or not arrived.is_enough:
-            return None
-        self._heard_enough = flown
-        return InputEnough(flown.number)
+    @property
+    def _axes_before(self) -> Axes | None:
+        """Function that returns the state of each axis; None while a manoeuvre is being judged."""
+        return None if self._aside.is_busy else lambda: self._so_far().axes
 
     def _contradictions(self, shown: _Verdicts) -> tuple[InstrumentFinding, ...]:
         """Return the contradictions of the instruments, from the motion and from the fits."""

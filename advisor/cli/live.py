@@ -192,7 +192,8 @@ def _source(earlier: Sequence[Path], link: "KeptLink") -> "Source":
 
 def _tell(link: "KeptLink", announce: bool, uplink: bool, event: object) -> None:
     """Announce a verdict to the ground stations, and send the next input to the autopilot's script."""
-    from advisor.campaign.campaign import InputEnough, ManeuverJudged
+    from advisor.campaign.being_flown import InputEnough
+    from advisor.campaign.campaign import ManeuverJudged
 
     if uplink and isinstance(event, InputEnough):
         from advisor.scripts.next_order import end_order

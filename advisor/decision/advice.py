@@ -47,11 +47,11 @@ def next_input(
         return _first_input(aircraft, history)
     if conditions is None:
         return NextInput(f"next: {mend or _same_but_better(history[-1])}", None)
-    known = course.knowledge(usable_ones(history))
-    choice = None if mend else _choose(conditions, known, plan)
+    knowledge = course.knowledge(usable_ones(history))
+    choice = None if mend else _choose(conditions, knowledge, plan)
     chosen = choice[0] if choice else None
     spoken = chosen.spoken(conditions.travel_rad) if chosen else mend or "the elevator's last input again"
-    remaining, held_by = forecast(history, course), _held_by(history, plan, known)
+    remaining, held_by = forecast(history, course), _held_by(history, plan, knowledge)
     return NextInput(f"next: {spoken}", remaining, held_by, chosen)
 
 
@@ -73,16 +73,16 @@ def forecast(history: Sequence[CandidateManeuver], course: CriterionCourse) -> R
     """Return the expected number of further manoeuvres if the crew continues as it has flown. At least one
     manoeuvre of ``history`` is usable."""
     plan, usable = course.plan, usable_ones(history)
-    known = course.knowledge(usable)
+    knowledge = course.knowledge(usable)
     odds = odds_of(history, course)
-    as_flown = errors_as_flown(usable, known.widening)
+    as_flown = errors_as_flown(usable, knowledge.widening)
     if plan.rule == "information":
-        return by_information(known, as_flown, odds)
+        return by_information(knowledge, as_flown, odds)
     members = np.array([e.theta for e in accepted_estimates(history, plan.rule, plan)]).reshape(
         -1, len(PARAMETERS)
     )
     passing = odds.usable.mean * PASSING.get(plan.rule, 1.0)
-    return by_scatter(members, known.posterior, np.sqrt(np.diag(as_flown)), plan, passing)
+    return by_scatter(members, knowledge.posterior, np.sqrt(np.diag(as_flown)), plan, passing)
 
 
 def _held_by(history: Sequence[CandidateManeuver], plan: CampaignPlan, knowledge: Knowledge) -> str:

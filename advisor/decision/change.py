@@ -128,15 +128,15 @@ def _kinematics(names: Sequence[str]) -> FloatArray:
 
 
 def _moved(before: Shared, after: Shared, widening: float, names: Sequence[str]) -> tuple[Moved, ...]:
-    found = []
+    apart = []
     for k, (name, value) in enumerate(zip(names, before.theta + _kinematics(names), strict=True)):
         difference = after.theta[k] - before.theta[k]
         std = np.sqrt(widening * (before.covariance[k, k] + after.covariance[k, k]))
         size = abs(value)
         if 0.0 < LEAST_SIGMA * std < abs(difference) and 0.0 < LEAST_SHARE * size < abs(difference):
             percent = 100.0 * difference / size * np.sign(value)
-            found.append(Moved(name, float(percent), float(difference / std)))
-    return tuple(sorted(found, key=lambda m: -abs(m.sigma)))
+            apart.append(Moved(name, float(percent), float(difference / std)))
+    return tuple(sorted(apart, key=lambda m: -abs(m.sigma)))
 
 
 # Each cause multiplies coefficients by powers of one factor, and 1 + Z_q in the place of Z_q. Shifts of the
@@ -169,22 +169,22 @@ _CAUSES = (
 
 def _simplest_cause(before: Pooled, after: Pooled, names: Sequence[str]) -> str:
     """Return the simplest cause that explains all differences of the derivatives; empty without one."""
-    known = int(np.sum(np.isfinite(before.shared.theta + after.shared.theta)))
-    one = _kinematics(names)
+    determined = int(np.sum(np.isfinite(before.shared.theta + after.shared.theta)))
+    added = _kinematics(names)
     misfits = {
-        cause: _misfit(before.shared, after.shared, np.array([powers.get(n, 0) for n in names], float), one)
+        cause: _misfit(before.shared, after.shared, np.array([float(powers.get(n, 0)) for n in names]), added)
         for cause, powers in _CAUSES
         if any(name in powers for name in names)
     }
     best = min(misfits, key=lambda cause: misfits[cause])
-    limit = _widening(before, after) * float(chdtri(max(known - 1, 1), CONSISTENCY))
+    limit = _widening(before, after) * float(chdtri(max(determined - 1, 1), CONSISTENCY))
     return best if misfits[best] < limit else ""
 
 
-def _misfit(before: Shared, after: Shared, powers: FloatArray, one: FloatArray) -> float:
+def _misfit(before: Shared, after: Shared, powers: FloatArray, added: FloatArray) -> float:
     """Return the remaining χ² after ``before`` is multiplied by the best factor to these powers."""
-    known = np.isfinite(before.theta + after.theta)
-    start, target = (np.where(known, side.theta + one, 0.0) for side in (before, after))
+    determined = np.isfinite(before.theta + after.theta)
+    start, target = (np.where(determined, side.theta + added, 0.0) for side in (before, after))
     uneven = np.diag((UNEVEN * target) ** 2)
     exponent = 0.0
     for _ in range(20):

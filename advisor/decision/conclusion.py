@@ -97,6 +97,6 @@ def _denied(criterion: Criterion, heard: Sequence[Heard]) -> str:
 
 
 def _foretold(
-    stop: bool, before: Heard | None, found: Remaining | None, criterion: Criterion
+    stop: bool, before: Heard | None, forecast: Remaining | None, criterion: Criterion
 ) -> Remaining | None:
-    return found if stop else spoken_after(before, found, criterion.rule, criterion.chosen.now_percent)
+    return forecast if stop else spoken_after(before, forecast, criterion.rule, criterion.chosen.now_percent)

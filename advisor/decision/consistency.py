@@ -114,8 +114,8 @@ def _middle(posterior: Posterior) -> float:
 def _odd(posteriors: Sequence[Posterior], plan: CampaignPlan) -> dict[int, Outlier]:
     """Return the manoeuvres without which the others agree, by index."""
     inside = list(range(len(posteriors)))
-    found: list[int] = []
-    while len(inside) >= FEWEST and len(found) + 1 <= (len(posteriors) - 1) // 3:
+    outside: list[int] = []
+    while len(inside) >= FEWEST and len(outside) + 1 <= (len(posteriors) - 1) // 3:
         together = [posteriors[i] for i in inside]
         _, total, dof = pooled(together)
         if dof < 1 or total < float(chdtri(dof, OUTLIER_BELOW)):
@@ -126,11 +126,11 @@ def _odd(posteriors: Sequence[Posterior], plan: CampaignPlan) -> dict[int, Outli
         if rest_dof < 1 or rest / rest_dof * OUTLIER_IMPROVEMENT > total / dof:
             break
         inside.remove(candidate)
-        found.append(candidate)
-    if not found:
+        outside.append(candidate)
+    if not outside:
         return {}
     others = pooled([posteriors[i] for i in inside])
-    apart = {i: _apart(posteriors[i], others, plan) for i in sorted(found)}
+    apart = {i: _apart(posteriors[i], others, plan) for i in sorted(outside)}
     return {i: outlier for i, outlier in apart.items() if outlier is not None}
 
 

@@ -23,9 +23,9 @@ class CrewPlan:
     @property
     def sentence(self) -> str:
         """Sentence about the plan: ``Pitch is complete, roll and yaw are open.``."""
-        told = [f"{axis} {_IS[axis]} complete" for axis in self.done]
-        told += [f"{axis} {_IS[axis]} open" for axis in self.open]
-        said = ", ".join(told)
+        clauses = [f"{axis} {_IS[axis]} complete" for axis in self.done]
+        clauses += [f"{axis} {_IS[axis]} open" for axis in self.open]
+        said = ", ".join(clauses)
         return f"{said[0].upper()}{said[1:]}."
 
     @property
@@ -49,7 +49,7 @@ class CrewPlan:
 def crew_plan(pitch: FlightTestVerdict, roll_and_yaw: FlightTestVerdict) -> CrewPlan:
     """Return the plan of a flight on which both axes are tested."""
     verdicts = {"pitch": pitch, "roll and yaw": roll_and_yaw}
-    going_on = {axis: one for axis, one in verdicts.items() if one.decision != "stop"}
+    going_on = {axis: verdict for axis, verdict in verdicts.items() if verdict.decision != "stop"}
     still = sorted(going_on, key=lambda axis: -_share_of_limit(going_on[axis]))
     return CrewPlan(
         done=tuple(axis for axis in verdicts if axis not in going_on),

@@ -48,7 +48,7 @@ def first_unit_s(model: Mapping[str, float], estimates: Iterable[Estimate | NoEs
         Estimates of manoeuvres that no rule uses, in the order flown.
     """
     unit = DEFAULT_UNIT_S
-    shown = [one for one in estimates if isinstance(one, Estimate) and _knows_its_stiffness(one)]
+    shown = [e for e in estimates if isinstance(e, Estimate) and _knows_its_stiffness(e)]
     if set(_STIFFNESS) <= set(model):
         unit = matched_unit_s(ShortPeriod.from_mapping(model))
     elif shown:

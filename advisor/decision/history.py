@@ -54,9 +54,9 @@ def nothing_tested(history: Sequence[CandidateManeuver]) -> str:
         return ""
     if not has_begun(history):
         return "No test input of the elevator has been flown."
-    one = len(history) == 1
-    which = "The one input" if one else f"None of the {len(history)} inputs"
-    return f"{which} of the elevator can{'not' if one else ''} be used."
+    single = len(history) == 1
+    which = "The one input" if single else f"None of the {len(history)} inputs"
+    return f"{which} of the elevator can{'not' if single else ''} be used."
 
 
 def has_begun(history: Sequence[CandidateManeuver]) -> bool:

@@ -58,15 +58,15 @@ def predict_last(usable: Sequence[CandidateManeuver]) -> Mapping[str, PredictedO
     estimates = [flown.estimate for flown in usable if isinstance(flown.estimate, Estimate)]
     *before, own = posteriors_at_one_speed(estimates)
     airspeed_m_s = common_airspeed(estimates)
-    known = consensus(before)[0].shared
-    predicted = response_to(last, known.theta, airspeed_m_s)
+    shared = consensus(before)[0].shared
+    predicted = response_to(last, shared.theta, airspeed_m_s)
     alone = response_to(last, own.theta[list(DERIVATIVES)], airspeed_m_s)
-    if predicted is None or alone is None or not np.all(np.isfinite(known.covariance)):
+    if predicted is None or alone is None or not np.all(np.isfinite(shared.covariance)):
         return {}
     begun_s = float(last.maneuver.channels["elevator"].t[0])
     scales = {"a_z": airspeed_in(last.maneuver)}
     return {
-        name: _output(last.estimate.fits[0][name], scale, begun_s, known, predicted, alone)
+        name: _output(last.estimate.fits[0][name], scale, begun_s, shared, predicted, alone)
         for name in measured(last)
         if (scale := scales.get(name, 1.0)) is not None
     }

@@ -91,9 +91,10 @@ class Knowledge:
 
         The quantities are the outputs, then the named parameters.
         """
-        known = np.isfinite(self.posterior.std) & np.isfinite(self.posterior.theta)
-        known &= [name not in self.not_identifiable for name in PARAMETERS]
-        half = np.where(known, NORMAL_95 * np.where(known, self.posterior.std, 0.0) / self.tolerance, np.inf)
+        determined = np.isfinite(self.posterior.std) & np.isfinite(self.posterior.theta)
+        determined &= [name not in self.not_identifiable for name in PARAMETERS]
+        std = np.where(determined, self.posterior.std, 0.0)
+        half = np.where(determined, NORMAL_95 * std / self.tolerance, np.inf)
         return self.shares_with(self.prediction_percent, half)
 
     def shares_with(self, band_percent: Mapping[str, float], half: FloatArray) -> Mapping[str, float]:
@@ -169,53 +170,53 @@ SPOKEN = {"alpha": "angle of attack", "q": "pitch rate", "a_z": "normal accelera
 """Name of each predicted output for people."""
 
 
-def sentence(known: Knowledge, stop: bool) -> str:
+def sentence(so_far: Knowledge, stop: bool) -> str:
     """Return the sentence about stop or continuation, with its reason."""
     if stop:
-        return _stop(known)
-    if known.percent >= 100.0:
-        return f"CONTINUE: {_held_back(known)}."
-    if np.isnan(known.surprise):
+        return _stop(so_far)
+    if so_far.percent >= 100.0:
+        return f"CONTINUE: {_held_back(so_far)}."
+    if np.isnan(so_far.surprise):
         return "CONTINUE: one manoeuvre cannot show its own error; one more will, by its prediction."
-    off = "" if np.isnan(known.missed_percent) else f" (off by {known.missed_percent:.0f} % of its peak)"
+    off = "" if np.isnan(so_far.missed_percent) else f" (off by {so_far.missed_percent:.0f} % of its peak)"
     return (
         f"CONTINUE: the newest manoeuvre was not predicted{off}, so one of them has a larger error than "
         "stated; one more shows which."
     )
 
 
-def _stop(known: Knowledge) -> str:
-    bands = known.prediction_percent
+def _stop(so_far: Knowledge) -> str:
+    bands = so_far.prediction_percent
     within = [f"the response is known to {max(bands.values()):.1f} % of its peak"] if bands else []
-    if known.named:
+    if so_far.named:
         within.append("each named derivative to its tolerance")
     return f"TEST COMPLETE: {', '.join(within)}, and the newest manoeuvre was predicted."
 
 
-def _held_back(known: Knowledge) -> str:
-    name, share = known.holding_back, 0.01 * known.percent
+def _held_back(so_far: Knowledge) -> str:
+    name, share = so_far.holding_back, 0.01 * so_far.percent
     times, _ = distinct_texts(share, 1.0, 1)
     if name in SPOKEN:
         if np.isinf(share):
             return f"the response in {SPOKEN[name]} cannot be predicted from these manoeuvres"
-        size, limit = distinct_texts(share * known.tolerance_percent, known.tolerance_percent, 1)
+        size, limit = distinct_texts(share * so_far.tolerance_percent, so_far.tolerance_percent, 1)
         return f"the response in {SPOKEN[name]} is known only to {size} % of its peak (limit {limit} %)"
     if np.isinf(share):
-        reason = known.not_identifiable.get(name, "cannot be estimated from these manoeuvres")
+        reason = so_far.not_identifiable.get(name, "cannot be estimated from these manoeuvres")
         return f"{symbol(name)} {reason.removesuffix('.')}"
     return f"the error of {symbol(name)} is {times} times its tolerance"
 
 
-def evidence(known: Knowledge) -> tuple[str, ...]:
+def evidence(so_far: Knowledge) -> tuple[str, ...]:
     """Return the numbers behind the decision, one line each: bands and shares of the tolerances."""
-    share = known.share
-    bands = ", ".join(f"{SPOKEN[name]} {band:.1f} %" for name, band in known.prediction_percent.items())
-    named = ", ".join(f"{symbol(name)} {100.0 * share[name]:.0f} %" for name in known.named)
-    weak = ", ".join(symbol(PARAMETERS[k]) for k in DERIVATIVES if PARAMETERS[k] not in known.named)
+    share = so_far.share
+    bands = ", ".join(f"{SPOKEN[name]} {band:.1f} %" for name, band in so_far.prediction_percent.items())
+    named = ", ".join(f"{symbol(name)} {100.0 * share[name]:.0f} %" for name in so_far.named)
+    weak = ", ".join(symbol(PARAMETERS[k]) for k in DERIVATIVES if PARAMETERS[k] not in so_far.named)
     return tuple(
         f"{what}: {numbers}"
         for what, numbers in (
-            (f"95 % band of the response, of its peak (limit {known.tolerance_percent:g} %)", bands),
+            (f"95 % band of the response, of its peak (limit {so_far.tolerance_percent:g} %)", bands),
             ("95 % interval, of its own tolerance (limit 100 %)", named),
             ("judged by the response alone", weak),
         )

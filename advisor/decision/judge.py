@@ -62,8 +62,8 @@ def contradicting(history: Sequence[CandidateManeuver], plan: CampaignPlan) -> M
     """Return the usable manoeuvres that contradict all others, by index. The rule ``information`` excludes
     these manoeuvres."""
     usable = [(i, estimate) for i, flown in enumerate(history) if (estimate := flown.usable)]
-    found = outliers(posteriors_at_one_speed([estimate for _, estimate in usable]), plan)
-    return {usable[k][0]: outlier for k, outlier in found.items()}
+    odd = outliers(posteriors_at_one_speed([estimate for _, estimate in usable]), plan)
+    return {usable[k][0]: outlier for k, outlier in odd.items()}
 
 
 def accepted_estimates(

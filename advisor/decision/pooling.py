@@ -145,8 +145,8 @@ def _at_one_speed(estimates: Sequence[Estimate]) -> tuple[FloatArray, FloatArray
 
 def common_airspeed(estimates: Sequence[Estimate]) -> float | None:
     """Return the mean of the air speeds of the estimates; None where an estimate has none."""
-    known = [e.airspeed_m_s for e in estimates if e.airspeed_m_s is not None and e.airspeed_m_s > 0.0]
-    return float(np.mean(known)) if known and len(known) == len(estimates) else None
+    speeds = [e.airspeed_m_s for e in estimates if e.airspeed_m_s is not None and e.airspeed_m_s > 0.0]
+    return float(np.mean(speeds)) if speeds and len(speeds) == len(estimates) else None
 
 
 def _covariances(estimates: Sequence[Estimate]) -> FloatArray:
@@ -307,6 +307,6 @@ def _finite(values: FloatArray) -> FloatArray:
 
 
 def _distance(difference: FloatArray, information: FloatArray) -> tuple[float, int]:
-    known = np.isfinite(difference) & (np.diag(information) > 0.0)
-    inside = np.where(known, difference, 0.0)
-    return float(inside @ information @ inside), int(known.sum())
+    determined = np.isfinite(difference) & (np.diag(information) > 0.0)
+    inside = np.where(determined, difference, 0.0)
+    return float(inside @ information @ inside), int(determined.sum())

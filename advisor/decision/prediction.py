@@ -119,7 +119,7 @@ def _relative(response: Response | None, k: int) -> FloatArray:
 
 
 def missed_percent(
-    flown: CandidateManeuver, predicted: FloatArray, found: FloatArray, airspeed_m_s: float | None
+    flown: CandidateManeuver, predicted: FloatArray, estimated: FloatArray, airspeed_m_s: float | None
 ) -> float:
     """Return the largest distance between the predicted and the estimated response to a manoeuvre, in percent
     of its peak.
@@ -136,7 +136,7 @@ def missed_percent(
         Largest distance over all outputs. NaN for an unknown input or a diverging model.
     """
     expected = response_to(flown, predicted, airspeed_m_s)
-    actual = response_to(flown, found, airspeed_m_s)
+    actual = response_to(flown, estimated, airspeed_m_s)
     if expected is None or actual is None:
         return float("nan")
     apart = np.max(np.abs(expected.values - actual.values), axis=1)
@@ -168,13 +168,13 @@ def response_to(
     speed = airspeed_in(flown.maneuver)
     if speed is not None and airspeed_m_s is not None:
         scale = (speed / airspeed_m_s) ** _SPEED_POWER
-    found = _respond(
+    response = _respond(
         np.asarray(stamps - stamps[0], float).tobytes(),
         np.asarray(moved, float).tobytes(),
         flown.servo,
         tuple((derivatives * scale).tolist()),
     )
-    return None if found is None else found._replace(slopes=found.slopes * scale)
+    return None if response is None else response._replace(slopes=response.slopes * scale)
 
 
 def trim_of(maneuver: Maneuver) -> float:

@@ -144,15 +144,16 @@ def is_informed(x: Examined) -> bool:
     The outputs' bands must be narrow, and the intervals of stiffness, damping and control must exclude zero.
     A short free response widens these intervals, and does no harm if they remain narrow enough.
     """
-    found = x.estimate
-    if isinstance(found, NoEstimate) or not x.bands or not found.prediction:
+    estimate = x.estimate
+    if isinstance(estimate, NoEstimate) or not x.bands or not estimate.prediction:
         return False
-    known = all(
-        name not in found.not_identifiable
-        and abs(found.value(name)) > NORMAL_95 * float(found.std[found.names.index(name)])
+    determined = all(
+        name not in estimate.not_identifiable
+        and abs(estimate.value(name)) > NORMAL_95 * float(estimate.std[estimate.names.index(name)])
         for name in x.determined
     )
-    return known and 100.0 * max(found.prediction[name] for name in x.bands) <= WIDEST_PREDICTION_PERCENT
+    widest = max(estimate.prediction[name] for name in x.bands)
+    return determined and 100.0 * widest <= WIDEST_PREDICTION_PERCENT
 
 
 def _stands(x: Examined, fits: Mapping[str, ChannelFit]) -> bool:
@@ -219,7 +220,7 @@ def _poor(x: Examined, estimate: Estimate) -> list[Reason]:
     """Return a reason if an estimate predicts its own response too imprecisely."""
     if x.modes_alone is not None:
         return list(x.modes_alone)
-    bands = {name: estimate.prediction.get(one.output, math.inf) for name, one in x.rates.items()}
+    bands = {name: estimate.prediction.get(response.output, math.inf) for name, response in x.rates.items()}
     if not bands:
         return []
     widest = max(bands, key=lambda name: bands[name])

@@ -154,8 +154,9 @@ def by_scatter(
 def odds_of(history: Sequence[CandidateManeuver], course: CriterionCourse) -> Odds:
     """Return the numbers of usable and of predicted manoeuvres in a campaign."""
     usable = usable_ones(history)
-    told = [course.standing(usable[:k]).predicted for k in range(2, len(usable) + 1)]
-    return Odds(Share(len(usable), len(history) - len(usable)), Share(sum(told), len(told) - sum(told)))
+    predicted = [course.standing(usable[:k]).predicted for k in range(2, len(usable) + 1)]
+    hits = sum(predicted)
+    return Odds(Share(len(usable), len(history) - len(usable)), Share(hits, len(predicted) - hits))
 
 
 def errors_as_flown(usable: Sequence[CandidateManeuver], widening: float) -> FloatArray:

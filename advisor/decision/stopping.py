@@ -34,15 +34,15 @@ def warnings(
     history: Sequence[CandidateManeuver], chosen: RuleProgress, change: Change | None, course: CriterionCourse
 ) -> tuple[str, ...]:
     """Return sentences about facts that the criterion alone does not show."""
-    plan, found = course.plan, []
+    plan, sentences = course.plan, []
     if change is not None:
-        found.append(change.sentence)
+        sentences.append(change.sentence)
     if plan.rule == "information":
-        found += _left_out(history, course)
+        sentences += _left_out(history, course)
     elif not chosen.holds:
-        found += _cannot_fall(accepted_estimates(history, plan.rule, plan), plan)
-        found += _locked_out(history, course)
-    return tuple(found)
+        sentences += _cannot_fall(accepted_estimates(history, plan.rule, plan), plan)
+        sentences += _locked_out(history, course)
+    return tuple(sentences)
 
 
 def _left_out(history: Sequence[CandidateManeuver], course: CriterionCourse) -> list[str]:
@@ -122,13 +122,13 @@ def flight_test(
     }
     chosen = by_rule[plan.rule]
     usable = usable_ones(history)
-    known = course.knowledge(usable) if usable else None
+    so_far = course.knowledge(usable) if usable else None
 
     def said(stop: bool) -> str:
-        if known is None:
+        if so_far is None:
             return nothing_tested(history)
         if plan.rule == "information":
-            return sentence(known, stop)
+            return sentence(so_far, stop)
         return _scatter_sentence(history, plan, chosen.now_percent, stop)
 
     crews = replace(aircraft or Aircraft(), campaign=plan)
@@ -137,8 +137,8 @@ def flight_test(
         {i for i, flown in enumerate(history) if flown.usable},
     )  # fmt: skip
     change = find_change(history, plan)
-    told = evidence(known) if known else ()
-    return concluded(criterion, heard, change, warnings(history, chosen, change, course), told)
+    numbers = evidence(so_far) if so_far else ()
+    return concluded(criterion, heard, change, warnings(history, chosen, change, course), numbers)
 
 
 def progress(
@@ -166,18 +166,18 @@ def progress(
         values.append(value)
         if sufficient and stopped_at is None:
             stopped_at = number
-    found = RuleProgress(
+    progress_so_far = RuleProgress(
         stopped_at, tuple(values), limit, now_percent=values[-1] if values else None,
         hindsight_percent=tuple(values), hindsight_stopped_at=stopped_at, holds=sufficient,
     )  # fmt: skip
     if rule != "information" or not taken:
-        return found
-    known = course.knowledge(taken)
-    shares = {name: _finite(100.0 * share) for name, share in known.share.items()}
+        return progress_so_far
+    so_far = course.knowledge(taken)
+    shares = {name: _finite(100.0 * share) for name, share in so_far.share.items()}
     return replace(
-        found,
-        prediction_percent={name: _finite(band) for name, band in known.prediction_percent.items()},
-        parameter_percent={name: shares[name] for name in known.named},
+        progress_so_far,
+        prediction_percent={name: _finite(band) for name, band in so_far.prediction_percent.items()},
+        parameter_percent={name: shares[name] for name in so_far.named},
     )
 
 

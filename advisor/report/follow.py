@@ -2,7 +2,8 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from advisor.campaign.campaign import Campaign, CampaignEvent, InputEnough, ManeuverJudged
+from advisor.campaign.being_flown import InputEnough
+from advisor.campaign.campaign import Campaign, CampaignEvent, ManeuverJudged
 from advisor.campaign.state import CampaignState
 from advisor.decision.crew_plan import CrewPlan
 from advisor.decision.verdict import FlightTestVerdict

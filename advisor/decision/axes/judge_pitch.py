@@ -111,7 +111,7 @@ def _knows_the_motion(estimate: Estimate) -> bool:
     """Return whether an estimate explains and predicts its response, and the stiffness is significant at
     95 %."""
     stiffness, rate = estimate.names.index("M_alpha"), _RESPONSES[0]
-    known = abs(float(estimate.theta[stiffness])) > NORMAL_95 * float(estimate.std[stiffness])
+    determined = abs(float(estimate.theta[stiffness])) > NORMAL_95 * float(estimate.std[stiffness])
     fit = estimate.fits[0].get(rate.output) if estimate.fits else None
     holds = fit is None or explained_share(fit) >= rate.least_r2
-    return known and holds and estimate.prediction.get("q", 0.0) < 1.0
+    return determined and holds and estimate.prediction.get("q", 0.0) < 1.0

@@ -230,8 +230,8 @@ class _SideTest:
 
     def _stands(self, stop: bool) -> str:
         if stop:
-            known = "TEST COMPLETE: roll and yaw are known within their tolerance"
-            return f"{known} from {len(self.accepted)} accepted manoeuvres."
+            complete = "TEST COMPLETE: roll and yaw are known within their tolerance"
+            return f"{complete} from {len(self.accepted)} accepted manoeuvres."
         missing, worst = self.flown_fewer_than(1), self.worst
         if missing:
             return f"CONTINUE: no accepted manoeuvre has moved the {' or the '.join(missing)}."
