@@ -184,7 +184,7 @@ def _whole_posterior(best: Solution, names: Sequence[Instrument]) -> Solution:
     share = colour_share(best)
     place = N + list(names).index(lag)
     if not needs_profile(lag.read(best.problem), float(np.sqrt(best.widened[place, place]))):
-        return _between_modes(best, names)
+        return _between_modes(best, names, lag, share)
     others = [x for x in names if x is not lag]
 
     def refit(problem: OutputErrorProblem, near: Solution) -> Solution | None:
@@ -193,7 +193,7 @@ def _whole_posterior(best: Solution, names: Sequence[Instrument]) -> Solution:
     return profiled(best, lag, names, share, refit)
 
 
-def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
+def _between_modes(best: Solution, names: Sequence[Instrument], lag: Instrument, share: float) -> Solution:
     """Return the likelier of two posterior modes, with the other mode's second moment times its probability.
 
     A servo's lag and the delay of its command have similar effects. The posterior of a lag may have a second
@@ -201,10 +201,8 @@ def _between_modes(best: Solution, names: Sequence[Instrument]) -> Solution:
     white noise does. A single manoeuvre takes its lag from all manoeuvres, so it has no search for a second
     peak.
     """
-    lag = next((x for x in names if x.name == SERVO_LAG.name and x.stated is None), None)
-    if lag is None or len(best.problem.records) == 1 or lag.read(best.problem) < lag.resolution:
+    if len(best.problem.records) == 1 or lag.read(best.problem) < lag.resolution:
         return best
-    share = colour_share(best)
     rival = _searched(lag.write(best.problem, lag.read(best.problem) / 3.0), _place(best), names, share)
     if rival is None:
         return best

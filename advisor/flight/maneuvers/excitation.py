@@ -12,9 +12,11 @@ statistic F tests whether b0, b1 and b2 explain more than chance (Draper & Smith
 1998, ch. 6). Angle of attack and acceleration are not needed.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, sqrt
+from typing import Any
 
 import numpy as np
 
@@ -95,6 +97,24 @@ def _external(maneuver: Maneuver, loop: Loop) -> FloatArray:
     fed_back = [rate, off, integrated(elevator.t, off)]
     trim = [elevator.t - elevator.t[0], np.ones(len(rate))]
     return _left(np.column_stack([*fed_back, *trim]), elevator.y)
+
+
+def external_share(pairs: Sequence[tuple[Any, Any]], effect: float) -> float:
+    """Return the share of a control's motion that no opposing feedback of a rate explains; 1 at rest.
+
+    Parameters
+    ----------
+    pairs
+        Control, rad, and rate, rad/s, of each record, with their stamps. One gain serves all records.
+    effect
+        Moment of the control about the axis of the rate. Its sign tells which feedback opposes the rate.
+    """
+    moved = np.concatenate([np.empty(0), *(control.y - np.mean(control.y) for control, _ in pairs)])
+    rates = [np.interp(control.t, rate.t, rate.y) for control, rate in pairs]
+    turned = np.concatenate([np.empty(0), *(rate - np.mean(rate) for rate in rates)])
+    opposed = max(-np.sign(effect) * float(moved @ turned), 0.0)
+    size = float(moved @ moved) * float(turned @ turned)
+    return 1.0 - opposed**2 / size if size > 0.0 else 1.0
 
 
 def _means(edges: FloatArray, t: FloatArray, y: FloatArray) -> FloatArray:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from textual.app import ComposeResult
 
-from advisor.oem.correlation import autocorrelation, white_noise_bound
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.process.arrays import FloatArray
 from advisor.session.view import View
@@ -14,12 +13,55 @@ from advisor.tui.panes.pane import Pane
 from advisor.tui.plot.chart import Chart, Level, Series
 from advisor.tui.plot.widget import Plot
 from advisor.tui.table_rows import TableRows
+from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import channel
 
 _LAGS_SHARE = 4
 """Length of the record divided by the longest lag of the autocorrelation: 4 (Box and Jenkins). At a longer
 lag too few products are averaged.
 """
+
+
+def autocorrelation(residual: FloatArray, lags: int) -> FloatArray:
+    """Return the autocorrelation of a residual at whole numbers of samples.
+
+    The estimate is biased: r_k = Σ v_i v_{i+k} / Σ v_i². Here v is the residual less its mean.
+    Source: Box, Jenkins and Reinsel, *Time Series Analysis*, section 2.1. Samples are treated as evenly
+    spaced.
+
+    Parameters
+    ----------
+    residual
+        Shape (n,), any unit; samples that are not finite are left out.
+    lags
+        The largest lag in samples, at least 0.
+
+    Returns
+    -------
+    ndarray
+        Shape (m + 1,), r_0 to r_m with m = min(lags, n - 1); r_0 is 1. All values are 0 for a constant
+        residual.
+    """
+    finite = residual[np.isfinite(residual)]
+    if len(finite) == 0:
+        return np.zeros(1)
+    v = finite - np.mean(finite)
+    most = min(lags, len(v) - 1)
+    power = float(v @ v)
+    if power <= 0.0:
+        return np.zeros(most + 1)
+    return np.array([float(v[k:] @ v[: len(v) - k]) for k in range(most + 1)]) / power
+
+
+def white_noise_bound(samples: int) -> float:
+    """Return the half-width of the 95 % band of the autocorrelation of white noise: 1.96/√N.
+
+    Parameters
+    ----------
+    samples
+        Number N of samples, at least 1.
+    """
+    return float(NORMAL_95 / np.sqrt(samples))
 
 
 @dataclass(frozen=True, slots=True)

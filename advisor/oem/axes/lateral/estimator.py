@@ -190,10 +190,9 @@ def fit_lateral(
 
 
 def _reported(solution: Solution) -> LateralEstimate:
-    problem = solution.problem
-    told = lateral_not_identifiable(solution)
-    bound, covariance = solution.covariance_cr[:N, :N], solution.widened[:N, :N]
-    errors = Errors(solution.covariance[:N, :N], solution.contributions[:, :N], solution.systematic[:N, :N])
+    problem, covariance = solution.problem, solution.widened[:N, :N]
+    bound, common = solution.covariance_cr[:N, :N], covariance - solution.scattered[:N, :N]
+    errors = Errors(solution.covariance[:N, :N], solution.contributions[:, :N], common)
     return LateralEstimate(
         theta=solution.theta,
         covariance_cr=bound,
@@ -201,7 +200,7 @@ def _reported(solution: Solution) -> LateralEstimate:
         cost=solution.cost,
         fits=channel_fits(solution.assembly, solution.optimum),
         iterations=solution.optimum.iterations,
-        not_identifiable=told,
+        not_identifiable=lateral_not_identifiable(solution),
         correlated=correlated(bound, LATERAL.names.reported),
         condition=solution.influence.condition,
         airspeed_m_s=_airspeed(solution),

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import expit
 
+from advisor.flight.maneuvers.excitation import external_share
 from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
 from advisor.oem.axes.lateral.instruments import FIRST_LAG_S, Nuisance, begun
 from advisor.oem.axes.lateral.motion import FLOOR, LateralMotion
@@ -37,6 +38,9 @@ WITHOUT_FORCE = (
 )
 N = len(LATERAL.shared)
 _MOTION = LateralMotion()
+_NAMES = LATERAL.names.reported
+_FOLLOWS = {"aileron": ("p", "L_delta_a"), "rudder": ("r", "N_delta_r")}
+"""Rate that a control may follow, and the control's moment about that axis."""
 _FLY = {"aileron": "an aileron doublet", "rudder": "a rudder doublet"}
 
 
@@ -101,12 +105,34 @@ def search_lateral(
         solution = _evaluated(best, prior, final)
     if isinstance(solution, NoEstimate):
         return solution
-    solution = replace(solution, modes=modes)
+    solution = _with_modes(solution, prior, modes)
     noise = None if near is None else near.searched.noise
     forces = driven(solution, _MOTION, nuisances, lambda *_: replace(prior, share=1.0), near=noise)
     if forces is None:
         return Searched(solution, solution, None)
-    return Searched(replace(_above_bound(forces.solution), modes=modes), solution, forces.noise)
+    return Searched(_with_modes(_above_bound(forces.solution), prior, modes), solution, forces.noise)
+
+
+def _with_modes(solution: Solution, prior: Priors, other: FloatArray | None) -> Solution:
+    """Return the solution with another mode's second moment, and with the errors by controls that follow.
+
+    What the model lacks also moves a control that follows the motion. A fit that takes a yaw damper's rudder
+    for a cause counts a part of the damper as the aircraft's own damping. The external part of a control and
+    the prior alone tell its derivatives. Their error carries along what the record relates to them.
+    """
+    covariance, records = solution.scattered, solution.problem.records
+    total = np.zeros_like(covariance) if other is None else other.copy()
+    for control, (rate, moment) in _FOLLOWS.items():
+        pairs = [
+            (record.inputs[control], record.outputs[rate]) for record in records if control in record.inputs
+        ]
+        share = external_share(pairs, solution.theta[_NAMES.index(moment)])
+        for j in (_NAMES.index(letter + moment[1:]) for letter in "YLN"):
+            known = prior.std[j] ** -2
+            if (variance := covariance[j, j]) > 0.0 and (told := 1.0 / variance - known) > 0.0:
+                more = 1.0 / (share * told + known) - variance
+                total += more * np.outer(covariance[j], covariance[j]) / variance**2
+    return replace(solution, modes=total)
 
 
 def _of_both_hills(fit: Fit, nuisances: Sequence[Nuisance], prior: Priors) -> tuple[Fit, FloatArray | None]:
