@@ -137,7 +137,7 @@ def _explained(
         aircraft = replace(aircraft, reference_airspeed_m_s=speed)
         flights = prepare(maneuvers, aircraft)
         problem, baseline = at_another_speed(problem, baseline, flights)
-    weight = weight_reading(flown, flights.reference_m_s)
+    weight = weight_reading(flown) if measured else None
     over_read = true_over_read(airspeed_scale_of(problem, baseline), weight)
     if over_read > 1.0:
         # An indicated air speed changes by less than the integral of the accelerations.

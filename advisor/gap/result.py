@@ -140,11 +140,12 @@ class MissingLaw:
     """A force or moment without a name, as a curve over one quantity."""
 
     equation: str
-    """Letter of the equation in which the law acts: Z or M."""
+    """Letter of the equation in which the law acts: Z or M in pitch; Y, L or N in roll and yaw."""
     variable: str
-    """Quantity on which the law depends most: q, alpha or delta_e from trim, or t, the time of flight."""
+    """Quantity on which the law depends most, as a signal of ``added_term.SIGNALS``; angles count from trim.
+    ``t``: the time of flight."""
     share: float
-    """Share of the law's course that the quantity explains."""
+    """Share of the weighted residual's power that a law over the quantity explains."""
     curve: tuple[tuple[float, float, float], ...]
     """Quantity, law in 1/s or rad/s², and half the 95 % interval of its mean, at each point of the curve."""
     coefficient: Value

@@ -86,6 +86,7 @@ def axis_document(d: Diagnosis) -> dict[str, Any]:
         **picked(d, "sentence maneuvers cannot_see notes reference_airspeed_m_s share_irreducible"),
         "causes": [cause_document(c) for c in d.causes],
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
+        "missing_law": d.missing_law and missing_law_document(d.missing_law),
         "parameters_changed": [changed_document(one) for one in d.derivatives if one.differs],
         "traces": traces_document(d.traces),
     })  # fmt: skip
@@ -109,7 +110,6 @@ def _of_pitch(d: Diagnosis) -> dict[str, Any]:
             **picked(d.kinematics, "finding lag_s lag_std_s scale"),
             "text": d.kinematics.sentence, "bias_rad": d.kinematics.offset.rad,
         },
-        "missing_law": d.missing_law and missing_law_document(d.missing_law),
         "yardsticks": {c: {"before": a, "after": b} for c, (a, b) in d.yardsticks.items()},
     }  # fmt: skip
 

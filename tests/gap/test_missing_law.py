@@ -9,7 +9,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import MissingLaw, Value
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.verdict.missing_law import missing_law
+from advisor.gap.verdict.missing_law import lacking, law_in
 from advisor.report.facts.gap import law_said
 from advisor.report.gap_document import gap_document
 from advisor.report.gap_steps import next_steps
@@ -21,7 +21,8 @@ from tests.gap.test_report_screen import diagnosis
 def law() -> MissingLaw:
     """Return the law of flights whose damping grows with the pitch rate."""
     bent = fly(Setup(seed=8, maneuvers=4, switches={"q_square": -0.06}))
-    found = missing_law(*fit_baseline(prepare(bent, Aircraft()), Aircraft()), "moment_equation")
+    fit = fit_baseline(prepare(bent, Aircraft()), Aircraft())
+    found = law_in("moment_equation", lacking(*fit, "moment_equation"), heat=9.0)
     assert found is not None
     return found
 
@@ -49,9 +50,8 @@ def test_the_curve_rises_in_its_quantity_and_has_a_band(law):
 
 def test_a_formula_within_its_interval_is_not_offered_as_a_law():
     vague = MissingLaw("M", "q", 0.2, ((0.0, 0.0, 1.0),), Value(1.0, 2.0), "q**2")
-    assert law_said(vague).endswith("by 20 %; no simple formula fits it.")
+    assert law_said(vague).endswith("which explains 20 % of the residual; no simple formula fits it.")
 
 
 def test_a_law_in_a_sensor_is_no_curve():
-    flights = prepare(fly(Setup(seed=8, maneuvers=3)), Aircraft())
-    assert missing_law(*fit_baseline(flights, Aircraft()), "alpha_sensor") is None
+    assert law_in("alpha_sensor", iter(()), heat=1.0) is None

@@ -6,7 +6,7 @@ own parameters, so the work is linear in the number of manoeuvres. The noise of 
 at every step, which minimises det R of Eqs. (7)-(8) for a diagonal R.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from advisor.gap.fitting.linear import Linear, are_near, linearise
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint, counts, row_weights
 from advisor.gap.fitting.step import SearchStep, solve_blocks
+from advisor.gap.records.flights import PreparedManeuver
 from advisor.process.arrays import FloatArray
 
 _SETTLED = 0.02
@@ -63,12 +64,26 @@ def above_floor(problem: EffectProblem, noise: FloatArray) -> FloatArray:
 
 def rms_of(problem: EffectProblem, residuals: Sequence[FloatArray]) -> FloatArray:
     """Return the root mean square of the residuals over all manoeuvres, shape (channels,)."""
+    power, count = power_of(problem, residuals, lambda _, t: np.ones(len(t), bool))
+    return np.asarray(np.sqrt(power / np.maximum(count, 1.0)))
+
+
+def power_of(
+    problem: EffectProblem,
+    residuals: Sequence[FloatArray],
+    picked: Callable[[PreparedManeuver, FloatArray], np.ndarray],
+) -> tuple[FloatArray, FloatArray]:
+    """Return the sums of squares and the numbers of the picked samples, shape (channels,) each.
+
+    ``picked`` marks the samples of a manoeuvre at stamps (n,).
+    """
     power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
     for flight, residual in zip(problem.flights.flights, residuals, strict=True):
-        for c, rows in enumerate(problem.rows(flight)):
-            power[c] += float(residual[rows] @ residual[rows])
-            count[c] += rows.stop - rows.start
-    return np.asarray(np.sqrt(power / np.maximum(count, 1.0)))
+        for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
+            inside = residual[rows][picked(flight, flight.outputs[name].t)]
+            power[c] += float(inside @ inside)
+            count[c] += len(inside)
+    return power, count
 
 
 def cost_of(

@@ -2,10 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from advisor.gap.fitting.fit import EffectFit
+from advisor.gap.fitting.fit import EffectFit, power_of
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.natural import with_natural
 from advisor.gap.fitting.problem import EffectProblem
@@ -72,32 +73,19 @@ def by_phase(
     problem: EffectProblem, residuals: Sequence[FloatArray], floor: FloatArray
 ) -> Mapping[str, float]:
     """Return the gap just after the command's steps, between the steps, and after the last step."""
-    sums = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
-    counts = {phase: np.zeros(len(problem.channels)) for phase in PHASES}
-    for flight, residual in zip(problem.flights.flights, residuals, strict=True):
-        for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
-            t = flight.outputs[name].t
-            for phase, inside in _phases(flight, t).items():
-                sums[phase][c] += float(np.sum(residual[rows][inside] ** 2))
-                counts[phase][c] += np.count_nonzero(inside)
-    return {
-        phase: whole_gap(sums[phase] / np.maximum(counts[phase], 1.0), floor)
-        for phase in PHASES
-        if np.all(counts[phase] > 0)
-    }
+    each = ((phase, *power_of(problem, residuals, partial(_inside, phase))) for phase in PHASES)
+    return {phase: whole_gap(power / count, floor) for phase, power, count in each if np.all(count > 0)}
 
 
-def _phases(flight: PreparedManeuver, t: FloatArray) -> Mapping[str, FloatArray]:
+def _inside(phase: str, flight: PreparedManeuver, t: FloatArray) -> np.ndarray:
+    """Return whether each stamp (n,) lies in a phase of ``PHASES``."""
+    after = t > flight.last_step_s + _EDGE_S
+    if phase == "free response":
+        return after
     edges = flight.edges[:, 0] if len(flight.edges) else np.array([flight.first_step_s, flight.last_step_s])
-    near = (
-        np.min(np.where(t[:, None] >= edges[None, :], t[:, None] - edges[None, :], np.inf), axis=1) < _EDGE_S
-    )
-    flying = (t >= flight.first_step_s) & (t <= flight.last_step_s + _EDGE_S)
-    return {
-        "step edge": near & flying,
-        "plateau": ~near & flying,
-        "free response": (t > flight.last_step_s + _EDGE_S),
-    }
+    since = t[:, None] - edges
+    near = np.min(np.where(since >= 0.0, since, np.inf), axis=1) < _EDGE_S
+    return np.asarray((near == (phase == "step edge")) & (t >= flight.first_step_s) & ~after)
 
 
 def by_band(

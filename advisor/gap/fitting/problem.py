@@ -22,6 +22,8 @@ _NO_DISTURBANCE = np.zeros((4, 0))
 _SKEW_ENTRIES = np.array([INDEX[name] for name in SKEWS])
 _FILTER_ENTRIES = np.array([INDEX[name] for name in FILTER])
 _FLOWN_ENTRIES = np.array([i for i, name in enumerate(ENTRIES) if name not in (*SKEWS, *FILTER)])
+_FLAT = 1e6
+"""Numerical: prior standard deviation of a nuisance parameter whose prior is not stated."""
 
 
 @dataclass(frozen=True)
@@ -142,21 +144,24 @@ class EffectProblem:
         weak and decides only where the data do not. Without a measured angle of attack Z_q and Z_δe also have
         the prior of the estimate, about zero.
         """
-        inverse, expected = [np.zeros(len(DERIVATIVES))], [point.derivatives]
-        if self.prior_derivatives is not None:
-            inverse = [prior_precision(self.prior_derivatives, ERROR_IF_WRONG)]
-            expected = [self.prior_derivatives]
+        if self.prior_derivatives is None:
+            return self.prior_about(point, np.zeros(len(DERIVATIVES)), point.derivatives)
+        precision = prior_precision(self.prior_derivatives, ERROR_IF_WRONG)
+        return self.prior_about(point, precision, self.prior_derivatives)
+
+    def prior_about(
+        self, point: SearchPoint, precision: FloatArray, mean: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return ``prior_of`` for inverse variances and means of the derivatives, shape (6,) each."""
         if "alpha" not in self.channels:
             small = small_without_alpha(point.derivatives)
-            expected[0] = inverse[0] * expected[0] / np.maximum(inverse[0] + small, 1e-300)
-            inverse[0] = inverse[0] + small
-        inverse[0], expected[0] = holding(inverse[0], expected[0], self.fixed)
-        for effect, values in zip(point.effects, point.values, strict=True):
-            inverse.append(
-                1.0 / np.array(effect.prior_std) ** 2 if effect.prior_std else np.zeros(len(values))
-            )
-            expected.append(np.zeros(len(values)))
-        return np.concatenate(inverse), np.concatenate(expected) - point.shared
+            mean = precision * mean / np.maximum(precision + small, 1e-300)
+            precision = precision + small
+        precision, mean = holding(precision, mean, self.fixed)
+        stds = [effect.prior_std or (_FLAT,) * len(effect.names) for effect in point.effects]
+        widths = np.concatenate([[], *stds])
+        means = np.concatenate([mean, np.zeros(len(widths))])
+        return np.concatenate([precision, widths**-2.0]), means - point.shared
 
     def prior_cost(self, point: SearchPoint) -> float:
         """Return the prior's contribution to the cost."""

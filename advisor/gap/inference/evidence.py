@@ -13,9 +13,7 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.prior import (
     ERROR_IF_RIGHT,
     ERROR_IF_WRONG,
-    derivative_scale,
-    holding,
-    small_without_alpha,
+    prior_precision,
 )
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.uncertainty import colour_of
@@ -25,8 +23,6 @@ from advisor.process.arrays import FloatArray
 
 _UNSTATED = 1.0
 """Prior: relative standard deviation of a derivative that the aircraft file does not state."""
-_FLAT = 1e6
-"""Numerical: prior standard deviation of a nuisance parameter whose prior is not stated."""
 
 
 @dataclass(frozen=True)
@@ -69,18 +65,7 @@ class FlightProblem(EffectProblem):
     def prior_with(self, point: SearchPoint, width: float) -> tuple[FloatArray, FloatArray]:
         """Return inverse prior variances and prior mean minus values for a relative error ``width`` of the
         derivatives."""
-        inverse = [1.0 / (width * derivative_scale(self.mean)) ** 2]
-        expected = [self.mean]
-        if "alpha" not in self.channels:
-            # No instrument shows Z_q and Z_δe: the prior of the estimate keeps both small.
-            small = small_without_alpha(point.derivatives)
-            expected = [inverse[0] * self.mean / (inverse[0] + small)]
-            inverse = [inverse[0] + small]
-        inverse[0], expected[0] = holding(inverse[0], expected[0], self.fixed)
-        for effect, values in zip(point.effects, point.values, strict=True):
-            inverse.append(1.0 / np.array(effect.prior_std or (_FLAT,) * len(values)) ** 2)
-            expected.append(np.zeros(len(values)))
-        return np.concatenate(inverse), np.concatenate(expected) - point.shared
+        return self.prior_about(point, prior_precision(self.mean, width), self.mean)
 
 
 def temperature(problem: EffectProblem, fitted: EffectFit) -> float:

@@ -83,7 +83,7 @@ def probe_blocks(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -
         unabsorbed = r - A @ solved(chol, A.T @ r)
         total += float(r @ r)
         for block in there:
-            B = problem.innovations(i, _answers_at_knots(problem, flight, p[i], block)) * w[:, None]
+            B = problem.innovations(i, responses_at_knots(problem, flight, p[i], block)) * w[:, None]
             AB, BB = A.T @ B, B.T @ B
             # The knots are coloured last: they are fewer than the rows.
             unit = units.setdefault(block, float(np.sqrt(np.sum(colour * (BB @ colour)) / len(B))) + 1e-300)
@@ -121,10 +121,10 @@ def disturbance_columns(
 
     A vane reads a gust; an α estimated from inertial sensors does not.
     """
-    return np.asarray(_answers_at_knots(problem, flight, p, block) @ _colour(flight))
+    return np.asarray(responses_at_knots(problem, flight, p, block) @ _colour(flight))
 
 
-def _answers_at_knots(
+def responses_at_knots(
     problem: EffectProblem, flight: PreparedManeuver, p: FloatArray, block: str
 ) -> FloatArray:
     """Return the response of all channels to a disturbance at each knot in turn, shape (rows, k)."""

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.gap.decision import LEAST_GAIN
-from advisor.gap.fitting.fit import EffectFit, rms_of
+from advisor.gap.fitting.fit import EffectFit, power_of, rms_of
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.linear import as_measured
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint, row_weights
@@ -20,6 +20,7 @@ from advisor.gap.fitting.whitening import Weighting, Whitening, filters_for, row
 from advisor.gap.noise.probes import probe_blocks
 from advisor.gap.noise.shown_gust import largest_gust
 from advisor.gap.noise.stamps import stamp_variance
+from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.records.floor import stated_floor
 from advisor.gap.simulator.layout import DERIVATIVES, OUTPUTS, SPEED, short_period
 from advisor.oem.innovations import AirModel
@@ -177,12 +178,7 @@ def with_floor(problem: EffectProblem, air: AirModel) -> AirModel:
 
 def quiet_rms(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
     """Return the root mean square residual in quiet stretches, shape (channels,)."""
-    power, count = np.zeros(len(problem.channels)), np.zeros(len(problem.channels))
-    for flight, residual in zip(problem.flights.flights, fitted.residuals, strict=True):
-        for c, (name, rows) in enumerate(zip(problem.channels, problem.rows(flight), strict=True)):
-            inside = flight.is_quiet(flight.outputs[name].t)
-            power[c] += float(np.sum(residual[rows][inside] ** 2))
-            count[c] += np.count_nonzero(inside)
+    power, count = power_of(problem, fitted.residuals, PreparedManeuver.is_quiet)
     whole = rms_of(problem, fitted.residuals)
     # A few samples say nothing; the root mean square of the whole residual is then the best estimate.
     return np.where(count > _LEAST_SAMPLES, np.sqrt(power / np.maximum(count, 1.0)), whole)

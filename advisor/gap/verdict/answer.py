@@ -39,7 +39,7 @@ from advisor.gap.verdict.holdout_numbers import (
     with_offset,
     without_air,
 )
-from advisor.gap.verdict.missing_law import missing_law
+from advisor.gap.verdict.missing_law import lacking, law_in
 from advisor.gap.verdict.notes import notes_of
 from advisor.gap.verdict.numbers import (
     compared_derivatives,
@@ -175,6 +175,7 @@ def _diagnosed(
     outside = [c for c in present if c.block == "air" or c.effect == "alpha_bias"]
     told = weighed(posterior)
     sentence = sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft))
+    unnamed = where.block if verdict == "unknown" else ""
     return Diagnosis(
         verdict=verdict,
         sentence=as_sure(sentence, answers_of(told.evidence)),
@@ -190,7 +191,7 @@ def _diagnosed(
         decisions=(*told.decisions, *_of_the_air(found.sought_air)),
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
         derivatives=compared_derivatives(problem, fitted, known),
-        missing_law=missing_law(problem, fitted, where.block) if verdict == "unknown" else None,
+        missing_law=law_in(unnamed, lacking(problem, fitted, unnamed), found.heat),
         notes=notes_of(e, aircraft, holdout, verdict, nuisances),
         maneuvers=tuple(f.number for f in problem.flights.flights),
         evidence=told.evidence, failed=found.failed, why=told.why, rival=told.rival, answer=answer,

@@ -1,23 +1,28 @@
 """The missing law of an answer without a name, as a curve over the quantity on which it depends most.
 
-The likeliest course of a force or a moment that the plain model lacks is regressed on pitch rate, angle of
-attack, elevator and time. Its linear part is that of the derivatives, which the fit has taken.
+Every formula is flown through its equation, and competes by the residual of the outputs that it explains next
+to all derivatives. The formula's linear part is that of the derivatives, which the fit has taken.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from advisor.gap.fitting.fit import EffectFit
-from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.inference.residual import innovation_noise
-from advisor.gap.noise.probes import disturbance_courses, probe_blocks
+from advisor.gap.fitting.problem import EffectProblem, row_weights
+from advisor.gap.fitting.step import factor
+from advisor.gap.noise.probes import responses_at_knots
 from advisor.gap.result import MissingLaw, Value
+from advisor.oem.arrow import solved
 from advisor.oem.turbulence import KNOTS_S
 from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
-_EQUATIONS = {"force_equation": "Z", "moment_equation": "M"}
+_EQUATIONS = {
+    "force_equation": "Z", "moment_equation": "M",
+    "side_force": "Y", "rolling_moment": "L", "yawing_moment": "N",
+}  # fmt: skip
 """Letter of the equation in which each block's law acts, by the block's name."""
 _FORMS: Mapping[str, Callable[[FloatArray], FloatArray]] = {
     "{0}*abs({0})": lambda x: x * np.abs(x),
@@ -25,71 +30,119 @@ _FORMS: Mapping[str, Callable[[FloatArray], FloatArray]] = {
     "{0}**3": lambda x: x**3,
 }
 """Numerical: formulas that are compared, by their text with the name of the quantity."""
-_PARTS = 8
-"""Numerical: number of equally filled parts of the curve."""
+_RANK = 1e-6
+"""Numerical: least size of a direction that columns span, relative to the largest."""
+_POINTS = 9
+"""Numerical: number of points of the curve."""
 
 
-def missing_law(problem: EffectProblem, fitted: EffectFit, block: str) -> MissingLaw | None:
-    """Return the law that acts in a block beyond a fit; None for a block that is no equation."""
+class Lacking(NamedTuple):
+    """Weighted residual of one manoeuvre, and the response of its outputs to a law in one equation.
+
+    What the manoeuvre's own trims and initial states absorb is removed.
+    """
+
+    quantities: Mapping[str, FloatArray]
+    """Quantities on which a law may depend, from trim, at k knots: shape (k,), by name."""
+    responses: FloatArray
+    """Shape (n, k): response per unit of the law at each knot."""
+    shared: FloatArray
+    """Shape (n, s): sensitivities to the derivatives and effect parameters."""
+    residual: FloatArray
+    """Shape (n,)."""
+
+
+def law_in(block: str, lacking: Iterable[Lacking], heat: float) -> MissingLaw | None:
+    """Return the law that acts in a block beyond a fit; None for a block that is no equation.
+
+    Parameters
+    ----------
+    heat
+        Number of white-noise nats that count as one nat (``evidence.temperature``).
+    """
     if block not in _EQUATIONS:
         return None
+    maneuvers = list(lacking)
+    shared, residual = (np.concatenate(x) for x in zip(*(m[2:] for m in maneuvers), strict=True))
+    basis = _basis(shared)
+    left = residual - basis @ (basis.T @ residual)
+    fits: dict[str, _Fit] = {}
+    for name in maneuvers[0].quantities:
+        columns = np.concatenate([m.responses @ _forms(m.quantities[name]) for m in maneuvers])
+        fits[name] = _Fit(columns - basis @ (basis.T @ columns), left)
+    every = range(len(_FORMS))
+    variable = max(fits, key=lambda name: fits[name].explained(every))
+    fit = fits[variable]
+    nearest, runner_up = sorted(every, key=lambda k: -fit.explained([k]))[:2]
+    texts = [text.format(variable) if variable != "t" else "" for text in _FORMS]
+    value, covariance = fit.solution([nearest])
+    return MissingLaw(
+        _EQUATIONS[block], variable, fit.explained(every) / max(float(left @ left), 1e-300),
+        tuple(_curve(np.concatenate([m.quantities[variable] for m in maneuvers]), fit, heat)),
+        Value(float(value[0]), float(np.sqrt(heat * covariance[0, 0]))), texts[nearest], texts[runner_up],
+    )  # fmt: skip
+
+
+def lacking(problem: EffectProblem, fitted: EffectFit, block: str) -> Iterator[Lacking]:
+    """Yield what each manoeuvre of pitch shows of a law in an equation, beyond a fit."""
     assert problem.instruments is not None
-    probe = next(p for p in probe_blocks(problem, fitted, innovation_noise(problem)) if p.block == block)
-    (course,) = disturbance_courses(problem, fitted, problem.instruments, block, [probe.size])
-    lacking = np.concatenate(course.knots)
-    shares = {
-        name: _share(x, lacking, [x, x * np.abs(x), x**2, x**3]) for name, x in _quantities(problem).items()
+    p = problem.driving(fitted.point)
+    for i, flight in enumerate(problem.flights.flights):
+        weights, linear = row_weights(problem, i, 1.0 / problem.instruments)[:, None], fitted.linear[i]
+        own, responses = linear.measured.own * weights, responses_at_knots(problem, flight, p[i], block)
+        columns = np.column_stack([responses, linear.measured.shared, fitted.residuals[i]]) * weights
+        columns -= own @ solved(factor(own, linear.prior), own.T @ columns)
+        k = responses.shape[1]
+        yield Lacking(_quantities(problem, i), columns[:, :k], columns[:, k:-1], columns[:, -1])
+
+
+def _quantities(problem: EffectProblem, i: int) -> Mapping[str, FloatArray]:
+    """Return pitch rate, angle of attack, elevator and time of flight at the knots of a manoeuvre."""
+    flight, first = problem.flights.flights[i], problem.flights.flights[0]
+    t = np.arange(0.0, flight.duration_s, KNOTS_S)[1:]
+    moved = {
+        "q": flight.outputs["q"].at(t),
+        "delta_e": np.interp(t, flight.t_u, flight.u) - flight.u_trim,
+        "t": t + flight.started_s - first.started_s,
     }
-    variable = max(shares, key=lambda name: shares[name])
-    x = _quantities(problem)[variable]
-    nearest, runner_up = _by_nearness(x, lacking)[:2]
-    value = _coefficient(x, lacking, _FORMS[nearest](x))
-    named = ("", "") if variable == "t" else (nearest.format(variable), runner_up.format(variable))
-    curve = tuple(_curve(x, lacking))
-    return MissingLaw(_EQUATIONS[block], variable, shares[variable], curve, value, *named)
+    alpha = (
+        {"alpha": flight.outputs["alpha"].at(t) - flight.alpha_trim} if "alpha" in problem.channels else {}
+    )
+    return moved | alpha
 
 
-def _quantities(problem: EffectProblem) -> Mapping[str, FloatArray]:
-    """Return pitch rate, angle of attack, elevator and time at the knots of all manoeuvres, from trim."""
-    found: dict[str, list[FloatArray]] = {}
-    for flight in problem.flights.flights:
-        t = np.arange(0.0, flight.duration_s, KNOTS_S)[1:]
-        found.setdefault("q", []).append(flight.outputs["q"].at(t))
-        found.setdefault("delta_e", []).append(np.interp(t, flight.t_u, flight.u) - flight.u_trim)
-        found.setdefault("t", []).append(t + flight.started_s)
-        if "alpha" in problem.channels:
-            found.setdefault("alpha", []).append(flight.outputs["alpha"].at(t) - flight.alpha_trim)
-    joined = {name: np.concatenate(parts) for name, parts in found.items()}
-    joined["t"] = joined["t"] - float(joined["t"][0])
-    return joined
+class _Fit(NamedTuple):
+    """Least squares of the residual (n,) by the outputs' responses to the formulas, (n, formulas)."""
+
+    columns: FloatArray
+    residual: FloatArray
+
+    def solution(self, which: Sequence[int]) -> tuple[FloatArray, FloatArray]:
+        """Return the coefficients (k,) of some formulas, and their covariance (k, k) under white noise."""
+        columns = self.columns[:, which]
+        covariance = np.linalg.pinv(columns.T @ columns, _RANK**2, hermitian=True)
+        return covariance @ (columns.T @ self.residual), np.asarray(covariance)
+
+    def explained(self, which: Sequence[int]) -> float:
+        """Return the power of the residual that some formulas explain."""
+        return float(self.solution(which)[0] @ (self.columns[:, which].T @ self.residual))
 
 
-def _share(x: FloatArray, lacking: FloatArray, columns: list[FloatArray]) -> float:
-    """Return the share of the course's variance that columns and a constant explain."""
-    system = np.column_stack([np.ones(len(x)), *columns])
-    system = system / np.maximum(np.linalg.norm(system, axis=0), 1e-300)
-    left = lacking - system @ np.linalg.lstsq(system, lacking, rcond=None)[0]
-    return float(1.0 - np.var(left) / max(np.var(lacking), 1e-300))
+def _forms(x: FloatArray) -> FloatArray:
+    """Return all formulas of a quantity (k,), shape (k, formulas)."""
+    return np.column_stack([form(x) for form in _FORMS.values()])
 
 
-def _by_nearness(x: FloatArray, lacking: FloatArray) -> list[str]:
-    """Return the formulas, the one nearest to the course next to a line first."""
-    return sorted(_FORMS, key=lambda one: -_share(x, lacking, [x, _FORMS[one](x)]))
+def _basis(columns: FloatArray) -> FloatArray:
+    """Return an orthonormal basis of columns (n, k)."""
+    u, size, _ = np.linalg.svd(columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300), False)
+    return np.asarray(u[:, size > _RANK * size[0]])
 
 
-def _coefficient(x: FloatArray, lacking: FloatArray, form: FloatArray) -> Value:
-    """Return the coefficient of a formula next to a line."""
-    system = np.column_stack([np.ones(len(x)), x, form])
-    found = np.linalg.lstsq(system, lacking, rcond=None)[0]
-    noise = float(np.var(lacking - system @ found))
-    std = np.sqrt(noise * np.linalg.pinv(system.T @ system)[2, 2])
-    return Value(float(found[2]), float(std))
-
-
-def _curve(x: FloatArray, lacking: FloatArray) -> list[tuple[float, float, float]]:
-    """Return the mean of the course in each part of a quantity's range, with half its 95 % interval."""
-    curve = []
-    for part in np.array_split(np.argsort(x), _PARTS):
-        half = NORMAL_95 * float(np.std(lacking[part])) / np.sqrt(max(len(part), 1))
-        curve.append((float(np.mean(x[part])), float(np.mean(lacking[part])), float(half)))
-    return curve
+def _curve(x: FloatArray, fit: _Fit, heat: float) -> list[tuple[float, float, float]]:
+    """Return the law next to a line over a quantity's range, with half its 95 % interval."""
+    at = np.linspace(np.min(x), np.max(x), _POINTS)
+    value, covariance = fit.solution(range(len(_FORMS)))
+    forms = _forms(at)
+    halves = NORMAL_95 * np.sqrt(heat * np.einsum("ki,ij,kj->k", forms, covariance, forms))
+    return list(zip(at.tolist(), (forms @ value).tolist(), halves.tolist(), strict=True))

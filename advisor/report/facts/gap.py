@@ -62,10 +62,15 @@ def grown_said(verdict: str, gap: Gap) -> str:
     return f"{cause} in {', '.join(grown)}" if grown else ""
 
 
-_LAWS = {"Z": ("force", "1/s"), "M": ("moment", "rad/s²")}
+LAWS = {
+    "Z": ("force", "1/s"), "M": ("moment", "rad/s²"),
+    "Y": ("side force", "1/s"), "L": ("rolling moment", "rad/s²"), "N": ("yawing moment", "rad/s²"),
+}  # fmt: skip
 """Force or moment that each equation can lack, with its unit, by the letter of the equation."""
 _OVER = {
-    "q": "pitch rate", "alpha": "angle of attack", "delta_e": "elevator deflection", "t": "time of flight"
+    "q": "pitch rate", "alpha": "angle of attack", "delta_e": "elevator deflection", "t": "time of flight",
+    "beta": "sideslip", "p": "roll rate", "r": "yaw rate",
+    "delta_a": "aileron deflection", "delta_r": "rudder deflection",
 }  # fmt: skip
 
 
@@ -73,8 +78,9 @@ def law_said(law: MissingLaw) -> str:
     """Return the sentence about an effect that no candidate explains: the variable on which it depends, and
     the nearest formula.
     """
-    what, unit = _LAWS[law.equation]
-    told = f"The missing {what} depends most on the {_OVER[law.variable]}, by {100.0 * law.share:.0f} %"
+    what, unit = LAWS[law.equation]
+    depends = f"The missing {what} depends most on the {_OVER[law.variable]}"
+    told = f"{depends}, which explains {100.0 * law.share:.0f} % of the residual"
     if not law.nearest:
         return f"{told}."
     half = NORMAL_95 * law.coefficient.std

@@ -6,7 +6,9 @@ from typing import Any
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FuncFormatter
 
+from advisor.aircraft.added_term import SIGNALS
 from advisor.gap.result import Unseen, spelled
+from advisor.report.facts.gap import LAWS
 from advisor.report.facts.reasons import in_percent, is_shown, weighed
 from advisor.report.facts.sizes import WORSE, marked, short
 from advisor.report.gap_causes import by_reason
@@ -20,9 +22,8 @@ from advisor.words.quantities import CHANNELS, Quantity
 _DEFINED = "The gap is the mean square of the simulation's error over that of the noise floor, minus 1: "
 _GLANCE = 4
 """Number of channels side by side, so that the picture fits on the first page of A4."""
-_OVER = {**CHANNELS, "delta_e": CHANNELS["elevator"], "t": Quantity("time of flight", "s")}
+_OVER = {name: CHANNELS[of] for name, of in SIGNALS.items() if of in CHANNELS}
 """Quantities over which a missing law is drawn, by name."""
-_LAWS = {"Z": "missing force [1/s]", "M": "missing moment [rad/s²]"}
 _LINEAR = 10.0
 """Largest gap on a linear axis."""
 
@@ -106,14 +107,14 @@ def _law(law: Mapping[str, Any] | None) -> Iterator[Block]:
 
 def _paint_law(drawing: Drawing, law: Mapping[str, Any]) -> None:
     axes = drawing.subplots()
-    quantity = _OVER[law["variable"]]
+    quantity = _OVER.get(law["variable"], Quantity("time of flight", "s"))
     x = [quantity.factor * at for at, _ in law["curve"]]
     low, high = zip(*law["band"], strict=True)
     axes.fill_between(x, low, high, color=BLUE, alpha=0.2, linewidth=0)
     axes.plot(x, [y for _, y in law["curve"]], color=BLUE, marker="o", markersize=3)
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     axes.set_xlabel(quantity.label)
-    axes.set_ylabel(_LAWS[law["equation"]])
+    axes.set_ylabel("missing {} [{}]".format(*LAWS[law["equation"]]))
 
 
 def glance(document: Document) -> Iterator[Block]:

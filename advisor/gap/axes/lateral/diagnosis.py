@@ -13,7 +13,7 @@ from advisor.gap.axes.lateral.evidence import colour_share, information_of, post
 from advisor.gap.axes.lateral.fit import Fit, N
 from advisor.gap.axes.lateral.flight import SideFlight, SideModel
 from advisor.gap.axes.lateral.gusts import coloured_likelihood
-from advisor.gap.axes.lateral.laws import side_laws
+from advisor.gap.axes.lateral.laws import lacking, side_laws
 from advisor.gap.axes.lateral.measure import measured, sums
 from advisor.gap.axes.lateral.models import Case, base_of, free_near
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
@@ -24,6 +24,7 @@ from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Cause, Diagnosis, GapVerdict, Trace, Value, Where, ranked
 from advisor.gap.search.air import NATURAL_GUST_ANGLE
 from advisor.gap.verdict.causes import MOST_CAUSES
+from advisor.gap.verdict.missing_law import law_in
 from advisor.gap.verdict.reasons import capped, weighed
 from advisor.gap.verdict.statements import what
 from advisor.gap.verdict.text import place
@@ -69,6 +70,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
     )
     verdict = verdict_of(weights)
     where = where_of(weights.evidence, causes if verdict == "effect" else ())
+    unnamed = where.block if verdict == "unknown" else ""
     return Diagnosis(
         **(vars(weights) | {"failed": decision.failed}), axis="lateral", verdict=verdict,
         sentence=_sentence(verdict, where, causes), gap=gap, where=where, causes=causes,
@@ -76,6 +78,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
         waterfall=waterfall, cannot_see=tuple(unseen(case.flown)),
         peaks={"simulator": peaks_of(as_given), "fitted_derivatives": peaks_of(plain)},
         model=dict(zip(SIDE_PARAMETERS, values, strict=True)),
+        missing_law=law_in(unnamed, lacking(case, plain, unnamed), decision.heat),
         maneuvers=tuple(case.numbers), traces=tuple(_traces(case.numbers, as_given, last)),
     )  # fmt: skip
 

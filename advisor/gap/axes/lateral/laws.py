@@ -15,12 +15,15 @@ from advisor.gap.axes.lateral.models import Case
 from advisor.gap.inference.sizes import BENT, of_range
 from advisor.gap.kit.variant import Variant
 from advisor.gap.uncatalogued.candidate_laws import RINGING, STOPS, SURFACE_STOP, sticking, stops
+from advisor.gap.verdict.missing_law import Lacking
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.axis_response import respond_axis
-from advisor.oem.axes.lateral.disturbance import EQUATIONS, SENSORS, STEP_S, answered
+from advisor.oem.axes.lateral.disturbance import EQUATIONS, SENSORS, STEP_S, answered, courses_of
 from advisor.process.arrays import FloatArray
 
 _CURVE = Variant("curve", "", ("square", "cube"), ((0.0, 0.0),), (1.0, 1.0), ((-np.inf, np.inf),) * 2, 0.0)
+_NAMES = {"beta": "beta", "p": "p", "r": "r", "aileron": "delta_a", "rudder": "delta_r"}
+"""Name in a formula of each quantity on which a law may depend."""
 _LAG_AND_DAMPING = replace(
     RINGING, names=("lag_s", "damping"), entries=("lag_s", "lag_damping"), apply_with=None,
     starts=tuple((2.0 * damping / omega, damping) for omega, damping in RINGING.starts),
@@ -48,6 +51,18 @@ def side_laws(case: Case, fit: Fit) -> Iterator[SideEffect]:
         yield from _curves(case, fit, motions, block, {block: 1.0})
     for block, state in EQUATIONS.items():
         yield from _curves(case, fit, motions, block, {of: slopes[state, of] for of in ("beta", "p", "r")})
+
+
+def lacking(case: Case, fit: Fit, block: str) -> Iterator[Lacking]:
+    """Yield what each manoeuvre shows of a law in an equation, beyond a fit."""
+    linear = fit.linear(case.flown)
+    for m, course in enumerate(courses_of(linear, block)):
+        rows, motion = fit.assembly.blocks[m], _motion(fit, m)
+        moved = {name: np.interp(course.knots, motion["t"], motion[of]) for of, name in _NAMES.items()}
+        left = linear.unabsorbed(m, fit.residual[rows, None])
+        columns = (fit.weight[rows, None] * x for x in (course.columns, fit.columns[rows], left))
+        responses, shared, residual = columns
+        yield Lacking({**moved, "t": course.knots}, responses, shared, residual[:, 0])
 
 
 def _curves(

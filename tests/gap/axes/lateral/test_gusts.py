@@ -10,11 +10,12 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.gap.axes.lateral.effects import side_effects
 from advisor.gap.axes.lateral.fit import fitted, moved_by
 from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
-from advisor.gap.axes.lateral.laws import side_laws
+from advisor.gap.axes.lateral.laws import lacking, side_laws
 from advisor.gap.axes.lateral.models import case_of
 from advisor.gap.axes.lateral.residual import residual_of
 from advisor.gap.axes.lateral.starts import Starts
-from advisor.oem.axes.lateral.disturbance import courses_of
+from advisor.gap.verdict.missing_law import law_in
+from advisor.oem.axes.lateral.disturbance import STEP_S, answered, courses_of
 from advisor.oem.axes.lateral.gusts import Air
 from tests.gap.axes.lateral.test_comparison import AIRCRAFT, maneuvers
 from tests.oem.axes.lateral.builders import JET
@@ -46,6 +47,14 @@ def wandering(n, memory, rng):
     for i in range(1, n):
         x[i] = memory * x[i - 1] + np.sqrt(1.0 - memory**2) * rng.standard_normal()
     return x
+
+
+def flown_law(case, fit, m, block, of):
+    """Return the outputs' change by a law x·|x| of a rate in an equation, from the fitted motion."""
+    rows, stamps = fit.assembly.rows[m][of], fit.assembly.t[fit.assembly.blocks[m]]
+    t = np.arange(np.min(stamps), np.max(stamps), STEP_S)
+    x = np.interp(t, fit.assembly.t[rows], fit.fitted[rows])
+    return answered(fit.linear(case.flown), m, block, t, (x * np.abs(x))[:, None])[:, 0]
 
 
 def test_a_gust_angle_enters_all_outputs_and_its_size_is_found(flight):
@@ -162,6 +171,17 @@ def test_a_curve_is_found_in_its_block_with_what_bends_it(case, flight, block, o
     left = with_residual(fit, 20.0 / largest * seen)
     found = min(Starts(case, left, list(laws.values())).of_each, key=lambda start: start.price)
     assert found.name == bent
+
+
+@pytest.mark.parametrize(("block", "of"), [("rolling_moment", "p"), ("yawing_moment", "r")])
+def test_a_law_in_an_equation_is_named_with_its_quantity_and_coefficient(case, flight, block, of):
+    fit, _, _ = flight
+    seen = np.concatenate([flown_law(case, fit, m, block, of) for m in range(fit.assembly.maneuvers)])
+    size = 60.0 / np.max(np.abs(seen) / NOISE[fit.assembly.channel])
+    found = law_in(block, lacking(case, with_residual(fit, size * seen), block), heat=1.0)
+    assert (found.variable, found.nearest) == (of, f"{of}*abs({of})")
+    assert found.coefficient.value == pytest.approx(size, rel=0.1)
+    assert found.term == f"{'N' if block == 'yawing_moment' else 'L'}:{found.nearest}"
 
 
 def test_a_bent_reading_is_the_square_and_the_cube_of_the_reading(case, flight):
