@@ -4,7 +4,9 @@ import json
 import re
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ import advisor as library
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
+from advisor.analysis import gap
 from advisor.campaign.state import CampaignState
 from advisor.oem.known_instruments import with_found
 from advisor.report.gap_document import gap_document
@@ -120,6 +123,18 @@ def test_diagnose_gives_the_verdict_of_gap(flight: library.Flight, advisor: Advi
     told, found = json.loads(run.stdout), library.diagnose(flight)
     assert gap_document(found)["verdict"] == told["verdict"]
     assert [cause.effect for cause in found.causes] == [cause["effect"] for cause in told["causes"]]
+
+
+def test_diagnose_compares_with_the_simulator_that_the_aircraft_file_names(
+    flight: library.Flight, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[object] = []
+    compared = SimpleNamespace(diagnosis="compared")
+    monkeypatch.setattr(gap, "named_simulator", lambda aircraft, _: asked.append(aircraft.simulator))
+    monkeypatch.setattr(gap, "compare_flown", lambda *_: compared)
+    own = replace(flight, aircraft=replace(flight.aircraft, simulator="jsbsim:c172p"))
+    assert library.diagnose(own) == "compared"
+    assert asked == ["jsbsim:c172p"]
 
 
 def test_a_log_that_cannot_be_used_is_read_with_its_problems_and_find_raises_them() -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.gap import maneuvers_of
 from advisor.analysis.log_series import LogSeries
 from advisor.analysis.marks_file import write_by_hand
 from advisor.campaign.campaign import Campaign, CampaignEvent
@@ -102,6 +103,13 @@ def second(tmp_path: Path) -> Path:
 def test_manoeuvres_of_two_flights_of_one_schedule_are_numbered_through(first: Path, second: Path) -> None:
     maneuvers = [j.maneuver for j in followed(first, second).state.maneuvers]
     assert [(m.number, m.flight) for m in maneuvers] == [(1, 0), (2, 1)]
+
+
+def test_the_diagnosis_takes_logs_in_the_order_of_their_times_and_says_so(first: Path, second: Path) -> None:
+    forward, backward = (maneuvers_of(logs, Aircraft()) for logs in ([first, second], [second, first]))
+    assert [m.span for m in backward.maneuvers] == [m.span for m in forward.maneuvers]
+    assert "The logs are taken in the order of their times: first.tlog, second.tlog." in backward.notes
+    assert forward.notes == backward.notes[1:]
 
 
 def test_a_log_among_others_gives_the_manoeuvres_that_it_gives_alone(first: Path, second: Path) -> None:
