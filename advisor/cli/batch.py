@@ -1,5 +1,6 @@
-"""``advisor batch``: many flights, each analyzed once."""
+"""``advisor batch``: many flights, each analyzed once, and the page of each, to which their table links."""
 
+import shlex
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.cli.batch_reports import page_of, write_reports
+from advisor.cli.log_options import LogsAsked
 from advisor.cli.options import UNUSABLE, aircraft_option, read_aircraft, refuse_unwritable_folder, writing
 from advisor.cli.report import refuse_missing_libraries
 from advisor.cli.running import Progress, runner_of, running_options
@@ -21,11 +22,17 @@ if TYPE_CHECKING:
     from advisor.batch.flight import Analyzed, BatchTask
 
     Run = Callable[[Sequence[BatchTask]], Iterator[tuple[BatchTask, Analyzed | Exception]]]
+    WriteRun = Callable[[Sequence[BatchTask]], Iterator[tuple[BatchTask, str | Exception]]]
 
 INDEX = "index.html"
 """Name of the page of all flights."""
 KEPT = "flights"
 """Name of the folder for the results, in which each log's file is named by the log's key."""
+
+REPORTS = "reports"
+"""Name of the folder for the pages. The key of a log's result names its page, so that a new result gets a new
+page.
+"""
 
 
 @click.command
@@ -191,3 +198,34 @@ def _told(results: "Sequence[Analyzed]", out: Path, pages: Mapping[Path, str]) -
         f" {len(failures)}; tables: flights.{form}, maneuvers.{form}, changes.{form}; page: {INDEX}."
     )
     return UNUSABLE if len(failures) == len(flights) else 0
+
+
+def page_of(task: "BatchTask") -> str:
+    """Return the page of one flight as HTML, as ``advisor report`` writes it."""
+    from advisor.cli.page_content import gather
+    from advisor.report.page.render import page
+
+    aircraft = ["--aircraft", str(task.aircraft_path)] if task.aircraft_path else []
+    command = shlex.join(["advisor", "report", str(task.log), *aircraft, "-o", "report.html"])
+    content, _ = gather(LogsAsked((task.log,), task.aircraft_path), task.aircraft, False, command=command)
+    return page(content, "html")
+
+
+def write_reports(tasks: "Sequence[BatchTask]", out: Path, run: "WriteRun") -> Mapping[Path, str]:
+    """Write the pages that are missing, and return each log's page, relative to ``out``.
+
+    A page that fails is named on standard error, and the others are written.
+    """
+    from advisor.process.atomic_file import write_atomically
+
+    (out / REPORTS).mkdir(parents=True, exist_ok=True)
+    pages = {task.log: f"{REPORTS}/{task.key}.html" for task in tasks}
+    to_do = [task for task in tasks if not (out / pages[task.log]).exists()]
+    progress = Progress(len(to_do), "reports")
+    for task, written in run(to_do):
+        if isinstance(written, Exception):
+            click.echo(printable(f"{task.log} has no report: {written}"), err=True)
+        else:
+            write_atomically(out / pages[task.log], written)
+        progress.advance()
+    return {log: page for log, page in pages.items() if (out / page).exists()}

@@ -1,6 +1,6 @@
 """``advisor gap``: why the real aircraft does not fly like the simulator."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from advisor.cli.foresee import plan_options
 from advisor.cli.gap_asked import refuse_figure
 from advisor.cli.improvement_export import export_option, orders_of
 from advisor.cli.log_options import LogsAsked, log_options
@@ -23,16 +22,6 @@ if TYPE_CHECKING:
     from advisor.campaign.hand_decisions import ByHand
     from advisor.exports.models.formats import AxisAsked
 
-_OF_A_FLIGHT = {
-    "holdout": "--holdout", "out": "--out", "target_system": "--target-system", "marks": "--maneuver",
-    "no_marks": "--no-marks", "why": "--why", "everything": "--all", "prior": "--prior",
-    "exports": "--export", "proving": "--prove", "specification": "--simulator", "figure": "--figure",
-    "axis": "--axis", "fixes": "--fix", "terms": "--term",
-}  # fmt: skip
-_OF_THE_PITCH = {"holdout": "--holdout"}
-_OF_A_PLAN = {
-    "plan": "--plan", "rate_hz": "--rate", "amplitude_deg": "--amplitude-deg", "without": "--without"
-}  # fmt: skip
 _LATERAL = (
     "No manoeuvre of the elevator is accepted, but some of the aileron or the rudder are: "
     "the diagnosis is of roll and yaw."
@@ -86,8 +75,6 @@ _LATERAL = (
     metavar="SHARES",
     help="Prior probability of each kind of answer: none=40,parameters=20,effect=30,unknown=10.",
 )
-@click.option("--foresee", is_flag=True, hidden=True, help="The command advisor foresee.")
-@plan_options(hidden=True)
 @json_option
 def command(
     asked: LogsAsked,
@@ -101,11 +88,6 @@ def command(
     proving: tuple[str, ...],
     why: bool,
     prior: str | None,
-    foresee: bool,
-    plan: str,
-    rate_hz: float,
-    amplitude_deg: float,
-    without: str,
     as_json: bool,
 ) -> int:
     """Diagnose the sim-to-real gap: its place, the effect that causes it, and how much a correction reduces
@@ -123,19 +105,9 @@ def command(
       advisor gap flight.tlog --axis both
       advisor gap flight.tlog --aircraft my-aircraft.yaml --term "M:q*abs(q)"
     """
-    _refuse_foreign(_OF_A_FLIGHT if foresee else _OF_A_PLAN, f"with{'out' if foresee else ''} --foresee")
     if axis == "lateral":
-        _refuse_foreign(_OF_THE_PITCH, "with --axis pitch")
+        _refuse_holdout()
     aircraft = asked.read_aircraft()
-    if foresee:
-        if asked.logs:
-            raise ConfigurationError(
-                f"advisor gap --foresee plans a flight and reads no log: leave out {asked.logs[0]}, "
-                "or leave out --foresee to diagnose it."
-            )
-        from advisor.report.gap_plan import print_foresight
-
-        return print_foresight(aircraft, plan, rate_hz, amplitude_deg, without, as_json)
     refuse_proving(proving)
     if not asked.logs:
         raise ConfigurationError(
@@ -158,7 +130,7 @@ def command(
         flown = _axis_flown(asked, aircraft, by_hand)
         axis = flown.axis
         if axis == "lateral":
-            _refuse_foreign(_OF_THE_PITCH, "with --axis pitch")
+            _refuse_holdout()
         orders = orders_of(exports, aircraft, [*asked.inputs, out], axis)
     from advisor.cli.gap_asked import GapAsked
 
@@ -196,9 +168,7 @@ def _refuse_out(out: Path, aircraft_file: Path | None) -> None:
         raise ConfigurationError(f"--out: {out} is the aircraft file itself; name another file.")
 
 
-def _refuse_foreign(foreign: Mapping[str, str], where: str) -> None:
-    """Refuse options of another mode of the command, instead of ignoring them."""
-    given = click.get_current_context().get_parameter_source
-    for name, option in foreign.items():
-        if given(name) is ParameterSource.COMMANDLINE:
-            raise ConfigurationError(f"{option} applies only {where}: leave it out.")
+def _refuse_holdout() -> None:
+    """Refuse the option of another axis, instead of ignoring it."""
+    if click.get_current_context().get_parameter_source("holdout") is ParameterSource.COMMANDLINE:
+        raise ConfigurationError("--holdout applies only with --axis pitch: leave it out.")

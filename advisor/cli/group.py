@@ -79,6 +79,8 @@ class LazyCommands(click.Group):
         UsageError
             There is no such command.
         """
+        if args[0] == "gap" and "--foresee" in args:  # an older name of the command
+            args = ["foresee", *(word for word in args[1:] if word != "--foresee")]
         near = get_close_matches(args[0], COMMANDS, 1)
         if args[0] not in COMMANDS and near and not ctx.resilient_parsing:
             ctx.fail(f"No such command {args[0]!r}: did you mean {near[0]}?")

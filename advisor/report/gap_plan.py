@@ -1,4 +1,4 @@
-"""Output of ``advisor gap --foresee``: effects that a planned flight could show."""
+"""Output of ``advisor foresee``: effects that a planned flight could show."""
 
 import json
 import math

@@ -15,7 +15,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.batch.flight import Analyzed, BatchTask, failed, kept, sha256_of
 from advisor.batch.logs import AircraftMap, find_logs, read_map
 from advisor.batch.tables import aircraft_of, is_whole, mixed_up
-from advisor.cli.batch_reports import write_reports
+from advisor.cli.batch import write_reports
 from advisor.process.tasks import processes
 from advisor.process.tasks.runner import run_here
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError

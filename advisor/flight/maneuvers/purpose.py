@@ -125,21 +125,6 @@ def judged(
     return found
 
 
-def not_an_input(
-    maneuver: Maneuver,
-    on_ground: str | None = None,
-    motion: Mapping[str, Channel] | None = None,
-    limits: Limits | None = None,
-    loop: Loop = PITCH,
-    tests: Sequence[Span] = (),
-    *,
-    passed_over: bool = False,
-) -> Because | None:
-    """Return the reason why a movement of a control holds no test input; None if it may hold one."""
-    found = judged(maneuver, on_ground, motion, limits, loop, tests, passed_over=passed_over)
-    return found if isinstance(found, Because) else None
-
-
 def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None, control: str, passed_over: bool) -> str:
     """Return in words what a movement in a closed loop lacks as a test input; empty if it lacks nothing."""
     if has_an_errand(maneuver.mode):

@@ -31,7 +31,7 @@ from advisor.flight.maneuvers.loop import PITCH, ROLL, YAW, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.markers import marked_span
 from advisor.flight.maneuvers.marks import Mark, Marks
-from advisor.flight.maneuvers.purpose import Because, judged, not_an_input
+from advisor.flight.maneuvers.purpose import Because, judged
 from advisor.flight.maneuvers.steady_speed import at_steady_speed
 from advisor.flight.signals.motion import along_heading
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
@@ -221,7 +221,8 @@ class Cutting:
             alone = replace(one.span, record_from_s=maneuver.span.record_from_s, end_s=maneuver.span.end_s)
             motion = self.motion_before(alone, one.loop, up_to_order)
             moved, tests = replace(maneuver, span=alone), self._tests.get(one.loop.control, ())
-            if not_an_input(moved, on_ground, motion, None, one.loop, tests, passed_over=passed_over) is None:
+            extent = judged(moved, on_ground, motion, None, one.loop, tests, passed_over=passed_over)
+            if isinstance(extent, Span):
                 return False
         return True
 

@@ -8,7 +8,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.axes.judge_pitch import judge_pitch
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.markers import SWEPT
-from advisor.flight.maneuvers.purpose import not_an_input
+from advisor.flight.maneuvers.purpose import Because, judged
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimator import estimate
 
@@ -67,7 +67,7 @@ def right(maneuver):
 @pytest.mark.parametrize("mode", ["STABILIZE", "FBWA", "FBWB", "CRUISE"])
 @pytest.mark.parametrize("loop", [(0.1, 0.2), LOOP])
 def test_steps_in_a_closed_loop_are_found(mode, loop):
-    assert not_an_input(stepped(mode, loop)) is None
+    assert not isinstance(judged(stepped(mode, loop)), Because)
 
 
 @pytest.mark.parametrize("loop", [(0.1, 0.2), LOOP])
@@ -77,7 +77,7 @@ def test_steps_in_a_closed_loop_give_right_derivatives(loop):
 
 @pytest.mark.parametrize("mode", ["STABILIZE", "FBWA", "FBWB", "CRUISE"])
 def test_a_sweep_of_system_id_is_found_in_a_closed_loop(mode):
-    assert not_an_input(swept(2.0, mode)) is None
+    assert not isinstance(judged(swept(2.0, mode)), Because)
 
 
 def test_a_sweep_of_system_id_gives_right_derivatives():
@@ -85,15 +85,15 @@ def test_a_sweep_of_system_id_gives_right_derivatives():
 
 
 def test_a_sweep_that_nothing_announces_is_the_loops_own():
-    because = not_an_input(swept(2.0, closed_by="quiet"))
-    assert because is not None
+    because = judged(swept(2.0, closed_by="quiet"))
+    assert isinstance(because, Because)
     assert "without the sharp steps of a test" in because.text
 
 
 def test_a_sweep_of_another_axis_is_named_in_one_line():
     """The pitch loop answers gusts while SystemID sweeps the ailerons."""
-    because = not_an_input(swept(0.0, gust=2.0 * DEG))
-    assert because is not None
+    because = judged(swept(0.0, gust=2.0 * DEG))
+    assert isinstance(because, Because)
     assert because.reason == "autopilot"
     assert because.text.startswith(
         "SystemID ran in FBWA, and the elevator's effect on the pitch rate is known"
@@ -101,6 +101,6 @@ def test_a_sweep_of_another_axis_is_named_in_one_line():
 
 
 def test_a_sweep_in_hover_is_no_test_of_the_wing():
-    because = not_an_input(swept(2.0, "QHOVER"))
-    assert because is not None
+    because = judged(swept(2.0, "QHOVER"))
+    assert isinstance(because, Because)
     assert because.reason == "hover"

@@ -5,7 +5,7 @@ import pytest
 
 from advisor.flight.maneuvers.excitation import excitation
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.maneuvers.purpose import not_an_input
+from advisor.flight.maneuvers.purpose import Because, judged
 from advisor.flight.signals.record import Channel
 from tests.flight.elevator.elevators import PATTERNS, coloured, slewed, steps
 
@@ -40,8 +40,8 @@ def flown(elevator, gain=(0.0, 0.0), gust=0.0, mode="MANUAL", airspeed=25.0, wit
 
 
 def reason(maneuver):
-    because = not_an_input(maneuver)
-    return because and because.reason
+    because = judged(maneuver)
+    return because.reason if isinstance(because, Because) else None
 
 
 def test_an_input_that_the_pitch_rate_shows_is_one():
@@ -69,8 +69,8 @@ def test_an_aircraft_without_an_air_speed_sensor_flies_all_the_same():
 
 
 def test_a_correction_is_told_with_its_size_and_the_least():
-    because = not_an_input(flown(0.05 * INPUT))
-    assert because is not None
+    because = judged(flown(0.05 * INPUT))
+    assert isinstance(because, Because)
     assert because.reason == "small"
     assert "(at least 1)" in because.text
 
@@ -78,8 +78,8 @@ def test_a_correction_is_told_with_its_size_and_the_least():
 def test_an_elevator_that_the_aircraft_does_not_answer_tells_nothing():
     deaf = flown(np.zeros(len(T)), gust=0.05)
     channels = {**deaf.channels, "elevator": Channel("elevator", T, INPUT)}
-    because = not_an_input(Maneuver(1, 0, deaf.span, channels, "MANUAL"))
-    assert because is not None
+    because = judged(Maneuver(1, 0, deaf.span, channels, "MANUAL"))
+    assert isinstance(because, Because)
     assert because.reason == "no_information"
 
 
@@ -104,8 +104,8 @@ def test_while_an_autopilot_takes_off_by_itself_no_movement_is_an_input():
 @pytest.mark.parametrize("mode", ["CRUISE", "FBWA", "Stabilized"])
 def test_in_a_closed_loop_sharp_steps_are_an_input_and_all_else_is_the_autopilots(mode):
     assert reason(flown(INPUT, gain=(0.2, 0.3), mode=mode)) is None
-    because = not_an_input(flown(slewed(T, INPUT, 0.5), gain=(0.2, 0.3), mode=mode))
-    assert because is not None
+    because = judged(flown(slewed(T, INPUT, 0.5), gain=(0.2, 0.3), mode=mode))
+    assert isinstance(because, Because)
     assert because.reason == "autopilot"
     assert because.text == f"the elevator moved in {mode} without the sharp steps of a test; not a test input"
 
