@@ -65,7 +65,7 @@ def _flight_options(command: Callable[..., None]) -> Callable[..., None]:
             type=click.Choice(["pitch", "lateral"]),
             default="pitch",
             show_default=True,
-            help="Inputs of the elevator, or of aileron and rudder.",
+            help="Plan of the flight: inputs of the elevator, or of aileron and rudder.",
         ),
         click.option(
             "--seed", type=click.IntRange(0), help="Seed of the noise. Equal seeds give equal bytes."
@@ -141,7 +141,7 @@ def compare(flight: Path, replays: tuple[Path, ...]) -> None:
     "--seed",
     required=True,
     type=click.IntRange(0),
-    help="Seed of all draws. Keep it secret from whoever answers.",
+    help="Seed of all draws. Keep the seed secret from the person who answers.",
 )
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder for the logs.")
 @click.option("--only", multiple=True, help="Groups to draw from: clean, hard, jsbsim, none, ...")

@@ -75,7 +75,7 @@ class Airframe:
     ground_moment: float = 0.0
     """Added Cm at the ground, decaying as e^(−h/span)."""
     speed_held: float = 0.0
-    """Speed hold: with 1 an ideal engine holds the airspeed, with 0 it follows from the forces."""
+    """Speed hold. With 1 an ideal engine holds the airspeed; with 0 the airspeed follows from the forces."""
 
 
 AIRFRAME_RECORD = np.dtype([(field.name, np.float64) for field in fields(Airframe)])

@@ -1,4 +1,4 @@
-"""Type of the arrays that the simulator exchanges."""
+"""Type of the arrays that the simulator's modules exchange."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -12,8 +12,8 @@ class DrydenTurbulence:
 
         w(s)/n(s) = σ √(3V/L) · (s + V/(√3 L)) / (s + V/L)²,
 
-    the head-on component the first-order one. The filters are stepped with their exact discrete transition;
-    white noise is held over a step.
+    the head-on component has the first-order filter. The filters advance with their exact discrete
+    transition, with white noise constant over a step.
     """
 
     def __init__(

@@ -152,7 +152,7 @@ class Autopilot:
         )
 
     def _augmented(self, motion: Motion) -> float:
-        """Return the elevator that the stability augmentation adds to the pilot's."""
+        """Return the elevator deflection that the stability augmentation adds to the pilot's."""
         off = motion.alpha - self._start.alpha
         return self._augmentation.alpha * off + self._augmentation.pitch_rate * motion.q
 

@@ -17,7 +17,9 @@ Stream = tuple[FloatArray, FloatArray]
 """Stamps, s since boot, and values of a channel."""
 
 SETTLING_S = 1.5
-"""Time left out after the change to MANUAL, s, because the two flights come from different holds."""
+"""Time after the change to MANUAL that the comparison leaves out, s. The two flights come from different
+attitude holds.
+"""
 
 SHORTEST_S = 1.0
 

@@ -68,8 +68,10 @@ class Faults:
     """Delay of the command's effect after its SERVO_OUTPUT_RAW stamp, s; −0.010 to 0.010 on real
     autopilots."""
     thin_air_m: float = 0.0
-    """Height of the ground above sea level, m. VFR_HUD then shows indicated air speed, and SCALED_PRESSURE
-    goes with every GLOBAL_POSITION_INT (standard atmosphere). 0: true air speed."""
+    """Height of the ground above sea level, m. VFR_HUD then shows the indicated air speed, and
+    SCALED_PRESSURE follows every GLOBAL_POSITION_INT (standard atmosphere). With 0 VFR_HUD shows the true air
+    speed.
+    """
     repeated_after_s: float = 0.0
     """Time after which every message is repeated with a new stamp, s; 0 for no repetition."""
     parameters_at_s: float = 0.0
@@ -78,8 +80,9 @@ class Faults:
     """Delay of each message's stamps behind the vehicle's clock, s, by the message's name."""
 
     def problems(self, period_s: float) -> list[str]:
-        """Return every mistake in the faults, with its path. ``period_s`` is that of the autopilot's loop,
-        s."""
+        """Return every mistake in the faults, with its path. ``period_s`` is the period of the autopilot's
+        loop, s.
+        """
         found = [
             f"faults.units.{channel}: '{unit}' is not among the wrong units of this channel: "
             f"{', '.join(UNITS.get(channel, ())) or 'none'}"

@@ -23,7 +23,7 @@ def standard_air(height_m: float) -> tuple[float, float, float]:
 
 
 def stated(filters: Filters) -> dict[str, float]:
-    """Return the parameters that name the filters; none where they are withheld."""
+    """Return the parameters that name the filters; empty if the scenario withholds them."""
     if filters.parameters == "withheld":
         return {}
     named = {"INS_GYRO_FILTER": filters.gyro_hz, "INS_ACCEL_FILTER": filters.accelerometer_hz}
@@ -52,7 +52,7 @@ class Outgoing:
         self._indicated = 0.0
 
     def changed(self, messages: Iterable[Message]) -> Iterator[Message]:
-        """Yield the messages as a faulty vehicle sends them."""
+        """Yield the messages with the faults of the vehicle."""
         for message in messages:
             name = message.get_type()
             for each, factor in self._factors.get(name, {}).items():
@@ -66,7 +66,7 @@ class Outgoing:
                 yield _in_g(message) if self._in_g and name == "RAW_IMU" else message
 
     def _thin(self, message: Message) -> Iterator[Message]:
-        """Yield the message in thin air, and the pressure with every position."""
+        """Yield the message as sent in thin air, with a pressure message after every position."""
         higher_m = self._thin_air_m - HOME_HEIGHT_M
         if message.get_type() == "VFR_HUD":
             message.alt += higher_m

@@ -51,7 +51,7 @@ class Flight:
     scenario
         Scenario to fly.
     fittings
-        Effects to be added. None for the scenario's own sections only.
+        Effects to add. With None only the scenario's own sections act.
     engine
         Aircraft to fly. None for the scenario's aircraft from the hangar.
     pilot
@@ -59,7 +59,7 @@ class Flight:
     duration_s
         Duration of the flight, s. None to fly to the end of the plan.
     fresh
-        Function that builds the plain aircraft again, for a flight that gives the size of the signals.
+        Function that builds the plain aircraft again, for a flight that determines the size of the signals.
 
     Notes
     -----

@@ -37,8 +37,9 @@ NAMES = (*AIRFRAMES, "linear")
 
 
 def unit_for(frequency_rad_s: float) -> float:
-    """Return the time unit of a 3-2-1-1 whose spectrum is centred on a short period, in s, rounded to 0.1
-    s."""
+    """Return the time unit, s, of a 3-2-1-1 whose spectrum is centred on the short-period frequency, rounded
+    to 0.1 s.
+    """
     return max(0.1, round(2.4 / max(frequency_rad_s, 0.5), 1))
 
 

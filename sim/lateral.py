@@ -107,7 +107,7 @@ class LateralAircraft(LinearAircraft):
     def _per_speed(self, letter: str, x: NDArray[np.float64], u: NDArray[np.float64]) -> float:
         """Return the side force over mass and speed (Y), or a moment over its inertia (L, N).
 
-        The air's side motion adds its angle to the sideslip."""
+        The sideways motion of the air adds an angle to the sideslip."""
         met = (x[0] + self._gust, *x[1:3], *u)
         factors = zip(("beta", "p", "r", "delta_a", "delta_r"), met, strict=True)
         return float(sum(self._d[f"{letter}_{name}"] * value for name, value in factors))
@@ -154,7 +154,8 @@ constants."""
 
 
 class LateralPilot:
-    """Pilot who levels the wings between the inputs, and flies the plan with otherwise still hands.
+    """Pilot who levels the wings between the inputs. During an input the pilot moves only the control of the
+    plan.
 
     Parameters
     ----------
@@ -234,7 +235,7 @@ def lateral_flight(scenario: Scenario, noisy: bool = True) -> Flight:
 def flown_laterally(
     scenario: Scenario, engine: hangar.Aircraft, kit: SideKit, noisy: bool = True, slower: float = 1.0
 ) -> Flight:
-    """Return the lateral plan flown by an engine that takes aileron and rudder."""
+    """Return the lateral plan, flown by an engine that accepts aileron and rudder."""
     pilot = LateralPilot(scenario, engine.trim, kit.swing, slower)
     if noisy:
         kit.fittings.sensors.append(LateralNoise(scenario.seed))

@@ -52,7 +52,7 @@ class LateralJsbsim(JsbsimAircraft):
         return 1.0 if high > low else -1.0
 
     def _at(self, name: str, command: float, seen: str) -> float:
-        """Return a property under a command, in frozen flight."""
+        """Return the value of a property under a command, with the flight frozen."""
         fdm = self._fdm
         fdm.suspend_integration()
         fdm[f"fcs/{name}-cmd-norm"] = command

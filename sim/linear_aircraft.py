@@ -56,7 +56,9 @@ class LinearTerms:
     M_h: float = 0.0
     ground_scale: float = 1.0
     speed_scaled: float = 0.0
-    """Speed scaling: with 1 derivatives change with airspeed and gravity turns with the path, with 0 not."""
+    """Speed scaling. With 1 derivatives change with airspeed, and gravity turns with the path; with 0 neither
+    does.
+    """
     speed_power: float = 0.0
     """Power of V beyond that of dynamic pressure, for lift and moments due to angles."""
     moment_power: float = 0.0

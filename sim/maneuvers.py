@@ -62,7 +62,9 @@ def stepped(steps: tuple[tuple[float, float], ...], amplitude_rad: float, unit_s
 
 
 def _multisine(amplitude_rad: float, unit_s: float) -> Input:
-    """Return harmonics with Schroeder's phases (Klein & Morelli 9.3): much power, small peaks."""
+    """Return harmonics with Schroeder's phases, which give small peaks for much power (Klein &
+    Morelli 9.3).
+    """
     duration = MULTISINE_UNITS * unit_s
     count = len(MULTISINE_HARMONICS)
     phases = [-math.pi * k * k / count for k in range(count)]

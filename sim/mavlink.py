@@ -201,8 +201,9 @@ class Voice:
         return mavlink.MAVLink_servo_output_raw_message(stamp, 0, *outputs, *([0] * 12))
 
     def _rc_channels(self, sample: Sample, boot_s: float) -> Message:
-        """Return the receiver's channels: sticks at rest, and on channel 9 a switch that is on in a
-        manoeuvre."""
+        """Return the receiver's channels. The sticks are at rest, and the switch on channel 9 is on during a
+        manoeuvre.
+        """
         pulses = [1500] * 8 + [SWITCH_ON_US if sample.flying else SWITCH_OFF_US] + [0] * 9
         return mavlink.MAVLink_rc_channels_message(_milliseconds(boot_s), 9, *pulses, 255)
 

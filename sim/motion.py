@@ -1,4 +1,4 @@
-"""Interface of every aircraft in this package: its motion, whichever engine computes it."""
+"""Interface of every aircraft in this package to its motion, for any engine."""
 
 from typing import NamedTuple, Protocol
 
@@ -35,7 +35,7 @@ class Motion(NamedTuple):
     gust_head: float
     """Head-on gust, m/s, added to the airspeed."""
     r: float | None = None
-    """Yaw rate, rad/s. None for that of a coordinated turn."""
+    """Yaw rate, rad/s. Yaw rate, rad/s; None for the yaw rate of a coordinated turn."""
     a_y: float = 0.0
     """Specific force along body y at the centre of gravity, m/s²."""
 

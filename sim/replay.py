@@ -123,7 +123,7 @@ class RecordedPilot:
     """Pilot who replays a recording in its MANUAL stretches. Between these stretches the autopilot holds the
     attitude.
 
-    Attitude and height are integrated, so a slightly different aircraft would drift away without the hold.
+    Attitude and height are integrals, so a slightly different aircraft would drift away without the hold.
     """
 
     def __init__(self, recording: Recording, calibration: Calibration, autopilot: Autopilot) -> None:
@@ -133,7 +133,7 @@ class RecordedPilot:
         self._begin_s = float(recording.time_s[0])
 
     def demand(self, time_s: float, motion: Motion, period_s: float) -> Demand:
-        """Return the recorded command at ``time_s``, or the autopilot's between manoeuvres."""
+        """Return the recorded command at ``time_s``. Between manoeuvres return the autopilot's command."""
         boot_s = self._begin_s + time_s
         held = self._autopilot.demand(time_s, motion, period_s)
         throttle = float(np.interp(boot_s, self._recording.time_s, self._recording.throttle))

@@ -22,7 +22,7 @@ class Maneuver:
     """Flight mode of the manoeuvre. In FBWA the pilot's input demands a pitch angle, and the attitude hold
     moves the elevator."""
     amplitude_deg: float | None = None
-    """Elevator amplitude, deg. None for the scenario's ``amplitude_deg``."""
+    """Elevator amplitude, deg. Amplitude of the input, deg. None for the scenario's ``amplitude_deg``."""
     unit_s: float | None = None
     """Time unit of the input, s. None for the scenario's ``unit_s``."""
     free_s: float | None = None
@@ -183,12 +183,12 @@ class Scenario:
     loop_hz: float = 50.0
     """Rate of the autopilot's loop, at which commands move and telemetry is sent, Hz."""
     airspeed_m_s: float | None = None
-    """Airspeed, m/s. None for the aircraft's usual airspeed."""
+    """Airspeed, m/s. Airspeed of the flight, m/s. None for the aircraft's usual airspeed."""
     height_m: float = 150.0
     lead_in_s: float = 8.0
     """Attitude hold before the first manoeuvre, s."""
     amplitude_deg: float | None = None
-    """Elevator amplitude, deg. None for the aircraft's usual amplitude."""
+    """Elevator amplitude, deg. Amplitude of the inputs, deg. None for the aircraft's usual amplitude."""
     unit_s: float | None = None
     """Time unit of the inputs, s. None for a unit that suits the aircraft's short period."""
     settling_s: float = 2.0
@@ -199,7 +199,9 @@ class Scenario:
     """Attitude hold after the last manoeuvre, s."""
     maneuvers: tuple[Maneuver, ...] = field(default_factory=_paper_campaign)
     input: Literal["linear", "held"] = "linear"
-    """Motion of the command between two ticks of the loop: linear, or held with a jump."""
+    """Motion of the command between two ticks of the loop. The command is linear, or constant with a jump at
+    the tick.
+    """
     speed: Literal["free", "held"] = "free"
     """With ``free`` the airspeed follows from the forces. With ``held`` an ideal engine holds the
     airspeed."""

@@ -65,7 +65,9 @@ def ideal(motion: Motion, accelerometer_arm_m: float = 0.0) -> Reading:
 
 
 class DerivedAlpha:
-    """ArduPilot's angle of attack from inertial speed: late, with an offset, renewed at its own rate."""
+    """ArduPilot's angle of attack from inertial speed. It is late, has an offset, and has its own rate of new
+    values.
+    """
 
     def __init__(self, sensor: AlphaSensor) -> None:
         self._sensor = sensor

@@ -44,7 +44,7 @@ def trim_level(record: NDArray[np.void], airspeed: float, height: float) -> Trim
     Raises
     ------
     TrimError
-        The aircraft cannot fly level: the required throttle is beyond 0..1, or no solution exists.
+        The aircraft cannot fly level, because the required throttle is outside 0..1, or no solution exists.
     """
     free = record.copy()
     free["speed_held"] = 0.0

@@ -1,7 +1,8 @@
-"""One more term of an equation: its text, such as ``M:q*abs(q)``, its parts, and what it may contain.
+"""One more term of an equation: its text, such as ``M:q*abs(q)``, its parts, and the expressions that are
+allowed.
 
-The text is parsed to a tree of the language, which is walked and never run. A coefficient multiplies the
-expression, so a model with more terms stays linear in its parameters.
+Python parses the text to a syntax tree, which is evaluated node by node and never executed. A coefficient
+multiplies the expression, so a model with more terms stays linear in its parameters.
 """
 
 import ast
@@ -17,15 +18,16 @@ SIGNALS: Mapping[str, str] = {
     "alpha": "alpha", "beta": "beta", "p": "p", "q": "q", "r": "r", "phi": "bank", "theta": "theta",
     "V": "airspeed", "delta_e": "elevator", "delta_a": "aileron", "delta_r": "rudder", "thrust": "throttle",
 }  # fmt: skip
-"""Name in an expression, and the channel that it stands for."""
+"""Channel of each name that an expression may contain."""
 FROM_MEAN = frozenset({"alpha", "theta", "delta_e", "delta_a", "delta_r", "thrust"})
-"""Names that stand for the deviation from the channel's mean over the manoeuvres, so that derivatives stay
-slopes at the trim."""
+"""Names whose values are deviations from the channel's mean over the manoeuvres. The derivatives thus stay
+slopes at the trim.
+"""
 FUNCTIONS = ("abs", "sin", "cos")
 MOST_LETTERS = 100
-"""Numerical: longest text of a term."""
+"""Largest number of characters of a term."""
 _LARGEST_POWER = 6
-"""Numerical: largest exponent, either sign."""
+"""Largest absolute value of an exponent."""
 _OPERATORS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: lambda a, b: a + b,
     ast.Sub: lambda a, b: a - b,
@@ -67,7 +69,7 @@ class AddedTerm:
         values
             Value of each name of ``signals``.
         functions
-            Each of ``FUNCTIONS``, for such values.
+            Functions of ``FUNCTIONS`` for values of this kind.
         """
 
         def of(node: ast.AST) -> Any:

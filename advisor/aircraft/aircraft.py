@@ -102,7 +102,7 @@ class CampaignPlan:
 
 @dataclass(frozen=True)
 class Estimation:
-    """Structure of the estimated model, where it differs from the program's."""
+    """Changes of the estimated model's structure: held parameters and added terms."""
 
     fixed: Annotated[Mapping[str, float], Key(
         "Parameter name to the value at which it is held; a held parameter is not estimated.",

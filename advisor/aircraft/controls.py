@@ -25,7 +25,7 @@ class ElevatorOutput:
 
 @dataclass(frozen=True)
 class Elevator:
-    """How the elevator command becomes a deflection."""
+    """Outputs, calibration and servo, which turn the elevator command into a deflection."""
 
     output: Annotated[int | Literal["auto"], Key(
         "Servo output 1..32. ``auto``: the outputs whose SERVOn_FUNCTION is elevator (19), elevon or "
@@ -91,7 +91,7 @@ class Elevator:
 
 @dataclass(frozen=True)
 class SideControl:
-    """How the command of the aileron, or of the rudder, becomes a deflection."""
+    """Outputs, calibration and servo of the aileron or of the rudder."""
 
     output: Annotated[int | Literal["auto"], Key(
         "Servo output 1..32. ``auto``: all outputs whose SERVOn_FUNCTION is the control's (4 aileron, 21 "

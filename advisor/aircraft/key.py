@@ -1,4 +1,4 @@
-"""One key of the aircraft file: everything that the file, its page, its questions and its check say of it."""
+"""Key of the aircraft file, with all texts that the file, its page, its questions and its check show."""
 
 from collections.abc import Iterator
 from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
@@ -9,7 +9,7 @@ _UNITS = {
     "_kg_m2": "kg m²", "_percent_chord": "% of the chord", "_percent": "%", "_m_s": "m/s", "_m2": "m²",
     "_kg": "kg", "_us": "us", "_deg": "deg", "_hz": "Hz", "_m": "m", "_s": "s", "_c": "°C",
 }  # fmt: skip
-"""Ending of a key to the unit of its value, longer endings first."""
+"""Unit of a key's value, by the ending of the key; longer endings come first."""
 REQUIRED = object()
 """Default of a key that its section needs."""
 
@@ -25,7 +25,7 @@ class Key:
     question: str = ""
     """Question that `aircraft new` asks on the terminal. Empty: never asked."""
     answer: str = "-"
-    """Usual answer to the question; ``-``: not known, left out."""
+    """Usual answer to the question; ``-`` means that the value is not known and the key is left out."""
     cost: str = ""
     """Sentence on the cost of the missing key. Empty: a missing key costs nothing."""
     mend: str = ""
@@ -52,7 +52,9 @@ class Key:
         return next((unit for ending, unit in _UNITS.items() if self.name.endswith(ending)), "")
 
     def mistake(self, value: Any) -> str:
-        """Return what is wrong with a number; empty for one within the bounds and for no number."""
+        """Return the mistake of a number outside the bounds; empty for a number within the bounds or another
+        value.
+        """
         if not isinstance(value, int | float):
             return ""
         if self.positive and value <= 0.0:
@@ -70,7 +72,7 @@ class Key:
 
 @cache
 def keys_of(section: type, path: str = "") -> tuple[Key, ...]:
-    """Return the keys of a section in the order of the file, those of inner sections in their place."""
+    """Return the keys of a section in the order of the file, including the keys of inner sections."""
     return tuple(_keys_of(section, path))
 
 
@@ -89,7 +91,9 @@ def _keys_of(section: type, path: str) -> Iterator[Key]:
 
 
 def section_in(hint: Any) -> tuple[type | None, bool]:
-    """Return the section that a key holds, and whether several; None where the key holds a plain value."""
+    """Return the section that a key holds, and whether the key holds several; None if the key holds a plain
+    value.
+    """
     for part in (hint, *get_args(hint)):
         if isinstance(part, type) and is_dataclass(part):
             return part, get_origin(hint) is tuple

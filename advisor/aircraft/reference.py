@@ -25,8 +25,8 @@ SPEED_EXPONENTS: Mapping[str, int] = {
 }
 """Power of the air speed with which each parameter of either axis grows at constant density.
 
-Z = -ρVS·C_L/(2m) and M = ρV²Sc·C_m/(2I_yy); a rate derivative carries another c/(2V). Y is as Z, with L and N
-as M.
+Z = -ρVS·C_L/(2m) and M = ρV²Sc·C_m/(2I_yy); a rate derivative carries another c/(2V). Y grows like Z; L and N
+grow like M.
 """
 
 

@@ -1,4 +1,4 @@
-"""How a script in the autopilot states the aircraft file that it was written for."""
+"""Identity of the aircraft file for which a script in the autopilot was written."""
 
 import hashlib
 import json

@@ -1,1 +1,1 @@
-"""Aircraft files: how a new one is written, and how one is checked for missing keys."""
+"""Writing of a new aircraft file, and check of an aircraft file for missing keys."""

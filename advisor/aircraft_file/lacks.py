@@ -17,7 +17,8 @@ KEYS = tuple(key for key in keys_of(Aircraft) if key.example)
 
 BEYOND_US = 20.0
 """Largest excess of pulses over a calibration without a warning, us. The trims of servo and transmitter
-differ by as much."""
+differ by about this much.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +36,7 @@ class Lack:
 
 
 def lacks_of(aircraft: Aircraft, facts: LogFacts | None = None) -> tuple[Lack, ...]:
-    """Return the missing keys of a file, in the order of the file, after the keys that contradict the log.
+    """Return the keys that contradict the log, then the missing keys in the order of the file.
 
     Parameters
     ----------
@@ -105,7 +106,7 @@ def _contradictions(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
                 "reference_airspeed_m_s",
                 f"The derivatives are carried over to {reference:g} m/s; the log was flown at "
                 f"{low:.1f} to {high:.1f} m/s.",
-                "write a speed within the flown ones",
+                "write an air speed within the range that was flown",
                 wrong=True,
             )
 
@@ -124,7 +125,7 @@ def _beyond_calibration(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
             yield Lack(
                 "elevator.calibration",
                 f"Output {output} moves from {low:.0f} to {high:.0f} us in the log, the calibration ends at "
-                f"{first:.0f} and {last:.0f} us: beyond, the deflection is held.",
+                f"{first:.0f} and {last:.0f} us: outside, the deflection is constant.",
                 "measure the deflection at the pulses that were flown",
                 wrong=True,
             )

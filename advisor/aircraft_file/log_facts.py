@@ -70,7 +70,9 @@ class LogFacts:
     sides: Mapping[str, Surface] = field(default_factory=dict)
     """Outputs of aileron and rudder, by the control's name, if parameters or the aircraft file state them."""
     side_guesses: Mapping[str, Guess] = field(default_factory=dict)
-    """Servo output that roll rate or yaw rate follows, by the control's name, if nothing states it."""
+    """Servo output that roll rate or yaw rate follows, by the control's name, if neither parameters nor the
+    file state the output.
+    """
 
     @property
     def frame(self) -> str:
@@ -97,7 +99,7 @@ def facts_of(
     Parameters
     ----------
     target_system
-        System id of the vehicle; None: the first one heard.
+        System id of the vehicle; None for the first vehicle that sends.
 
     Raises
     ------
@@ -150,7 +152,9 @@ def facts_of(
 
 
 def _free_guesses(stream: FlightStream, stated: Collection[str]) -> dict[str, Guess]:
-    """Return the guesses of the controls that nothing states, without outputs of other controls."""
+    """Return the guessed outputs of the controls that neither parameters nor the file state, without outputs
+    of other controls.
+    """
     surface = stream.elevator
     taken = set(surface.outputs) if isinstance(surface, Surface) else set()
     taken |= {stream.guess.output} if stream.guess is not None else set()

@@ -59,7 +59,7 @@ def _elevator(facts: LogFacts, draft: Draft) -> None:
         limits = " ".join(_limits(facts, n) for n in surface.outputs)
         listed = ", ".join(f"{{output: {n}, calibration: [[PWM, deg], ...]}}" for n in surface.outputs)
         draft.comments["elevator.calibration"] = (
-            f"{limits} Once measured, give each output its own, in place of output: outputs: [{listed}]."
+            f"{limits} After measuring, replace output by a calibration for each output: outputs: [{listed}]."
         )
         return
     output = surface.outputs[0]

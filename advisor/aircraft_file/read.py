@@ -43,7 +43,7 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
     Parameters
     ----------
     origin
-        Name of the file, or of whatever the content comes from, for the sentence about mistakes.
+        Name of the file or other source of the content, for the sentence about mistakes.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def _sentence(item: Any) -> str:
 
 
 def _meant(path: str) -> str:
-    """Return the known key that an unknown key resembles, as a question; empty without such a key."""
+    """Return a question that names the known key resembling an unknown key; empty without a similar key."""
     section, _, key = path.rpartition(".")
     by_path = {re.sub(r"\[\]", "", at): kind for at, kind in sections_of(Aircraft)}
     here = by_path.get(re.sub(r"\[\d+\]", "", section))
@@ -148,7 +148,7 @@ _PARTS = tuple(dict.fromkeys(kind for _, kind in sections_of(Aircraft)))[::-1]
 _EXAMPLE = "To see every key with its meaning, type: advisor aircraft new --blank -o example.yaml."
 """Sentence on the next step after a file was refused."""
 _MOST_LISTED = 20
-"""Largest number of listed mistakes. A user with more mistakes has repeated one."""
+"""Largest number of listed mistakes. With more mistakes, a user has repeated the same one."""
 _MOST_POINTS = 500
 """Largest number of points of a calibration: one for every second microsecond of a servo's travel."""
 _LONGEST_WINDOW = 50
@@ -175,7 +175,7 @@ def _beyond_types(aircraft: Aircraft) -> Iterator[str]:
     plan = aircraft.campaign
     if not 2 <= plan.window <= _LONGEST_WINDOW:
         yield (
-            "campaign.window: must be at least 2, for a scatter needs two values, and at most "
+            "campaign.window: must be at least 2, because a scatter needs two values, and at most "
             f"{_LONGEST_WINDOW}, is {plan.window}"
         )
     for i, name in enumerate(plan.parameters):
@@ -217,8 +217,7 @@ def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
         yield from _calibration_mistakes("elevator.calibration", elevator.calibration)
     if elevator.outputs and (elevator.output != "auto" or elevator.calibration is not None):
         yield (
-            "elevator.outputs: stands in place of elevator.output and elevator.calibration; "
-            "take these out, or the list"
+            "elevator.outputs: replaces elevator.output and elevator.calibration; remove these, or the list"
         )
     if len(elevator.outputs) > _OUTPUTS:
         yield f"elevator.outputs: lists {len(elevator.outputs)} outputs; there are {_OUTPUTS}"
@@ -288,6 +287,6 @@ def _mistakes_in_fmu(fmu: FmuVariables) -> Iterator[str]:
     if fmu.step_s is not None and not 0.0 < fmu.step_s <= _LONGEST_STEP_S:
         yield f"fmu.step_s: {fmu.step_s} s is outside 0..{_LONGEST_STEP_S}"
     if (fmu.force_increment is None) != (fmu.moment_increment is None):
-        yield "fmu.force_increment: goes with fmu.moment_increment; give both, or none"
+        yield "fmu.force_increment: needs fmu.moment_increment as well; give both, or none"
     if fmu.trim.theta is not None and fmu.trim.alpha is None:
         yield "fmu.trim.theta: needs fmu.trim.alpha"

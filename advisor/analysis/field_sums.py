@@ -17,7 +17,7 @@ class FieldSum:
     """One field of a log, or the sum of several, in the log's units."""
 
     name: str
-    """Name as asked for: ``RCOU.C1+RCOU.C3``."""
+    """Name as the user wrote it: ``RCOU.C1+RCOU.C3``."""
     t: FloatArray
     """Shape (n,), stamps of the first field, s since power-on."""
     y: FloatArray
@@ -30,7 +30,7 @@ def field_sums(log: Path, asked: Sequence[str]) -> tuple[FieldSum, ...]:
     Parameters
     ----------
     asked
-        Each ``MESSAGE.FIELD``, or several with ``+`` between them, with the names of the log.
+        Names, each ``MESSAGE.FIELD`` as in the log, or several fields joined by ``+``.
 
     Raises
     ------

@@ -64,13 +64,13 @@ def maneuvers_of(
 ) -> GapFlights:
     """Read the manoeuvres of all logs, with the decisions by hand on each log.
 
-    The logs are taken in the order of their times, as in a campaign. The clock begins as the first log's, and
-    runs on where another log or the vehicle restarts.
+    The logs are taken in the order of their times, as in a campaign. The clock begins with the first log's,
+    and continues across other logs and restarts of the vehicle.
 
     Raises
     ------
     UnusableInputError
-        No log can be read, or a log cannot serve. One that cannot be read is left out, with a note.
+        No log can be read, or a log cannot be used. A log that cannot be read is left out, with a note.
     """
     series = LogSeries(logs, aircraft.columns)
     decided = dict(zip(logs, by_hand or [NOTHING] * len(logs), strict=True))
@@ -154,7 +154,7 @@ def compare_flown(
     Raises
     ------
     UnusableInputError
-        The manoeuvres cannot serve, or the simulator does not fly.
+        The manoeuvres cannot be used, or the simulator does not fly.
     """
     chosen = without_refused(flown.maneuvers, aircraft)
     if simulator is not None and not isinstance(simulator, LinearSimulator):
@@ -174,7 +174,7 @@ def compare_flown(
         if prior_derivatives(aircraft) is None:
             diagnosis = without_simulator(diagnosis, aircraft)
         elif changes_something(diagnosis):
-            progress("measuring the shrink on manoeuvres kept apart", 0.9)
+            progress("measuring the gap's reduction on held-out manoeuvres", 0.9)
             unseen = unseen_of(whole, holdout)
             if unseen is not None:
                 stays = with_unseen_shrink(whole, unseen, at_true_speed)
@@ -184,9 +184,9 @@ def compare_flown(
     notes = [*chosen.notes, *flown.notes]
     if flown.again:
         every = len(flown.maneuvers) + flown.again
-        twice = f"{flown.again} of {every} manoeuvres came twice, as from the same log or a copy"
+        twice = f"{flown.again} of {every} manoeuvres are recorded twice, for example in a copy of a log"
         notes.insert(0, f"{twice}: they count once.")
-    progress("estimating what is held and added", 0.98)
+    progress("estimating with held parameters and added terms", 0.98)
     structured = _structured(chosen.maneuvers, aircraft)
     every_note = (*notes, *compared.diagnosis.notes)
     air = replace(air, excess=compared.diagnosis.airspeed_excess)
@@ -227,7 +227,7 @@ def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Sim
     ConfigurationError
         The specification of the simulator is unknown.
     UnusableInputError
-        The log that a simulator wrote cannot serve.
+        The log that a simulator wrote cannot be used.
     """
     if aircraft.simulator is None:
         return None
@@ -241,7 +241,9 @@ def named_simulator(aircraft: Aircraft, target_system: int | None = None) -> Sim
 
 
 def with_true_reference(aircraft: Aircraft, true_over_read: float) -> Aircraft:
-    """Return the aircraft with the true air speed at its reference speed, which is one as read."""
+    """Return the aircraft with its reference speed, which is stated as the aircraft reads it, converted to
+    the true air speed.
+    """
     read = aircraft.reference_airspeed_m_s
     return aircraft if read is None else replace(aircraft, reference_airspeed_m_s=read * true_over_read)
 

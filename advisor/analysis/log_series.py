@@ -66,9 +66,9 @@ class LogSeries:
     def fed_to(self, make: Callable[[], T], feed: Callable[[T, list[Columns]], object]) -> T:
         """Feed all logs to a new consumer, and return the consumer.
 
-        Of several logs, one whose messages break the consumer is left out and listed in ``unreadable``. The
-        logs that can be read are then fed to another new consumer. A single log has no others to protect, so
-        that its error is raised.
+        Of several logs, a log whose messages cause an error in the consumer is left out and listed in
+        ``unreadable``. The logs that can be read are then fed to another new consumer. The error of a single
+        log is raised.
         """
         while True:
             consumer, flight = make(), 0
@@ -82,14 +82,17 @@ class LogSeries:
                 self._left_out.add(flight)
                 self.unreadable[flight] = Problem(
                     "fault",
-                    f"Its messages break the analysis ({type(error).__name__}: {printable(str(error))}).",
+                    f"Its messages cause an error in the analysis ({type(error).__name__}: "
+                    f"{printable(str(error))}).",
                     "Leave this log out, and please report it.",
                 )
             else:
                 return consumer
 
     def _read(self, flight: int) -> Iterator[list[Columns]]:
-        """Yield the messages of one complete log; without parameters of its own, with the nearest log's."""
+        """Yield the messages of one complete log. A log without parameters gets the parameters of the nearest
+        log.
+        """
         # The log reader takes longer to load than the first screen to paint.
         from advisor.mavlink.logs.whole import read_whole_log
 

@@ -68,7 +68,8 @@ def read_by_hand(log: Path) -> ByHand:
 
 
 def write_by_hand(log: Path, by_hand: ByHand) -> None:
-    """Write the decisions next to a log. The file is always complete, old or new, even after a power failure.
+    """Write the decisions next to a log. The file is always complete, with the old or the new content, even
+    after a power failure.
 
     Raises
     ------
@@ -102,7 +103,7 @@ def keep_by_hand(log: Path, by_hand: ByHand) -> str:
 
 
 def keep_on_all(logs: Sequence[Path], before: ByHand, by_hand: ByHand) -> str:
-    """Write the decisions on a campaign, each next to its log, where they differ from ``before``."""
+    """Write the decisions on a campaign, each next to its log, if they differ from ``before``."""
     flights = [n for n in range(len(logs)) if by_hand.on_flight(n) != before.on_flight(n)]
     return "; ".join(keep_by_hand(logs[n], by_hand.on_flight(n)) for n in flights)
 

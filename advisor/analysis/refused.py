@@ -17,7 +17,7 @@ _KNOWN = frozenset({"throttle", "rate"})
 """Reasons for a refusal that do not apply to the gap. The gap's model includes the throttle, and the gap
 itself reports the effects that a slow channel hides."""
 _LARGEST_SPEED_CHANGE_PERCENT = 30.0
-"""Change of the air speed, %, up to which the gap scales forces with the speed, where the crew allows less.
+"""Change of the air speed, %, up to which the gap scales forces with the speed, if the crew allows less.
 Such a speed change alters the forces by two thirds. Manoeuvres of the generators stay below 24 %, and those
 of two UAV records outside the model have 66 and 69 %."""
 LEAST = 3
@@ -41,7 +41,7 @@ class Chosen:
 def without_refused(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Chosen:
     """Return the manoeuvres without those that exceed the limits or have incomplete data.
 
-    Where fewer than ``LEAST`` would remain, all are used, and the sentences say what is wrong.
+    If fewer than ``LEAST`` would remain, all are used, and the sentences name the defects.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def without_refused(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Chosen
     if maneuvers and len(hopeless) == len(maneuvers):
         raise UnusableInputError(
             hopeless[0].code,
-            f"No manoeuvre of the log can serve. Manoeuvre {maneuvers[0].number}: {hopeless[0].text}.",
+            f"No manoeuvre of the log can be used. Manoeuvre {maneuvers[0].number}: {hopeless[0].text}.",
             "Fly manoeuvres that advisor analyze accepts.",
         )
     if len(good) >= LEAST:

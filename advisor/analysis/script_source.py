@@ -21,14 +21,15 @@ _LIMITS = ("MIN", "TRIM", "MAX")
 
 
 def source_of_file(aircraft: Aircraft) -> Source:
-    """Return what the aircraft file alone states."""
+    """Return the statements of the aircraft file alone."""
     return Source(dict(aircraft.model), OF_FILE)
 
 
 def source_of_log(log: Path, aircraft: Aircraft, target_system: int | None = None) -> Source:
-    """Return what the aircraft file and a log state: derivatives, safe sizes, controls, limits of outputs.
+    """Return the statements of the aircraft file and of a log: derivatives, safe sizes, controls, limits of
+    outputs.
 
-    The derivatives are the file's; without any in the file, those that the log's accepted manoeuvres give.
+    The derivatives are the file's. If the file has none, the log's accepted manoeuvres give them.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Tables with named columns (CSV, or MATLAB's MAT): of a flight, or of a simulator.
 
-X-Plane, Simulink, FlightGear's generic protocol and test aircraft write tables. The columns become messages
-of a telemetry link, and manoeuvres are found by the one path of every log.
+X-Plane, Simulink, FlightGear's generic protocol and test aircraft write tables. The columns become
+messages of a telemetry link, so that one code finds the manoeuvres of every log.
 """
 
 from collections.abc import Sequence
@@ -43,7 +43,7 @@ def table_maneuvers(path: Path, aircraft: Aircraft) -> list[Maneuver]:
 
 
 def as_in_tables(aircraft: Aircraft, logs: Sequence[Path]) -> Aircraft:
-    """Return the aircraft whose surfaces are those of tables, where the logs are tables; else the aircraft.
+    """Return the aircraft with the tables' surfaces, if the logs are tables; else the unchanged aircraft.
 
     A log that cannot be read changes nothing, because its reader gives the reason.
 

@@ -40,11 +40,15 @@ of a short period to gusts."""
 FEWEST_SEGMENTS = 4
 """Least number of segments without overlap, from which the spread of a density is known."""
 _GAP = 5.0
-"""Largest interval between samples within a segment, in median intervals; as the doctor's gaps of a link."""
+"""Largest interval between samples within a segment, in median intervals. The doctor uses an equal limit for
+gaps of a link.
+"""
 FALSE_LINES = 1e-3
-"""Probability that a spectrum without lines shows one: one wrong note in a thousand spectra."""
+"""Probability that a spectrum without lines seems to have a line: one wrong note in a thousand spectra."""
 _LOBE, _NEIGHBOURS = 3, 6
-"""Bins within a line's main lobe by a Hann window (2), plus one; and the last bin of its neighbourhood."""
+"""Number of bins in a line's main lobe by a Hann window (2), plus one, and the last bin of the line's
+neighbourhood.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +120,7 @@ class Vibration:
         lines = [(s, s.line_hz(1.0 / unit_s)) for s in self.spectra] if unit_s else []
         told = [f"{s.name}: peak at {hz:.2f} Hz" for s, hz in lines if hz is not None]
         if told:
-            yield f"A line of vibration stands in the band of the test ({'; '.join(told)})."
+            yield f"A vibration line lies in the frequency band of the test ({'; '.join(told)})."
 
 
 def vibration_of(log: Path, columns: TableColumns | None = None) -> Vibration:

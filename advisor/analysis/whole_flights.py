@@ -37,7 +37,9 @@ class WholeFlights:
     left_out: Mapping[int, tuple[Problem, ...]]
     """Reasons for which the log of a flight is not used, by the number of the flight."""
     power_ons: tuple[tuple[int, PowerOn], ...]
-    """Every power-on with the number of its flight, 0 for the first; none for the lateral axis alone."""
+    """Every power-on with the number of its flight, 0 for the first flight. The list is empty for the lateral
+    axis alone.
+    """
 
     @property
     def said(self) -> list[str]:
@@ -71,13 +73,13 @@ def read_whole(
     axis
         ``lateral`` keeps no samples, and estimates all manoeuvres jointly only at the end.
     target_system
-        System id of the vehicle; None: the first one heard.
+        System id of the vehicle; None for the first vehicle that sends.
     marks
         Further stretches marked as manoeuvres, on a single log.
     no_marks
         Whether to ignore earlier decisions by hand on the logs.
     untested
-        Whether logs without a test input are returned; False: such logs are refused.
+        Whether logs without a test input are returned instead of refused.
 
     Raises
     ------

@@ -17,7 +17,7 @@ _ITEM_BYTES = 800
 """Least size of a list item, bytes: one manoeuvre with its verdict and reasons. Later items of the list are
 omitted."""
 _DIGITS = 7
-"""Significant digits of a number in an answer: a time of one hour keeps its milliseconds."""
+"""Number of significant digits in an answer. A time of one hour thus keeps its milliseconds."""
 
 
 def part_of(document: Any, path: str) -> Any:

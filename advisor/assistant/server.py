@@ -19,7 +19,7 @@ from advisor.words.problems import ConfigurationError
 
 _READS = ToolAnnotations(read_only_hint=True, destructive_hint=False, idempotent_hint=True)
 _SAFE_SIMULATORS = (None, "linear")
-"""Simulators of an aircraft file that run no program of the file's choice."""
+"""Kinds of simulators that run no program named by the aircraft file."""
 _INSTRUCTIONS = """\
 Flight-test analysis of fixed-wing aircraft from MAVLink logs (.tlog, .bin, .ulg). Ask doctor first whether
 a log can serve, analyze for verdicts and derivatives, gap for why the aircraft does not fly like its
@@ -112,7 +112,7 @@ def _files(folders: Folders, log: str | None, logs: Names) -> list[str]:
 
 
 def _aircraft(folders: Folders, name: str | None, flies: bool = False) -> list[str]:
-    """Return the option of an aircraft file; ``flies``: refuse a simulator that runs a program."""
+    """Return the option of an aircraft file. With ``flies``, refuse a simulator that runs a program."""
     if name is None:
         return []
     path = folders.file(name)

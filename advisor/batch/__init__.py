@@ -1,1 +1,3 @@
-"""Many flights: every log is analyzed once, in processes, resumable; with tables and changes."""
+"""Analysis of many flights. Processes analyze every log once, a run can be resumed, and the results are
+tables and changes.
+"""

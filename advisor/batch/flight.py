@@ -62,7 +62,7 @@ class Analyzed:
     document: dict[str, Any]
     """Document of ``advisor analyze --json``."""
     joint: dict[str, Any] = field(default_factory=dict)
-    """Joint estimate with its covariances, for comparison over flights; empty without one."""
+    """Joint estimate with its covariances, for comparison over flights; empty without an estimate."""
     aircraft_name: str = ""
     """Name of the aircraft, from the name of its file; empty without a file."""
 
@@ -167,7 +167,7 @@ def failed(task: BatchTask, problems: Sequence[Problem]) -> Analyzed:
 
 
 def keep(result: Analyzed, path: Path) -> None:
-    """Write the result of a log into a file. The file is always complete, old or new.
+    """Write the result of a log into a file. The file is always complete, with the old or the new result.
 
     Raises
     ------

@@ -93,12 +93,12 @@ def _sentence(flights: Sequence[tuple[int, Estimate]], change: ChangeOverFlights
         return change.sentence
     apart = lying_apart(flights)
     if apart:
-        return f"{apart} The change test over {len(flights)} flights does not tell since when."
+        return f"{apart} The change test over {len(flights)} flights does not show when the change began."
     if len(flights) < 3:
-        return f"Flights with a joint estimate: {len(flights)}; a change shows in three or more."
+        return f"Flights with a joint estimate: {len(flights)}; a change needs at least three flights."
     return (
         f"The change test over {len(flights)} flights finds no change, and all intervals overlap;"
-        " it cannot judge the first flight alone."
+        " the test cannot judge the first flight alone."
     )
 
 
@@ -151,7 +151,7 @@ def _accepted(flight: Analyzed) -> str:
 
 
 def _results(flight: Analyzed) -> str:
-    """Return the sentences of the flight tests, of the elevator and of roll and yaw where they were flown."""
+    """Return the sentences on the flight tests of the axes that were flown."""
     said = [_result(flight.document["flight_test"]["sentence"])]
     if flight.lateral.get("maneuvers"):
         said.append(f"Roll and yaw: {_result(flight.lateral['flight_test']['sentence'])}")
@@ -159,7 +159,7 @@ def _results(flight: Analyzed) -> str:
 
 
 def _result(sentence: str) -> str:
-    """Return the sentence of a flight test for a flight that is over: it asks for nothing more."""
+    """Return the result of a finished flight's test as a sentence, without a request for more manoeuvres."""
     begin, _, rest = sentence.partition(": ")
     return f"Not complete: {rest}" if begin == "CONTINUE" else sentence
 

@@ -14,7 +14,7 @@ PACKED = (".gz", ".zip")
 
 
 def find_logs(places: Sequence[Path], without: Path) -> list[Path]:
-    """Return logs in the given order, those of a folder sorted by name, each once.
+    """Return logs without repetitions, in the given order. Logs of a folder are sorted by name.
 
     Parameters
     ----------
@@ -83,6 +83,6 @@ def read_map(path: Path) -> AircraftMap:
     ):
         raise ConfigurationError(
             f"{path}: give one line a pattern, as in '\"alpha-*.tlog\": alpha.yaml'; "
-            "the first that matches counts."
+            "the first pattern that matches counts."
         )
     return AircraftMap(tuple((pattern, path.parent / file) for pattern, file in content.items()))

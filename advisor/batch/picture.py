@@ -18,7 +18,7 @@ class Point(NamedTuple):
     flight: int
     value: float
     half: float
-    """Half of the 95 % interval, not finite if the flight did not determine the derivative."""
+    """Half of the 95 % interval. The value is not finite if the flight did not determine the derivative."""
 
 
 def trend_svg(name: str, unit: str, points: Sequence[Point], since: int | None) -> str:
@@ -34,7 +34,9 @@ def trend_svg(name: str, unit: str, points: Sequence[Point], since: int | None) 
     shown = [point for point in points if isfinite(point.value) and isfinite(point.half)]
     title = f"{name}, {unit}" if unit != "1" else name
     if not shown:
-        return _framed(title, [_text(WIDTH / 2, HEIGHT / 2, "no flight shows this derivative", "middle")])
+        return _framed(
+            title, [_text(WIDTH / 2, HEIGHT / 2, "no flight determines this derivative", "middle")]
+        )
     first, last = points[0].flight - 0.5, points[-1].flight + 0.5
     ticks, decimals = _ticks(min(p.value - p.half for p in shown), max(p.value + p.half for p in shown))
 

@@ -18,7 +18,7 @@ from advisor.oem.estimate import Estimate
 
 
 def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
-    """Return flights, oldest first if all usable ones have dates, else in the given order."""
+    """Return flights, the oldest first if all usable flights have dates, else in the given order."""
     if not all(SINCE_1970_S <= result.began_s < inf for result in results if result.usable):
         return list(results)
     return sorted(results, key=lambda one: one.began_s if one.usable else inf)
@@ -36,7 +36,7 @@ def estimates_of(flights: Sequence[Analyzed]) -> dict[str, list[tuple[int, Estim
 def changes_of(flights: Sequence[Analyzed]) -> dict[str, ChangeOverFlights]:
     """Return the change over the flights of each aircraft, by the name of the aircraft.
 
-    Flights without an aircraft file may be those of several aircraft; no change is sought among them.
+    Flights without an aircraft file may belong to several aircraft, so no change is sought among them.
     """
     named = estimates_of([flight for flight in flights if flight.is_named])
     found = {name: change_over_flights(several) for name, several in named.items()}
@@ -57,7 +57,7 @@ def not_told_apart(flights: Sequence[Analyzed]) -> dict[str, str]:
             speeds = [e.airspeed_m_s for _, e in several if e.airspeed_m_s is not None]
             flown = f" They were flown at {min(speeds):.0f} to {max(speeds):.0f} m/s." if speeds else ""
             told[name] = (
-                f"Not told apart: {name} may be one aircraft that has changed, or several. {apart}{flown} "
+                f"Not distinguished: {name} may be one aircraft that has changed, or several. {apart}{flown} "
                 "Give --aircraft for one aircraft, or --aircraft-map for several."
             )
     return told
@@ -134,7 +134,12 @@ def _flights(flights: Sequence[Analyzed]) -> FlightTable:
         Column("began_s", numbers([f.began_s for f in flights]), "s", "begin of the log since 1970"),
         Column("duration_s", numbers([d["log"]["duration_s"] for d in documents]), "s", "vehicle time heard"),
         Column("usable", truths([f.usable for f in flights]), "", "whether the log counts"),
-        Column("problems", texts([" ".join(f.reasons) for f in flights]), "", "why it does not count"),
+        Column(
+            "problems",
+            texts([" ".join(f.reasons) for f in flights]),
+            "",
+            "reason why the flight does not count",
+        ),
         Column("maneuvers", counts([len(v) for v in verdicts]), "1", "number of manoeuvres"),
         Column("accepted", counts([v.count("accepted") for v in verdicts]), "1", "how many count"),
         Column("decision", texts(list(map(decided, tests))), "", "complete or not complete"),
@@ -148,9 +153,14 @@ def _flights(flights: Sequence[Analyzed]) -> FlightTable:
             "air speed at which the derivatives are given",
         ),
         *_parameters([d["model"] for d in documents], "of the joint estimate"),
-        Column("lateral_maneuvers", counts([len(v) for v in lateral]), "1", "those of roll and yaw"),
         Column(
-            "lateral_accepted", counts([v.count("accepted") for v in lateral]), "1", "how many of them count"
+            "lateral_maneuvers", counts([len(v) for v in lateral]), "1", "number of roll and yaw manoeuvres"
+        ),
+        Column(
+            "lateral_accepted",
+            counts([v.count("accepted") for v in lateral]),
+            "1",
+            "number of accepted roll and yaw manoeuvres",
         ),
         Column("lateral_decision", texts(list(map(decided, sides))), "", "complete or not complete"),
         *_parameters([f.lateral.get("model") for f in flights], "of the joint estimate", SIDE_UNITS),

@@ -1,4 +1,4 @@
-"""The change test over flights: each flight's joint estimate against the earlier and the later ones."""
+"""Change test over flights: each flight's joint estimate against those of earlier and later flights."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,12 +21,13 @@ class ChangeOverFlights:
     since: int
     """Number of the first flight after the change."""
     change: Change
-    """Change between the compared flights, which it numbers from the first."""
+    """Change between the compared flights, whose numbers count from the first flight."""
     sentence: str
 
 
 def change_over_flights(flights: Sequence[tuple[int, Estimate]]) -> ChangeOverFlights | None:
-    """Return the most significant change over the flights of one aircraft; None when noise explains all.
+    """Return the most significant change over the flights of one aircraft; None if noise explains all
+    differences.
 
     Parameters
     ----------

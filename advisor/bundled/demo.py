@@ -1,7 +1,7 @@
 """The demonstration: the bundled aircraft flies as a process of its own, over a real MAVLink link.
 
-The advisor meets the simulator only here and in the study. Here the advisor receives the simulator's messages
-like any aircraft's, by MAVLink.
+Only this module and the study use the simulator directly. The advisor receives the simulator's messages by
+MAVLink, like those of any aircraft.
 """
 
 import subprocess

@@ -15,8 +15,9 @@ from advisor.scripts.outputs import StatedOutput, factors_by_function
 from advisor.scripts.table import Entry, ScriptTable
 
 UNIT_S = (0.1, 5.0)
-"""Shortest and longest time unit that a script flies by an order, s. A servo follows no shorter step, and no
-pilot waits for longer ones."""
+"""Shortest and longest time unit that a script flies by an order, s. A servo cannot follow shorter steps, and
+longer steps take too long.
+"""
 _PLACE = "-- @DATA@\n"
 
 

@@ -50,7 +50,9 @@ def _input(number: int, entry: Entry) -> dict[str, Any]:
 
 
 def _moves(entry: Entry, control: Control) -> dict[str, Any]:
-    """Return what a control does from the begin of an input, in s and rad, with the reason of its size."""
+    """Return the motion of a control from the begin of an input, in s and rad, with the reason of
+    its size.
+    """
     test, size = entry.test, entry.sizes[control]
     moves: dict[str, Any] = {"size": size.rad, "why": size.why}
     if test.sines is not None:

@@ -18,12 +18,15 @@ class FlightLimits:
     """Largest change of the air speed from its value before the input, %."""
     lowest_m: float
     pitch_deg: float = 30.0
-    """Largest change of the pitch angle from its value before the input, deg. Beyond it the weight along the
-    path changes the air speed by more than a third of g."""
+    """Largest change of the pitch angle from its value before the input, deg. At a larger change, the weight
+    along the path accelerates the aircraft by more than a third of g.
+    """
     stick_percent: float = 10.0
-    """Largest motion of a stick during an input, % of its travel from neutral: a hand that takes over."""
+    """Largest motion of a stick during an input, % of its travel from neutral. A larger motion means that a
+    pilot takes over.
+    """
     link_s: float = 3.0
-    """Longest silence of the ground station, s. It counts where a ground station was heard before."""
+    """Longest silence of the ground station, s. The limit applies if a ground station was heard before."""
 
     @classmethod
     def of(cls, aircraft: Aircraft, lowest_m: float = LOWEST_M) -> "FlightLimits":

@@ -1,8 +1,8 @@
 """Test inputs that an autopilot flies: their steps or sines, lengths and controls.
 
 Deflections have the aircraft file's signs. A positive elevator is trailing edge down, a positive aileron
-rolls to the left, a positive rudder yaws to the left. The inputs begin with nose up or to the
-right, the reverse ones with nose down.
+rolls to the left, a positive rudder yaws to the left. The inputs begin with nose up or to the right, and
+reverse inputs with nose down.
 """
 
 from collections.abc import Mapping
@@ -39,18 +39,21 @@ NAMES = (*STEPPED, MULTISINE)
 """Names of all inputs, in the order of a script's table."""
 
 _SHORTEST_AILERON_S = 0.5
-"""Shortest step of the aileron, s. A shorter step leaves a fast roll no bank to show."""
+"""Shortest step of the aileron, s. A shorter step of a fast roll gives no visible bank."""
 _EVEN_S = 0.02
 """Grid of the time units, s. An autopilot renews its outputs every 20 ms or faster."""
 _SHORTEST_REST_S = 2.0
-"""Shortest hands-off flight after an input, s, in which trim and noise are seen after the motion."""
+"""Shortest hands-off flight after an input, s. Trim and noise are visible after the motion."""
 _BAND = (0.2, 1.5)
-"""Lowest and highest frequency of a multisine over that of the short period. Above it the servo and the noise
-take the response, below it bank and speed leave the model."""
+"""Lowest and highest frequency of a multisine over that of the short period. Above this band servo and noise
+hide the response; below, bank and speed leave the range of the model.
+"""
 _MULTISINE_S = 20.0
-"""Shortest multisine, s. Three of 20 s on three controls gave 20 derivatives of both axes within 6 %."""
+"""Shortest multisine, s. Length of a multisine, s. Three multisines of 20 s on three controls gave 20
+derivatives of both axes within 6 %.
+"""
 _PERIODS = 16.0
-"""Length of a multisine in short periods, at least. Its band then holds seven harmonics for each control."""
+"""Least length of a multisine, in short periods. The band then holds seven harmonics for each control."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 from advisor.process.arrays import FloatArray
 
 _MOST_LINES = 7
-"""Number of harmonics of one control. Seven on each of three controls gave 20 derivatives within 6 %."""
+"""Number of harmonics of one control. Seven harmonics on each of three controls gave 20 derivatives within 6
+%.
+"""
 _STARTS = 4
 """Number of sets of phases from which the clipping begins: Schroeder's, and random ones of a fixed seed. The
 clipping ends in a local minimum, and the best of four has a relative peak factor below 1.25."""
@@ -35,7 +37,7 @@ class Multisine:
     harmonics: tuple[int, ...]
     """Number of periods of each sine within the multisine's length."""
     amplitude: float
-    """Amplitude of every sine, where the peak of the sum is 1."""
+    """Amplitude of every sine for which the peak of the sum is 1."""
     phases_rad: tuple[float, ...]
 
     def values(self, share: FloatArray) -> FloatArray:
@@ -111,8 +113,8 @@ def _relative_peak_factor(y: FloatArray) -> float:
 def _begun_at_zero(numbers: NDArray[np.int_], phases: FloatArray, share: FloatArray) -> Multisine:
     """Return the sum shifted in time to the zero crossing with the least offset of the integral.
 
-    The shift keeps power, peaks and orthogonality. A bank is the integral of the roll rate: without an offset
-    it swings about the bank before the input.
+    The shift keeps power, peaks and orthogonality. The bank is the integral of the roll rate. Without an
+    offset the bank swings about its value before the input.
     """
     y = _sum(numbers, phases, share)
     crossings = np.flatnonzero(np.sign(y) != np.sign(np.roll(y, -1)))

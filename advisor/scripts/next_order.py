@@ -1,4 +1,6 @@
-"""Orders to a script: the advised input by its place in the table, its size and unit, or an input's end."""
+"""Orders to a script. An order names an input by its place in the table, size and time unit, or ends an
+input.
+"""
 
 from math import degrees
 
@@ -11,8 +13,9 @@ _NAMES = {
     ("aileron", True): "aileron doublet",
     ("rudder", True): "rudder doublet",
 }
-"""Name in a script's table by control and direction of the first step. A script flies no other order of steps
-of the elevator: a 3-2-1-1 contains their frequencies."""
+"""Name in a script's table, by control and direction of the first step. A script flies the elevator only as
+3-2-1-1, which contains the frequencies of other orders of steps.
+"""
 
 
 def next_order(advised: StepInput) -> tuple[int, float, float]:

@@ -1,7 +1,7 @@
-"""Servo outputs of each control: the mixer forward, and calibrations, for a script that moves them.
+"""Servo outputs of each control for a script that moves them: forward mixer and calibrations.
 
-The rows of ``mixers.py`` read a control from the outputs' pulses. The forward mixer is their inverse: one
-degree of a control moves each output by its factor, and every other control stays.
+The rows of ``mixers.py`` read a control from the outputs' pulses. The forward mixer is the inverse. One
+degree of a control moves each output by its factor and leaves every other control unchanged.
 """
 
 from collections.abc import Mapping

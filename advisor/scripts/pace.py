@@ -9,13 +9,17 @@ import numpy as np
 from advisor.model.short_period import ShortPeriod
 
 USUAL_PERIOD_S = 1.0
-"""Short period of an aircraft of which nothing is known, s. Small aircraft have 0.5 to 1.5 s, and a 3-2-1-1
-excites periods from half to twice the one that it is made for."""
+"""Period of the short-period mode of an unknown aircraft, s. Small aircraft have 0.5 to 1.5 s. A 3-2-1-1
+excites periods from half to twice the period for which it is designed.
+"""
 _DUTCH_ROLL_PERIODS = 2.0
-"""Period of the Dutch roll relative to the short period where no model states it. Small aircraft and jets
-have 1.5 to 3."""
+"""Period of the Dutch roll relative to the short period, if no model states the period. Small aircraft and
+jets have 1.5 to 3.
+"""
 _ROLL_SHARE = 0.2
-"""Roll time constant relative to the short period where no model states it. Aircraft have 0.1 to 0.3."""
+"""Roll time constant relative to the short period, if no model states the constant. Aircraft have
+0.1 to 0.3.
+"""
 _OF_PERIOD = ("M_alpha", "M_q", "Z_alpha")
 """Derivatives that give the short period. Z_q counts as 0 where it is not stated."""
 
@@ -42,7 +46,7 @@ def pace_of(model: Mapping[str, float], source: str, period_s: float | None = No
     model
         Derivatives by name, rad and s; may be empty.
     source
-        Where the derivatives come from, as a noun: ``the aircraft file's model``.
+        Source of the derivatives, as a noun: ``the aircraft file's model``.
     period_s
         Short period that the user states, s, in place of the model's. None: the user states none.
     """

@@ -1,4 +1,6 @@
-"""Sizes of the test inputs: largest deflections, from limits, travel, a model, and what was flown."""
+"""Sizes of the test inputs: largest deflections, from limits, travel, a model, and the inputs
+already flown.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,10 +18,10 @@ from advisor.process.arrays import FloatArray
 from advisor.scripts.inputs import Control, ScriptInput
 
 FIRST_SHARE: Mapping[str, float] = {"elevator": 0.08, "aileron": 0.08, "rudder": 0.10}
-"""Size of the first input as a share of the travel, where no model and no flight is known. In ArduPlane's
+"""Size of the first input as a fraction of the travel, if neither model nor flight is known. In ArduPlane's
 simulator this elevator pitches by 4 to 20 deg in a 3-2-1-1, and this aileron banks by 10 deg in a doublet."""
 MULTISINE_SHARE = 0.08
-"""Peak of a multisine as a share of the travel, where no model and no flight is known."""
+"""Peak of a multisine as a fraction of the travel, if neither model nor flight is known."""
 LARGEST_SHARE = 0.25
 """Largest size by a model, as a share of the travel. A model that no flight has confirmed may be wrong by a
 factor of two, and this size still leaves half of the travel."""
@@ -28,7 +30,7 @@ _PITCH_RAD = radians(15.0)
 _BANK_SHARE = 0.5
 """Largest predicted bank as a share of the limit of bank, at which a script ends an input."""
 _USUAL_AIRSPEED_M_S = 20.0
-"""Air speed for gravity's term in the sideslip where none is stated, m/s."""
+"""Air speed for gravity's term in the sideslip equation if no air speed is stated, m/s."""
 _STEP_S = 0.02
 _PITCH_MODEL = ("Z_alpha", "M_alpha", "M_q", "M_delta_e")
 _SIDE_MODEL = ("L_p", "L_delta_a")

@@ -19,7 +19,7 @@ class Source:
     model: Mapping[str, float] = field(default_factory=dict)
     """Derivatives by name, rad and s."""
     said: str = ""
-    """Where the derivatives come from, as a noun: ``the aircraft file's model``."""
+    """Source of the derivatives, as a noun: ``the aircraft file's model``."""
     flown_rad: Mapping[Control, float] = field(default_factory=dict)
     """Largest deflection from trim in accepted manoeuvres, rad, by the control."""
     controls: tuple[Control, ...] = CONTROLS

@@ -42,7 +42,7 @@ def winds(maneuvers: Sequence[Maneuver]) -> Mapping[int, tuple[float, float]]:
 
 
 def still_air_said(simulator: Simulator, winds: Mapping[int, tuple[float, float]]) -> tuple[str, ...]:
-    """Return a sentence if a simulator could use a wind but the log has none."""
+    """Return a sentence if a simulator could use a wind but the log has no wind."""
     if winds or "wind" not in simulator.takes:
         return ()
     return (f"The log has no estimate of the wind: {simulator.description} flies in still air.",)

@@ -1,4 +1,4 @@
-"""A simulator of which only a log exists: a model is identified from the log."""
+"""A simulator of which only a log exists. A model identified from the log replaces the simulator."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -38,7 +38,7 @@ class IdentifiedSimulator(LinearSimulator):
 def from_log(
     path: Path, aircraft: Aircraft, read_log: Callable[[Path], list[Maneuver]]
 ) -> IdentifiedSimulator:
-    """Identify a simulator by the existing diagnosis of its log, without any model.
+    """Identify a simulator by a diagnosis of its log that begins without a model.
 
     Raises
     ------

@@ -113,8 +113,8 @@ def _not_flown(aircraft: Aircraft) -> Iterator[str]:
     added = [f"servo {name}" for name, size in (("lag", servo.lag_s), ("delay", servo.delay_s)) if size]
     if added := [*added, *map(spelled, aircraft.effects)]:
         yield (
-            "The check flies the simulator alone. It leaves out what advisor gap adds from the aircraft "
-            f"file: {', '.join(added)}."
+            "The check flies the simulator alone. It leaves out the parts that advisor gap adds from the "
+            f"aircraft file: {', '.join(added)}."
         )
 
 
@@ -194,7 +194,9 @@ def _identified(
     damping = -(numbers[0] + numbers[4]) / (2.0 * omega) if omega > 0.0 else nan
     notes = [*found.notes]
     if size == 1.0:
-        notes.append("Its response is not proportional to the elevator: the derivatives are those of 1 deg.")
+        notes.append(
+            "Its response is not proportional to the elevator, so the derivatives hold for a step of 1 deg."
+        )
     if found.rest_q_rad_s > _RESTS_RAD_S:
         notes.append(
             f"With resting controls it turns by {np.degrees(found.rest_q_rad_s):.2f} deg/s: its trim is not "

@@ -1,7 +1,8 @@
-"""Comparison of a flight with the user's own simulator: place, cause and shrink of the gap.
+"""Comparison of a flight with the user's own simulator: place, cause and reduction of the gap.
 
 The simulator S replays the recorded inputs. The diagnosis compares the simulator's linear surrogate L with y
-− (y_S − y_L). The difference between S and L is part of the simulator, and is not reported as missing.
+− (y_S − y_L). The difference between S and L is part of the simulator. The diagnosis does not report it as
+missing.
 """
 
 from collections.abc import Mapping, Sequence
@@ -48,8 +49,9 @@ from advisor.simulators.taken_back import with_unseen_shrink, without_worse
 from advisor.simulators.unseen import Flown, UnseenManeuvers, changes_something, resaid, shrink_on, unseen_of
 
 _FLIES, _DIAGNOSED, _FOUND = 0.2, 0.9, 0.95
-"""Completed shares of the work after the first replays, after the diagnosis, and after the corrected
-replays."""
+"""Fractions of the work that are done after the first replays, after the diagnosis, and after the corrected
+replays.
+"""
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,7 @@ def compare(
     Raises
     ------
     UnusableInputError
-        No usable manoeuvre, no angle of attack, or a simulator that does not fly.
+        There is no usable manoeuvre or no angle of attack, or the simulator does not fly.
     """
     if not simulator.takes_increments:
         aircraft = _without_equations(aircraft)
@@ -137,7 +139,7 @@ def compare(
         unseen, flown = None, fly(None)
     found = _measured(stays, unseen, as_file, flown, as_flown)
     if replays:
-        progress("looking for what only the simulator has", _FOUND)
+        progress("searching for effects that only the simulator has", _FOUND)
         mirror = mirrored(examined, maneuvers, flying, replays, aircraft, as_flown)
         found = found if mirror is None else mirror.said(found)
     found = with_static_errors(found, examined, trims)

@@ -233,7 +233,7 @@ def refuse_unmoved(description: str, replays: Sequence[Replay], flights: Prepare
     if max(float(np.ptp(replay.q)) for replay in replays) < noise:
         raise UnusableInputError(
             "simulator_elevator",
-            f"{description} does not respond to the elevator: its pitch rate stays as it is.",
+            f"{description} does not respond to the elevator: its pitch rate does not change.",
             "Check which input of the model the elevator is, and its unit.",
         )
 

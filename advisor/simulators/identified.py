@@ -1,7 +1,7 @@
 """Linear models of a simulator from two flights with opposite inputs.
 
 Half the difference of both flights holds the odd part of the motion, in which every term of even order
-cancels. Of a linear simulator the odd part is the motion itself, so that its derivatives are exact.
+cancels. For a linear simulator the odd part is the motion itself, so that the derivatives are exact.
 
 Pitch is an output-error fit with the servo's lag and dead time. Roll and yaw are the one-step equation
 x(k+1) = Φ·x(k) + Γ·u(k), whose logarithm gives the derivatives.
@@ -103,7 +103,7 @@ def _standard_deviations(jacobian: FloatArray, residual: FloatArray, sizes: Sequ
 
 
 def _colour(residual: FloatArray) -> float:
-    """Return how much the correlation of a series widens the variance of a mean."""
+    """Return the factor by which the correlation of a series widens the variance of a mean."""
     power = float(residual @ residual)
     if power <= 0.0:
         return 1.0

@@ -1,4 +1,5 @@
-"""Force and moment that effects add to a simulator: Eqs. (1)-(2) with the effects minus those without.
+"""Force and moment that effects add to a simulator: Eqs. (1)-(2) with the effects, minus Eqs. (1)-(2) without
+them.
 
 The equations are those of the diagnosis (``advisor.gap.simulator.right_sides``). An effect therefore has the
 same terms in the user's simulator as in the diagnosis' model.

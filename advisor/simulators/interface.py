@@ -173,12 +173,14 @@ def control_fault(control: str, turns: float, answer: float) -> InterfaceFault |
     """
     if answer < _LEAST[control]:
         told = f"{_LEAST[control] / max(answer, 1e-6):.0f} times less effect than the weakest of an aircraft"
-        mend = "It takes degrees: turn the deflection, sent in rad, into degrees."
+        mend = "It expects degrees: convert the deflection, which is sent in rad, into degrees."
         return InterfaceFault(f"the {control}", told, mend)
     if control == "aileron" and answer > _LEAST[control] * _PER_RAD:
         told = f"{answer / _LEAST[control]:.0f} times the effect of the weakest of an aircraft"
         return InterfaceFault(
-            "the aileron", told, "It turns rad into degrees that nobody sent: take rad as it comes."
+            "the aileron",
+            told,
+            "It treats the deflection as degrees, but it is sent in rad: use it without conversion.",
         )
     if turns <= 0.0:
         return None
@@ -242,5 +244,5 @@ def _is(factor: float, unit: float) -> bool:
 
 
 def _sign(quantity: str, found: str) -> InterfaceFault:
-    mend = f"Reverse {quantity} where the simulator hands it out (scale: -1), or in its wrapper."
+    mend = f"Reverse {quantity} in the simulator's output (scale: -1), or in its wrapper."
     return InterfaceFault(quantity, found, mend)

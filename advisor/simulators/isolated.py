@@ -118,7 +118,7 @@ class Isolated:
                 raise UnusableInputError(
                     "simulator_slow",
                     f"{self.description} does not finish {task} within {limit_s:g} s.",
-                    "Look in the simulator for a loop without an end, or make its step longer.",
+                    "Look in the simulator for an endless loop, or make its time step longer.",
                 )
             kind, value = self._connection.recv()
         except (EOFError, ConnectionResetError):
@@ -144,7 +144,7 @@ class Isolated:
         raise UnusableInputError(
             "simulator_crash",
             f"The process of {self.description} ended {when} {how}.",
-            "The simulator's own code is at fault: run the simulator by itself, or ask its maker.",
+            "The simulator's own code has failed: run the simulator by itself, or ask its maker.",
         ) from None
 
     def _end(self, at_once: bool = False) -> None:

@@ -109,7 +109,7 @@ class JsbsimFlight:
         self.fdm[WRITES] = float(self._writes)
 
     def freeze(self) -> None:
-        """Hold position and velocity."""
+        """Hold position and velocity fixed until `release`, while engines, filters and forces settle."""
         self.fdm.set_trim_status(True)
         for integrator in _INTEGRATORS:
             self.fdm[integrator] = _NONE

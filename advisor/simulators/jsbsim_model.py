@@ -1,4 +1,4 @@
-"""A JSBSim aircraft from a changed copy of its XML, which accepts increments and a set surface.
+"""A JSBSim aircraft from a changed copy of its XML, which accepts increments and a directly set elevator.
 
 The copy is in a temporary folder; nothing is written next to the model. The copy has an external force and
 moment for increments, and a point mass for the flown mass. A last channel of the copy's flight control can
@@ -66,7 +66,7 @@ FORCE = "external_reactions/advisor-force"
 AXIAL = "external_reactions/advisor-axial"
 MOMENT = "external_reactions/advisor-moment/magnitude-lbsft"
 WRITES = "advisor/elevator-writes"
-"""Property that is 1 if the surface itself is set and the model's flight control is bypassed."""
+"""Property that is 1 if the elevator's surface is set directly and the model's flight control is bypassed."""
 WRITTEN = "advisor/elevator-written-rad"
 LOAD = "inertia/pointmass-weight-lbs"
 LOAD_PLACE = "inertia/pointmass-location-{}-inches"
@@ -94,7 +94,7 @@ def find_model(name: str) -> Path:
     if not name or not path.is_file():
         names = sorted(one.name for one in shipped.iterdir() if (one / f"{one.name}.xml").is_file())
         near = get_close_matches(name, names, 1)
-        hint = f"did you mean {near[0]}" if near else "c172p and 737 are two that it has"
+        hint = f"did you mean {near[0]}" if near else "c172p and 737 are two of its models"
         raise ConfigurationError(f"jsbsim: JSBSim has no model {name!r}; {hint}, or a path to model.xml.")
     return path
 

@@ -29,7 +29,7 @@ _NEARBY = 0.05
 """Numerical: first change of the throttle, 0 to 1. The trim of a neighbouring condition lies within this
 change."""
 _BALANCED_M_S2 = 1e-3
-"""Axial acceleration, m/s², that remains to the force along the path instead of the throttle."""
+"""Largest axial acceleration, m/s², that the force along the path balances instead of the throttle."""
 _ENGINE_SECONDS = 30
 _ENGINES_STEADY = 1e-4
 """Change of the axial acceleration in one second, m/s², below which engines count as steady."""
@@ -76,7 +76,9 @@ def trim(
 
 
 def _next_throttle(tried: list[_Tried]) -> float | None:
-    """Return the next throttle between deceleration and acceleration; None if the last one is good enough."""
+    """Return the next throttle between deceleration and acceleration; None if the last throttle is good
+    enough.
+    """
     last = tried[-1]
     if abs(last.excess) < _BALANCED_M_S2 or len(tried) >= _THROTTLES:
         return None

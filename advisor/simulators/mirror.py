@@ -48,7 +48,7 @@ _CLEARLY = 0.5
 difference between two fits of one flight is no evidence."""
 _MOTION = ("alpha", "q", "theta", "a_z")
 _IMPOSSIBLE = 1e-300
-"""Numerical: probability that replaces zero in log odds."""
+"""Probability that replaces zero in log odds, so that the logarithm exists."""
 
 
 @dataclass(frozen=True)
@@ -220,7 +220,9 @@ def _said(cause: Cause) -> str:
 
 
 def _negative(cause: Cause) -> Cause:
-    """Return a simulator's cause as one of the aircraft, with the size that the aircraft lacks."""
+    """Return an effect of the simulator as a cause, with the negative of its size, because the aircraft lacks
+    the effect.
+    """
     first, *rest = cause.parameters.items()
     name, size = first
     return replace(cause, parameters={name: Value(-size.value, size.std), **dict(rest)})

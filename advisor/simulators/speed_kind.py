@@ -53,7 +53,7 @@ def by_the_motion(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> SpeedKin
     kind = "a true" if factor < 1.0 else "an indicated"
     half = 100.0 * NORMAL_95 * shown.std
     note = (
-        f"The motion shows an air speed {100.0 * shown.scale:+.1f} ± {half:.1f} % off the one in use. So the"
+        f"The motion shows an air speed {100.0 * shown.scale:+.1f} ± {half:.1f} % off the used one. So the"
         f" log's air speed is {kind} one, and the simulator flies at {100.0 * factor:.1f} % of the speed in"
         " use."
     )

@@ -1,4 +1,5 @@
-"""Sentences about errors that no motion shows: the trim, the air speed, and derivatives that differ together.
+"""Sentences about errors of the trim, of the air speed, and of derivatives that differ by one factor. No
+motion shows these errors.
 
 Z_α = -q̄·S·C_Lα/(m·V) and M_α = q̄·S·c·C_mα/I_yy: mass scales the Zs, inertia the Ms, and density both.
 """
@@ -41,8 +42,8 @@ _MOMENTS, _FORCES = ("M_alpha", "M_q", "M_delta_e"), ("Z_alpha",)
 def with_static_errors(
     diagnosis: Diagnosis, examined: Examined, trims: Sequence[TrimDifference] = ()
 ) -> Diagnosis:
-    """Return the diagnosis with its static errors first, and with withdrawn corrections last, in the
-    sentence.
+    """Return the diagnosis with a sentence that begins with the static errors and ends with the withdrawn
+    corrections.
 
     Parameters
     ----------
@@ -97,7 +98,7 @@ def _of_numbers_together(diagnosis: Diagnosis, examined: Examined) -> Iterator[s
     elif z_off and abs(m - 1.0) < max(_SIGMAS * m_std, _TOGETHER):
         yield (
             f"Z_alpha is {z:.2f} times the simulator's and the Ms agree: the mass is {1.0 / z:.2f} times the "
-            "simulator's, or the wing lifts as much more."
+            "simulator's, or the lift is larger by this factor."
         )
 
 

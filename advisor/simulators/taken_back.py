@@ -1,6 +1,7 @@
 """Corrections that increase the gap on held-out manoeuvres, which the improved simulator does not get.
 
-The posterior is the answer. A withdrawn correction shortens the improved simulator and moves no probability.
+The posterior gives the answer. A withdrawn correction shortens the improved simulator and changes no
+probability.
 """
 
 from collections.abc import Callable, Sequence

@@ -101,7 +101,7 @@ def sized_without(examined: Examined, apart: Collection[int]) -> Examined:
 def as_changed(unseen: UnseenManeuvers, whole: Examined) -> SearchPoint:
     """Return the model of an export, for all manoeuvres.
 
-    Natural numbers belong to the flight, not to the simulator; only the propeller's are exported. Initial
+    Nuisance parameters belong to the flight, not to the simulator; only the propeller's are exported. Initial
     states, and the side on which play rests, start from the whole diagnosis.
     """
     found, everything = unseen.found, whole.findings.last.fitted.point
@@ -125,15 +125,15 @@ def predicted(
 ) -> HeldOut:
     """Return the residuals of a model, with mean squares over the held-out manoeuvres.
 
-    The model flies with the flight's natural numbers, fitted next to its own derivatives without the held-out
-    manoeuvres. Initial state, trim and offsets of each manoeuvre are refitted, weighted by ``floor``, shape
-    (channels,).
+    The model flies with the flight's nuisance parameters, fitted together with the model's derivatives
+    without the held-out manoeuvres. Initial state, trim and offsets of each manoeuvre are refitted, weighted
+    by ``floor``, shape (channels,).
 
     Parameters
     ----------
     fitted
-        Fit of the flight, whose natural numbers start the search: next to the model's effects, where it has
-        any.
+        Fit of the flight, whose nuisance parameters start the search. The fit includes the model's effects,
+        if the model has any.
     offset_rad
         Offset of α that was removed from the data and that the model does not contain.
     """
@@ -168,7 +168,7 @@ class Flown:
     gap_after: float
     """Gap after the part of the correction that the simulator supports."""
     on_paper: tuple[str, ...] = ()
-    """Corrections that the simulator does not support, so that no flight of it contradicts them."""
+    """Corrections that the simulator does not support, so that its flights cannot contradict them."""
     told: InSimulator | None = None
     """Gap for the report; None for the model of an aircraft file."""
 

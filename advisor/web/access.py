@@ -55,7 +55,7 @@ class Access:
     """Password of the pages. None: every program that reaches the server has access, so that only this
     computer may reach the server."""
     origin: str | None = None
-    """Address of the server in the browser, if a proxy is between both. None: no proxy."""
+    """Address of the server in the browser, if a proxy stands in front of the server. None: no proxy."""
     token: str = field(default_factory=lambda: secrets.token_urlsafe(32), repr=False)
     """Cookie of a browser that has sent the password. Each start of the server makes a new cookie."""
 
@@ -67,8 +67,8 @@ class Access:
     def is_called_properly(self, host: str) -> bool:
         """Return whether a browser addresses the server by one of the server's names.
 
-        Without a password only the names of this computer are allowed. A foreign page can give its own name
-        the address 127.0.0.1 (DNS rebinding), and would read the screens otherwise.
+        Without a password only the names of this computer are allowed. Otherwise a foreign page could give
+        its own name the address 127.0.0.1 (DNS rebinding) and read the screens.
 
         Parameters
         ----------
@@ -125,7 +125,8 @@ def read_password(file: Path | None, needed_for: str) -> str | None:
     Raises
     ------
     ConfigurationError
-        The file cannot be read, the password is too short, or one is needed and nobody can be asked.
+        The file cannot be read, the password is too short, or a password is needed and no terminal can ask
+        for one.
     """
     # Removed from the environment, because no process started here needs the password.
     given = os.environ.pop(VARIABLE, None)

@@ -18,8 +18,8 @@ from advisor.web.access import Access, checked_origin, on_this_computer, read_pa
 from advisor.words.problems import ConfigurationError
 
 LOOK_EVERY_S = 0.2
-_LIVE_GOES_ON = "The advisor goes on, with its recording, as long as its command runs."
-_REPLAY_IS_OVER = "Its replay has ended with it."
+_LIVE_GOES_ON = "The advisor and its recording continue as long as the command runs."
+_REPLAY_IS_OVER = "The replay of this page has ended as well."
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ def serve(
     """Serve the screens until a signal comes, or until the campaign on a live link breaks off.
 
     On a live link all pages show one campaign, which one process estimates. In a replay each page has a
-    campaign of its own.
+    separate campaign.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def serve(
     Raises
     ------
     UnusableInputError
-        The link can never serve.
+        The link can never be used.
     """
     from advisor.tui.settings import load_settings
     from advisor.web.server import WebServer

@@ -51,7 +51,7 @@ class Showing:
         Returns
         -------
         tuple of int and Report, or None
-            Newest report and its number. None when no newer picture came in time.
+            Newest report and its number. None if no newer report came in time.
         """
         with self._changed:
             self._changed.wait_for(lambda: self._number > than or self.failure is not None, timeout_s)

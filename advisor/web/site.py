@@ -78,7 +78,7 @@ class Site:
     @web.middleware
     async def _guard(self, request: web.Request, handler: _Handler) -> web.StreamResponse:
         if not self._access.is_called_properly(request.host):
-            raise web.HTTPForbidden(text="Call this server by the address that advisor serve has printed.")
+            raise web.HTTPForbidden(text="Open this server by the address that advisor serve has printed.")
         if request.path.startswith(_OPEN_TO_ALL) or self._access.lets_in(
             request.cookies.get(self._access.cookie)
         ):

@@ -182,7 +182,7 @@ def scenario_of(
 
 
 def _noise(generator: np.random.Generator, colour: float) -> Noise:
-    """Return white noise between that of good flight-test instruments and that of a hobby autopilot."""
+    """Return white noise whose size lies between good flight-test instruments and a hobby autopilot."""
     level = float(np.exp(generator.uniform(np.log(0.4), np.log(2.0))))
 
     def about(value: float) -> float:

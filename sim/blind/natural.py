@@ -1,7 +1,7 @@
 """Nuisances natural to every flight: delays, filters, thin air, light gusts.
 
-A third of the flights have such nuisances. A diagnosis that calls a natural nuisance a cause would find one
-in every real flight.
+A third of the flights have such nuisances. A diagnosis that calls a natural nuisance a cause would find a
+cause in every real flight.
 """
 
 from dataclasses import replace
@@ -77,7 +77,9 @@ def quiet_factor(seed: int, least: float) -> float:
 
 
 def in_the_world(scenario: Scenario, least_noise: float) -> Scenario:
-    """Return a natural scenario in which filters always act, with noise down to a share of the scenario's."""
+    """Return a natural scenario in which filters always act. The noise is smaller by down to the given
+    factor.
+    """
     filters = scenario.faults.filters
     if not filters.gyro_hz:
         filters = Filters(_USUAL_HZ, _USUAL_HZ, "stated")
@@ -94,7 +96,9 @@ def without_vane_noise(scenario: Scenario) -> Scenario:
 
 
 def read_airspeed(scenario: Scenario) -> float:
-    """Return the air speed of the scenario as the aircraft reads it, m/s: indicated in thin air."""
+    """Return the scenario's air speed as the aircraft reads it, m/s. In thin air this is the indicated air
+    speed.
+    """
     speed = scenario.airspeed_m_s or 0.0
     ground_m = scenario.faults.thin_air_m
     if not ground_m:

@@ -1,6 +1,6 @@
 """Cases with a user's own simulator: a JSBSim aircraft flies, and its model is the simulator.
 
-In most cases the effect is in the aircraft and missing in the model. In the others the effect is in the
+In most cases the effect is in the aircraft and missing in the model. In the other cases the effect is in the
 simulator's servo, and missing in the aircraft.
 """
 

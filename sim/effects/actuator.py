@@ -25,7 +25,7 @@ class RateLimit:
 
 
 class Backlash:
-    """Play in the linkage: the surface moves only when one flank pushes."""
+    """Play in the linkage. The surface moves only while one flank pushes."""
 
     def __init__(self, half_width_rad: float) -> None:
         self.half_width = half_width_rad
@@ -42,7 +42,8 @@ class Backlash:
 
 
 class Deadband:
-    """Dead band: commands near neutral move nothing, and larger ones are reduced by the band's half-width.
+    """Dead band. Commands near neutral move nothing, and larger commands are reduced by the band's
+    half-width.
 
     Parameters
     ----------
@@ -75,7 +76,7 @@ class Deadband:
 
 
 class Stiction:
-    """Dry friction: the surface sticks until the error breaks it loose, then jumps to the command."""
+    """Dry friction. The surface sticks until the error exceeds the friction, then jumps to the command."""
 
     def __init__(self, breakaway_rad: float) -> None:
         self.breakaway = breakaway_rad

@@ -7,7 +7,7 @@ from ..motion import Motion
 
 
 class Onset:
-    """Progress of a change: 0 before ``at_s``, 1 after ``ramp_s`` more."""
+    """Progress of a change: 0 before ``at_s``, rising to 1 within ``ramp_s``."""
 
     def __init__(self, at_s: float, ramp_s: float) -> None:
         self.at_s, self.ramp_s = at_s, ramp_s
@@ -27,7 +27,9 @@ class FieldChange:
         self._plain: dict[str, float] | None = None
 
     def apply(self, time_s: float, motion: Motion, engine: Any) -> None:
-        """Set the fields for ``time_s``: ``factors`` are relative changes, ``offsets`` absolute ones."""
+        """Set the fields for ``time_s``. ``factors`` are relative changes, and ``offsets`` are absolute
+        changes.
+        """
         record = engine.record
         if self._plain is None:
             self._plain = {name: float(record[name][0]) for name in (*self.factors, *self.offsets)}

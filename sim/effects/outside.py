@@ -90,7 +90,9 @@ class _Slosh:
 
 
 class _AsymmetricDamping:
-    """Pitch damping that differs between nose up and nose down, as from a tail in the wing's wake."""
+    """Pitch damping that differs between nose up and nose down. A tail in the wing's wake causes such
+    damping.
+    """
 
     def __init__(self, moment: float) -> None:
         self.moment = moment
@@ -100,7 +102,9 @@ class _AsymmetricDamping:
 
 
 class _StallHysteresis:
-    """Flow that separates late and attaches late, so that lift is missing on the way down only."""
+    """Flow that separates late and attaches late, so that lift is missing only while the angle of attack
+    falls.
+    """
 
     def __init__(self, loss: float, band_rad: float) -> None:
         self.loss, self.band = loss, band_rad

@@ -92,7 +92,7 @@ class Judged:
 
     @property
     def is_left_alone(self) -> bool:
-        """Whether a simulator of right structure is called right, or wrong in its derivatives only."""
+        """Whether the answer calls a simulator of right structure right, or wrong only in its derivatives."""
         return not self.truth and self.verdict in LEFT_ALONE
 
     @property

@@ -1,4 +1,4 @@
-"""Seals: the key's salted hash is published first, and the answers' hash before the key is opened."""
+"""Seals. The key's salted hash is published first, and the hash of the answers before the key is opened."""
 
 import hashlib
 import json
@@ -20,7 +20,7 @@ class SealError(ValueError):
 def seal(key: dict[str, Any], key_file: Path, folder: Path) -> str:
     """Write the key outside the folder and its salted hash inside, and return the hash.
 
-    The salt prevents a test of guessed keys against the hash.
+    The salt prevents that guessed keys are tested against the hash.
     """
     text = json.dumps({"salt": secrets.token_hex(32), "key": key}, sort_keys=True)
     digest = hashlib.sha256(text.encode()).hexdigest()

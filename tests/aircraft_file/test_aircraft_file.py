@@ -140,10 +140,10 @@ def test_effects_of_a_file_are_those_of_the_gap_analysis_and_the_simulator_flies
         ({"elevator": {"calibration": [[1100]]}}, "elevator.calibration[0]"),
         ({"elevator": {"calibration": [[1100, 1.0], [1500, 1.0]]}}, "rise all the way or fall"),
         ({"elevator": {"output": 40}}, "elevator.output"),
-        ({"elevator": {"output": 2, "outputs": [{"output": 1}]}}, "elevator.outputs: stands in place of"),
+        ({"elevator": {"output": 2, "outputs": [{"output": 1}]}}, "elevator.outputs: replaces"),
         (
             {"elevator": {"calibration": [[1100, 1.0], [1500, 2.0]], "outputs": [{"output": 1}]}},
-            "elevator.outputs: stands in place of",
+            "elevator.outputs: replaces",
         ),
         ({"elevator": {"outputs": [{"output": 0}]}}, "elevator.outputs[0].output: 0 is not a servo output"),
         (

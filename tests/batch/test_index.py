@@ -91,7 +91,7 @@ def test_the_sentence_of_the_change_test_stands_with_a_mark_in_its_picture_only(
 @pytest.mark.parametrize(
     ("flights", "sentence"),
     [
-        (2, "Flights with a joint estimate: 2; a change shows in three or more."),
+        (2, "Flights with a joint estimate: 2; a change needs at least three flights."),
         (4, "The change test over 4 flights finds no change, and all intervals overlap;"),
         (8, "lies apart: "),
     ],
@@ -113,7 +113,7 @@ def test_a_flight_that_did_not_show_a_derivative_is_left_out_of_its_picture() ->
     picture = trend_svg("M_alpha", "1/s^2", points, None)
     assert picture.count('class="flight"') == 2
     assert "flight 1: −4.90 ± 0.20 1/s^2" in picture
-    assert "no flight shows this derivative" in trend_svg("M_alpha", "1/s^2", points[1:2], None)
+    assert "no flight determines this derivative" in trend_svg("M_alpha", "1/s^2", points[1:2], None)
 
 
 @pytest.mark.parametrize("value", [0.0, 1e-9, -4.93, 1234.5])
@@ -169,7 +169,7 @@ def test_lateral_tests_count_and_a_flight_that_is_over_gets_no_order() -> None:
 def test_without_an_aircraft_file_flights_that_disagree_are_not_told_apart() -> None:
     nameless = [replace(flown(n, 1.0 if n < 6 else 0.8), aircraft_file="") for n in range(1, 11)]
     text = Page.read(index_page(nameless)).text
-    assert "Not told apart: px4 system 1 may be one aircraft that has changed, or several." in text
+    assert "Not distinguished: px4 system 1 may be one aircraft that has changed, or several." in text
     assert "lies apart" in text
     assert "Since flight" not in text
     assert changes_of(nameless) == {}

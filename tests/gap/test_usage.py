@@ -151,7 +151,7 @@ def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
     once = reading.maneuvers_of([log], Aircraft()).maneuvers
     found = reading.compare_logs([log, log], Aircraft()).diagnosis
     assert [m.number for m in judged] == [m.number for m in once]
-    assert found.notes[0].startswith(f"{len(once)} of {2 * len(once)} manoeuvres came twice")
+    assert found.notes[0].startswith(f"{len(once)} of {2 * len(once)} manoeuvres are recorded twice")
 
 
 def test_two_flights_of_the_same_plan_both_count():

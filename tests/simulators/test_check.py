@@ -120,7 +120,7 @@ def test_an_elevator_in_degrees_is_a_fault():
     weak = {name: value / np.degrees(1.0) for name, value in MODEL.items() if name.endswith("delta_e")}
     found = check(LinearSimulator(MODEL | weak), LEVEL, Aircraft())
     assert found.fault is not None
-    assert "It takes degrees" in found.fault.fix
+    assert "It expects degrees" in found.fault.fix
 
 
 def test_a_simulator_that_stands_still_is_refused():
@@ -181,7 +181,10 @@ def test_the_check_says_which_effects_of_the_file_it_leaves_out(capsys, monkeypa
     arguments = ("python:tests.simulators.nonlinear:make", "--aircraft", file)
     code, out, _ = said(capsys, monkeypatch, *arguments)
     assert code == 0
-    assert "It leaves out what advisor gap adds from the aircraft file: servo lag, transport delay." in out
+    assert (
+        "It leaves out the parts that advisor gap adds from the aircraft file: servo lag, transport delay."
+        in out
+    )
 
 
 def test_a_wrong_unit_is_exit_code_3_and_one_sentence(capsys, monkeypatch):

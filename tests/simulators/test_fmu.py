@@ -259,7 +259,7 @@ def test_the_section_fmu_of_the_aircraft_file_is_read() -> None:
         ({"scale": {"a_z": 0.0}}, "fmu.scale.a_z: must not be 0"),
         ({"step_s": 0.5}, "fmu.step_s: 0.5 s is outside"),
         ({"units": "mrad"}, "fmu.units: "),
-        ({"force_increment": "f"}, "fmu.force_increment: goes with fmu.moment_increment"),
+        ({"force_increment": "f"}, "fmu.force_increment: needs fmu.moment_increment"),
         ({"trim": {"theta": "x"}}, "fmu.trim.theta: needs fmu.trim.alpha"),
     ],
 )

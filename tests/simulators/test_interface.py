@@ -104,7 +104,7 @@ def changed(by: Callable[[Nonlinear, Condition, Inputs], Replay]) -> Nonlinear:
     ("by", "words"),
     [
         (lambda s, c, i: s.replay(c, replace(i, elevator=-i.elevator)), "elevator the wrong direction"),
-        (lambda s, c, i: s.replay(c, replace(i, elevator=i.elevator / DEG)), "It takes degrees"),
+        (lambda s, c, i: s.replay(c, replace(i, elevator=i.elevator / DEG)), "It expects degrees"),
         (lambda s, c, i: (lambda r: replace(r, a_z=-r.a_z))(s.replay(c, i)), "a_z as .9.79"),
         (lambda s, c, i: (lambda r: replace(r, alpha=DEG * r.alpha))(s.replay(c, i)), "α in degrees"),
     ],

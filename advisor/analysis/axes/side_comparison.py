@@ -68,7 +68,8 @@ def compare_side_flown(
 def side_traces(
     traces: Sequence[Trace], flown: Sequence[Maneuver], compared: Sequence[Maneuver]
 ) -> tuple[Trace, ...]:
-    """Return the curves of every output and manoeuvre with what a user's simulator does beyond its surrogate.
+    """Return the curves of every output and manoeuvre, with the part of a user's simulator that its surrogate
+    lacks.
 
     Parameters
     ----------
@@ -77,7 +78,7 @@ def side_traces(
     flown
         Manoeuvres as logged.
     compared
-        The same manoeuvres as the diagnosis has them, without that part.
+        Manoeuvres of the diagnosis, which lack the part of the simulator beyond its surrogate.
     """
 
     def whole(trace: Trace) -> Trace:
@@ -93,7 +94,7 @@ def side_traces(
 
 
 class AxisFlown(NamedTuple):
-    """The axes that the logs let a diagnosis judge, with what was read to decide it."""
+    """Axes that a diagnosis of the logs can judge, with the data that were read for this choice."""
 
     axis: Axis
     elevator: GapFlights | None
@@ -110,9 +111,9 @@ def axis_flown(
     marks: Sequence[Mark] = (),
     no_marks: bool = False,
 ) -> AxisFlown:
-    """Return the axes with an accepted manoeuvre, and what was read on the way.
+    """Return the axes with an accepted manoeuvre, and the data that were read.
 
-    The axis is pitch where no axis has an accepted manoeuvre.
+    Without an accepted manoeuvre, the axis is pitch.
     """
     flown = None
     is_pitch = False

@@ -58,7 +58,7 @@ def _correlation(flight: NoiselessManeuver, batch: Batch) -> FloatArray:
         batch.theta[0], Signal(flight.t, flight.elevator), Instruments((step, step), noise, Servo())
     )
     if expected is None:
-        raise ArithmeticError("this input cannot tell the parameters apart")
+        raise ArithmeticError("this input cannot distinguish the parameters")
     return np.asarray(expected.covariance / np.outer(expected.std, expected.std))
 
 
@@ -111,7 +111,7 @@ class RuleOutcome:
     tolerance: FloatArray
     """(8,) tolerances of the rule ``information`` at that time. NaN under the paper's rules."""
     history_percent: tuple[float | None, ...]
-    """Criterion after each manoeuvre; for ``information`` up to the stop."""
+    """Criterion after each manoeuvre. For ``information`` the history ends at the stop."""
     rejected: int
     """Number of flown manoeuvres that the stopping rule rejected."""
 
@@ -152,7 +152,7 @@ def judge(block: CampaignBlock) -> Outcomes:
 def fly_campaigns(block: CampaignBlock) -> list[list[Estimate]]:
     """Return the estimates of every manoeuvre of a block, campaign by campaign.
 
-    The noise of the first manoeuvre is used for all, because the instruments are the same.
+    The noise of the first manoeuvre is used for all manoeuvres, because the instruments do not change.
     """
     rng = np.random.default_rng(block.seed)
     flights = [fly_named(block.scene, name) for name in ORDER]
@@ -169,8 +169,8 @@ def outcome(
     Parameters
     ----------
     maneuvers
-        What was flown, for the response that the rule ``information`` predicts; without it that rule asks
-        for the named derivatives alone.
+        Flown manoeuvres, from which the rule ``information`` predicts the response. Without them the rule
+        asks only for the named derivatives.
     """
     accepted = [r.accepted for r in MANEUVER_RULES[rule]([e.cost for e in campaign])]
     taken: list[Estimate] = []
@@ -202,6 +202,6 @@ def outcome(
 
 
 def reported(taken: Sequence[Estimate], plan: CampaignPlan) -> FloatArray:
-    """Return the values that a campaign of the paper ends with: the mean over the criterion's window."""
+    """Return the final values of a campaign by the paper: the mean over the criterion's window."""
     mean: FloatArray = np.mean([e.theta for e in taken[-plan.window :]], axis=0)
     return mean

@@ -33,7 +33,7 @@ class Study(Generic[T, R]):
     """Tasks of a study, the work on one task, and the report of all results."""
 
     tasks: Sequence[T]
-    """Several ``campaigns`` each, with all data that determine their result, including the seed."""
+    """Tasks of several campaigns each, with all data that determine the result, including the seed."""
     work: Callable[[T], R]
     """Function of a module, so that other processes know it."""
     report: Callable[[Sequence[R]], StudyReport]

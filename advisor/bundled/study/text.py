@@ -1,4 +1,6 @@
-"""The study in words: Table 1 with the paper's figures, and the paper's place among ours."""
+"""The study in words: Table 1 with the paper's numbers, and the rank of the paper's campaign among the
+simulated ones.
+"""
 
 from collections.abc import Iterable, Sequence
 from textwrap import wrap
@@ -12,11 +14,11 @@ from advisor.bundled.study.table import Row
 from advisor.words.quantities import symbol
 
 COMMON = (5.0, 95.0)
-"""Percentiles of our campaigns between which a single realisation is ordinary."""
+"""Percentiles of the simulated campaigns between which a single campaign counts as ordinary."""
 
 
 _COLUMNS = 80
-"""Columns of the narrowest terminal that everything must fit."""
+"""Number of columns of the narrowest terminal for which the text is made."""
 _LABEL, _CELL = 12, 8
 """Characters of a label and of a number in the table: 12 + 8 · 8 are 76."""
 
@@ -71,7 +73,9 @@ def _numbers(label: str, values: Iterable[float]) -> str:
 
 
 def where_the_paper_lies(rows: Sequence[Row]) -> list[str]:
-    """Return a sentence for each row on the paper's single realisation within our distribution."""
+    """Return a sentence for each row on the paper's single campaign within the distribution of the simulated
+    campaigns.
+    """
     lines = ["Where the paper's single campaign lies among ours:"]
     for row in rows:
         if row.paper is None:
@@ -108,7 +112,9 @@ def tolerances(rows: Sequence[Row]) -> list[str]:
 
 
 def wrapped(text: str) -> list[str]:
-    """Wrap a sentence into lines of 80 columns, those after the first indented; no number without its %."""
+    """Wrap a sentence into lines of 80 columns. Lines after the first are indented, and a number keeps its %
+    sign.
+    """
     told = text.lstrip().replace(" %", "\N{NO-BREAK SPACE}%")
     begins = " " * (len(text) - len(text.lstrip()))
     lines = wrap(told, _COLUMNS, initial_indent=begins, subsequent_indent="    ")

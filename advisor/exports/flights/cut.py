@@ -1,7 +1,7 @@
-"""The log of one manoeuvre: the packets of a tlog around the manoeuvre, byte by byte, with the necessary
-earlier ones.
+"""The log of one manoeuvre: a tlog's packets around the manoeuvre, byte by byte, and the earlier packets that
+reading needs.
 
-The cut log is read again, as a check that it still contains the manoeuvre.
+The cut log is read again, to check that the log still contains the manoeuvre.
 """
 
 from collections.abc import Iterator
@@ -134,7 +134,7 @@ def log_of_maneuver(
     if not _finds(data, maneuver, aircraft, target_system):
         raise UnusableInputError(
             "cut",
-            f"Manoeuvre {number} cannot be told by its stretch of {log.name} alone.",
+            f"Manoeuvre {number} cannot be found in its stretch of {log.name} alone.",
             "Analyze the whole log, or mark the manoeuvre with --maneuver.",
         )
     return data

@@ -92,7 +92,7 @@ def _maneuvers(axis: _Axis, record_of: Mapping[tuple[int, int], int]) -> FlightT
             "cautions",
             texts(["; ".join(v.cautions) for v in verdicts]),
             "",
-            "what else belongs on the verdict",
+            "cautions that do not change the verdict",
         ),
         Column(
             "excluded_because", texts([m.excluded_because or "" for m in judged]), "", "why excluded by hand"
@@ -132,9 +132,9 @@ def _estimates(axis: _Axis) -> FlightTable:
         Column("parameter", texts([name for _, _, name in rows]), "", "name of the parameter"),
         Column("unit", units, "", "SI unit of the value"),
         Column("value", told("theta"), _BY_ROW, "estimate"),
-        Column("std", told("std"), _BY_ROW, "standard deviation, coloured residuals allowed for"),
+        Column("std", told("std"), _BY_ROW, "standard deviation, corrected for coloured residuals"),
         Column("std_cr", told("std_cr"), _BY_ROW, "plain Cramér-Rao bound"),
-        Column("reason", reasons, "", "why there is no value"),
+        Column("reason", reasons, "", "reason for a missing value"),
         Column("airspeed_m_s", speeds, "m/s", "air speed at which the derivatives are given"),
     ]
     for k, (name, its) in enumerate(axis.units.items()):
@@ -154,7 +154,9 @@ def _told(e: Estimate, name: str, values: str, of: tuple[int, ...]) -> float | N
 
 
 def _residuals(axis: _Axis, record_of: Mapping[tuple[int, int], int]) -> Iterator[FlightTable]:
-    """Yield per output measured, fitted and residual values of accepted manoeuvres, at own stamps."""
+    """Yield a table for each output: measured, fitted and residual values of accepted manoeuvres, at the
+    output's stamps.
+    """
     accepted = [(one.maneuver, e) for one in axis.judged if one.verdict.accepted and (e := _estimate(one))]
     for output in axis.outputs:
         fits = [(maneuver, e.fits[0][output]) for maneuver, e in accepted if output in e.fits[0]]

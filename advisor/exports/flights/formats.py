@@ -27,7 +27,7 @@ _NEEDS = {"parquet": "pyarrow", "mcap": "mcap"}
 
 
 def parse_formats(text: str) -> tuple[str, ...]:
-    """Read names of formats, separated by commas, each once.
+    """Read names of formats that commas separate; a repeated name counts once.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def parse_formats(text: str) -> tuple[str, ...]:
 
 
 def write_formats(data: "Dataset", folder: Path, formats: Sequence[str]) -> tuple[FailedPart, ...]:
-    """Write a dataset in several formats into a folder, with a PlotJuggler layout if it reads the format.
+    """Write a dataset in several formats into a folder. A format that PlotJuggler reads gets a layout.
     Return the formats whose writer failed."""
     from advisor.exports.flights.plotjuggler import write_layouts
 

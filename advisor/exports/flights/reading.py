@@ -67,7 +67,7 @@ def _channels(flights: WholeFlights) -> FlightTable:
         Column("channel", texts([c.name for c in found]), "", "name of the channel"),
         Column("unit", texts([ALL_UNITS[c.name] for c in found]), "", "SI unit of the channel"),
         Column("source", texts([c.source for c in found]), "", "message and field"),
-        Column("provenance", texts([c.provenance for c in found]), "", "how the quantity is known"),
+        Column("provenance", texts([c.provenance for c in found]), "", "origin of the quantity"),
         Column("samples", counts([len(c) for c in found]), "1", "number of samples"),
         Column("rate_hz", numbers([c.rate_hz for c in found]), "Hz", "median sampling rate"),
         Column(
@@ -85,7 +85,7 @@ def sha256(path: Path) -> str:
 
 GRID = (
     "uniform, from the first to the last stamp of the pitch rate q at its median interval (without q, of the"
-    " fastest channel); linear between a channel's stamps; nothing outside them and in gaps longer than"
+    " fastest channel); linear between a channel's stamps; none outside, or in gaps longer than"
     f" {GAP_S:g} s and {MANY_INTERVALS:g} median intervals"
 )
 """Description of the time grid, and of the interpolation onto it."""

@@ -1,4 +1,4 @@
-"""A set of files that appears at once: written under temporary names, then renamed."""
+"""A set of files that appears at once. All files are written under temporary names, then renamed."""
 
 import os
 import shutil

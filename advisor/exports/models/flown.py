@@ -109,8 +109,8 @@ def flown_model(state: CampaignState, aircraft: Aircraft) -> FlownModel:
     found = _in_one_air(FlownModel(aircraft, _pitch(state, aircraft), side_flown(state.lateral, aircraft)))
     if found.pitch is None and found.side is None:
         raise ConfigurationError(
-            "--export: the accepted manoeuvres tell the derivatives of neither axis; fly the input that the "
-            "analysis names."
+            "--export: the accepted manoeuvres determine the derivatives of no axis; fly the input that "
+            "advisor analyze names."
         )
     return found
 
@@ -247,6 +247,6 @@ def _known(found: float, stated: float | None) -> float | None:
 
 
 def _at(side: SideModel, faster: float) -> Mapping[str, float]:
-    """Return the roll and yaw derivatives at an air speed ``faster`` times that of the model."""
+    """Return the roll and yaw derivatives at ``faster`` times the air speed of the model."""
     powers = {term.name: term.power for term in LATERAL.shared}
     return {name: float(f"{value.value * faster ** powers[name]:.6g}") for name, value in side.values.items()}

@@ -23,8 +23,9 @@ class ExportedServo:
 
     delay_s: float = 0.0
     lag_s: float = 0.0
-    """Delay of the surface behind a ramp of the command, s. A negative value means quicker than the
-    simulator's own servo."""
+    """Delay of the surface behind a ramp of the command, s. A negative value means that the surface is
+    quicker than the simulator's own servo.
+    """
     damping: float | None = None
     """Damping ratio of a second-order lag with ω = 2·damping/lag_s. None for a first-order lag."""
     rate_rad_s: float | None = None
@@ -187,7 +188,7 @@ def air_note(air: AirData) -> str:
 
 def zero_said(parameter: str) -> str:
     """Return the statement that a derivative is exported as zero."""
-    return f"{parameter}, which is not told from zero and is 0"
+    return f"{parameter}, which is not distinguished from zero and is 0"
 
 
 def require_reference(reference: Reference, keys: tuple[str, ...]) -> None:

@@ -45,10 +45,13 @@ class ImprovedAxis:
     fewer: Sequence[tuple[str, ...]]
     """Sets of parts that may be withdrawn while others are kept."""
     flown: Callable[[tuple[str, ...]], Kept]
-    """Function that simulates the held-out manoeuvres without some parts; without all, as given."""
+    """Function that simulates the held-out manoeuvres without some parts. Without all parts the simulator
+    flies as given.
+    """
     alone: str = ""
-    """Sentence from the fitted manoeuvres alone, if they give no correction and all manoeuvres' one was used.
-    Empty otherwise."""
+    """Sentence from the fitted manoeuvres alone, if these give no correction and the correction of all
+    manoeuvres was used. Empty otherwise.
+    """
 
 
 @dataclass(frozen=True)
@@ -94,7 +97,9 @@ class Proof:
 
 
 def proved(axis: ImprovedAxis) -> Proof:
-    """Return the gap on held-out manoeuvres, with the improvement's parts that do not raise it."""
+    """Return the gap on held-out manoeuvres, with those parts of the improvement that do not
+    raise the gap.
+    """
     before, every = axis.flown(axis.parts), axis.flown(())
     after = every
     taken: tuple[str, ...] = ()

@@ -215,7 +215,7 @@ def _refuse_broken(replay: Replay, said: str, maneuver: Maneuver, duration_s: fl
         raise UnusableInputError(
             "simulator_lateral",
             f"{said} returns no {', '.join(missing)}, which roll and yaw need.",
-            "Add them to its replay or observation (for an FMU, to fmu: in the aircraft file).",
+            "Add these quantities to its replay or observation (for an FMU, to fmu: in the aircraft file).",
         )
     if replay.t[-1] < duration_s - 0.1:
         raise UnusableInputError(

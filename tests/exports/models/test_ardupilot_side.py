@@ -96,7 +96,7 @@ def test_a_derivative_that_is_not_told_has_no_key_and_its_reason_is_said():
 def test_a_derivative_that_is_not_told_from_zero_is_zero_and_said():
     unsure = replace(SIDE, values={**SIDE.values, "L_r": Value(0.2, 0.15)})
     assert read(text_of(unsure))["c_l_r"] == 0.0
-    assert "L_r, which is not told from zero and is 0" in unsure.left_out
+    assert "L_r, which is not distinguished from zero and is 0" in unsure.left_out
 
 
 def test_the_read_air_speed_that_is_too_low_makes_no_coefficient_too_large():

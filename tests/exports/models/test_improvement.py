@@ -38,7 +38,7 @@ def test_a_derivative_that_is_not_told_from_zero_is_exported_as_zero_and_said():
     model = improvement().model | {"Z_q": Value(-0.03, 0.02), "M_q": Value(-5.2, 0.1)}
     one = improvement(model=model)
     assert one.coefficients()["C_L_q"].value == 0.0
-    assert one.untold == ("Z_q, which is not told from zero and is 0",)
+    assert one.untold == ("Z_q, which is not distinguished from zero and is 0",)
 
 
 def test_a_prior_value_differs_outside_two_standard_deviations():

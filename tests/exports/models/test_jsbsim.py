@@ -149,7 +149,7 @@ def test_a_derivative_that_is_not_told_from_zero_becomes_zero_and_is_said(cessna
         model=found, prior=cessna, airspeed_m_s=53.0, air=air_at(1000.0), servo=ExportedServo()
     )
     made = aircraft_text(improved, model_of("c172p"))
-    assert made.left_out == ("M_q, which is not told from zero and is 0",)
+    assert made.left_out == ("M_q, which is not distinguished from zero and is 0",)
     again = flown(placed(made.text, tmp_path, "c172p"), 53.0)
     assert again["M_q"] == pytest.approx(0.0, abs=0.02 * abs(cessna["M_q"]))
 

@@ -29,7 +29,7 @@ FILE = {
     "elevator": {"calibration": [list(pair) for pair in CALIBRATION]},
     "reference": {"mass_kg": 10.0, "wing_area_m2": 0.8, "chord_m": 0.3, "iyy_kg_m2": 0.9},
 }
-NO_SIDE = "roll and yaw, of which nothing is known"
+NO_SIDE = "roll and yaw, which no flight and no file gives"
 
 
 def found(**changes: object) -> Diagnosis:

@@ -149,7 +149,7 @@ def test_a_derivative_that_is_not_told_from_zero_becomes_zero_and_is_said(cessna
     unsure = {"N_p": Value(0.05 * side.values["L_p"].value, abs(side.values["L_p"].value))}
     unsure["N_r"] = Value(0.2 * side.values["N_r"].value, 0.2 * abs(side.values["N_r"].value))
     made = side_text("Cessna", replace(side, values=side.values | unsure), CESSNA, OWN)
-    assert "N_r, which is not told from zero and is 0" in made.left_out
+    assert "N_r, which is not distinguished from zero and is 0" in made.left_out
     assert not any(one.startswith("N_p") for one in made.left_out)  # the aircraft's own value lies within
     again = measure_side(made.text.encode(), CESSNA, ASKED).derivatives
     assert again["N_r"] == pytest.approx(0.0, abs=5e-3 * abs(cessna.derivatives["N_r"]))

@@ -1,1 +1,1 @@
-"""The tables by which the proof of an improved simulator reads each axis."""
+"""The proof of an improved simulator, and the models of other programs, for each axis."""

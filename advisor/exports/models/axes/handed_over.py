@@ -26,7 +26,8 @@ def side_of_logs(
     marks: Sequence[Mark] = (),
     no_marks: bool = False,
 ) -> SideModel | None:
-    """Return the roll and yaw model from accepted manoeuvres in logs; None if they determine none.
+    """Return the roll and yaw model from accepted manoeuvres in logs; None if the manoeuvres determine no
+    model.
 
     The whole campaign is analysed only if aileron or rudder were flown.
     """

@@ -37,7 +37,8 @@ def prove(
 ) -> Proof:
     """Return the proof of a simulator improved by some manoeuvres and tested on others.
 
-    If the fitted manoeuvres give no correction, that of the whole flight is tested, with refitted sizes.
+    If the fitted manoeuvres give no correction, the correction of the whole flight is tested, with refitted
+    sizes.
 
     Parameters
     ----------
@@ -93,7 +94,7 @@ def prove(
 def stays_of(proof: Proof, diagnosis: Diagnosis, given: Mapping[str, float]) -> Diagnosis:
     """Return a diagnosis whose improved simulator lacks the withdrawn parts, which its sentence names.
 
-    The posterior stays: a proof moves no probability.
+    The posterior stays unchanged, because a proof moves no probability.
     """
     said = proof.taken_back_said
     if not said:

@@ -117,7 +117,9 @@ def _improved(
 
 
 def _ahead(given: SideControl, against: SideControl, side_control: SideControl) -> SideControl:
-    """Return the servo ahead of a simulator that has ``against`` behind ``given``, for ``found`` in all."""
+    """Return the servo to put before a simulator. The servo, with ``against`` behind ``given``, amounts to
+    ``found``.
+    """
 
     def less(name: str) -> float:
         first, own, whole = (getattr(servo, name) or 0.0 for servo in (given, against, side_control))
@@ -130,7 +132,7 @@ def stays_of_side(diagnosis: Diagnosis, proof: Proof | None) -> Diagnosis:
     """Return a diagnosis whose improved simulator lacks the parts that a proof withdrew, which its sentence
     names.
 
-    The posterior stays: a proof moves no probability.
+    The posterior stays unchanged, because a proof moves no probability.
     """
     if proof is None or proof.gap_with_them is None or not diagnosis.evidence:
         return diagnosis

@@ -76,7 +76,7 @@ def plane_text(model: FlownModel, file_name: str) -> Exported:
     for axis, missing in lacking(aircraft).items():
         found = model.pitch if axis == "pitch" else model.side
         if found is None:
-            left.append(f"{AXES[axis]}, of which nothing is known")
+            left.append(f"{AXES[axis]}, which no flight and no file gives")
         elif missing:
             left.append(f"{AXES[axis]}, for want of {', '.join(missing)} in the aircraft file")
         else:
@@ -99,7 +99,7 @@ def _head(name: str, file_name: str) -> Iterator[str]:
     yield f"{name}: coefficients by the inflight advisor, for the plane of ArduPilot's simulation. Load:"
     yield f"  sim_vehicle.py -v ArduPlane --model plane:{file_name} --add-param-file {stem}.parm"
     yield f'ArduPlane {FIRST_VERSION} and later print "{LOADED} {file_name}".'
-    yield "An older one flies its own plane without a word: take a newer one, or apply pull request 29809."
+    yield "An older version ignores the file silently: use a newer one, or apply pull request 29809."
 
 
 def _commented(head: list[str]) -> str:

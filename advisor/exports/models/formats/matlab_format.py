@@ -41,10 +41,10 @@ FORMAT = MatlabFormat()
 
 def both_axes_text(model: FlownModel) -> Exported:
     """Return the script: the variables of the short period, then ``lateral`` as one structure."""
-    nothing = Exported("", ("pitch, of which nothing is known",))
+    nothing = Exported("", ("pitch, which no flight and no file gives",))
     pitch = script_text(model.pitch) if model.pitch is not None else nothing
     if model.side is None:
-        return replace(pitch, left_out=(*pitch.left_out, "roll and yaw, of which nothing is known"))
+        return replace(pitch, left_out=(*pitch.left_out, "roll and yaw, which no flight and no file gives"))
     side = _side_text(model.name, model.side)
     return Exported(pitch.text + side, (*pitch.left_out, *model.side.left_out))
 

@@ -1,10 +1,10 @@
 """Format ``sdf``: Gazebo plugins for lift, drag and side force.
 
 Pitch has two ``gz::sim::systems::LiftDrag`` plugins, a wing and a tail.
-A LiftDrag surface has lift C = cla·(a0 + α) + control_joint_rad_to_cl·δ at its centre of pressure. There the
-surface meets the air that the rotation moves. A surface has no damping of its own, and Gazebo's source resets
-the moment of ``cma`` to zero. Two surfaces of wing area S do not need damping and ``cma``. The wing (w) lies
-at the centre of gravity, and the tail (t) at the distance x ahead of it (x is negative).
+A LiftDrag surface has lift C = cla·(a0 + α) + control_joint_rad_to_cl·δ at its centre of pressure. The
+rotation of the aircraft changes the air flow at that point. A surface has no damping of its own, and Gazebo's
+source resets the moment of ``cma`` to zero. Two surfaces of wing area S do not need damping and ``cma``. The
+wing (w) lies at the centre of gravity, and the tail (t) at the distance x ahead of it (x is negative).
 
     C_Lα = a_w + a_t        C_mα = a_t·x/c        C_mq = -2·a_t·x²/c²        C_mδe = e·x/c
 
@@ -81,7 +81,7 @@ def plugins_text(model: FlownModel) -> Exported:
 
 def _why_not(axis: str, known: bool, missing: Sequence[str]) -> str:
     return f"{axis}, " + (
-        f"for want of reference {', '.join(missing)}" if known else "of which nothing is known"
+        f"for want of reference {', '.join(missing)}" if known else "which no flight and no file gives"
     )
 
 

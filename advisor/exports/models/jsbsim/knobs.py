@@ -45,7 +45,9 @@ def knob_for(parameter: str, terms: Sequence[str], first: Slopes, surface: str) 
 
 
 def _turned(knob: Knob, missing: float, first: Slopes, surface: str) -> Knob:
-    """Return the knob changed by the derivative's missing part; a function where its factor is below zero."""
+    """Return the knob changed by the derivative's missing part. A knob whose factor is negative becomes a
+    function.
+    """
     turned = knob.turned(missing)
     if isinstance(turned.change, AddedFunction) or turned.change.value > 0.0:
         return turned
