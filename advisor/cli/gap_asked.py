@@ -103,7 +103,11 @@ class GapAsked:
             )
             return None
         with writing("--out", self.out):
-            write_file(make(), self.out)
+            write_file(model := make(), self.out)
+        if model.beyond_keys:
+            click.echo(
+                f"{printable(str(self.out))} has no key for: {', '.join(model.beyond_keys)}.", err=True
+            )
         return self.out
 
 

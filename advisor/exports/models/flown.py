@@ -48,6 +48,8 @@ class SideModel:
     """Servo of the aileron and of the rudder."""
     flown: bool = True
     """Whether the derivatives come from a flight instead of the aircraft file."""
+    beyond_keys: tuple[str, ...] = ()
+    """Effects of the diagnosis that no key of the aircraft file states."""
 
     @property
     def true_airspeed_m_s(self) -> float:
@@ -96,6 +98,11 @@ class FlownModel:
     def name(self) -> str:
         """Name of the aircraft."""
         return self.aircraft.name
+
+    @property
+    def beyond_keys(self) -> tuple[str, ...]:
+        """Effects that the improved aircraft file lacks."""
+        return () if self.side is None else self.side.beyond_keys
 
 
 def flown_model(state: CampaignState, aircraft: Aircraft) -> FlownModel:

@@ -12,7 +12,7 @@ from advisor.exports.models.flown import FlownModel, SideModel, flown_model, sid
 from advisor.exports.models.improvement import ExportedServo, servo_of
 from advisor.flight.maneuvers.marks import Mark
 from advisor.gap.effects import EFFECTS
-from advisor.gap.result import Diagnosis
+from advisor.gap.result import Cause, Diagnosis
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import NoEstimate
@@ -48,9 +48,10 @@ def improved_side(compared: SideCompared) -> FlownModel:
     """
     aircraft, state, diagnosis = compared.aircraft, compared.state, compared.diagnosis
     model = flown_model(state, aircraft)
-    unchanged = not diagnosis.improves
-    if model.side is None or not any(cause.present for cause in diagnosis.causes):
-        return replace(model, unchanged=unchanged)
+    present = [cause for cause in diagnosis.causes if cause.present]
+    model = replace(model, unchanged=not diagnosis.improves)
+    if model.side is None or not present:
+        return model
     side, servos = model.side, _servos_found(diagnosis, aircraft)
     if aircraft.simulator in (None, "linear"):
         side = replace(side, values={name: diagnosis.model[name] for name in side.values})
@@ -58,7 +59,13 @@ def improved_side(compared: SideCompared) -> FlownModel:
         behind = _behind(servos, aircraft)
         again = estimate_lateral(accepted_of(state), behind)
         side = side if isinstance(again, NoEstimate) else side_of(again, side.trim, side.air, behind)
-    return replace(model, side=replace(side, servos={**side.servos, **servos}), unchanged=unchanged)
+    beyond = tuple(cause.name.replace("_", " ") for cause in present if not _has_key(cause))
+    return replace(model, side=replace(side, servos={**side.servos, **servos}, beyond_keys=beyond))
+
+
+def _has_key(cause: Cause) -> bool:
+    """Return whether the aircraft file has a key for a cause of roll and yaw, or needs none."""
+    return cause.block == "air" or (cause.of in LATERAL.inputs and EFFECTS[cause.effect].stated is not None)
 
 
 def behind_found(diagnosis: Diagnosis, aircraft: Aircraft) -> Aircraft:

@@ -15,7 +15,7 @@ class AircraftFormat(ModelFormat):
 
     def made(self, model: FlownModel, file: Path) -> Exported:
         """Return the file."""
-        return Exported(file_text(model))
+        return Exported(file_text(model), model.beyond_keys)
 
 
 FORMAT = AircraftFormat()
