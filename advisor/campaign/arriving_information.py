@@ -1,7 +1,9 @@
-"""Information of the input being flown, at each whole second: the word that it is enough, before its end.
+"""Information of the input in flight, at each whole second. It shows before the end of the input when the
+data are enough.
 
-The samples up to a whole second after the begin count, once all channels have arrived. So a replay shows the
-values of the flight. An axis without a joint estimate has the estimate of the input itself so far.
+The samples up to a whole second after the begin count, once all channels have arrived. A replay therefore
+shows the values of the flight. An axis without a joint estimate uses the estimate from the input's data so
+far.
 """
 
 from collections.abc import Mapping
@@ -85,7 +87,9 @@ class ArrivingInformation:
     def _known(
         self, joint: Mapping[AxisName, Known], second: int, flying: Maneuver, longer: int
     ) -> tuple[Known, Known]:
-        """Return the joint estimate of each axis. A moved axis without one has that of the input alone."""
+        """Return the joint estimate of each axis. A moved axis without a joint estimate gets the estimate of
+        the input alone.
+        """
         known: dict[AxisName, Known] = dict(joint)
         begun_s, until_s = flying.span.start_s, flying.span.start_s + second
         cut = up_to(until_s, flying)

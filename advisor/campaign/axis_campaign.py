@@ -163,7 +163,9 @@ class AxisCampaign(ABC):
 
     @property
     def _still_heard(self) -> Sequence[Heard]:
-        """Return announced criteria; none after an exclusion by hand, which repeats every decision."""
+        """Return the criteria announced so far; none after an exclusion by hand, because every decision is
+        then repeated.
+        """
         excluded = any(flown.examined.excluded_because is not None for flown in self._flown)
         return () if excluded else self._heard
 

@@ -1,4 +1,4 @@
-"""The flight test as a pure state machine: columns of messages in, events and a state out."""
+"""The flight test as a pure state machine, which turns columns of messages into events and a state."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -87,9 +87,9 @@ class Campaign:
     Parameters
     ----------
     target_system
-        System id of the vehicle; None: the first one heard.
+        System id of the vehicle; None for the first vehicle that sends.
     settle
-        Estimate while a manoeuvre is still being flown, for live faces.
+        Whether to estimate while a manoeuvre is still being flown, for live displays.
         Verdicts do not depend on the running estimate.
     marks
         Further marks, which replace overlapping marks of ``by_hand`` and are not kept in a file.
@@ -99,8 +99,8 @@ class Campaign:
         Whether roll and yaw are estimated jointly after every manoeuvre, for the advice to stop; else only at
         the end.
     aside
-        Judge manoeuvres in another thread while the stream is read on, for screens. Verdicts and numbers are
-        the same, and come when they are ready.
+        Judge manoeuvres in another thread while the stream is read on, for screens. Verdicts and numbers do
+        not depend on this option, and come when they are ready.
     """
 
     def __init__(
@@ -151,7 +151,7 @@ class Campaign:
 
     @property
     def is_judging(self) -> bool:
-        """Whether a manoeuvre has been flown whose verdict has not been told."""
+        """Whether a manoeuvre has been flown whose verdict has not been announced."""
         return self._aside.is_pending
 
     @property
@@ -170,7 +170,7 @@ class Campaign:
         return self._engineer
 
     def finish(self) -> list[CampaignEvent]:
-        """End the stream: a manoeuvre without only its quiet end is still used."""
+        """End the stream. A manoeuvre that lacks only the rest at its end is still used."""
         if self._stream.marks.by_hand_since_s is not None:
             self._engineer.end_maneuver()
         events = self._take(self._flights.finish())
@@ -231,13 +231,13 @@ class Campaign:
         )
 
     def _so_far(self) -> _Verdicts:
-        """Return what has been judged so far; while a manoeuvre is being judged, what was before it."""
+        """Return the verdicts so far. While a manoeuvre is being judged, return the verdicts before it."""
         if self._shown is None or not self._aside.is_busy:
             self._shown = self._verdicts()
         return self._shown
 
     def _verdicts(self) -> _Verdicts:
-        """Return what all manoeuvres so far say."""
+        """Return the verdicts of all manoeuvres so far."""
         elevator, lateral = self._elevator, self._lateral
         numbers = tuple(judged.maneuver.number for judged in elevator.joined)
         axes: dict[AxisName, AxisState[Any]] = {
@@ -310,7 +310,7 @@ class Campaign:
         return told
 
     def _give(self, half: AxisCampaign, maneuver: Maneuver) -> list[CampaignEvent]:
-        """Have a manoeuvre judged that has just been flown, and return the verdicts that are ready."""
+        """Start judging a manoeuvre that has just been flown, and return the verdicts that are ready."""
         if self._aside.in_thread:
             self._so_far()
         self._aside.do(partial(self._judge, half, maneuver, self._engineer.decided))
@@ -360,7 +360,7 @@ class Campaign:
         self.wait()
         maneuver, half = event.maneuver, self._axes[event.axis]
         where = f" in {self._flights.name}" if self._flights.name else ""
-        better = "; this record holds more and takes the place" if event.takes_place else ""
+        better = "; this record holds more and replaces the other one" if event.takes_place else ""
         self._journal.write_of_past(
             f"{OF[event.axis]}manoeuvre {maneuver.number} ({clock(maneuver.span.start_s)}) comes again{where}"
             f": it counts once{better}",

@@ -22,9 +22,9 @@ class Engineer:
     Parameters
     ----------
     axes
-        Campaign of each axis; without roll and yaw, both are the elevator's.
+        Campaign of each axis. Without roll and yaw, both entries are the elevator's campaign.
     decided
-        Decisions of an earlier hearing of the flight.
+        Decisions by hand from an earlier reading of the flight.
     """
 
     def __init__(

@@ -82,7 +82,7 @@ class ByHand:
         return self._each(lambda one: [replace(one, flight=flight)])
 
     def _each(self, changed: Callable[[Any], list[Any]]) -> "ByHand":
-        """Return the decisions after ``changed`` was applied to each list of them."""
+        """Return the decisions with ``changed`` applied to each of the lists."""
         sections = (self.marks, self.excluded, self.notes, self.remarks)
         return ByHand(*(tuple(new for one in section for new in changed(one)) for section in sections))
 

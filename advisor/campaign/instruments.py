@@ -16,7 +16,7 @@ from advisor.words.quantities import symbol
 
 
 def as_known_by(maneuver: Maneuver, newest: Maneuver) -> Maneuver:
-    """Return an earlier manoeuvre with the contradictions that a later one of its power-on shows.
+    """Return an earlier manoeuvre with the contradictions that a later manoeuvre of its power-on shows.
 
     A contradiction that only later manoeuvres show was not removed from the earlier manoeuvre's channels.
     """
@@ -67,7 +67,8 @@ def with_fit(
 
 
 def side_signs(model: LateralEstimate | None, aircraft: Aircraft) -> tuple[InstrumentFinding, ...]:
-    """Return in which direction positive aileron rolls and positive rudder yaws, if the motion determines it.
+    """Return the direction in which positive aileron rolls and positive rudder yaws, if the motion determines
+    the direction.
 
     By definition a positive deflection is to the left. Without a calibration nothing states the direction;
     the derivatives then have the sign that the parameters of the outputs give. The channels keep the log's
@@ -88,7 +89,7 @@ def side_signs(model: LateralEstimate | None, aircraft: Aircraft) -> tuple[Instr
         if not stated:
             text = f"no {control}.calibration states the sign of the {control}: {told}"
         if wrong:
-            text += "; positive is left, and the derivatives stay in this sign"
+            text += "; a positive deflection should be to the left; the derivatives keep this sign"
         found.append(
             InstrumentFinding(
                 control,

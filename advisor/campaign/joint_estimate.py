@@ -76,8 +76,8 @@ class Together:
     def of_lag_so_far(self, accepted: Sequence[Maneuver]) -> Estimate | None:
         """Return the joint estimate of the newest manoeuvres that determine the servo's lag; None if none do.
 
-        Accepted manoeuvres are asked for a lag in groups of ``NEWEST``. Where the newest whole group tells
-        none, the next group is waited for.
+        Accepted manoeuvres are examined for a lag in groups of ``NEWEST``. If the newest whole group
+        determines no lag, the result waits for the next group.
         """
         whole = len(accepted) - len(accepted) % NEWEST
         if whole and not self._group_tells_lag(accepted[whole - NEWEST : whole]):

@@ -63,7 +63,7 @@ class Journal:
         self.lines = tuple(self._kept)
 
     def write_of_past(self, text: str, at_s: float) -> None:
-        """Write a sentence that states the time of its event itself; the event ended at ``at_s``."""
+        """Write a sentence that already states the time of its event. The event ended at ``at_s``."""
         self.write(text, max(at_s, self._newest_s))
 
     def take(self, event: FlightEvent) -> None:

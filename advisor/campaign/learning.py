@@ -27,8 +27,8 @@ def may_learn(aircraft: Aircraft, all_of_them: bool) -> bool:
     aircraft
         The crew's aircraft, with instruments that were identified earlier.
     all_of_them
-        Whether the joint estimate uses all accepted manoeuvres. The newest alone do not improve what is known
-        already.
+        Whether the joint estimate uses all accepted manoeuvres. The newest manoeuvres alone do not improve
+        these values.
     """
     return found_of(aircraft) is None or all_of_them
 
@@ -45,10 +45,9 @@ def learnt(
     model
         Joint estimate over the accepted manoeuvres, made with the crew's aircraft.
     one_power_on
-        Whether all these manoeuvres are of one power-on. The delay of the command differs from one to the
-        next.
+        Whether all these manoeuvres are of one power-on. The delay of the command differs between power-ons.
     exactly
-        Take the newest values even where they differ by less than a standard deviation from those in use, as
+        Take the newest values even if they differ by less than a standard deviation from those in use. True
         at the end of a log.
     """
     if model is None or model.found is None:
@@ -89,6 +88,7 @@ def lag_said(aircraft: Aircraft) -> str:
         return f"all manoeuvres together give a servo lag of {lag_s:.3f} s, as elevator.lag_s says"
     against = "" if stated is None else f", against {stated:.3f} s in elevator.lag_s,"
     return (
-        f"the servo's lag is {lag_s:.3f} s{against} by all manoeuvres together; every estimate uses it now;"
+        f"the servo's lag is {lag_s:.3f} s{against} by all manoeuvres together; "
+        "every estimate uses this lag now;"
         f" for the aircraft file: elevator: {{lag_s: {lag_s:.3f}}}"
     )

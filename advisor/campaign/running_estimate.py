@@ -1,5 +1,5 @@
-"""The running estimate of the manoeuvre being flown: when its numbers may be read, and when further response
-adds nothing.
+"""Running estimate of the manoeuvre in flight. The module decides when its numbers may be shown, and when
+more response adds nothing.
 
 A fit of half an input explains the data so far with wrong values and narrow intervals. Numbers are shown only
 after the input is over, the servo is known, and the estimate agrees with the manoeuvres before.
@@ -60,7 +60,7 @@ class Settling:
         Parameters
         ----------
         aircraft
-            The crew's aircraft, with a servo's lag that earlier manoeuvres told.
+            The crew's aircraft, with the servo's lag from earlier manoeuvres.
         """
         if flying is None:
             self._number, self._settled = None, None

@@ -105,5 +105,9 @@ def _moving_air(estimated: Estimate, gust_rad: float) -> str:
     size = f"{math.degrees(gust_rad):.1f} deg"
     if estimated.airspeed_m_s is not None:
         size += f" ({gust_rad * estimated.airspeed_m_s:.1f} m/s)"
-    how = "allowed for by filter error" if estimated.filtered else "filter error failed, output error stands"
+    how = (
+        "filter error takes this into account"
+        if estimated.filtered
+        else "filter error failed, so output error is used"
+    )
     return f"moving air, gusts of {size}: {how}"

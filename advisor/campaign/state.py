@@ -48,7 +48,9 @@ class AxisState(Generic[E]):
     maneuvers: tuple[JudgedManeuver, ...]
     flight_test: FlightTestVerdict
     model: E | None
-    """Joint estimate of the newest accepted manoeuvres in flight, of all accepted ones after the end."""
+    """Joint estimate. In flight it uses the newest accepted manoeuvres, after the end all accepted
+    manoeuvres.
+    """
     estimate_from: tuple[int, ...] = ()
     """Numbers of the manoeuvres in the joint estimate ``model``."""
 
@@ -214,7 +216,7 @@ class CampaignState:
 
     @property
     def tested_sideways(self) -> LateralState | None:
-        """The lateral state if the test of roll and yaw has begun, and that of the shown axis has not."""
+        """The lateral state if the test of roll and yaw has begun, and the test of the shown axis has not."""
         side = self.lateral
         return None if side is None or self.axes[self.shown].has_begun or not side.has_begun else side
 

@@ -124,7 +124,8 @@ def _remedy(flown: CandidateManeuver) -> str:
 def best_input(
     conditions: Conditions, measured_std: FloatArray, distance_to_stop: Callable[[FloatArray], float]
 ) -> Choice | None:
-    """Return the input whose expected errors leave the least ``distance_to_stop``; None without a prediction.
+    """Return the input after which the distance to the stop is expected to be least; None without a
+    prediction.
 
     Parameters
     ----------
@@ -145,7 +146,7 @@ def best_input(
 
 
 def _options(conditions: Conditions) -> Iterator[Choice]:
-    """Yield inputs in the direction that the last manoeuvre did not have, with their expected errors."""
+    """Yield inputs in the direction opposite to the last manoeuvre's, with their expected errors."""
     frequency = ShortPeriod(conditions.theta).natural_frequency
     if not np.isfinite(frequency) or frequency <= 0.0:
         return

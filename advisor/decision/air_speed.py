@@ -12,7 +12,9 @@ from advisor.words.quantiles import NORMAL_95
 from advisor.words.vehicle_time import clock
 
 FASTEST_CHANGE_M_S2 = 2.0 * GRAVITY_M_S2
-"""Largest change of the air speed by flying, m/s²: gravity along the path, and a drag of the weight."""
+"""Largest rate of change of the air speed in flight, m/s². The value is gravity along the path, and a drag as
+large as the weight.
+"""
 _SIDE = 3
 """Number of samples on each side of a jump, whose medians are compared. One wild sample is no jump."""
 
@@ -46,7 +48,7 @@ def leaping_speed(maneuver: Maneuver, limit: float) -> list[Reason]:
 
 
 def is_speed_carried(maneuver: Maneuver) -> bool:
-    """Return whether the air speed is the integral of the accelerometers, with a small error everywhere.
+    """Return whether the integral of the accelerometers gives the air speed with a small error throughout.
 
     The sensor gives level and drift of the integral. Their error grows with the distance from the sensor's
     samples. The sensor is filtered: its error is renewed once in ``LONGEST_LAG_S``, not with each sample.

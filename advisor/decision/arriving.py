@@ -1,4 +1,4 @@
-"""Word ENOUGH while an input is flown: the error of each derivative with the information that has arrived."""
+"""The word ENOUGH during an input, and the error of each derivative with the information so far."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,9 +1,9 @@
 """Information that arrives while an input is flown, and the error of each derivative with this information.
 
 S holds the sensitivities of the outputs by the derivatives, at the joint estimate of the manoeuvres before.
-The samples up to a moment add the information M = Σ SᵀS/σ². The record's initial states and constants take
-their share of M away. Coloured noise lowers M as it has widened the joint estimate. With P for the joint
-covariance the covariance becomes (P⁻¹ + M)⁻¹ (Kay, Estimation Theory, 1993, ch. 8).
+The samples up to a moment add the information M = Σ SᵀS/σ². The record's unknown initial states and constants
+reduce M. Coloured noise reduces M by the factor by which it has widened the joint estimate. With P for the
+joint covariance the covariance becomes (P⁻¹ + M)⁻¹ (Kay, Estimation Theory, 1993, ch. 8).
 """
 
 from collections.abc import Mapping, Sequence, Set
@@ -77,7 +77,9 @@ def _after(
     columns: Mapping[str, FloatArray],
     judged: Sequence[str],
 ) -> dict[str, float]:
-    """Return the errors of the judged derivatives that are known before, with the new information."""
+    """Return the errors, with the new information, of the judged derivatives that were known before the
+    input.
+    """
     known = [
         k for k, name in enumerate(model.names) if model.covariance[k, k] > 0.0 and not name.endswith("_0")
     ]

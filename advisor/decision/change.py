@@ -114,7 +114,9 @@ def _widening(before: Pooled, after: Pooled) -> float:
 
 
 def _back_to_normal(before: Pooled, after: Sequence[Posterior]) -> bool:
-    """Return whether the newest manoeuvre agrees with those before the change: then those after were bad."""
+    """Return whether the newest manoeuvre agrees with the manoeuvres before the change. If so, the manoeuvres
+    between were bad.
+    """
     if len(after) < 2:
         return False
     with_old, dof = disagreement(before.shared, after[-1].shared)

@@ -10,7 +10,7 @@ from advisor.decision.heard import Heard, first_stop, spoken_after, stays
 from advisor.decision.verdict import FlightTestVerdict, NextInput, Remaining, RuleProgress
 
 ENOUGH = NextInput("no further manoeuvre needed", Remaining(0, 0))
-"""Advice after a stop that no later data deny."""
+"""Advice after a stop that no later data contradict."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ def concluded(
 
 
 def _open_now(criterion: Criterion) -> str:
-    """Return what the criterion lacks now, as a clause."""
+    """Return a clause on the part of the criterion that does not hold now."""
     return criterion.sentence(False).removeprefix("CONTINUE: ")
 
 
@@ -89,7 +89,7 @@ def _since(criterion: Criterion) -> str:
 
 
 def _denied(criterion: Criterion, heard: Sequence[Heard]) -> str:
-    """Return a clause about a stop that is taken back, with the reason."""
+    """Return a clause about a withdrawn stop, with the reason."""
     stopped_at = criterion.chosen.stopped_at
     if first_stop(heard, criterion.rule) is not None:
         return f"a manoeuvre behind the stop after manoeuvre {stopped_at} does not count any more"

@@ -111,7 +111,9 @@ def _instruments(estimate: Estimate, servo: Servo) -> Instruments:
 
 
 def _excursion(flown: CandidateManeuver, estimate: Estimate) -> float:
-    """Return the largest change of α from its initial value, rad, fitted or, unmeasured, predicted."""
+    """Return the largest change of α from its initial value, rad, from the fit, or from a prediction without
+    a measured α.
+    """
     if "alpha" not in estimate.fits[0]:
         response = response_to(flown, estimate.theta[list(DERIVATIVES)], None)
         return LINEAR_RAD if response is None else float(response.peak[0])

@@ -1,8 +1,8 @@
 """Consistency of manoeuvres: outliers, and the factor by which scatter widens the intervals.
 
-A manoeuvre's interval alone contains no error of the model, which only several manoeuvres show. The scatter
-of the other manoeuvres is therefore the scale of every distance. The ratio of a distance to an estimated
-scale follows Fisher's F distribution.
+The interval of a single manoeuvre does not include the model's error, which only several manoeuvres show. The
+scatter of the other manoeuvres is therefore the scale of every distance. The ratio of a distance to an
+estimated scale follows Fisher's F distribution.
 """
 
 from collections.abc import Mapping, Sequence
@@ -135,7 +135,9 @@ def _odd(posteriors: Sequence[Posterior], plan: CampaignPlan) -> dict[int, Outli
 
 
 def _apart(candidate: Posterior, others: Pooled, plan: CampaignPlan) -> Outlier | None:
-    """Return the distance of a manoeuvre that differs significantly and in size; None for any other one."""
+    """Return the distance of a manoeuvre that differs significantly and in size; None for any other
+    manoeuvre.
+    """
     shared, scatter, freedom = others
     distance, dof = disagreement(shared, candidate.shared)
     if dof < 1 or freedom < 1:

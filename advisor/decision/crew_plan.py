@@ -6,7 +6,7 @@ from math import inf
 from advisor.decision.verdict import FlightTestVerdict, NextInput
 
 _IS = {"pitch": "is", "roll and yaw": "are"}
-"""Verb for each axis in a sentence."""
+"""Verb that follows the name of each axis in a sentence."""
 
 
 @dataclass(frozen=True, slots=True)

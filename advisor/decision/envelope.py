@@ -24,7 +24,9 @@ SAMPLES_PER_PERIOD = 8.0
 """Least number of samples of elevator and pitch rate per natural period. An aircraft of 2 rad/s needs 2.6 Hz,
 one of 9 rad/s needs 11 Hz. With fewer samples the input is unknown, and no interval contains that error."""
 _LONGEST_GAP = (0.3, 0.2, 1.0)
-"""Longest gap in a channel: a share of the natural period, with its least and greatest value in s."""
+"""Longest gap in a channel, as a fraction of the natural period, and the least and greatest value of this
+limit, s.
+"""
 _SHORTEST_FREE = 0.75
 """Least duration of the free response, in natural periods. The damping can be determined only from most of
 one oscillation."""
@@ -241,7 +243,9 @@ def moved_at_once(maneuver: Maneuver) -> bool:
 
 
 def follows_motion(maneuver: Maneuver, control: str, others: Sequence[str]) -> list[Reason]:
-    """Return a reason if a control moves far less than another one, and so only follows the motion."""
+    """Return a reason if a control moves far less than another control, so that it only follows
+    the motion.
+    """
     moved, *beside = (_range_deg(maneuver, name) for name in (control, *others))
     larger = others[int(np.argmax(beside))]
     if moved >= LEAST_PART * max(beside):

@@ -21,7 +21,7 @@ frequency of 4 rad/s, which lies between small aircraft and jets."""
 _SHORTEST_S, _LONGEST_S = 0.1, 3.0
 """Shortest and longest time unit, s, that is matched to an aircraft."""
 _LEAST_AILERON_S = 0.5
-"""Shortest step of the aileron, s. Shorter steps leave a fast roll no bank to show."""
+"""Shortest step of the aileron, s. Shorter steps of a fast roll give no visible bank."""
 _STIFFNESS = ("Z_alpha", "M_alpha", "M_q")
 """Derivatives of pitch without which a model has no natural frequency."""
 
@@ -62,7 +62,7 @@ def _knows_its_stiffness(estimate: Estimate) -> bool:
 
 
 def side_unit_s(control: str, model: Mapping[str, float], airspeed_m_s: float | None) -> float | None:
-    """Return the step of a doublet by the file's model, s; None where the model does not tell it.
+    """Return the step of a doublet by the file's model, s; None if the model does not determine the step.
 
     The aileron's step is two time constants of the roll. The rudder's step is half a Dutch roll.
     """

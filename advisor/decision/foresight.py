@@ -77,7 +77,7 @@ def expect(theta: FloatArray, elevator: Signal, instruments: Instruments) -> Exp
 
 
 def unmeasured(end_s: float, step_s: float) -> Signal:
-    """Return stamps and zero values for an output that is not flown yet."""
+    """Return stamps and zero values for an output of an input that is not flown yet."""
     t = np.arange(0.0, end_s, step_s)
     return Signal(t, np.zeros_like(t))
 

@@ -72,10 +72,10 @@ def as_heard(progress: RuleProgress, rule: str, heard: Sequence[Heard]) -> RuleP
 def spoken_after(
     before: Heard | None, forecast: Remaining | None, rule: str, now: float | None
 ) -> Remaining | None:
-    """Return the forecast to speak: a number whenever there was one before.
+    """Return the forecast to announce. Once a number was announced, every later forecast has a number.
 
-    A forecast is a distribution over the manoeuvres that are open. A further manoeuvre narrows it, or the
-    forecast says why it does not.
+    A forecast is a distribution over the number of manoeuvres still needed. A further manoeuvre narrows the
+    distribution, or the forecast gives the reason why not.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def spoken_after(
     expected = max(last.median - 1, 1)
     most = None if last.p90 is None else max(last.p90 - 1, 1)
     if forecast is None:
-        return Remaining(expected, most, "the newest manoeuvre tells no other number")
+        return Remaining(expected, most, "the newest manoeuvre does not change the number")
     if forecast.median is not None and (most is None or _most(forecast) <= most):
         return forecast
     return replace(forecast, why=_why(before.percent.get(rule), now))
@@ -106,7 +106,7 @@ def _most(forecast: Remaining) -> float:
 def _why(before: float | None, now: float | None) -> str:
     """Return the reason for a forecast that does not narrow, from the criterion before and now, per cent."""
     if before is None or now is None or now <= before:
-        return "the newest manoeuvre taught less than foretold"
+        return "the newest manoeuvre gave less information than forecast"
     return f"the criterion rose from {before:.0f} to {now:.0f} %"
 
 

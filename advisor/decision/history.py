@@ -1,4 +1,4 @@
-"""Input of the rules: only the manoeuvres of a campaign, in the order flown.
+"""Input of the rules, which consists of the manoeuvres of a campaign in the order flown.
 
 Every rule depends on the whole history, so the exclusion of a manoeuvre changes later decisions. The cache
 between decisions (``course``) changes no decision.

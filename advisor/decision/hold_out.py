@@ -15,8 +15,9 @@ from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 FEWEST = 2
-"""Least number of earlier manoeuvres for a prediction. The errors of a single manoeuvre are not confirmed by
-another."""
+"""Least number of earlier manoeuvres for a prediction. No other manoeuvre confirms the errors of a single
+one.
+"""
 
 
 @dataclass(frozen=True, slots=True)

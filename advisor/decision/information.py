@@ -72,9 +72,9 @@ class Knowledge:
     def predicted(self) -> bool:
         """Whether the earlier manoeuvres predicted the newest manoeuvre.
 
-        The first condition is an error of the predicted response within the tolerance. Such a small model
-        error does not delay the stop. The other condition is an error that chance explains, with a prediction
-        more precise than the tolerance. An imprecise prediction would agree with any response.
+        A prediction holds if its error is within the tolerance, because so small a model error does not delay
+        the stop. It also holds if chance explains the error and the prediction is more precise than the
+        tolerance. An imprecise prediction would agree with any response.
         """
         unsure = self.foretold_percent >= self.tolerance_percent
         return self.missed_percent < self.tolerance_percent or (self.surprise < 1.0 and not unsure)
@@ -177,7 +177,7 @@ def sentence(so_far: Knowledge, stop: bool) -> str:
     if so_far.percent >= 100.0:
         return f"CONTINUE: {_held_back(so_far)}."
     if np.isnan(so_far.surprise):
-        return "CONTINUE: one manoeuvre cannot show its own error; one more will, by its prediction."
+        return "CONTINUE: one manoeuvre cannot show its own error; the prediction of one more will show it."
     off = "" if np.isnan(so_far.missed_percent) else f" (off by {so_far.missed_percent:.0f} % of its peak)"
     return (
         f"CONTINUE: the newest manoeuvre was not predicted{off}, so one of them has a larger error than "

@@ -121,9 +121,9 @@ def _why_accepted(flown: CandidateManeuver, rule: Rule, result: RuleResult) -> s
     if isinstance(flown.estimate, NoEstimate):
         return "good manoeuvre"
     if rule == "information":
-        compared = "it adds to what is known"
+        compared = "it adds information"
     elif result.limit is None:
-        compared = "the first to compare others with"
+        compared = "the first one, with which others are compared"
     else:
         compared = _of_limit(flown.estimate.cost, result.limit)
     return f"good manoeuvre, {_explained(flown.estimate, flown.responses)}{compared}"
@@ -175,7 +175,7 @@ def _only_larger(estimate: Estimate, larger: Larger, limit: float) -> Reason:
     return Reason("cost", text, estimate.cost, limit)
 
 
-_LESS_WELL = "less well than the last accepted one"
+_LESS_WELL = "worse than for the last accepted manoeuvre"
 
 
 def _another_try(flown: CandidateManeuver, estimate: Estimate, rule: Rule) -> str:
@@ -185,5 +185,5 @@ def _another_try(flown: CandidateManeuver, estimate: Estimate, rule: Rule) -> st
     if rule == "separate":
         return "fly it again"
     if any(fit.lag1 > COLOURED for fits in estimate.fits for fit in fits.values()):
-        return "fly it again from steady flight, with no larger steps than then"
+        return "fly it again from steady flight, with steps no larger than in that manoeuvre"
     return "fly it again; if the noise stays as large, check the instruments"

@@ -1,4 +1,5 @@
-"""A manoeuvre that is refused for its cost alone, although larger than earlier ones and predicted by them.
+"""A manoeuvre that is refused only for its cost, although it is larger than earlier manoeuvres and they
+predicted it.
 
 The cost J = det R does not account for the size of the motion. The unexplained part of a response grows with
 the motion. In two channels the cost doubles if each residual variance grows by 1.41, that is for a motion
@@ -29,7 +30,8 @@ class Larger:
 def larger_and_agreeing(
     history: Sequence[CandidateManeuver], accepted: Sequence[bool], course: CriterionCourse
 ) -> Larger | None:
-    """Return the newest manoeuvre's relative size if it is larger than the limit-setting one and predicted.
+    """Return the newest manoeuvre's relative size, if it is larger than the manoeuvre that set the limit, and
+    was predicted.
 
     Parameters
     ----------

@@ -71,7 +71,7 @@ def objections_to(
 def bias_by(term: FloatArray, state: str, linear: LinearMotion, estimate: Estimate) -> Bias | None:
     """Return the bias due to an omitted term.
 
-    None is returned for a constant term, for too short a fit, and for a model whose response overflows. A fit
+    Return None for a constant term, for too short a fit, and for a model whose response overflows. A fit
     needs two samples for each parameter.
 
     Parameters
@@ -94,7 +94,9 @@ def bias_by(term: FloatArray, state: str, linear: LinearMotion, estimate: Estima
 
 
 def _regressed(outputs: list[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, float, float]:
-    """Return the known columns' share of the last column, its coefficient, and that over its std."""
+    """Return the share of the last column that the known columns explain, the column's coefficient, and this
+    coefficient over its std.
+    """
     rows = np.vstack([rows for rows, _ in outputs])
     residual = np.concatenate([left for _, left in outputs])
     size = np.maximum(np.linalg.norm(rows, axis=0), 1e-300)

@@ -103,8 +103,9 @@ def posteriors_at_one_speed(estimates: Sequence[Estimate]) -> list[Posterior]:
 
 
 def _of_data(estimate: Estimate, covariance: FloatArray) -> FloatArray:
-    """Return a covariance (p, p) in which parameters that only a prior tells are unknown, and those that the
-    user holds are known."""
+    """Return a covariance (p, p) in which parameters from a prior alone are unknown, and parameters that the
+    user holds are known.
+    """
     unknown = [estimate.names.index(name) for name in estimate.of_prior]
     if unknown:
         covariance = covariance.copy()

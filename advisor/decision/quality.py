@@ -166,8 +166,8 @@ def _stands(x: Examined, fits: Mapping[str, ChannelFit]) -> bool:
 def _too_gentle(x: Examined, fits: Mapping[str, ChannelFit], by_noise: bool = True) -> list[Reason]:
     """Return a reason if the response hardly exceeds the noise, in any output and for every control.
 
-    The response to several controls at once has no peak of one control. Then the precision of the estimate
-    answers.
+    The response to several controls at once has no peak of one control. In this case the precision of the
+    estimate decides.
     """
     if moved_at_once(x.maneuver) and is_informed(x):
         return []
@@ -197,7 +197,7 @@ def _badly_explained(x: Examined, estimate: Estimate, first: str) -> list[Reason
     Parameters
     ----------
     first
-        First remedy: smaller steps, but not for a response that hardly exceeds its noise.
+        The first remedy is smaller steps, unless the response hardly exceeds its noise.
     """
     # In moving air the angle of attack of a vane shows the air, which no model of the aircraft explains.
     reasons = []
@@ -230,7 +230,7 @@ def _poor(x: Examined, estimate: Estimate) -> list[Reason]:
     if estimate.gust_rad is not None:
         code, cure = "turbulence", f"fly it in calmer air, or with about {more} the {widest}"
     elif x.maneuver.span.kind == "pulse":
-        cure = "fly a 3-2-1-1: this input tells too little of the response"
+        cure = "fly a 3-2-1-1: this input shows too little of the response"
     text = f"the {x.rates[widest].said} is predicted to {{}} % of its peak only (limit {{}}); {cure}"
     return above(code, value, WIDEST_PREDICTION_PERCENT, text)
 

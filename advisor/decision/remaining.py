@@ -50,8 +50,8 @@ _DRAWS = 400
 
 
 def by_information(knowledge: Knowledge, next_covariance: FloatArray, odds: Odds) -> Remaining:
-    """Return the simulated number of further manoeuvres until every tolerance is met and the newest one is
-    predicted.
+    """Return the simulated number of further manoeuvres until every tolerance is met and the newest manoeuvre
+    is predicted.
 
     Parameters
     ----------
@@ -86,7 +86,8 @@ def until_usable(needed: FloatArray, usable: Share) -> Remaining:
 def variance_scale(freedom: int) -> FloatArray:
     """Return draws of the true variance over the stated one, shape (draws,), from a scaled inverse χ².
 
-    A few manoeuvres show the scatter and the model's error badly, so that a stated variance is an estimate.
+    A few manoeuvres determine the scatter and the model's error only roughly, so the stated variance is
+    itself an estimate.
 
     Parameters
     ----------

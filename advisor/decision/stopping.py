@@ -182,7 +182,9 @@ def progress(
 
 
 def _weighed(history: Sequence[CandidateManeuver], rule: Rule, plan: CampaignPlan) -> list[bool]:
-    """Return whether each manoeuvre counts in a criterion; ``information`` uses all usable ones."""
+    """Return whether each manoeuvre is used in a criterion. The rule ``information`` uses all usable
+    manoeuvres.
+    """
     if rule == "information":
         return [flown.usable is not None for flown in history]
     return [result.accepted for result in results_of(history, rule, plan)]

@@ -143,7 +143,7 @@ class Remaining:
     median: int | None
     p90: int | None
     why: str = ""
-    """Reason why the forecast does not narrow the one before; empty where it does."""
+    """Reason why the forecast is no narrower than the last one; empty if it is."""
 
     @property
     def spoken(self) -> str:

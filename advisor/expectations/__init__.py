@@ -1,1 +1,3 @@
-"""A flight as a test: the expectations of a crew, the results of a log, and the outcomes."""
+"""Comparison of a flight with expectations: the expectations of a crew, the results of a log, and the
+outcomes.
+"""

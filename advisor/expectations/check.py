@@ -1,4 +1,6 @@
-"""Expectations against a flight: for each one what is asked, what the flight shows, and whether it holds."""
+"""Comparison of expectations with a flight. Each outcome holds the expectation, the flight's result, and
+whether the expectation holds.
+"""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -20,7 +22,7 @@ _ORIGINS = {"number": "", "model": " (model)", "log": " (log)"}
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """One expectation, and what a flight shows of it."""
+    """One expectation, and the result of a flight for it."""
 
     name: str
     """Path of the expectation in its file: ``derivatives.M_alpha``."""
@@ -41,7 +43,7 @@ def check(
     aircraft
         Aircraft whose model states the values of ``of: model``.
     other
-        What the log shows that states the values of ``of: log``; None without such a log.
+        Results of the log that states the values of ``of: log``; None without such a log.
     """
     return [
         *_counts(expected, flown),

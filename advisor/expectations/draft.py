@@ -1,4 +1,4 @@
-"""First expectations file from a flight. Its tolerances are those within which a second flight lies."""
+"""First expectations file from a flight. A second flight lies within the tolerances of this file."""
 
 from collections.abc import Iterator, Mapping
 from math import isfinite, sqrt
@@ -14,7 +14,7 @@ from advisor.words.printable import printable
 _ALL_HOLD = 0.95
 """Probability with which every number of a second flight of the same aircraft lies within its tolerance."""
 _OF_TRIM = ("Z_0", "M_0")
-"""Parameters of the trim, which another flight at another speed or weight does not repeat."""
+"""Parameters of the trim, which differ in a flight at another speed or weight."""
 _WORST_ASKED = 3
 """Worst level that a file can ask for."""
 

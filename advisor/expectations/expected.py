@@ -10,7 +10,7 @@ from advisor.model.mil_f_8785c import Category
 from advisor.words.axes import AxisName
 
 Origin = Literal["number", "model", "log"]
-"""Where an expected value comes from: the expectations file, the aircraft file's model, or another log."""
+"""Source of an expected value: the expectations file, the aircraft file's model, or another log."""
 SECTIONS = (
     "log", "accepted", "complete", "derivatives", "modes", "levels", "gap", "longest_pause_s", "alarms"
 )  # fmt: skip

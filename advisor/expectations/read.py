@@ -21,7 +21,7 @@ _TOLERANCES = ("within", "within_percent", "known_to")
 _LEVELS = 3
 """Worst level of flying qualities in MIL-F-8785C."""
 _MOST_LISTED = 20
-"""Largest number of listed mistakes. A user with more mistakes has repeated one."""
+"""Largest number of listed mistakes. With more mistakes, a user has repeated the same one."""
 _MEND = "To write a first file from a log, type: advisor expect LOG new.yaml --write."
 
 
@@ -77,7 +77,7 @@ class _Reader:
         if not self.mistakes and found == Expectations(log=found.log):
             self.mistakes.append("file: expects nothing; give at least one of " + ", ".join(SECTIONS[1:]))
         if found.asks_of_log and "log" not in sections:
-            self.mistakes.append("log: is missing, and a value is expected to be that of a log")
+            self.mistakes.append("log: is missing, but an expected value refers to a log")
         return found
 
     def _known(self, path: str, given: Any, names: Sequence[str]) -> Mapping[str, Any]:
@@ -176,7 +176,9 @@ class _Reader:
         if origin == "model":
             self._stated(path)
         if value == 0.0 and percent is not None and within is None:
-            self.mistakes.append(f"{path}.within_percent: allows nothing around 0; give within")
+            self.mistakes.append(
+                f"{path}.within_percent: gives no tolerance for an expected value of 0; give within"
+            )
         return Near(origin=origin, value=value, within=within, within_percent=percent, known_to=known_to)
 
     def _stated(self, path: str) -> None:

@@ -1,7 +1,7 @@
 """The model of any axis solved on the union of all stamps, with exact sensitivities.
 
 Over each step the states are a series (``axis_step``). The inputs are linear (or held) between their stamps.
-Speed, attitude and angle of attack are constant over a step. The short period has a closed form of its own
+Speed, attitude and angle of attack are constant over a step. The short period has a separate closed form
 (``response``).
 """
 

@@ -2,9 +2,9 @@
 
 *Interpolate the model, not the data.* The input is linear (or held) between its own stamps. Between two
 neighbouring stamps of any channel the solution is therefore known in closed form (``transition``), and each
-output is read off exactly where it was measured. Gaps and irregular sampling need no special case.
+output is evaluated exactly at its stamps. Gaps and irregular sampling need no special case.
 
-Parameters of one manoeuvre, in this order: what all share, ``SHARED``, then its own
+Parameters of one manoeuvre, in this order: the shared parameters ``SHARED``, then the manoeuvre's own
 ``LOCAL``. With the air speed ratio s = V/V_ref of a step, the model is
 
     α̇ = s·(Z_0 + Z_α·α + Z_δe·δe) + (1 + Z_q)·q + g(t)

@@ -1,6 +1,6 @@
 """One step of the short period in closed form, with its sensitivities, and the specific force.
 
-The arguments are scalars and rows, because to hand a grid over costs as much as a step.
+The arguments are scalars and rows, because passing a grid costs as much time as a step.
 """
 
 import math

@@ -15,7 +15,7 @@ class Aside(Generic[Made]):
     Parameters
     ----------
     in_thread
-        Whether other threads do the jobs. False: each job is done before ``do`` returns.
+        Whether another thread does the jobs. If false, each job is done before ``do`` returns.
     """
 
     def __init__(self, in_thread: bool) -> None:
@@ -27,7 +27,7 @@ class Aside(Generic[Made]):
 
     @property
     def age_s(self) -> float:
-        """Time since the begin of the job that is being done, s; 0 where none is."""
+        """Time since the begin of the present job, s; 0 without a job."""
         begun_s = self._begun_s
         return 0.0 if begun_s is None else monotonic() - begun_s
 
@@ -61,7 +61,7 @@ class Aside(Generic[Made]):
         Raises
         ------
         BaseException
-            What a job has raised. The jobs behind it are not done.
+            The error of a job. Later jobs are not done.
         """
         if self._failure is not None:
             raise self._failure

@@ -1,4 +1,4 @@
-"""Files that are always complete, old or new, even after a power failure or on a full disk."""
+"""Files that are always complete, with old or new content, even after a power failure or on a full disk."""
 
 import os
 import secrets
@@ -12,8 +12,8 @@ _ONLY_NEW |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 def write_atomically(path: Path, content: str | bytes) -> None:
     """Write a file under a temporary name, then rename the file; a text is written in UTF-8.
 
-    In a folder that others can write to, nobody can foresee the temporary name, and a link that lies there
-    is not followed. A link of the final name is replaced, and its target stays as it is.
+    The temporary name is random, so that nobody can prepare a link of that name in a shared folder. A link
+    with the final name is replaced, and its target does not change.
 
     Raises
     ------

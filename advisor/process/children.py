@@ -40,7 +40,7 @@ def spawning() -> SpawnContext:
 def keep_current_folder_out() -> None:
     """Prevent child processes from searching for modules in the current folder.
 
-    `multiprocessing` passes on neither an option nor an environment of our own, but children inherit this
-    process's environment (Python, ``PYTHONSAFEPATH``).
+    `multiprocessing` passes neither an option nor a changed environment to its children, but children inherit
+    this process's environment (Python, ``PYTHONSAFEPATH``).
     """
     os.environ["PYTHONSAFEPATH"] = "1"

@@ -3,7 +3,8 @@
 Numba freezes into a kernel's machine code the functions that the kernel calls and the constants that it
 reads. Numba's own cache depends only on the text of the kernel's file, so that stale machine code would
 survive a change elsewhere. The key here is the text of the kernel's file and of every module of the package
-that it imports, directly or through others. A contract of imports (``pyproject.toml``) keeps these few.
+that it imports, directly or through others. A contract of imports (``pyproject.toml``) keeps the number of
+these modules small.
 """
 
 import ast
@@ -60,12 +61,12 @@ _CacheFile: Any = caching.IndexDataCacheFile
 
 
 class _Kept(_CacheFile):  # type: ignore[misc]
-    """Machine code on disk. A full disk keeps none, and a file that is cut off counts as none."""
+    """Machine code on disk. A full disk keeps no code, and a truncated file counts as missing."""
 
     def save(self, key: Any, data: Any) -> None:
-        """Save the code before the index that calls the code fresh.
+        """Save the code before the index that marks the code as current.
 
-        Numba writes the index first. A disk that is full in between would leave old code under a fresh index.
+        Numba writes the index first. A disk that fills in between would leave old code under a new index.
         """
         kept = self._load_index()
         free = (self._data_name(n) for n in range(1, len(kept) + 2))

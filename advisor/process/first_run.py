@@ -38,7 +38,7 @@ def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
     Parameters
     ----------
     stages
-        Kernels to compile. Default: all that commands call.
+        Kernels to compile. Default: all kernels that commands call.
     """
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return
@@ -51,7 +51,7 @@ def compile_once(tell: Tell, stages: Stages = KERNELS) -> None:
         run()
     if mark is None:
         tell(
-            "The compiled code cannot be kept, so every start compiles anew. "
+            "The compiled code cannot be kept, so every start compiles again. "
             "Set NUMBA_CACHE_DIR to a folder that you may write to."
         )
         return

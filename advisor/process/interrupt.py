@@ -1,4 +1,5 @@
-"""Ctrl-C and other signals: the program ends with one sentence, immediately or after closing its files.
+"""Handling of Ctrl-C and other signals. The program ends with one sentence, immediately or after closing its
+files.
 
 A signal's exception is printed and lost if a library is calling back from C. Outside the advisor's own code
 the exception prints a traceback. Ctrl-C ends the process. While a recording or a screen is open, a signal

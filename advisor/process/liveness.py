@@ -19,9 +19,10 @@ ENDED_AFTER_S = 20.0
 """Age of the newest report, s, above which a process is ended and started again. The longest estimate in
 flight takes a tenth of this time. The limit doubles with each restart, so that a slow computer can finish."""
 START_S = 60.0
-"""Longest time to a process's first report, s; a later process is ended. Libraries load within 10 s, and
-functions without stored machine code are compiled within this time. A patient watch waits equally long for a
-report."""
+"""Longest time to a process's first report, s. A process without a report by then is ended. Libraries load
+within 10 s, and functions without stored machine code are compiled within this time. A patient watch waits
+equally long for a report.
+"""
 _LOOK_EVERY_S = 0.5
 
 
@@ -46,8 +47,8 @@ class Watch:
     Parameters
     ----------
     tell
-        Called with the message's age, s, at every check at which the newest message is old. The calls come
-        from a thread of the watch.
+        Function that receives the message's age, s, at every check at which the newest message is old. The
+        calls come from a thread of the watch.
     earlier_ends
         Number of processes that were ended for the same work before. None: this process is never ended.
     """

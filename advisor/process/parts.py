@@ -37,7 +37,7 @@ class FailedPart:
     def problem(self) -> Problem:
         """Sentence on the missing part, with the user's next step."""
         text = f"A fault of the advisor, not yours, ended this part: {self.part} ({self.reason})."
-        fix = "The rest of the answer stands. Set ADVISOR_TRACEBACK=1 to see where, and please report it."
+        fix = "The rest of the answer is valid. Set ADVISOR_TRACEBACK=1 to see where, and please report it."
         return Problem(INTERNAL, text, fix)
 
     @property
@@ -74,7 +74,7 @@ class Parts:
         return tuple(self._failed.values())
 
     def kept(self, part: str, work: Callable[[], _Made | None]) -> _Made | None:
-        """Return what ``work`` makes, if anything; None where a fault ends the part."""
+        """Return the result of ``work``; None if a fault ends the part."""
         return self.make(part, work, lambda failed: None)
 
     def make(self, part: str, work: Callable[[], _Made], instead: Callable[[FailedPart], _Made]) -> _Made:

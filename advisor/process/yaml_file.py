@@ -11,7 +11,9 @@ from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError
 
 _MOST_BYTES = 256 * 1024
-"""Largest file, bytes. A settings file has a few kB, and the limit keeps the reading time below a second."""
+"""Largest file, bytes. Largest size of a YAML file, bytes. A settings file has a few kB, and the limit keeps
+the reading time below a second.
+"""
 _MOST_VALUES = 20_000
 """Largest number of values, lists and sections together. A file with a thousand decisions by hand on one log
 has 8,000 values. A check of ten times as many values would take seconds."""

@@ -1,1 +1,1 @@
-"""A live or replayed flight without a screen: its source, its conductor, and its state for any face."""
+"""A live or replayed flight without a screen: its source, its conductor, and its state for any display."""

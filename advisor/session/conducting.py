@@ -24,11 +24,11 @@ class SessionReport:
     log: tuple[str, ...]
     """Sentences of the event log, oldest first."""
     problems: tuple[Problem, ...] = ()
-    """Reasons for which no manoeuvre can be judged, until the first one is judged."""
+    """Reasons why no manoeuvre can be judged; empty after the first verdict."""
 
     def grown_old(self, who: str, age_s: float) -> "SessionReport":
         """Return the report with a warning of its age."""
-        sentence = f"{who} NOT ANSWERING for {age_s:.0f} s: what stands below is old"
+        sentence = f"{who} NOT ANSWERING for {age_s:.0f} s: the values below are old"
         health = replace(self.health, condition="stale", sentence=sentence, alarm=sentence)
         return replace(self, health=health)
 
@@ -66,11 +66,11 @@ class Conducting(ABC):
         self.ask("order", order)
 
     def jump(self, number: int) -> None:
-        """Play on to just before a manoeuvre, or play to it from the beginning."""
+        """Play forward to just before a manoeuvre, or play there from the beginning."""
         self.ask("jump", number)
 
     def seek(self, position_s: float) -> None:
-        """Play on to a position of the replay, s, or play to it from the beginning."""
+        """Play forward to a position of the replay, s, or play there from the beginning."""
         self.ask("seek", position_s)
 
     def play(self, tempo: Tempo) -> None:
@@ -137,7 +137,7 @@ class Changes:
     """Fields of a report whose object differs from the earlier report's.
 
     The samples of a manoeuvre are sent once instead of with every report. The receiver keeps the identical
-    objects of unchanged fields. By their identity, panes know what needs no painting.
+    objects of unchanged fields. Panes recognise unchanged fields by identity and do not paint them again.
     """
 
     report: dict[str, Any]

@@ -102,9 +102,9 @@ def renewed(health: LinkHealth, link: LinkStatistics) -> LinkHealth:
     Parameters
     ----------
     health
-        Health as the reader of the records knew it, which holds the decoder's counts.
+        Health from the reader of the records, which holds the decoder's counts.
     link
-        Counts that the process of the link has told since.
+        Newer counts from the process of the link.
     """
     decoded = health.link or LinkStatistics()
     link = replace(link, **{name: getattr(decoded, name) for name in _DECODED})
@@ -122,9 +122,9 @@ def _health(link: LinkStatistics, read_to_s: float) -> LinkHealth:
 
 def _glance(link: LinkStatistics) -> tuple[Condition, str]:
     if link.unanswered_s >= OLD_AFTER_S:
-        return "stale", f"LINK NOT ANSWERING for {link.unanswered_s:.0f} s: what stands below is old"
+        return "stale", f"LINK NOT ANSWERING for {link.unanswered_s:.0f} s: the values below are old"
     if not link.connected:
-        return "lost", "The connection is cut; it is opened again as soon as it can be."
+        return "lost", "The connection is cut; it is opened again as soon as possible."
     if link.vehicle is None:
         return "waiting", "No vehicle heard yet; check that it sends to this address."
     if link.silent_s > SILENT_S:

@@ -52,10 +52,11 @@ class ConductorTask:
 class RemoteConductor(Conducting):
     """A `Conducting` that sends requests to another process, and receives its reports.
 
-    Where the source can be read again from its beginning, the death of the other process ends nothing. The
-    process is restarted, and the last report stands until the new process has caught up. A process that hangs
-    is ended and restarted likewise, and meanwhile the last report is passed on with its age. The health of a
-    link comes directly from the process of the link, so that a slow estimate never makes it old.
+    If the source can be read again from its beginning, the death of the other process does not end the
+    campaign. The process is restarted, and the last report stays until the new process has caught up. A
+    process that hangs is ended and restarted as well, and meanwhile the last report is shown with its age.
+    The health of a link comes directly from the process of the link, so that a slow estimate never makes it
+    old.
 
     Parameters
     ----------
@@ -84,7 +85,7 @@ class RemoteConductor(Conducting):
         Raises
         ------
         UnusableInputError
-            The input can never serve. Any other error of the other process is raised as well.
+            The input can never be used. Any other error of the other process is raised as well.
         RuntimeError
             The process was ended from outside, and the source cannot be read again.
         """
@@ -140,7 +141,9 @@ class RemoteConductor(Conducting):
         return code, watch
 
     def _pass_on(self, pipe: IO[bytes]) -> None:
-        """Send the task to the process, then every request, or keep it for the next process."""
+        """Send the task to the process, then every request. A request that cannot be sent is kept for the
+        next process.
+        """
         request = _ENOUGH
         with suppress(BrokenPipeError, ValueError):
             pickle.dump(self._task, pipe)

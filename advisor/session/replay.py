@@ -31,7 +31,7 @@ class LogPlayer:
     wait : callable
         ``wait(event, seconds)`` waits until the event is set or the time is over. Tests pass their own clock.
     keep_beside : sequence of Path
-        Logs next to which decisions by hand are kept, flight by flight. Empty: decisions by hand are not
+        Logs of each flight, next to which decisions by hand are kept. If empty, decisions by hand are not
         kept.
     said : callable
         Returns sentences on the logs after loading.
@@ -116,7 +116,7 @@ class LogPlayer:
         self._changed.set()
 
     def step(self) -> None:
-        """Deliver the next `STEP_S`, paused or not. Any thread may call."""
+        """Deliver the next `STEP_S`, whether the replay is paused or not. Any thread may call."""
         self._steps += 1
         self._changed.set()
 

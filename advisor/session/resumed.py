@@ -14,8 +14,9 @@ from advisor.session.source import LinkHealth, LinkRequest, Source
 from advisor.session.timeline import Timeline
 
 STRETCH_S = 30.0
-"""Longest part of an earlier flight in one batch, s. An autopilot's own log comes as a whole, and its
-campaign would not report for minutes."""
+"""Longest part of an earlier flight in one batch, s. An autopilot's own log comes as one batch, so that the
+campaign would not report for minutes.
+"""
 
 
 def stretches(batches: Iterable[list[Columns]]) -> Iterator[list[Columns]]:
@@ -48,7 +49,7 @@ class ResumedSource:
         Raises
         ------
         UnusableInputError
-            The link can never serve.
+            The link can never be used.
         """
         if self._past is not None:
             batch = next(self._past, None)

@@ -65,7 +65,7 @@ class Source(Protocol):
         Raises
         ------
         UnusableInputError
-            The input can never serve. The message names the remedy.
+            The input can never be used. The message names the remedy.
         """
 
     def health(self) -> LinkHealth:

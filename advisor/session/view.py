@@ -83,7 +83,7 @@ def view_before_first(
 
 
 def report_before_first(aircraft: Aircraft, title: str) -> SessionReport:
-    """Return the report before the first one: without manoeuvres and without messages."""
+    """Return an empty report, without manoeuvres and messages, for the time before the first report."""
     plan = aircraft.campaign
     limit = limit_percent(plan.rule, plan)
     verdict = FlightTestVerdict(plan.rule, "continue", "No manoeuvre has been flown yet.", None, limit, None)
@@ -93,7 +93,7 @@ def report_before_first(aircraft: Aircraft, title: str) -> SessionReport:
 
 
 def view_sideways(view: View) -> View:
-    """Return the view of roll and yaw; the same view where roll and yaw are not judged.
+    """Return the view of roll and yaw. If roll and yaw are not judged, return the given view.
 
     The manoeuvre that is being flown is estimated for the elevator only.
     """

@@ -91,16 +91,16 @@ def test_a_forecast_that_narrows_the_one_before_is_spoken_as_it_is(now) -> None:
 @pytest.mark.parametrize("now", [(5, 8), (8, 12), (None, None), (7, None)])
 def test_a_forecast_that_does_not_narrow_says_why(now) -> None:
     taught = spoken(Remaining(5, 8), Remaining(*now))
-    assert taught == Remaining(*now, "the newest manoeuvre taught less than foretold")
+    assert taught == Remaining(*now, "the newest manoeuvre gave less information than forecast")
     risen = spoken(Remaining(5, 8), Remaining(*now), percent=120.0)
     assert risen == Remaining(*now, "the criterion rose from 80 to 120 %")
 
 
 def test_a_forecast_that_cannot_be_told_again_goes_on_from_the_one_before() -> None:
     found = spoken(Remaining(5, 8), None)
-    assert found == Remaining(4, 7, "the newest manoeuvre tells no other number")
+    assert found == Remaining(4, 7, "the newest manoeuvre does not change the number")
     assert found.spoken == (
-        "about 4 more, 9 times in 10 at most 7 (the newest manoeuvre tells no other number)"
+        "about 4 more, 9 times in 10 at most 7 (the newest manoeuvre does not change the number)"
     )
 
 

@@ -48,7 +48,7 @@ WRONG = {
     "derivatives: {M_q: -4}": "derivatives.M_q: must hold keys with values",
     "derivatives: {M_q: {of: -4}}": "derivatives.M_q: needs a tolerance: within, within_percent, known_to",
     "derivatives: {M_q: {within: 1}}": "derivatives.M_q.of: is missing",
-    "derivatives: {M_q: {of: 0, within_percent: 5}}": "derivatives.M_q.within_percent: allows nothing",
+    "derivatives: {M_q: {of: 0, within_percent: 5}}": "derivatives.M_q.within_percent: gives no tolerance",
     "derivatives: {M_q: {of: four, within: 1}}": "derivatives.M_q.of: must be a number, model, or log",
     "derivatives: {M_q: {of: -4, within: -1}}": "derivatives.M_q.within: must be a number above 0, is -1",
     "derivatives: {M_q: {of: .nan, within: 1}}": "M_q.of: must be a number, model, or log, is nan",

@@ -260,7 +260,7 @@ def test_the_stick_is_drawn_step_by_step_with_seconds():
     assert stick_line(flown.steps) == "▁▁▁▁▁▁▔▔▔▔▁▁▔▔"
 
 
-STALE = LinkHealth("stale", "ESTIMATOR NOT ANSWERING for 5 s: what stands below is old")
+STALE = LinkHealth("stale", "ESTIMATOR NOT ANSWERING for 5 s: the values below are old")
 
 
 def test_an_estimator_that_does_not_answer_leaves_a_complete_test_complete() -> None:

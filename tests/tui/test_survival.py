@@ -59,7 +59,7 @@ def test_a_process_that_hangs_is_told_of_over_the_last_report_and_then_replaced(
 
     conductor.run(tell)
     old = [report for report in reports if report.health.condition == "stale"]
-    assert re.fullmatch(r"ESTIMATOR NOT ANSWERING for \d s: what stands below is old", old[0].health.alarm)
+    assert re.fullmatch(r"ESTIMATOR NOT ANSWERING for \d s: the values below are old", old[0].health.alarm)
     assert len(old[0].state.maneuvers) == 3
     assert re.search(r"did not answer for \d s and was ended; it is started again", reports[-1].log[-1])
 

@@ -22,8 +22,8 @@ from advisor.process.parts import Parts
 
 
 class ElevatorCampaign(AxisCampaign):
-    """Estimates and judges each elevator manoeuvre as it arrives, and improves the instruments' values with
-    it.
+    """Estimates and judges each elevator manoeuvre as it arrives. Each manoeuvre improves the instruments'
+    values.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class ElevatorCampaign(AxisCampaign):
     def decide(self) -> None:
         """Judge all manoeuvres, and examine them again if they have given new values of the instruments."""
         self._judge()
-        self._parts.make("pitch, instruments told by the manoeuvres", self._learn, lambda _: None)
+        self._parts.make("pitch, instruments from the manoeuvres", self._learn, lambda _: None)
 
     @property
     def joined(self) -> Sequence[JudgedManeuver]:

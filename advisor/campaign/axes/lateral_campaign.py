@@ -118,13 +118,15 @@ class LateralCampaign(AxisCampaign):
 
     @property
     def _may_stop(self) -> bool:
-        """Return whether the newest manoeuvre can decide: both controls flown, no stop announced before."""
+        """Return whether the newest manoeuvre can decide. Both controls must have been flown, and no stop
+        announced before.
+        """
         moved = {control for one in self._told if one is not None for control in one.flown}
         return moved >= set(self._controls) and not any(one.stops for one in self._still_heard)
 
     @property
     def _told(self) -> list[LateralEstimate | None]:
-        """Lateral estimate of every manoeuvre; None for one that is not accepted."""
+        """Lateral estimate of every manoeuvre; None for a manoeuvre that is not accepted."""
         return [
             one.estimate if one.verdict.accepted and isinstance(one.estimate, LateralEstimate) else None
             for one in self.judged

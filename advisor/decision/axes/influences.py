@@ -102,7 +102,7 @@ def _deviation(y: FloatArray | None) -> FloatArray | None:
 
 
 def has_banking(maneuver: Maneuver) -> bool:
-    """Return whether a record contains all that a banked flight adds to the motion in pitch."""
+    """Return whether a record contains all channels by which a bank changes the motion in pitch."""
     return {"p", "r", "bank", "beta", "theta"} <= maneuver.channels.keys()
 
 

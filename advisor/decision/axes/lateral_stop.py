@@ -57,7 +57,7 @@ class FlownInput:
     modes: LateralModes | None = None
     """Modes of the manoeuvre's estimate, accepted or not; None without an estimate."""
     too_small: float = 1.0
-    """Factor by which the first reason asks for a larger input; 1 where it asks for something else."""
+    """Factor by which the first reason asks for a larger input; 1 if the reason asks for another change."""
 
     @classmethod
     def of(
@@ -182,8 +182,9 @@ class _SideTest:
 
     @cached_property
     def judged(self) -> Mapping[str, str]:
-        """Control for each judged derivative. The other control shows the motion of an aircraft that lacks
-        one."""
+        """Control for each judged derivative. If an aircraft lacks one control, the other control determines
+        the derivatives of the motion.
+        """
         absent = tuple(suffix for suffix, control in CONTROLS.items() if control not in self.controls)
         return {
             name: best if best in self.controls else self.controls[0]
@@ -256,7 +257,7 @@ class _SideTest:
         return replace(advised, remaining=self._remaining())
 
     def _remaining(self) -> Remaining | None:
-        """Return the expected number of further manoeuvres; None if that cannot be told."""
+        """Return the expected number of further manoeuvres; None if no forecast is possible."""
         # The variance of a derivative falls with the number of manoeuvres that move its control.
         controls, accepted = sorted(set(self.judged.values())), len(self.accepted)
         scale = variance_scale(len(controls) * (accepted - 1))

@@ -107,7 +107,7 @@ class LinearMotion:
         return {**dict(zip(motion.states, states, strict=True)), motion.force: self._speed * force}
 
     def late(self, control: str) -> dict[str, FloatArray]:
-        """Return the sensitivities with those by the lateness of a control last."""
+        """Return the sensitivities, with an additional last column for the lateness of a control."""
         turns = self.motion.turns[control]
         term = self._theta[turns] * np.gradient(self._inputs[control], self.t)
         return self.columns(term, self.motion.states[self.motion.equations.index(turns[0])])
@@ -157,7 +157,9 @@ def driven(
 
 
 def behind(t: FloatArray, command: FloatArray, lag_s: float) -> FloatArray:
-    """Return the course of a servo with a first-order lag, s, for a command that begins at zero."""
+    """Return the deflection over time of a servo with a first-order lag, s, for a command that begins at
+    zero.
+    """
     if not lag_s > 0.0:
         return command
     return driven(np.array([[-1.0 / lag_s]]), t, (command / lag_s)[None, :, None])[0, :, 0]

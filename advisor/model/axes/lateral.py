@@ -7,7 +7,8 @@
 
 α, θ, V and q are known signals. L and N hold the products of inertia (Klein & Morelli, *Aircraft System
 Identification*, Ch. 3). Outputs are p, r, φ, a_y = V·(the parameters' part of β̇) and, where a vane measures
-it, β + (x_β/V)·r. An aileron rolls the aircraft to the left where positive, a rudder yaws it to the left.
+it, β + (x_β/V)·r. A positive aileron rolls the aircraft to the left, and a positive rudder yaws it to the
+left.
 """
 
 from collections.abc import Mapping
@@ -36,7 +37,9 @@ LATERAL = Axis(
     constants=tuple(_term(f"{letter}_0", CONSTANT) for letter in _STATES),
     biases=("p", "a_y"),
 )
-"""The lateral axis. A bias of r or φ cannot be told from the constants of trim."""
+"""The lateral axis. The lateral axis. Biases of r and φ are no parameters, because they cannot be
+distinguished from the constants of trim.
+"""
 CONTROLS = {"delta_a": "aileron", "delta_r": "rudder"}
 """Name of each control, by the ending of its derivatives."""
 
@@ -93,7 +96,7 @@ def modes_of(a: FloatArray) -> Modes:
 def natural_size(theta: FloatArray) -> Mapping[str, float]:
     """Return the typical size of each derivative on an aircraft with these derivatives (15,).
 
-    Rates set the size: that of the roll mode, |L_p|, and that of the Dutch roll, √|N_β|. A control has the
+    Two rates set the size: the roll mode's, |L_p|, and the Dutch roll's, √|N_β|. A control has the
     size of the larger of its two moments; its force turns the path as fast as this moment does within 1/ω.
     A control that was not flown has no moment yet; its size is ω² for a radian.
     """

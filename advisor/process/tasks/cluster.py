@@ -21,12 +21,14 @@ R = TypeVar("R")
 Versions = Mapping[str, str | None]
 
 CONNECT_S = 5.0
-"""Time within which a scheduler must answer, s, and within which the cluster's workers must start."""
+"""Longest time, s, for a scheduler's answer, and for the start of the cluster's workers."""
 _SAME = ("advisor", "python")
 """Packages whose version must be equal in every worker. With another version of these packages the results
 differ or cannot be read."""
 _ADVISOR = ("inflight-advisor", "advisor")
-"""Names under which Dask may list the advisor: the distribution's since 2025, the module's before."""
+"""Names under which Dask may list the advisor. Since 2025 Dask lists the distribution's name, before the
+module's.
+"""
 _TOLD = ("distributed", "numba", "numpy", "scipy")
 """Packages of which another version may change the last digits of a result."""
 
@@ -193,7 +195,7 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
 
 
 def _version(versions: Versions, name: str) -> str | None:
-    """Return the version of a package; for Python without the last digits, which change no result."""
+    """Return the version of a package. The version of Python lacks its last part, which changes no result."""
     version = versions.get(name)
     return ".".join(version.split(".")[:2]) if version and name == "python" else version
 

@@ -1,4 +1,4 @@
-"""Tasks in processes. A process that dies loses only its own task."""
+"""Tasks in processes. Tasks in several processes. A process that dies loses only its own task."""
 
 import multiprocessing
 import os

@@ -29,7 +29,7 @@ def run_here(work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R 
 def results_in_order(
     run: Runner, work: Callable[[T], R], tasks: Sequence[T], tell: Callable[[int], None]
 ) -> list[R]:
-    """Do all tasks and return their results in the order of the tasks, independent of which ends first.
+    """Do all tasks and return their results in the order of the tasks, whatever the order of completion.
 
     Parameters
     ----------

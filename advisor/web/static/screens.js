@@ -24,7 +24,7 @@
     } catch { /* no answer */ }
     const late = Math.round((performance.now() - answered) / 1000);
     stale.hidden = late < LATE_S;
-    stale.textContent = `The advisor has not answered for ${late} s. What stands below is old.`;
+    stale.textContent = `The advisor has not answered for ${late} s. The values below are old.`;
     setTimeout(ask, EVERY_MS);
   }
   ask();
