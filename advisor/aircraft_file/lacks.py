@@ -43,12 +43,12 @@ def lacks_of(aircraft: Aircraft, facts: LogFacts | None = None) -> tuple[Lack, .
     facts
         Facts of a log of this aircraft. None: the file is checked without a log.
     """
-    found = [
+    lacks = [
         Lack(key.path, key.cost, key.mend)
         for key in KEYS
         if key.cost and _counts(key.path, aircraft, facts) and not _given(key.path, aircraft)
     ]
-    return (*(_contradictions(aircraft, facts) if facts else ()), *found)
+    return (*(_contradictions(aircraft, facts) if facts else ()), *lacks)
 
 
 def _given(path: str, aircraft: Aircraft) -> bool:

@@ -56,7 +56,7 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
     mistakes: list[str] = []
     while True:
         try:
-            found = reader.validate_python(content)
+            aircraft = reader.validate_python(content)
         except ValidationError as error:
             mistakes += dict.fromkeys(_sentence(item) for item in error.errors())
             # The rest is read again, so that one wrong key does not hide another's mistake.
@@ -65,9 +65,9 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
                 break
             content = remainder
         else:
-            mistakes += _beyond_types(found)
+            mistakes += _beyond_types(aircraft)
             if not mistakes:
-                return replace(found, name=printable(found.name))
+                return replace(aircraft, name=printable(aircraft.name))
             break
     more = [f"and {len(mistakes) - _MOST_LISTED} more"] if len(mistakes) > _MOST_LISTED else []
     listed = "; ".join([*mistakes[:_MOST_LISTED], *more])

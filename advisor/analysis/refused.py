@@ -68,7 +68,7 @@ def _reason(maneuver: Maneuver, aircraft: Aircraft) -> Reason | None:
     period_s = natural_period(maneuver, NoEstimate("not_asked", "no estimate was asked for"))
     most = max(aircraft.limits.airspeed_change_percent, _LARGEST_SPEED_CHANGE_PERCENT)
     allowing = replace(aircraft, limits=replace(aircraft.limits, airspeed_change_percent=most))
-    found = [
+    reasons = [
         *incomplete(maneuver, NEEDED, period_s, ("alpha",)),
         # The gap has late streams and the scale of the air speed in its own model.
         *refusals(f for f in maneuver.findings if f.quantity != "delay_s" and f.channel != "airspeed"),
@@ -76,4 +76,4 @@ def _reason(maneuver: Maneuver, aircraft: Aircraft) -> Reason | None:
         *changed_speed(maneuver, allowing),
         *(r for r in short_response(maneuver, period_s) if r.code == "aborted"),
     ]
-    return next((reason for reason in found if reason.code not in _KNOWN), None)
+    return next((reason for reason in reasons if reason.code not in _KNOWN), None)

@@ -68,8 +68,8 @@ def _surfaces_in(log: Path, columns: TableColumns) -> frozenset[str] | None:
     try:
         beginning = beginning_of(log)
         with unpacked(log, beginning) as file:
-            found = recognised(beginning if file is log else beginning_of(file))
-            if found is None or found.format.read_columns is None:
+            kind = recognised(beginning if file is log else beginning_of(file))
+            if kind is None or kind.format.read_columns is None:
                 return None
             return frozenset(SURFACES).intersection(quantities_of(read_table(file), columns, log.name))
     except UnusableInputError:

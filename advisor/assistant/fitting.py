@@ -33,18 +33,18 @@ def part_of(document: Any, path: str) -> Any:
     RefusedError
         The document has no such part.
     """
-    found = document
+    part = document
     for step in filter(None, path.split(".")):
-        if isinstance(found, dict) and step in found:
-            found = found[step]
-        elif isinstance(found, list) and step.isdigit() and int(step) < len(found):
-            found = found[int(step)]
+        if isinstance(part, dict) and step in part:
+            part = part[step]
+        elif isinstance(part, list) and step.isdigit() and int(step) < len(part):
+            part = part[int(step)]
         else:
-            there = ", ".join(found) if isinstance(found, dict) else f"0 to {len(found) - 1}"
-            if not isinstance(found, dict | list) or not found:
+            there = ", ".join(part) if isinstance(part, dict) else f"0 to {len(part) - 1}"
+            if not isinstance(part, dict | list) or not part:
                 there = "nothing"
             raise RefusedError(f"There is no part {path}: at {step} there are {there}.")
-    return found
+    return part
 
 
 def written(document: Any, path: str = "", without: Sequence[str] = ()) -> str:

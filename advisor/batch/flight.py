@@ -84,8 +84,8 @@ class Analyzed:
     @property
     def lateral(self) -> dict[str, Any]:
         """Block ``lateral`` of the document; empty for a log that could not be analyzed."""
-        found: dict[str, Any] = self.document["lateral"] if self.document["flight_test"] else {}
-        return found
+        side: dict[str, Any] = self.document["lateral"] if self.document["flight_test"] else {}
+        return side
 
     @property
     def is_named(self) -> bool:

@@ -43,11 +43,11 @@ def find_logs(places: Sequence[Path], without: Path) -> list[Path]:
 
 
 def _in_folder(folder: Path, without: Path) -> list[Path]:
-    found = []
+    logs = []
     for root, folders, files in os.walk(folder):
         folders[:] = sorted(name for name in folders if (Path(root) / name).resolve() != without)
-        found += [Path(root) / name for name in sorted(files) if _is_log(name)]
-    return found
+        logs += [Path(root) / name for name in sorted(files) if _is_log(name)]
+    return logs
 
 
 def _is_log(name: str) -> bool:

@@ -39,8 +39,8 @@ def changes_of(flights: Sequence[Analyzed]) -> dict[str, ChangeOverFlights]:
     Flights without an aircraft file may belong to several aircraft, so no change is sought among them.
     """
     named = estimates_of([flight for flight in flights if flight.is_named])
-    found = {name: change_over_flights(several) for name, several in named.items()}
-    return {name: change for name, change in found.items() if change is not None}
+    changes = {name: change_over_flights(several) for name, several in named.items()}
+    return {name: change for name, change in changes.items() if change is not None}
 
 
 def not_told_apart(flights: Sequence[Analyzed]) -> dict[str, str]:
@@ -175,22 +175,22 @@ def decided(test: Mapping[str, Any]) -> str:
 
 def _maneuvers(flights: Sequence[Analyzed]) -> FlightTable:
     rows = [(k, m) for k, f in enumerate(flights, start=1) for m in f.maneuvers]
-    found = [m for _, m in rows]
-    pitch = [None if _is_lateral(m) else m["estimates"] for m in found]
-    lateral = [m["estimates"] if _is_lateral(m) else None for m in found]
+    flown = [m for _, m in rows]
+    pitch = [None if _is_lateral(m) else m["estimates"] for m in flown]
+    lateral = [m["estimates"] if _is_lateral(m) else None for m in flown]
     columns = [
         Column("flight", counts([k for k, _ in rows]), "", "number of the flight"),
-        Column("maneuver", counts([m["number"] for m in found]), "", "number in the flight"),
-        Column("boot", counts([m["boot"] for m in found]), "", "power-on in the log, from 0"),
-        Column("start_boot_s", numbers([m["start_boot_s"] for m in found]), "s", "onset of the first step"),
-        Column("end_boot_s", numbers([m["end_boot_s"] for m in found]), "s", "end of the free response"),
-        Column("input", texts([m["input"] for m in found]), "", "kind of input"),
-        Column("mode", texts([m["mode"] for m in found]), "", "flight mode"),
-        Column("accepted", truths([m["verdict"] == "accepted" for m in found]), "", "verdict"),
-        Column("sentence", texts([m["sentence"] for m in found]), "", "verdict as the pilot reads it"),
-        Column("reason_codes", texts([_codes(m) for m in found]), "", "stable codes of the reasons"),
-        Column("cost", numbers([m["cost"] for m in found]), "", "J of Eq. (7)"),
-        Column("axis", texts(["lateral" if _is_lateral(m) else "pitch" for m in found]), "", "axis tested"),
+        Column("maneuver", counts([m["number"] for m in flown]), "", "number in the flight"),
+        Column("boot", counts([m["boot"] for m in flown]), "", "power-on in the log, from 0"),
+        Column("start_boot_s", numbers([m["start_boot_s"] for m in flown]), "s", "onset of the first step"),
+        Column("end_boot_s", numbers([m["end_boot_s"] for m in flown]), "s", "end of the free response"),
+        Column("input", texts([m["input"] for m in flown]), "", "kind of input"),
+        Column("mode", texts([m["mode"] for m in flown]), "", "flight mode"),
+        Column("accepted", truths([m["verdict"] == "accepted" for m in flown]), "", "verdict"),
+        Column("sentence", texts([m["sentence"] for m in flown]), "", "verdict as the pilot reads it"),
+        Column("reason_codes", texts([_codes(m) for m in flown]), "", "stable codes of the reasons"),
+        Column("cost", numbers([m["cost"] for m in flown]), "", "J of Eq. (7)"),
+        Column("axis", texts(["lateral" if _is_lateral(m) else "pitch" for m in flown]), "", "axis tested"),
         *_parameters(pitch, "of the manoeuvre"),
         *_parameters(lateral, "of the manoeuvre", SIDE_UNITS),
     ]

@@ -39,14 +39,14 @@ def read_expectations(path: Path, aircraft: Aircraft) -> Expectations:
         The file cannot be read, or lists every mistake with its path, e.g. ``derivatives.M_q.within``.
     """
     reader = _Reader(path.parent, aircraft)
-    found = reader.read(read_yaml(path, _MEND))
+    expected = reader.read(read_yaml(path, _MEND))
     if reader.mistakes:
         listed = reader.mistakes[:_MOST_LISTED]
         left = len(reader.mistakes) - len(listed)
         raise ConfigurationError(
             f"{path}: {'; '.join([*listed, *([f'and {left} more'] * bool(left))])}. {_MEND}"
         )
-    return found
+    return expected
 
 
 class _Reader:
@@ -73,12 +73,12 @@ class _Reader:
             "alarms": self._alarms,
         }
         values = {name: read[name](name, given) for name, given in sections.items()}
-        found = Expectations(**{name: value for name, value in values.items() if value is not None})
-        if not self.mistakes and found == Expectations(log=found.log):
+        expected = Expectations(**{name: value for name, value in values.items() if value is not None})
+        if not self.mistakes and expected == Expectations(log=expected.log):
             self.mistakes.append("file: expects nothing; give at least one of " + ", ".join(SECTIONS[1:]))
-        if found.asks_of_log and "log" not in sections:
+        if expected.asks_of_log and "log" not in sections:
             self.mistakes.append("log: is missing, but an expected value refers to a log")
-        return found
+        return expected
 
     def _known(self, path: str, given: Any, names: Sequence[str]) -> Mapping[str, Any]:
         """Return the known keys of a section that have a value. Without ``names`` every key is known."""

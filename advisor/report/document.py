@@ -54,8 +54,8 @@ def analysis_document(
         "usable": len(left_out) < len(files),
         "problems": [
             {**plain(problem), **of_log(flight)}
-            for flight, found in sorted(left_out.items())
-            for problem in found
+            for flight, several_problems in sorted(left_out.items())
+            for problem in several_problems
         ]
         + [one.entry for one in (state.failed if state else ())],
         "log": {**logs[0], "notes": read},

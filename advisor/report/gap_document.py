@@ -185,10 +185,10 @@ def weighed_document(d: Diagnosis) -> dict[str, Any]:
 
 def _of_the_simulator(d: Diagnosis) -> dict[str, Any]:
     """Return the document part about the simulator: description, trim and qualification."""
-    found = d.in_simulator
+    inside = d.in_simulator
     return {
-        "simulator": found and found.simulator,
-        "qualification": found and {q.channel: _qualification(q) for q in found.qualification},
+        "simulator": inside and inside.simulator,
+        "qualification": inside and {q.channel: _qualification(q) for q in inside.qualification},
         **picked(d, "static trims"),
     }
 

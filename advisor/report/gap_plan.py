@@ -45,24 +45,24 @@ def print_foresight(
     """
     inputs = [name.strip() for name in plan.split(",") if name.strip()]
     absent = [name.strip() for name in without.split(",") if name.strip()]
-    found = foresee_plan(aircraft, inputs, rate_hz, amplitude_deg, absent)
+    foreseen = foresee_plan(aircraft, inputs, rate_hz, amplitude_deg, absent)
     notes = unusual_signs(aircraft.model)
     if "alpha" in absent:
         notes = (*notes, _NO_ALPHA)
     if as_json:
-        click.echo(json.dumps(_document(found, notes), allow_nan=False, indent=1))
+        click.echo(json.dumps(_document(foreseen, notes), allow_nan=False, indent=1))
         return 0
     kept = f", without {', '.join(absent)}" if absent else ""
     title = f"{len(inputs)} manoeuvres at {rate_hz:g} Hz, {amplitude_deg:g} deg of elevator{kept}"
-    PlainConsole().print(ForesightScreen(title, found, notes))
+    PlainConsole().print(ForesightScreen(title, foreseen, notes))
     return 0
 
 
 class ForesightScreen:
     """Screen of detectable sizes, ways to distinguish similar effects, and undetectable effects."""
 
-    def __init__(self, title: str, found: Sequence[Foreseen], notes: Sequence[str] = ()) -> None:
-        self.title, self.found, self.notes = title, found, notes
+    def __init__(self, title: str, foreseen: Sequence[Foreseen], notes: Sequence[str] = ()) -> None:
+        self.title, self.found, self.notes = title, foreseen, notes
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the notes, the table and the two lists."""
@@ -108,10 +108,10 @@ def _table(shown: Sequence[Foreseen]) -> Table:
     return table
 
 
-def _ways(found: Sequence[Foreseen]) -> list[tuple[str, str]]:
+def _ways(foreseen: Sequence[Foreseen]) -> list[tuple[str, str]]:
     """Return each pair of similar effects once, with the way to distinguish the two effects."""
     ways: dict[frozenset[str], tuple[str, str]] = {}
-    for f in found:
+    for f in foreseen:
         twins = [name for name, cosine in f.confused_with if cosine > CONFUSED_AT]
         if f.add and math.isfinite(f.smallest):
             pair = frozenset({f.effect, *twins})
@@ -141,7 +141,7 @@ def _whole(x: float) -> str:
     return f"{x:.0f}" if x >= 100.0 else f"{x:.2g}"
 
 
-def _document(found: Sequence[Foreseen], notes: Sequence[str]) -> dict[str, object]:
+def _document(foreseen: Sequence[Foreseen], notes: Sequence[str]) -> dict[str, object]:
     return {
         "schema": "advisor.foresee/1",
         "effects": [
@@ -150,7 +150,7 @@ def _document(found: Sequence[Foreseen], notes: Sequence[str]) -> dict[str, obje
                 "share_of_linear": plain(f.share),
                 "confused_with": [{"effect": name, "cosine": plain(c)} for name, c in f.confused_with],
             }
-            for f in found
+            for f in foreseen
         ],
         "notes": list(notes),
     }

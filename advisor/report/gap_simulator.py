@@ -19,43 +19,43 @@ _LEGEND = (
 )
 
 
-def simulated(found: InSimulator, with_table: bool) -> Iterator[RenderableType]:
+def simulated(inside: InSimulator, with_table: bool) -> Iterator[RenderableType]:
     """Yield the simulator's gap before and after the effects are added. On request yield the table of
     qualification too.
     """
-    yield Text(f"in your simulator, {found.simulator}", style="bold")
-    yield Text("\n".join(_shrunk(found)))
+    yield Text(f"in your simulator, {inside.simulator}", style="bold")
+    yield Text("\n".join(_shrunk(inside)))
     if with_table:
-        yield _table(found)
+        yield _table(inside)
         yield Text(_LEGEND, style="dim")
 
 
-def _shrunk(found: InSimulator) -> Iterator[str]:
-    numbers = ", ".join(map(str, found.maneuvers))
-    if found.after is None or found.percent is None:
-        yield f"gap {short(found.before)} times the noise floor's power; nothing was flown with the effects"
+def _shrunk(inside: InSimulator) -> Iterator[str]:
+    numbers = ", ".join(map(str, inside.maneuvers))
+    if inside.after is None or inside.percent is None:
+        yield f"gap {short(inside.before)} times the noise floor's power; nothing was flown with the effects"
         return
-    if found.after_air_and_instruments is None:
-        yield f"gap {short(found.before)} times the noise floor's power; nothing was changed, so 0 % less"
+    if inside.after_air_and_instruments is None:
+        yield f"gap {short(inside.before)} times the noise floor's power; nothing was changed, so 0 % less"
     else:
         yield (
-            f"gap {short(found.before)} → {short(found.after)} with the corrections, {found.percent:.1f} % "
-            f"less, in manoeuvres that no search has used ({numbers})"
+            f"gap {short(inside.before)} → {short(inside.after)} with the corrections, {inside.percent:.1f} "
+            f"% less, in manoeuvres that no search has used ({numbers})"
         )
         yield (
-            f"gap {short(found.after_air_and_instruments)} if this flight's air is taken into account, "
+            f"gap {short(inside.after_air_and_instruments)} if this flight's air is taken into account, "
             f"which does not count as a reduction"
         )
-    if found.on_paper:
-        names = ", ".join(spelled(name) for name in found.on_paper)
+    if inside.on_paper:
+        names = ", ".join(spelled(name) for name in inside.on_paper)
         yield f"not flown, because this simulator cannot take them: {names}"
 
 
-def _table(found: InSimulator) -> Table:
+def _table(inside: InSimulator) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
     for heading in ("", "limit", "before", "after", "", "Theil"):
         table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
-    for q in found.qualification:
+    for q in inside.qualification:
         quantity = _QUANTITIES[q.channel]
         factor = quantity.factor
         after = "" if q.after is None else f"{factor * q.after:.2f}"

@@ -52,7 +52,7 @@ def next_steps(
     written
         File of the improved simulator that already exists, so that no step writes it.
     """
-    found = []
+    steps = []
     answers = answers_of(d.evidence)
     if doubt_of(answers):
         return [to_decide(answers, _way_of(d), d.why)]
@@ -64,17 +64,17 @@ def next_steps(
             command = shlex.join([*read, *write]) if write else ""
             lacks = " what it lacks" if _effects_of(d) else ""
             put = f"Put into the simulator{lacks}" if d.derivatives else "State in the aircraft file"
-            found.append(GapStep(f"{put}: {what}.{formats}", command))
+            steps.append(GapStep(f"{put}: {what}.{formats}", command))
         prove = shlex.join([*read, *proved])
-        found.append(GapStep(_PROVE.format(after=short(d.gap.after)), prove))
+        steps.append(GapStep(_PROVE.format(after=short(d.gap.after)), prove))
     if d.missing_law is not None and d.missing_law.term:
         aircraft = ["--aircraft", aircraft_file] if aircraft_file else []
         term = ["advisor", "analyze", *logs, *options, *aircraft, "--term", d.missing_law.term]
-        found.append(GapStep("Estimate the missing law as one more term:", shlex.join(term)))
+        steps.append(GapStep("Estimate the missing law as one more term:", shlex.join(term)))
     rival = _against_the_rival(d) if d.verdict != "none" else ""
     if rival:
-        found.append(GapStep(rival))
-    return found
+        steps.append(GapStep(rival))
+    return steps
 
 
 def _improvement(

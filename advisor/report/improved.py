@@ -49,13 +49,13 @@ def file_content(
 
 def _beyond(content: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of a file that differ from the defaults, section by section."""
-    found = {}
+    beyond = {}
     for key, value in content.items():
         if isinstance(value, Mapping) and (inside := _beyond(value, usual.get(key) or {})):
-            found[key] = inside
+            beyond[key] = inside
         elif not isinstance(value, Mapping) and value != usual.get(key):
-            found[key] = value
-    return found
+            beyond[key] = value
+    return beyond
 
 
 def text_of(content: Mapping[str, Any]) -> str:

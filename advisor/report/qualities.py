@@ -64,31 +64,31 @@ def reference_speed(state: CampaignState | LateralState) -> str:
     return f" at {state.model.airspeed_m_s:.1f} m/s {kind}"
 
 
-def qualities_document(found: FlyingQualities | None) -> dict[str, Any] | None:
+def qualities_document(flown: FlyingQualities | None) -> dict[str, Any] | None:
     """Return the document part ``flying_qualities`` of ``advisor.analyze/1``. Each quality is given with its
     unit."""
-    if found is None:
+    if flown is None:
         return None
     return {
         **{
             name: {**picked(one, "value std ci95"), "unit": UNITS[name]}
-            for name, one in found.qualities.items()
+            for name, one in flown.qualities.items()
         },
-        "correlation": found.correlation,
-        "left_out": dict(found.left_out),
+        "correlation": flown.correlation,
+        "left_out": dict(flown.left_out),
         "levels": {
             one.category: {**level_document(one), "phases": CATEGORIES[one.category], "text": one.sentence}
-            for one in found.levels
+            for one in flown.levels
         },
         "source": SOURCE,
         "caution": MANNED,
         "air": {
-            "density_kg_m3": found.air.density_kg_m3,
-            "density_from": found.air.source,
-            "airspeed_m_s": found.airspeed_m_s,
-            "airspeed_is": found.air.speed_kind,
-            "true_airspeed_m_s": found.true_airspeed_m_s,
-            "text": found.air.sentence,
+            "density_kg_m3": flown.air.density_kg_m3,
+            "density_from": flown.air.source,
+            "airspeed_m_s": flown.airspeed_m_s,
+            "airspeed_is": flown.air.speed_kind,
+            "true_airspeed_m_s": flown.true_airspeed_m_s,
+            "text": flown.air.sentence,
         },
         "convention": CONVENTION,
     }
@@ -99,33 +99,33 @@ def level_document(level: LevelFound) -> dict[str, Any]:
     return {"level": level.level, "levels_within_ci95": [level.best_level, level.worst_level]}
 
 
-def quality_lines(found: FlyingQualities, coefficients: Mapping[str, Coefficient]) -> Iterator[str]:
+def quality_lines(flown: FlyingQualities, coefficients: Mapping[str, Coefficient]) -> Iterator[str]:
     """Yield flying qualities and coefficients, one per line, with the 95 % half-width."""
-    source = f"Flying qualities at {_speeds(found)}"
+    source = f"Flying qualities at {_speeds(flown)}"
     yield f"{source}:"
-    for name, one in found.qualities.items():
+    for name, one in flown.qualities.items():
         fact = fact_of(NAMES[name], source, one.value, one.std, UNITS[name])
         yield f"  {fact.name:<17} {fact.sentence}"
-    for name, why in found.left_out.items():
+    for name, why in flown.left_out.items():
         yield f"  {NAMES[name]:<17} not given: {why}"
-    if found.levels:
+    if flown.levels:
         yield f"  {SOURCE}:"
-        yield from (f"    {one.sentence} ({CATEGORIES[one.category]})" for one in found.levels)
+        yield from (f"    {one.sentence} ({CATEGORIES[one.category]})" for one in flown.levels)
         yield f"  {MANNED}"
     if coefficients:
         source = f"Coefficients {CONVENTION}"
         yield f"{source}:"
         each = (fact_of(name, source, one.value, one.std) for name, one in coefficients.items())
         yield f"  {'  '.join(f'{fact.name} {fact.cell}' for fact in each)}"
-    yield f"note: {found.air.sentence[0].upper()}{found.air.sentence[1:]}."
+    yield f"note: {flown.air.sentence[0].upper()}{flown.air.sentence[1:]}."
 
 
-def _speeds(found: FlyingQualities) -> str:
-    if found.airspeed_m_s is None or found.true_airspeed_m_s is None:
+def _speeds(flown: FlyingQualities) -> str:
+    if flown.airspeed_m_s is None or flown.true_airspeed_m_s is None:
         return "an unknown air speed"
-    if found.air.speed_kind == "true":
-        return f"{found.true_airspeed_m_s:.1f} m/s true"
-    return f"{found.airspeed_m_s:.1f} m/s as logged"
+    if flown.air.speed_kind == "true":
+        return f"{flown.true_airspeed_m_s:.1f} m/s true"
+    return f"{flown.airspeed_m_s:.1f} m/s as logged"
 
 
 MODES: Mapping[str, tuple[str, str]] = {
@@ -152,12 +152,12 @@ def levels_of(state: LateralState) -> tuple[LateralLevels, ...]:
     return lateral_levels(state.model.modes) if state.model is not None else ()
 
 
-def levels_document(found: tuple[LateralLevels, ...]) -> dict[str, Any] | None:
+def levels_document(levels: tuple[LateralLevels, ...]) -> dict[str, Any] | None:
     """Return the document part ``levels`` of the block ``lateral``; None without a level."""
-    if not found:
+    if not levels:
         return None
     by_class: dict[str, dict[str, Any]] = {group: {} for group in GROUPS}
-    for one in found:
+    for one in levels:
         by_class[one.group][one.category] = {
             **level_document(one.governing),
             "phases": CATEGORIES[one.category],
@@ -202,8 +202,8 @@ def trim_of(joined: Sequence[Maneuver], airspeed_m_s: float) -> Trim:
 
 
 def _mean(joined: Sequence[Maneuver], name: str, otherwise: float) -> float:
-    found = [one.channels[name].y for one in joined if name in one.channels]
-    return float(np.mean([np.mean(y) for y in found])) if found else otherwise
+    series = [one.channels[name].y for one in joined if name in one.channels]
+    return float(np.mean([np.mean(y) for y in series])) if series else otherwise
 
 
 def _step(rolled: list[JudgedManeuver]) -> tuple[float, float]:

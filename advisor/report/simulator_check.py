@@ -20,43 +20,45 @@ _LACKS = {
 }
 
 
-def document(found: CheckedSimulator) -> dict[str, Any]:
+def document(checked: CheckedSimulator) -> dict[str, Any]:
     """Return the ``advisor.simulator/1`` document."""
-    fault = found.fault
+    fault = checked.fault
     return {
         "schema": SCHEMA,
         "usable": fault is None,
-        **picked(found, "simulator airspeed_m_s height_m alpha_rad trim a_z_m_s2 rest_q_rad_s takes lacks"),
-        **picked(found, "derivatives std side lag_s dead_time_s omega_rad_s damping notes"),
-        "problems": [] if fault is None else [picked(fault.refuse(found.simulator).problem, "code text fix")],
+        **picked(checked, "simulator airspeed_m_s height_m alpha_rad trim a_z_m_s2 rest_q_rad_s takes lacks"),
+        **picked(checked, "derivatives std side lag_s dead_time_s omega_rad_s damping notes"),
+        "problems": []
+        if fault is None
+        else [picked(fault.refuse(checked.simulator).problem, "code text fix")],
     }
 
 
-def lines(found: CheckedSimulator) -> Iterator[str]:
+def lines(checked: CheckedSimulator) -> Iterator[str]:
     """Yield the results of the check, one per line."""
-    yield f"{found.simulator} at {found.airspeed_m_s:.4g} m/s true air speed, {found.height_m:.0f} m"
-    controls = "".join(f", {name} {_control(name, value)}" for name, value in found.trim.items())
-    yield f"trim        α {degrees(found.alpha_rad):+.2f} deg{controls}"
-    turns = f"pitch rate below {degrees(found.rest_q_rad_s):.3f} deg/s"
-    yield f"at rest     a_z {found.a_z_m_s2:+.2f} m/s², {turns}"
-    if found.fault is not None:
+    yield f"{checked.simulator} at {checked.airspeed_m_s:.4g} m/s true air speed, {checked.height_m:.0f} m"
+    controls = "".join(f", {name} {_control(name, value)}" for name, value in checked.trim.items())
+    yield f"trim        α {degrees(checked.alpha_rad):+.2f} deg{controls}"
+    turns = f"pitch rate below {degrees(checked.rest_q_rad_s):.3f} deg/s"
+    yield f"at rest     a_z {checked.a_z_m_s2:+.2f} m/s², {turns}"
+    if checked.fault is not None:
         return
     yield "signs       a_z down, α and q nose up: kinematically consistent"
     yield "units       rad, rad/s, m/s²: kinematically consistent"
-    yield f"elevator    dead time {1e3 * found.dead_time_s:.0f} ms, lag {1e3 * found.lag_s:.0f} ms"
-    if isfinite(found.damping):
-        hertz = found.omega_rad_s / tau
-        yield f"short period {found.omega_rad_s:.2f} rad/s ({hertz:.2f} Hz), damping {found.damping:.2f}"
+    yield f"elevator    dead time {1e3 * checked.dead_time_s:.0f} ms, lag {1e3 * checked.lag_s:.0f} ms"
+    if isfinite(checked.damping):
+        hertz = checked.omega_rad_s / tau
+        yield f"short period {checked.omega_rad_s:.2f} rad/s ({hertz:.2f} Hz), damping {checked.damping:.2f}"
     else:
         yield "short period none: the simulator is statically unstable at this speed"
-    yield f"numbers     {_with_errors(found.derivatives, found.std)}"
-    if found.side:
-        yield f"roll, yaw   {_with_errors(found.side, found.std)}"
+    yield f"numbers     {_with_errors(checked.derivatives, checked.std)}"
+    if checked.side:
+        yield f"roll, yaw   {_with_errors(checked.side, checked.std)}"
     yield "            ±: half the 95 % interval, including motion that a linear model does not describe"
-    yield f"takes       elevator{''.join(f', {name}' for name in found.takes)}"
-    for name in found.lacks:
+    yield f"takes       elevator{''.join(f', {name}' for name in checked.takes)}"
+    for name in checked.lacks:
         yield f"does not take {name}: {_LACKS[name]}"
-    yield from found.notes
+    yield from checked.notes
 
 
 def _with_errors(values: Mapping[str, float], std: Mapping[str, float]) -> str:

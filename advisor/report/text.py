@@ -144,9 +144,9 @@ class AnalysisText:
 
     def _qualities(self) -> Iterator[Text]:
         reference = self.aircraft.reference
-        found = qualities_of(self.state, reference)
-        if found is not None:
-            lines = quality_lines(found, coefficients_of(self.state, reference))
+        qualities = qualities_of(self.state, reference)
+        if qualities is not None:
+            lines = quality_lines(qualities, coefficients_of(self.state, reference))
             yield from (Text(line, style="bold" if line[0] in "FC" else "") for line in lines)
 
     def _rules(self) -> Iterator[Text]:

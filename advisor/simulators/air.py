@@ -31,14 +31,14 @@ def winds(maneuvers: Sequence[Maneuver]) -> Mapping[int, tuple[float, float]]:
     An autopilot's wind estimate also responds to sideslip and air speed, so its change within a manoeuvre is
     not used. Manoeuvres without a wind estimate are missing.
     """
-    found = {}
+    winds_by_number = {}
     for maneuver in maneuvers:
         along, right = (maneuver.channels.get(name) for name in ("wind_along", "wind_right"))
         if along is None or right is None:
             continue
         n = max(int(np.searchsorted(along.t, maneuver.span.start_s)), 1)
-        found[maneuver.number] = (float(np.mean(along.y[:n])), float(np.mean(right.y[:n])))
-    return found
+        winds_by_number[maneuver.number] = (float(np.mean(along.y[:n])), float(np.mean(right.y[:n])))
+    return winds_by_number
 
 
 def still_air_said(simulator: Simulator, winds: Mapping[int, tuple[float, float]]) -> tuple[str, ...]:

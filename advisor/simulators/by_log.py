@@ -70,19 +70,19 @@ def from_log(
         fault = interface_fault(replay) if replay is not None else None
         if fault is not None:
             raise fault.refuse(said)
-    found = diagnose(maneuvers, unknown)
-    effects = {effect: dict(sizes) for effect, sizes in found.effects.items()}
+    diagnosis = diagnose(maneuvers, unknown)
+    effects = {effect: dict(sizes) for effect, sizes in diagnosis.effects.items()}
     lag = effects.pop("actuator_lag", None) if set(effects.get("actuator_lag", ())) == {"lag_s"} else None
     delay = effects.pop("transport_delay", None)
     servo = replace(servo, lag_s=lag["lag_s"] if lag else None, delay_s=delay["delay_s"] if delay else None)
-    derivatives = {name: found.model[name].value for name in DERIVATIVES}
+    derivatives = {name: diagnosis.model[name].value for name in DERIVATIVES}
     as_file = replace(
         aircraft, model=derivatives, effects=effects, elevator=servo,
-        reference_airspeed_m_s=found.reference_airspeed_m_s or aircraft.reference_airspeed_m_s,
+        reference_airspeed_m_s=diagnosis.reference_airspeed_m_s or aircraft.reference_airspeed_m_s,
     )  # fmt: skip
     return IdentifiedSimulator(
         derivatives, as_file.reference_airspeed_m_s, said,
-        as_file=as_file, notes=_identified(path.name, found, maneuvers),
+        as_file=as_file, notes=_identified(path.name, diagnosis, maneuvers),
     )  # fmt: skip
 
 

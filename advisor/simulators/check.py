@@ -90,7 +90,7 @@ def check(simulator: Simulator, condition: Condition, aircraft: Aircraft) -> Che
     flown = simulator.replay(condition, Inputs(t, _three_two_one_one(t)))
     offered = {*CONTROLS, *CONDITIONS}
     takes = {*simulator.takes} | ({"increments"} if simulator.takes_increments else set())
-    found = CheckedSimulator(
+    checked = CheckedSimulator(
         simulator.description, condition.airspeed_m_s, condition.height_m, float(still.alpha[0]), still.trim,
         float(still.a_z[0]), float(np.max(np.abs(still.q))), tuple(sorted(takes)),
         tuple(sorted({*offered, "increments"} - takes)),
@@ -99,12 +99,12 @@ def check(simulator: Simulator, condition: Condition, aircraft: Aircraft) -> Che
     _refuse_unmoved(flown, simulator.description)
     fault = interface_fault(flown) or control_fault("elevator", -1.0, _answer(flown))
     if fault is not None:
-        return replace(found, fault=fault)
-    found = _identified(found, simulator, condition, flown, t)
-    fault = control_fault("elevator", found.derivatives["M_delta_e"], _answer(flown))
+        return replace(checked, fault=fault)
+    checked = _identified(checked, simulator, condition, flown, t)
+    fault = control_fault("elevator", checked.derivatives["M_delta_e"], _answer(flown))
     if fault is not None:
-        return replace(found, fault=fault)
-    return _check_side(found, simulator, condition)
+        return replace(checked, fault=fault)
+    return _check_side(checked, simulator, condition)
 
 
 def _not_flown(aircraft: Aircraft) -> Iterator[str]:
@@ -123,10 +123,10 @@ def _stamps(lasts_s: float) -> FloatArray:
     return _STEP_S * (np.arange(round(lasts_s / _STEP_S), dtype=np.float64) + 0.5)
 
 
-def _check_side(found: CheckedSimulator, simulator: Simulator, condition: Condition) -> CheckedSimulator:
+def _check_side(checked: CheckedSimulator, simulator: Simulator, condition: Condition) -> CheckedSimulator:
     """Fly a doublet of each supported control of roll and yaw, and test the response."""
     side: dict[str, float] = {}
-    notes = [*found.notes]
+    notes = [*checked.notes]
     for control in (name for name in TURNS if name in simulator.takes):
         t = _stamps(_SIDE_LASTS_S)
         moved = _steps(t, _SIDE_UNIT_S, (1.0, 1.0))
@@ -138,10 +138,10 @@ def _check_side(found: CheckedSimulator, simulator: Simulator, condition: Condit
         own, std, answer = _side_derivatives(simulator, condition, t, moved, control)
         fault = side_fault(replay) or control_fault(control, own[TURNS[control][0]], answer)
         if fault is not None:
-            return replace(found, side=side, fault=fault, notes=tuple(notes))
+            return replace(checked, side=side, fault=fault, notes=tuple(notes))
         side |= own
-        found = replace(found, std={**found.std, **std})
-    return replace(found, side=side, notes=tuple(notes))
+        checked = replace(checked, std={**checked.std, **std})
+    return replace(checked, side=side, notes=tuple(notes))
 
 
 def _side_derivatives(
@@ -156,9 +156,9 @@ def _side_derivatives(
     values = identified_side(ways[0], ways[1], t, _SMALL * moved)
     turns, against = TURNS[control]
     named = {name.replace("_u", f"_{turns[2:]}"): value for name, value in values.items()}
-    found = {name: value.value for name, value in named.items()}
-    answer = abs(found[turns] / found[against]) if found[against] else np.inf
-    return found, {name: value.std for name, value in named.items()}, answer
+    derivatives = {name: value.value for name, value in named.items()}
+    answer = abs(derivatives[turns] / derivatives[against]) if derivatives[against] else np.inf
+    return derivatives, {name: value.std for name, value in named.items()}, answer
 
 
 def _refuse_unmoved(flown: Replay, said: str) -> None:
@@ -178,7 +178,7 @@ def _answer(flown: Replay) -> float:
 
 
 def _identified(
-    found: CheckedSimulator, simulator: Simulator, condition: Condition, flown: Replay, t: FloatArray
+    checked: CheckedSimulator, simulator: Simulator, condition: Condition, flown: Replay, t: FloatArray
 ) -> CheckedSimulator:
     """Return the results with derivatives, lag, dead time and natural motion added."""
     elevator = _three_two_one_one(t)
@@ -192,18 +192,18 @@ def _identified(
     numbers = np.array([values[name] for name in DERIVATIVES])
     omega = natural_frequency(numbers)
     damping = -(numbers[0] + numbers[4]) / (2.0 * omega) if omega > 0.0 else nan
-    notes = [*found.notes]
+    notes = [*checked.notes]
     if size == 1.0:
         notes.append(
             "Its response is not proportional to the elevator, so the derivatives hold for a step of 1 deg."
         )
-    if found.rest_q_rad_s > _RESTS_RAD_S:
+    if checked.rest_q_rad_s > _RESTS_RAD_S:
         notes.append(
-            f"With resting controls it turns by {np.degrees(found.rest_q_rad_s):.2f} deg/s: its trim is not "
-            "steady, and every replay starts with that motion."
+            f"With resting controls it turns by {np.degrees(checked.rest_q_rad_s):.2f} deg/s: its trim is "
+            "not steady, and every replay starts with that motion."
         )
     return replace(
-        found, derivatives=values, std={name: value.std for name, value in pitch.derivatives.items()},
+        checked, derivatives=values, std={name: value.std for name, value in pitch.derivatives.items()},
         lag_s=pitch.lag_s.value, dead_time_s=pitch.dead_time_s.value,
         omega_rad_s=omega, damping=float(damping), notes=tuple(notes),
     )  # fmt: skip

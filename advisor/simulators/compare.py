@@ -137,14 +137,14 @@ def compare(
     stays, flown = (examined, fly(None)) if unseen is None else without_worse(examined, unseen, fly)
     if unseen is not None and not changes_something(stays.diagnosis):
         unseen, flown = None, fly(None)
-    found = _measured(stays, unseen, as_file, flown, as_flown)
+    diagnosis = _measured(stays, unseen, as_file, flown, as_flown)
     if replays:
         progress("searching for effects that only the simulator has", _FOUND)
         mirror = mirrored(examined, maneuvers, flying, replays, aircraft, as_flown)
-        found = found if mirror is None else mirror.said(found)
-    found = with_static_errors(found, examined, trims)
+        diagnosis = diagnosis if mirror is None else mirror.said(diagnosis)
+    diagnosis = with_static_errors(diagnosis, examined, trims)
     notes = (*getattr(simulator, "notes", ()), *still_air_said(simulator, blown))
-    return Compared(replace(found, notes=(*notes, *found.notes)), as_file, stays.findings)
+    return Compared(replace(diagnosis, notes=(*notes, *diagnosis.notes)), as_file, stays.findings)
 
 
 def _measured(
@@ -171,15 +171,15 @@ def _measured(
 
 def _as_logged(traces: Sequence[Trace], as_flown: Mapping[int, AsGiven]) -> tuple[Trace, ...]:
     """Return the traces of the logged flight, with those of the simulator in place of its surrogate."""
-    found = []
+    logged = []
     for trace in traces:
         one = as_flown[trace.number]
         t = np.arange(one.beyond.shape[1]) * one.flight.h
         by = np.interp(trace.t, t, one.beyond[OUTPUTS.index(trace.channel)])
-        found.append(
+        logged.append(
             replace(trace, measured=trace.measured + by, before=trace.before + by, after=trace.after + by)
         )
-    return tuple(found)
+    return tuple(logged)
 
 
 def _linear(flying: Flying) -> dict[int, AsGiven]:

@@ -68,7 +68,7 @@ class Flying:
         UnusableInputError
             The simulator does not load or trim, takes too long, or returns numbers that are not finite.
         """
-        found = []
+        replays = []
         many = self.flights.flights
         for i, flight in enumerate(many):
             self.progress(f"{self.simulator.description} flies manoeuvre {flight.number}", i / len(many))
@@ -79,8 +79,8 @@ class Flying:
                 # The pilot's corrections of gusts that the simulator does not have.
                 level = {name: y for name, y in inputs.others.items() if name not in _LATERAL}
                 replay = self._flown(flight, replace(inputs, others=level), increment)
-            found.append(replay)
-        return found
+            replays.append(replay)
+        return replays
 
     def _flown(self, flight: PreparedManeuver, inputs: Inputs, increments: Increments | None) -> Replay:
         replay = self.simulator.replay(self.condition(flight), inputs, increments)
@@ -120,15 +120,15 @@ def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool 
     A manoeuvre's α, q, a_z and θ on its grid, each of shape (4, n + 1).
     """
     problem = EffectProblem(flying.flights, p, held)
-    found = []
+    differences = []
     for there, replay, numbers in zip(flying.as_flown(replays), replays, p, strict=True):
         ends = np.arange(there.n + 1) * there.h
         speed = np.interp(ends, replay.t, replay.airspeed_m_s)
         surface = surface_of(there, numbers, held)
         read = instruments(on_grid(replay, there), speed, surface, there.h, numbers)
         linear = problem.fly(there, trimmed_at(numbers, there))
-        found.append(skewed(read - linear, there.h, numbers))
-    return found
+        differences.append(skewed(read - linear, there.h, numbers))
+    return differences
 
 
 def added(

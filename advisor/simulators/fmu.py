@@ -190,9 +190,9 @@ class FmuSimulator:
             after = self._motion(condition)
             return np.array([after[0] - before[0], after[1] - before[1]]) / self._step_s
 
-        found = steady(change, np.zeros(2))
-        if found is not None:
-            return float(found[0]), float(found[1])
+        trim = steady(change, np.zeros(2))
+        if trim is not None:
+            return float(trim[0]), float(trim[1])
         raise UnusableInputError(
             "simulator_trim",
             f"{self.description} finds no steady flight at {condition.airspeed_m_s:.4g} m/s"

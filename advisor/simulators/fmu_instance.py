@@ -63,23 +63,23 @@ class Fmu:
 
     def reference(self, key: str, variable: str, use: Use) -> int:
         """Return the value reference of a variable that the aircraft file's ``key`` names."""
-        found = self._variables.get(variable)
-        if found is None:
+        described = self._variables.get(variable)
+        if described is None:
             raise self._unusable(
                 f"has no variable {variable!r}, which {key} of the aircraft file names",
                 f"Correct {key}; the model description of the FMU lists the names.",
             )
-        if found.type not in _REAL or found.dimensions:
+        if described.type not in _REAL or described.dimensions:
             raise self._unusable(
-                f"has {variable!r}, which {key} names, but that is {found.type}, not one real number",
+                f"has {variable!r}, which {key} names, but that is {described.type}, not one real number",
                 f"Name a real variable in {key}.",
             )
-        if not _allows(found, use):
+        if not _allows(described, use):
             raise self._unusable(
-                f"has {variable!r}, which {key} names, as {found.causality}, which cannot be set",
+                f"has {variable!r}, which {key} names, as {described.causality}, which cannot be set",
                 f"Name an input or a parameter in {key}, or make that variable one.",
             )
-        return int(found.valueReference)
+        return int(described.valueReference)
 
     def begin(self, start: Mapping[int, float]) -> None:
         """Instantiate the FMU, set start values, and leave it ready for the first step."""

@@ -94,7 +94,7 @@ class ModelExchange:
             return float(np.min((np.sign(before) * self._signs())[watched]))
 
         nearest.terminal, nearest.direction = True, -1.0  # type: ignore[attr-defined]
-        found = solve_ivp(
+        solution = solve_ivp(
             self._rates,
             (t, until),
             x,
@@ -103,9 +103,9 @@ class ModelExchange:
             rtol=_TOLERANCE,
             atol=_TOLERANCE,
         )
-        if not found.success:
-            raise RuntimeError(str(found.message))
-        return float(found.t[-1]), found.y[:, -1]
+        if not solution.success:
+            raise RuntimeError(str(solution.message))
+        return float(solution.t[-1]), solution.y[:, -1]
 
     def _rates(self, at: float, x: FloatArray) -> FloatArray:
         self._put(at, x)

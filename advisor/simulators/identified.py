@@ -75,11 +75,11 @@ def identified_pitch(replay: Replay, other: Replay, t: FloatArray, elevator: Flo
     for lag_s, delay_s in product(_STARTS_S, _STARTS_S):
         start = np.array([*fit.regressed(delay_s), lag_s, delay_s])
         lower = np.array([*np.full(len(start) - 2, -np.inf), 0.0, 0.0])
-        found = least_squares(
+        optimum = least_squares(
             fit.residual, start, bounds=(lower, np.inf), x_scale="jac",
             xtol=_CONVERGED, ftol=_CONVERGED, gtol=None, max_nfev=_MOST_EVALUATIONS,
         )  # fmt: skip
-        best = found if best is None or found.cost < best.cost else best
+        best = optimum if best is None or optimum.cost < best.cost else best
         if 2.0 * best.cost < len(best.fun) * _EXACT**2:
             break
     if best is None or not np.all(np.isfinite(best.x)):
@@ -223,7 +223,7 @@ def identified_side(replay: Replay, other: Replay, t: FloatArray, moved: FloatAr
     left = x[1:] - columns @ steps
     spread = np.sqrt(np.maximum(np.diag(np.linalg.pinv(columns.T @ columns)), 0.0)) / h
     names = [*(_STATES[k] for k in moving), "u"]
-    found = {f"{letter}_{name}": Value(0.0, 0.0) for letter in "LN" for name in ("beta", "p", "r", "u")}
+    derivatives = {f"{letter}_{name}": Value(0.0, 0.0) for letter in "LN" for name in ("beta", "p", "r", "u")}
     for letter, rate in (("L", "p"), ("N", "r")):
         if rate not in names:
             continue
@@ -231,5 +231,5 @@ def identified_side(replay: Replay, other: Replay, t: FloatArray, moved: FloatAr
         noise = float(np.std(left[:, row])) * np.sqrt(_colour(left[:, row]))
         for k, name in enumerate(names):
             if name != "bank":
-                found[f"{letter}_{name}"] = Value(float(rates[row, k]), noise * float(spread[k]))
-    return found
+                derivatives[f"{letter}_{name}"] = Value(float(rates[row, k]), noise * float(spread[k]))
+    return derivatives

@@ -131,10 +131,10 @@ def other_controls(
 def _departures(flight: PreparedManeuver, maneuver: Maneuver) -> Mapping[str, FloatArray]:
     middles = (np.arange(flight.n) + 0.5) * flight.h
     before = middles < max(flight.first_step_s, flight.h)
-    found = {}
+    departures = {}
     for name in CONTROLS:
         channel = maneuver.channels.get(name)
         if channel is not None and len(channel) > 1:
             y = np.interp(middles, channel.t - flight.started_s, channel.y)
-            found[name] = y - float(np.mean(y[before]))
-    return found
+            departures[name] = y - float(np.mean(y[before]))
+    return departures

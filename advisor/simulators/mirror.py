@@ -202,13 +202,13 @@ def _beyond(
     derivatives = np.array([as_file.model[name] for name in DERIVATIVES])
     still = SearchPoint(derivatives, np.zeros((len(flights), len(NUISANCES))))
     problem = EffectProblem(flights, base)
-    found = {}
+    differences = {}
     pairs = zip(flying.as_flown(replays), replays, problem.driving(still), strict=True)
     for there, replay, numbers in pairs:
         # The simulator hands its instruments' effects out already; the surrogate gets them here.
         linear = skewed(problem.fly(there, trimmed_at(numbers, there)), there.h, numbers)
-        found[there.number] = AsGiven(there, on_grid(replay, there) - linear)
-    return found
+        differences[there.number] = AsGiven(there, on_grid(replay, there) - linear)
+    return differences
 
 
 def _said(cause: Cause) -> str:

@@ -71,9 +71,9 @@ def _of_the_trims(trims: Sequence[TrimDifference]) -> Iterator[str]:
 
 
 def _of_the_speed(examined: Examined) -> Iterator[str]:
-    found = examined.findings.airspeed_scale
-    if found is not None and abs(found.scale) > _READS_WRONG:
-        read = 100.0 * (1.0 / (1.0 + found.scale) - 1.0)
+    scale = examined.findings.airspeed_scale
+    if scale is not None and abs(scale.scale) > _READS_WRONG:
+        read = 100.0 * (1.0 / (1.0 + scale.scale) - 1.0)
         yield f"The air speed reads {abs(read):.0f} % {'low' if read < 0.0 else 'high'} by the motion."
 
 
@@ -127,14 +127,14 @@ def trim_differences(
     by_number = {m.number: m for m in maneuvers}
     flown = [_of_the_flight(f, by_number[f.number], aircraft) for f in flights.flights]
     simulated = [{"alpha": float(replay.alpha[0]), **replay.trim} for replay in replays]
-    found = []
+    differences = []
     for name in ("alpha", "elevator", "throttle"):
         pairs = [(s[name], f[name]) for s, f in zip(simulated, flown, strict=True) if name in s and name in f]
         if pairs:
             theirs, ours = np.array(pairs).T
             std = float(np.std(theirs - ours) / np.sqrt(len(pairs)))
-            found.append(TrimDifference(name, float(np.mean(theirs)), float(np.mean(ours)), std))
-    return tuple(found)
+            differences.append(TrimDifference(name, float(np.mean(theirs)), float(np.mean(ours)), std))
+    return tuple(differences)
 
 
 def _of_the_flight(flight: PreparedManeuver, maneuver: Maneuver, aircraft: Aircraft) -> Mapping[str, float]:

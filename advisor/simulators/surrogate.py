@@ -100,9 +100,9 @@ def surrogate_of(
         fit(problem, plain.point.with_effect(DELAY, (delay,)).with_effect(LAG, (lag,)), iterations=20)
         for delay, lag in product(_STARTS_S, _STARTS_S)
     ]
-    found = min(late, key=_cost)
-    (delay,), (lag,) = found.point.values
-    derivatives = dict(zip(DERIVATIVES, map(float, found.point.derivatives), strict=True))
+    best = min(late, key=_cost)
+    (delay,), (lag,) = best.point.values
+    derivatives = dict(zip(DERIVATIVES, map(float, best.point.derivatives), strict=True))
     lag_s, delay_s = (max(round(float(x), _DIGITS), 0.0) for x in (lag, delay))
     return Surrogate(derivatives, flights.reference_m_s, lag_s, delay_s)
 

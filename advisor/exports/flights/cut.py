@@ -52,8 +52,8 @@ def cut_tlog(log: Path, first: int, last: int) -> bytes:
     """
     beginning = beginning_of(log)
     with unpacked(log, beginning) as plain:
-        found = recognised(beginning_of(plain) if plain is not log else beginning)
-        if found is None or found.format is not TLOG:
+        kind = recognised(beginning_of(plain) if plain is not log else beginning)
+        if kind is None or kind.format is not TLOG:
             raise ConfigurationError(
                 f"--cut: {log} is no tlog, and only tlogs are cut; "
                 "export the manoeuvre's channels with --format."

@@ -110,12 +110,12 @@ def _maneuvers(axis: _Axis, record_of: Mapping[tuple[int, int], int]) -> FlightT
 
 def _estimates(axis: _Axis) -> FlightTable:
     """Return a table with a row for each parameter of each estimate, and its row of the covariance."""
-    found = [(one.maneuver.number, e) for one in axis.judged if (e := _estimate(one))]
+    estimates = [(one.maneuver.number, e) for one in axis.judged if (e := _estimate(one))]
     if axis.model is not None:
-        found.append((JOINT, axis.model))
+        estimates.append((JOINT, axis.model))
     rows = [
         (number, e, name)
-        for number, e in found
+        for number, e in estimates
         for name in (*axis.units, *(instrument.name for instrument in e.instruments))
     ]
 

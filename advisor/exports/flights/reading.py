@@ -59,19 +59,19 @@ def _channels(flights: WholeFlights) -> FlightTable:
         for number, (flight, one) in enumerate(flights.power_ons, start=1)
         for channel in one.channels.values()
     ]
-    found = [channel for *_, channel in rows]
+    channels = [channel for *_, channel in rows]
     columns = (
         Column("record", counts([number for number, *_ in rows]), "", "number of the record"),
         Column("log", texts([str(log) for _, log, _, _ in rows]), "", "file of the log"),
         Column("boot", counts([boot for *_, boot, _ in rows]), "", "power-on in the log, from 0"),
-        Column("channel", texts([c.name for c in found]), "", "name of the channel"),
-        Column("unit", texts([ALL_UNITS[c.name] for c in found]), "", "SI unit of the channel"),
-        Column("source", texts([c.source for c in found]), "", "message and field"),
-        Column("provenance", texts([c.provenance for c in found]), "", "origin of the quantity"),
-        Column("samples", counts([len(c) for c in found]), "1", "number of samples"),
-        Column("rate_hz", numbers([c.rate_hz for c in found]), "Hz", "median sampling rate"),
+        Column("channel", texts([c.name for c in channels]), "", "name of the channel"),
+        Column("unit", texts([ALL_UNITS[c.name] for c in channels]), "", "SI unit of the channel"),
+        Column("source", texts([c.source for c in channels]), "", "message and field"),
+        Column("provenance", texts([c.provenance for c in channels]), "", "origin of the quantity"),
+        Column("samples", counts([len(c) for c in channels]), "1", "number of samples"),
+        Column("rate_hz", numbers([c.rate_hz for c in channels]), "Hz", "median sampling rate"),
         Column(
-            "largest_gap_s", numbers([c.largest_gap_s for c in found]), "s", "longest time between stamps"
+            "largest_gap_s", numbers([c.largest_gap_s for c in channels]), "s", "longest time between stamps"
         ),
     )
     return FlightTable("channels", "A row is a channel of one record.", columns)

@@ -68,8 +68,8 @@ class SideModel:
 
     def number(self, parameter: str) -> float:
         """Return a derivative for other programs; 0 if insignificant or unknown."""
-        found = self.values.get(parameter)
-        return found.value if found is not None and is_told(found) else 0.0
+        value = self.values.get(parameter)
+        return value.value if value is not None and is_told(value) else 0.0
 
     @property
     def numbers(self) -> FloatArray:
@@ -113,13 +113,13 @@ def flown_model(state: CampaignState, aircraft: Aircraft) -> FlownModel:
     ConfigurationError
         No manoeuvre of either axis is accepted, or none determines the derivatives.
     """
-    found = _in_one_air(FlownModel(aircraft, _pitch(state, aircraft), side_flown(state.lateral, aircraft)))
-    if found.pitch is None and found.side is None:
+    model = _in_one_air(FlownModel(aircraft, _pitch(state, aircraft), side_flown(state.lateral, aircraft)))
+    if model.pitch is None and model.side is None:
         raise ConfigurationError(
             "--export: the accepted manoeuvres determine the derivatives of no axis; fly the input that "
             "advisor analyze names."
         )
-    return found
+    return model
 
 
 def improved_model(diagnosis: Diagnosis, aircraft: Aircraft, side: SideModel | None) -> FlownModel:
@@ -249,8 +249,8 @@ def _with_servos(aircraft: Aircraft, side: SideModel | None) -> Aircraft:
     return replace(aircraft, **changed)
 
 
-def _known(found: float, stated: float | None) -> float | None:
-    return round(found, 6) if found else stated
+def _known(estimated: float, stated: float | None) -> float | None:
+    return round(estimated, 6) if estimated else stated
 
 
 def _at(side: SideModel, faster: float) -> Mapping[str, float]:

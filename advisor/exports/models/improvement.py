@@ -56,12 +56,12 @@ class ExportedServo:
 
 def servo_of(control: Elevator | SideControl, effects: Mapping[str, Mapping[str, float]]) -> ExportedServo:
     """Return the servo of the aircraft file, combined with the effects found."""
-    found = {"delay_s": control.delay_s or 0.0, "lag_s": control.lag_s or 0.0}
+    servo = {"delay_s": control.delay_s or 0.0, "lag_s": control.lag_s or 0.0}
     for effect, sizes in effects.items():
         for key, (part, factor) in EFFECTS[effect].servo.items():
             if key in sizes:
-                found[part] = found.get(part, 0.0) + factor * sizes[key]
-    return ExportedServo(**found)
+                servo[part] = servo.get(part, 0.0) + factor * sizes[key]
+    return ExportedServo(**servo)
 
 
 SLOPES = ("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e")
@@ -112,13 +112,13 @@ class Improvement:
 
     def number(self, parameter: str) -> float:
         """Return a parameter for other programs, with an insignificant derivative as zero."""
-        found = self.model[parameter]
-        return found.value if parameter not in SLOPES or is_told(found) else 0.0
+        value = self.model[parameter]
+        return value.value if parameter not in SLOPES or is_told(value) else 0.0
 
     def interval95(self, parameter: str) -> tuple[float, float]:
         """Return the 95 % interval of one of the eight parameters."""
-        found = self.model[parameter]
-        return found.value - NORMAL_95 * found.std, found.value + NORMAL_95 * found.std
+        value = self.model[parameter]
+        return value.value - NORMAL_95 * value.std, value.value + NORMAL_95 * value.std
 
     def differs(self, parameter: str, prior: float) -> bool:
         """Return whether the 95 % interval of a parameter excludes a prior value."""
@@ -141,14 +141,14 @@ class Improvement:
         weight = GRAVITY_M_S2 / self.true_airspeed_m_s
         force, moment = scale["C_L_alpha"][1], scale["C_m_alpha"][1]
         lift, pitch = self.model["Z_0"], self.model["M_0"]
-        found = {
+        coefficients = {
             "C_L_0": Coefficient(force * (lift.value - weight), abs(force) * lift.std),
             "C_m_0": Coefficient(moment * pitch.value, abs(moment) * pitch.std),
         }
         for name, (parameter, factor) in scale.items():
             std = self.model[parameter].std
-            found[name] = Coefficient(factor * self.number(parameter) + 0.0, abs(factor) * std)
-        return found
+            coefficients[name] = Coefficient(factor * self.number(parameter) + 0.0, abs(factor) * std)
+        return coefficients
 
 
 def improvement_of(diagnosis: Diagnosis, aircraft: Aircraft) -> Improvement:

@@ -33,16 +33,16 @@ def lateral_document(state: LateralState, aircraft: Aircraft) -> dict[str, Any]:
 
 
 def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
-    found = judged.estimate if isinstance(judged.estimate, LateralEstimate) else None
+    estimate = judged.estimate if isinstance(judged.estimate, LateralEstimate) else None
     told = flown(judged)
     del told["record_from_boot_s"]
     return {
         **picked(judged.maneuver, "number flight boot mode"),
         **told,
-        **fitted(found),
-        "estimates": _told(found) if found else None,
-        "modes": _modes(found.modes) if found else None,
-        "not_identifiable": dict(found.not_identifiable) if found else {},
+        **fitted(estimate),
+        "estimates": _told(estimate) if estimate else None,
+        "modes": _modes(estimate.modes) if estimate else None,
+        "not_identifiable": dict(estimate.not_identifiable) if estimate else {},
     }
 
 

@@ -145,12 +145,12 @@ def of_one(name: str, judged: JudgedManeuver | None, prior: Mapping[str, float])
 
 def untold(estimate: Estimate) -> list[str]:
     """Return one sentence for each reason why derivatives or modes are undetermined."""
-    found: dict[str, list[str]] = {}
+    by_reason: dict[str, list[str]] = {}
     for name, reason in estimate.not_identifiable.items():
-        found.setdefault(reason, []).append(symbol(name))
-    told = [f"Not identifiable: {', '.join(names)}; {reason}." for reason, names in found.items()]
+        by_reason.setdefault(reason, []).append(symbol(name))
+    sentences = [f"Not identifiable: {', '.join(names)}; {reason}." for reason, names in by_reason.items()]
     left_out = estimate.modes.left_out if isinstance(estimate, LateralEstimate) else {}
-    return told + [f"No {mode.replace('_', ' ')} mode: {why}." for mode, why in left_out.items()]
+    return sentences + [f"No {mode.replace('_', ' ')} mode: {why}." for mode, why in left_out.items()]
 
 
 def structure_lines(estimate: Estimate) -> list[str]:
@@ -193,14 +193,14 @@ def instrument_facts(state: CampaignState) -> list[tuple[Fact, str]]:
         return []
     alpha, source = state.channels.get("alpha"), joint_source(state)
     with_vane = alpha is not None and alpha.provenance in ("vane", "simulated")
-    found = []
+    facts = []
     for one in state.model.instruments:
         key = one.name if with_vane or one.name != "vane_arm_m" else "no_vane_arm_m"
         name, unit, factor = _INSTRUMENTS.get(key, (one.name.replace("_", " "), "SI", 1.0))
         fact = fact_of(name, source, one.value, one.std, unit, factor)
         stated = "–" if one.stated is None else signed(factor * one.stated, decimals_for(fact.half))
-        found.append((fact, stated))
-    return found
+        facts.append((fact, stated))
+    return facts
 
 
 _INSTRUMENTS: Mapping[str, tuple[str, str, float]] = {

@@ -13,12 +13,12 @@ from advisor.report.table import Table
 @section("telemetry", "Telemetry")
 def telemetry(content: Content) -> Iterator[Block]:
     """Yield the doctor's verdict, limits with their remedies, and message rates, log by log."""
-    for flight, (name, found) in enumerate(zip(content.names, content.doctor, strict=True)):
-        yield Paragraph(f"{name}: {found['verdict']}.")
-        yield from listing([f"{limit['text']}. Fix: {limit['fix']}." for limit in found["limits"]])
-        yield from listing(list(found.get("notes", ())))
-        if found["messages"]:
-            yield message_table(f"messages-{flight}", found["messages"])
+    for flight, (name, doctor) in enumerate(zip(content.names, content.doctor, strict=True)):
+        yield Paragraph(f"{name}: {doctor['verdict']}.")
+        yield from listing([f"{limit['text']}. Fix: {limit['fix']}." for limit in doctor["limits"]])
+        yield from listing(list(doctor.get("notes", ())))
+        if doctor["messages"]:
+            yield message_table(f"messages-{flight}", doctor["messages"])
 
 
 @section("assumptions", "What was assumed")

@@ -76,8 +76,8 @@ def section(name: str, title: str) -> Callable[[Callable[[Content], Iterator[Blo
     def made(blocks: Callable[[Content], Iterator[Block]]) -> Part:
         @wraps(blocks)
         def part(content: Content) -> Section | None:
-            found = tuple(blocks(content))
-            return Section(name, title, found) if found else None
+            made_blocks = tuple(blocks(content))
+            return Section(name, title, made_blocks) if made_blocks else None
 
         return part
 

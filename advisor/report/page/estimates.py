@@ -40,12 +40,12 @@ def estimates(content: Content) -> Iterator[Block]:
     yield from structure_table(model, "structure")
     yield from listing(structure_lines(model))
     joint = {name: of_all(name, content.state, prior) for name in PARAMETERS}
-    if found := instrument_facts(content.state):
+    if nuisances := instrument_facts(content.state):
         yield Table(
             "instruments",
-            f"{found[0][0].source}: nuisance parameters; ± is half the 95 % interval.",
+            f"{nuisances[0][0].source}: nuisance parameters; ± is half the 95 % interval.",
             ("nuisance parameter", "estimate ± 95 %", "aircraft file", "unit"),
-            tuple((one.name, one.cell, stated, one.unit) for one, stated in found), frozenset({1, 2}),
+            tuple((one.name, one.cell, stated, one.unit) for one, stated in nuisances), frozenset({1, 2}),
         )  # fmt: skip
     yield from regression_table(model, "equation-error")
     alone = {
@@ -66,7 +66,7 @@ def estimates(content: Content) -> Iterator[Block]:
 def _forest(
     name: str, alone: Mapping[str, Mapping[str, EstimatedParameter]], joint: Mapping[str, EstimatedParameter]
 ) -> Figure:
-    rows = [*((number, found[name]) for number, found in alone.items()), ("joint", joint[name])]
+    rows = [*((number, parameters[name]) for number, parameters in alone.items()), ("joint", joint[name])]
     known = [(label, row) for label, row in rows if row.is_known]
     svg = picture(f"forest-{name}", 2.4, min(0.9 + 0.15 * len(rows), _TALLEST_IN), _paint, joint[name], known)
     told = "" if joint[name].prior is None else " Dashes: the simulator's value."

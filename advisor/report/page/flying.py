@@ -24,34 +24,34 @@ from advisor.words.quantiles import PAIR_95
 @section("flying-qualities", "Flying qualities")
 def flying(content: Content) -> Iterator[Block]:
     """Yield the flying qualities: numbers, levels, coefficients, air."""
-    found = content.analysis["flying_qualities"]
-    if found is None:
+    document = content.analysis["flying_qualities"]
+    if document is None:
         yield Paragraph("No manoeuvre is accepted, so there are no flying qualities.")
         return
-    present = {name: found[name] for name in NAMES if name in found}
+    present = {name: document[name] for name in NAMES if name in document}
     yield Table(
         "qualities", "Flying qualities of the joint estimate, ± half the 95 % interval (delta method).",
         ("quantity", "value ± 95 %", "unit"),
         tuple((NAMES[name], _cell(NAMES[name], q), q["unit"]) for name, q in present.items()),
         frozenset({1}),
     )  # fmt: skip
-    yield from listing([f"{NAMES[name]} is not given: {why}." for name, why in found["left_out"].items()])
-    if found["levels"]:
-        if chart := flying_chart(found):
+    yield from listing([f"{NAMES[name]} is not given: {why}." for name, why in document["left_out"].items()])
+    if document["levels"]:
+        if chart := flying_chart(document):
             yield Gallery((chart,))
         yield Table(
-            "levels", f"Levels by {found['source']}.", ("category", "flight phases", "level"),
-            tuple((c, one["phases"], one["text"].partition(": ")[2]) for c, one in found["levels"].items()),
+            "levels", f"Levels by {document['source']}.", ("category", "flight phases", "level"),
+            tuple((c, x["phases"], x["text"].partition(": ")[2]) for c, x in document["levels"].items()),
         )  # fmt: skip
-        yield Paragraph(found["caution"], "note")
+        yield Paragraph(document["caution"], "note")
     coefficients = content.analysis["coefficients"]
     if coefficients:
         yield Table(
-            "coefficients", f"Coefficients {found['convention']}. Drag's part in the lift is neglected.",
+            "coefficients", f"Coefficients {document['convention']}. Drag's part in the lift is neglected.",
             ("coefficient", "value ± 95 %"),
             tuple((name, _cell(name, one)) for name, one in coefficients.items()), frozenset({1}),
         )  # fmt: skip
-    air = found["air"]
+    air = document["air"]
     logged, true = air["airspeed_m_s"], air["true_airspeed_m_s"]
     speeds = "" if logged is None else f" Logged air speed {logged:.1f} m/s, true air speed {true:.1f} m/s."
     yield Paragraph(
@@ -77,62 +77,65 @@ _WIDTH_IN, _HEIGHT_IN = 7.4, 2.6
 _PHONE_IN, _OF_A_PANEL_IN = 3.8, 2.4
 
 
-def flying_chart(found: Document) -> Figure | None:
+def flying_chart(document: Document) -> Figure | None:
     """Return the chart; None if frequency, n/α, damping or their covariance are missing."""
-    if found["correlation"] is None or "damping" not in found:
+    if document["correlation"] is None or "damping" not in document:
         return None
     return Figure(
-        _drawn("levels-chart", found, across=True),
+        _drawn("levels-chart", document, across=True),
         "Natural frequency against acceleration sensitivity n/α in the categories A, B and C, and damping. "
         "Cross and ellipse: the estimate with its joint 95 % region; bar: the 95 % interval of the damping. "
         "Solid, dashed and dotted lines bound the Levels 1, 2 and 3; the darkest field is Level 1.",
-        narrow=_drawn("levels-phone", found, across=False),
+        narrow=_drawn("levels-phone", document, across=False),
     )
 
 
-def _drawn(name: str, found: Document, *, across: bool) -> Callable[[], str]:
+def _drawn(name: str, document: Document, *, across: bool) -> Callable[[], str]:
     """Return a function that draws the chart with its panels in a row, or stacked for a phone."""
     panels = len(CATEGORIES) + 1
     size = (_WIDTH_IN, _HEIGHT_IN) if across else (_PHONE_IN, _OF_A_PANEL_IN * panels)
-    return picture(name, *size, _paint, found, across)
+    return picture(name, *size, _paint, document, across)
 
 
-def ellipse(found: Document) -> tuple[FloatArray, FloatArray]:
+def ellipse(document: Document) -> tuple[FloatArray, FloatArray]:
     """Return n/α and ω_n along the joint 95 % region, each of shape (n,).
 
     The region is an ellipse in the logarithms, so both values stay positive.
     """
-    load, frequency = found["n_alpha"], found["natural_frequency"]
+    load, frequency = document["n_alpha"], document["natural_frequency"]
     across, up = (one["std"] / one["value"] for one in (load, frequency))
     angle = np.linspace(0.0, 2.0 * np.pi, 181)
     first, second = PAIR_95 * np.cos(angle), PAIR_95 * np.sin(angle)
-    rho = found["correlation"]
+    rho = document["correlation"]
     along = rho * first + (1.0 - rho**2) ** 0.5 * second
     return load["value"] * np.exp(across * first), frequency["value"] * np.exp(up * along)
 
 
-def _paint(drawing: Drawing, found: Document, across: bool) -> None:
+def _paint(drawing: Drawing, document: Document, across: bool) -> None:
     panels = len(CATEGORIES) + 1
     shape = (1, panels) if across else (panels, 1)
     widths = [1.0] * len(CATEGORIES) + [0.8] if across else None
     every = np.ravel(drawing.subplots(*shape, width_ratios=widths))
-    region = ellipse(found)
+    region = ellipse(document)
     for axes, (category, limits) in zip(every, LIMITS.items(), strict=False):
-        _paint_frequency(axes, limits, found, region)
+        _paint_frequency(axes, limits, document, region)
         axes.set_title(f"Category {category}")
         axes.set_xlabel("n/α [g/rad]")
         if not across or category == "A":
             axes.set_ylabel("ω_n [rad/s]")
-    _paint_damping(every[-1], found["damping"])
+    _paint_damping(every[-1], document["damping"])
     handles = [Line2D([], [], color=BLACK, linestyle=line, linewidth=0.8) for line in _LINES]
     drawing.legend(handles, [f"Level {level}" for level in (1, 2, 3)], loc="outside upper center", ncols=3)
 
 
 def _paint_frequency(
-    axes: Axes, limits: tuple[ShortPeriodLimits, ...], found: Document, region: tuple[FloatArray, FloatArray]
+    axes: Axes,
+    limits: tuple[ShortPeriodLimits, ...],
+    document: Document,
+    region: tuple[FloatArray, FloatArray],
 ) -> None:
     """Draw the levels of one category, the estimate and its region, on logarithmic axes."""
-    load, frequency = found["n_alpha"]["value"], found["natural_frequency"]["value"]
+    load, frequency = document["n_alpha"]["value"], document["natural_frequency"]["value"]
     ends_x, ends_y = (
         (min(centre / _ROOM, float(curve.min())), max(centre * _ROOM, float(curve.max())))
         for centre, curve in ((load, region[0]), (frequency, region[1]))

@@ -33,17 +33,17 @@ def gap(content: Content) -> Iterator[Block]:
     """Yield the diagnosis; nothing unless requested."""
     if (document := content.gap) is None:
         return
-    found = document.get("lateral") or document
-    if found["gap"] is None:
+    part = document.get("lateral") or document
+    if part["gap"] is None:
         yield Paragraph("The gap could not be diagnosed.")
         yield from listing([f"{p['text']} {p['fix']}" for p in document["problems"]])
         return
     if not document["usable"]:  # else the verdict's section has the answer and the picture
         yield from answer(document)
-    size, shrink = found["gap"], found["shrink"]
-    if found["parameters_changed"]:
+    size, shrink = part["gap"], part["shrink"]
+    if part["parameters_changed"]:
         yield Paragraph("Derivatives that differ from the simulator's; the others agree within 95 %:")
-        yield from listing([one["text"] for one in found["parameters_changed"]])
+        yield from listing([one["text"] for one in part["parameters_changed"]])
     grown = size["grown"] and f"{size['grown'][0].upper()}{size['grown'][1:]}"
     said = (size["text"], shrink and shrink["text"], grown)
     yield Paragraph(f"{_DEFINED}{'. '.join(filter(None, said))}.")
@@ -52,25 +52,25 @@ def gap(content: Content) -> Iterator[Block]:
         ("channel", "before", "after", "noise floor"),
         tuple(_channel(name, size) for name in size["by_channel"]), frozenset({1, 2, 3}),
     )  # fmt: skip
-    where = found["where"]
-    if found["verdict"] in ("effect", "unknown"):
+    where = part["where"]
+    if part["verdict"] in ("effect", "unknown"):
         yield Paragraph(f"Where: {where['text']}.")
-    yield from _law(found.get("missing_law"))
-    steps = [(spelled(s["effect"]), s["after"]) for s in found["waterfall"] if s["after"] != size["before"]]
+    yield from _law(part.get("missing_law"))
+    steps = [(spelled(s["effect"]), s["after"]) for s in part["waterfall"] if s["after"] != size["before"]]
     if steps:
         rows = [("as it is", size["before"]), *((f"+ {name}", after) for name, after in steps)]
         svg = picture("waterfall", 4.4, 0.8 + 0.28 * len(rows), _paint, rows)
         yield Gallery((Figure(svg, "Gap after each effect is added in turn.", "half"),))
-    causes = shown_causes(found) if found["verdict"] != "none" else []
+    causes = shown_causes(part) if part["verdict"] != "none" else []
     if causes:
         yield Table(
             "causes", "Causes, the most probable first.",
             ("effect", "probability", "values ± 95 %", "gap after", "cannot be told from"),
             tuple(_cause(cause, size["before"]) for cause in causes), frozenset({1, 3}),
         )  # fmt: skip
-    if found["why"]:
-        reasons = weighed((one["nats"], one["text"]) for one in found["why"])
-        title = found["why_heading"]
+    if part["why"]:
+        reasons = weighed((one["nats"], one["text"]) for one in part["why"])
+        title = part["why_heading"]
         yield Table(
             "gap-why",
             f"{title[0].upper()}{title[1:]}. Each reason states the answer's value first, then the rival's "
@@ -82,11 +82,11 @@ def gap(content: Content) -> Iterator[Block]:
     yield from listing(
         [
             f"Cannot be seen: {', '.join(names)}; {because}. To see it: {needed}."
-            for (because, needed), names in by_reason([Unseen(**u) for u in found["cannot_see"]]).items()
+            for (because, needed), names in by_reason([Unseen(**u) for u in part["cannot_see"]]).items()
         ]
     )
-    yield from listing(list(found["notes"]))
-    for number, step in enumerate(found["next"], start=1):
+    yield from listing(list(part["notes"]))
+    for number, step in enumerate(part["next"], start=1):
         yield Paragraph(f"{number}. {step['text']}")
         if step["command"]:
             yield Verbatim(step["command"])
@@ -120,20 +120,23 @@ def _paint_law(drawing: Drawing, law: Mapping[str, Any]) -> None:
 def glance(document: Document) -> Iterator[Block]:
     """Yield the answer, and the picture of the manoeuvre with the largest gap if there are curves."""
     yield from answer(document)
-    found = document.get("lateral") or document
-    if found["traces"]:
-        wide, narrow = gap_picture("gap-glance", found, _GLANCE), gap_picture("gap-narrow", found, 1)
-        yield Gallery((Figure(wide, caption(found), narrow=narrow),))
+    part = document.get("lateral") or document
+    if part["traces"]:
+        wide, narrow = (
+            gap_picture("gap-glance", part, _GLANCE),
+            gap_picture("gap-narrow", part, 1),
+        )
+        yield Gallery((Figure(wide, caption(part), narrow=narrow),))
 
 
 def answer(document: Document) -> Iterator[Block]:
     """Yield the sentence of the answer, its certainty, and its limits."""
-    found = document.get("lateral") or document
-    axis = "" if found is document else "Roll and yaw. "
-    yield Paragraph(f"{axis}{found['title']}: {found['sentence']}", "verdict")
-    if found["how_sure"]:
-        yield Paragraph(found["how_sure"])
-    yield from listing(list(found["limits"]))
+    part = document.get("lateral") or document
+    axis = "" if part is document else "Roll and yaw. "
+    yield Paragraph(f"{axis}{part['title']}: {part['sentence']}", "verdict")
+    if part["how_sure"]:
+        yield Paragraph(part["how_sure"])
+    yield from listing(list(part["limits"]))
 
 
 def shown_causes(document: Document) -> list[Mapping[str, Any]]:

@@ -34,24 +34,24 @@ _SHOWN_SMALL = ("q", "p")
 Trace = Mapping[str, Any]
 
 
-def caption(found: Document) -> str:
+def caption(document: Document) -> str:
     """Return the description of the picture."""
     return (
-        f"Manoeuvre {worst(found)}, the one with the largest gap. Grey: measured. Orange dots: simulated as "
-        "given. Dark dashes: with the findings. Below each: measured minus simulated; the band holds 95 % "
-        f"of the noise. Last: {CHANNELS[_small(found)].symbol} of every manoeuvre."
+        f"Manoeuvre {worst(document)}, the one with the largest gap. Grey: measured. Orange dots: simulated "
+        "as given. Dark dashes: with the findings. Below each: measured minus simulated; the band holds 95 % "
+        f"of the noise. Last: {CHANNELS[_small(document)].symbol} of every manoeuvre."
     )
 
 
-def gap_picture(name: str, found: Document, across: int) -> Callable[[], str]:
+def gap_picture(name: str, document: Document, across: int) -> Callable[[], str]:
     """Return the picture for a page, with ``across`` channels side by side."""
-    return picture(name, *_size_in(found, across), _paint, found, across)
+    return picture(name, *_size_in(document, across), _paint, document, across)
 
 
-def _size_in(found: Document, across: int) -> tuple[float, float]:
+def _size_in(document: Document, across: int) -> tuple[float, float]:
     """Return width and height of the picture, inches."""
-    channels = len({trace["channel"] for trace in found["traces"]})
-    small = len({trace["number"] for trace in found["traces"]})
+    channels = len({trace["channel"] for trace in document["traces"]})
+    small = len({trace["number"] for trace in document["traces"]})
     rows, small_rows = -(-channels // across), -(-small // _small_across(across))
     width = _WIDTH_IN if across > 1 else _ON_A_PHONE_IN
     height = _LEGEND_IN + _OF_A_CHANNEL_IN * rows + _TITLE_IN + _OF_THE_SMALL_IN * small_rows
@@ -63,17 +63,17 @@ def _small_across(across: int) -> int:
     return _SMALL_ACROSS if across > 1 else _SMALL_ON_A_PHONE
 
 
-def _small(found: Document) -> str:
-    there = {trace["channel"] for trace in found["traces"]}
+def _small(document: Document) -> str:
+    there = {trace["channel"] for trace in document["traces"]}
     return next(name for name in _SHOWN_SMALL if name in there)
 
 
-def worst(found: Document) -> int:
+def worst(document: Document) -> int:
     """Return the number of the manoeuvre with the largest gap."""
-    return int(max(found["gap"]["by_maneuver"], key=lambda one: one["before"])["number"])
+    return int(max(document["gap"]["by_maneuver"], key=lambda one: one["before"])["number"])
 
 
-def write_gap_picture(found: Document, path: Path) -> None:
+def write_gap_picture(document: Document, path: Path) -> None:
     """Write the picture into a file, in the format of its ending.
 
     Raises
@@ -81,21 +81,21 @@ def write_gap_picture(found: Document, path: Path) -> None:
     OSError
         The file cannot be written.
     """
-    save(path, *_size_in(found, _ACROSS), _paint, found, _ACROSS)
+    save(path, *_size_in(document, _ACROSS), _paint, document, _ACROSS)
 
 
-def _paint(drawing: Drawing, found: Document, across: int) -> None:
+def _paint(drawing: Drawing, document: Document, across: int) -> None:
     """Draw the worst manoeuvre channel by channel, above small pictures of all manoeuvres."""
     # Every axis has a fixed place in inches, because a computed layout would differ in the last digit.
     drawing.set_layout_engine("none")
-    number, traces = worst(found), found["traces"]
+    number, traces = worst(document), document["traces"]
     large = [trace for trace in traces if trace["number"] == number]
-    small = [trace for trace in traces if trace["channel"] == _small(found)]
+    small = [trace for trace in traces if trace["channel"] == _small(document)]
     width = (float(drawing.get_figwidth()) - _RIGHT_IN) / across
     for k, trace in enumerate(large):
         row, column = divmod(k, across)
         top = _LEGEND_IN + row * _OF_A_CHANNEL_IN
-        _paint_channel(drawing, trace, found["gap"]["floor"], (column * width, top, width))
+        _paint_channel(drawing, trace, document["gap"]["floor"], (column * width, top, width))
     top = _LEGEND_IN + _OF_A_CHANNEL_IN * -(-len(large) // across) + _TITLE_IN
     small_across = _small_across(across)
     each = (float(drawing.get_figwidth()) - _LEFT_IN - _RIGHT_IN) / small_across

@@ -35,9 +35,9 @@ def headline(content: Content) -> Iterator[Block]:
     if joint is not None and state.model is not None:
         yield joint
         yield from listing(untold(state.model))
-    found = content.gap
-    if found is not None and found["usable"]:
-        yield from glance(found)
+    gap = content.gap
+    if gap is not None and gap["usable"]:
+        yield from glance(gap)
 
 
 def _flown(content: Content) -> Table:

@@ -17,8 +17,8 @@ HEAD = ("no.", "start", "input", "mode", "verdict", "why")
 
 def maneuvers(content: Content) -> Section:
     """Return a table with a row for each manoeuvre, then cautions that reject no manoeuvre."""
-    found = content.analysis["maneuvers"]
-    rows = tuple(maneuver_row(maneuver, several=len(content.names) > 1) for maneuver in found)
+    listed = content.analysis["maneuvers"]
+    rows = tuple(maneuver_row(maneuver, several=len(content.names) > 1) for maneuver in listed)
     table = Table(
         ANCHORS[""], f"Every manoeuvre in the order flown; times are {CLOCK}.", HEAD, rows,
         frozenset({0, 1}), anchored=True,

@@ -40,8 +40,8 @@ def sections(content: Content) -> list[Section]:
     """Return all sections in the order of the page."""
     state = content.state
     is_tested = bool(state.maneuvers) and state.tested_sideways is None
-    found = (_made(part, content) for part in _PARTS if is_tested or part not in _OF_PITCH)
-    return [section for section in found if section is not None]
+    made = (_made(part, content) for part in _PARTS if is_tested or part not in _OF_PITCH)
+    return [section for section in made if section is not None]
 
 
 def _made(part: Part, content: Content) -> Section | None:

@@ -16,12 +16,12 @@ _AXES = (("x", BLUE, "-"), ("y", ORANGE, "--"), ("z", BLACK, ":"))
 @section("vibration", "Vibration")
 def vibration(content: Content) -> Iterator[Block]:
     """Yield spectra, their root mean squares, and clipped samples, log by log."""
-    for flight, found in enumerate(content.vibration):
-        if found is None or not (found.spectra or found.clipped):
+    for flight, measured in enumerate(content.vibration):
+        if measured is None or not (measured.spectra or measured.clipped):
             continue
-        if found.spectra:
-            yield from _shown(flight, content.names[flight], found.spectra)
-        yield Paragraph(_clipped(found))
+        if measured.spectra:
+            yield from _shown(flight, content.names[flight], measured.spectra)
+        yield Paragraph(_clipped(measured))
 
 
 def _shown(flight: int, name: str, spectra: Sequence[Spectrum]) -> Iterator[Block]:
@@ -36,10 +36,10 @@ def _shown(flight: int, name: str, spectra: Sequence[Spectrum]) -> Iterator[Bloc
     yield Table(f"vibration-rms-{flight}", told, head, rows, frozenset({1, 2, 3, 5}))
 
 
-def _clipped(found: Vibration) -> str:
-    if not found.clipped:
+def _clipped(measured: Vibration) -> str:
+    if not measured.clipped:
         return "The log has no counts of clipped samples."
-    return f"Clipped samples within the log: {', '.join(f'{n} {k}' for n, k in found.clipped.items())}."
+    return f"Clipped samples within the log: {', '.join(f'{n} {k}' for n, k in measured.clipped.items())}."
 
 
 def _paint(drawing: Drawing, spectra: Sequence[Spectrum]) -> None:

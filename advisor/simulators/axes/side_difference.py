@@ -153,14 +153,14 @@ def _surrogate(records: tuple[LateralRecord, ...], flown: LateralProblem, said: 
     )
     moving = [name for name in LATERAL.inputs if problem.flies(name)]
     own = [Nuisance("command", "", OWN_DELAY), *(Nuisance("lag", name, OWN_LAG) for name in moving)]
-    found = solve_lateral(problem, own)
-    if isinstance(found, NoEstimate):
+    solution = solve_lateral(problem, own)
+    if isinstance(solution, NoEstimate):
         raise UnusableInputError(
             "simulator_lateral",
-            f"{said} flies no roll and yaw that a linear model describes: {found.text}",
+            f"{said} flies no roll and yaw that a linear model describes: {solution.text}",
             "Check its signs and units in roll and yaw, and that it flies at this speed.",
         )
-    return found
+    return solution
 
 
 def _file(surrogate: Solution, aircraft: Aircraft, said: str) -> Aircraft:
@@ -236,9 +236,9 @@ def _refuse_broken(replay: Replay, said: str, maneuver: Maneuver, duration_s: fl
 
 def _refuse_wrong_control(surrogate: Solution, flown: LateralProblem, said: str) -> None:
     """Refuse a simulator whose aileron or rudder has a wrong sign or unit."""
-    found = dict(zip(LATERAL.names.reported, map(float, surrogate.theta), strict=True))
+    derivatives = dict(zip(LATERAL.names.reported, map(float, surrogate.theta), strict=True))
     for name, (turns, against) in TURNS.items():
         if flown.flies(name):
-            fault = control_fault(name, found[turns], abs(found[turns] / found[against]))
+            fault = control_fault(name, derivatives[turns], abs(derivatives[turns] / derivatives[against]))
             if fault is not None:
                 raise fault.refuse(said)

@@ -49,8 +49,8 @@ class ModelFormat(ABC):
 
 def format_named(name: str) -> ModelFormat:
     """Return the format with a name in ``advisor.exports.models.names.NAMES``."""
-    found: ModelFormat = import_module(f"advisor.exports.models.formats.{name}_format").FORMAT
-    return found
+    named: ModelFormat = import_module(f"advisor.exports.models.formats.{name}_format").FORMAT
+    return named
 
 
 def refuse_lacking(lacking: Sequence[Sequence[str]], name: str) -> None:

@@ -102,7 +102,7 @@ def _targets(
     improvement: Improvement, first: Slopes, terms: Mapping[str, Sequence[str]], per_rad: float | None
 ) -> dict[str, float]:
     """Return the target of each contradicted derivative; None if the elevator's property is no angle."""
-    found = {}
+    targets = {}
     for parameter in SLOPES:
         own = first.derivatives[parameter]
         unit = (per_rad or math.nan) if parameter.endswith("delta_e") else 1.0
@@ -111,9 +111,11 @@ def _targets(
         if improvement.differs(parameter, prior) and not math.isnan(prior):
             # A term is changed by the ratio, because the file's numbers may belong to another air density.
             by_ratio = value == 0.0 or (prior and parameter in terms)
-            found[parameter] = value and own * value / prior if by_ratio else own + (value - prior) / unit
-    moved = ["M" + parameter[1:] for parameter in found if parameter[0] == "Z"]
-    return found | {parameter: first.derivatives[parameter] for parameter in moved if parameter not in found}
+            targets[parameter] = value and own * value / prior if by_ratio else own + (value - prior) / unit
+    moved = ["M" + parameter[1:] for parameter in targets if parameter[0] == "Z"]
+    return targets | {
+        parameter: first.derivatives[parameter] for parameter in moved if parameter not in targets
+    }
 
 
 def _note(improvement: Improvement, first: Slopes, targets: Mapping[str, float]) -> str:

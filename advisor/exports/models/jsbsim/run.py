@@ -99,8 +99,8 @@ def _answered(content: bytes, model: Model, asked: dict[str, Any]) -> dict[str, 
                 input=json.dumps(request), capture_output=True, text=True, timeout=TIME_LIMIT_S, check=True,
                 cwd=folder, env=os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
             )  # fmt: skip
-            found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
-            return found
+            answer: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+            return answer
         except (subprocess.SubprocessError, ValueError, IndexError, TypeError) as error:
             raise ConfigurationError(
                 f"--export jsbsim: JSBSim does not load and trim {model.file.name} at "

@@ -151,11 +151,13 @@ def measured(fdm: Any, asked: Request) -> Slopes:
     at_trim, _ = respond(trim[0], 0.0, trim[1])
     slopes = _slopes(lambda x: respond(trim[0] + x[0], x[1], trim[1] + x[2]), SIZES)
     z, m = slopes[:, 0] - [0.0, 1.0, 0.0], slopes[:, 1]
-    found = dict(zip(("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e"), [*z, *m], strict=True))
-    if found["Z_alpha"] > -_FLAT:
+    derivatives = dict(
+        zip(("Z_alpha", "Z_q", "Z_delta_e", "M_alpha", "M_q", "M_delta_e"), [*z, *m], strict=True)
+    )
+    if derivatives["Z_alpha"] > -_FLAT:
         raise ArithmeticError("the lift does not grow at the trim: the wing is stalled, or its tables end")
     return Slopes(
-        {name: float(value) for name, value in found.items()},
+        {name: float(value) for name, value in derivatives.items()},
         {name: slopes[:, 2 + i].tolist() for i, name in enumerate(asked.names)},
         {"alpha": float(at_trim[0]), "q": 0.0, "delta_e": float(at_trim[2])},
         float(fdm["aero/qbar-psf"]),
@@ -244,8 +246,8 @@ def answer() -> None:
     aircraft, engine, systems = places
     fdm.load_model_with_paths(model, aircraft, engine, systems, True)
     asked = Request(**told)
-    found = side_measured(fdm, asked) if asked.sideways else measured(fdm, asked)
-    print("\n" + json.dumps(asdict(found), allow_nan=False))
+    slopes = side_measured(fdm, asked) if asked.sideways else measured(fdm, asked)
+    print("\n" + json.dumps(asdict(slopes), allow_nan=False))
 
 
 if __name__ == "__main__":

@@ -78,15 +78,15 @@ def parse(content: bytes, name: str) -> ET.Element:
 
 def terms_of(root: ET.Element) -> Mapping[str, tuple[str, ...]]:
     """Return the names of the model's functions for each derivative, in the file's order."""
-    found: dict[str, tuple[str, ...]] = {}
+    terms: dict[str, tuple[str, ...]] = {}
     for letter, axis in AXES.items():
         for function in _functions(root, axis):
             variable = _variable(function)
             name = function.get("name")
             if variable is not None and name is not None:
                 parameter = f"{letter}_{variable}"
-                found[parameter] = (*found.get(parameter, ()), name)
-    return found
+                terms[parameter] = (*terms.get(parameter, ()), name)
+    return terms
 
 
 def surface_of(root: ET.Element) -> str:
