@@ -1,1 +1,3 @@
-"""The sim-to-real gap: the block in which it lies, the effect that causes it, and how far it shrinks."""
+"""The sim-to-real gap: its block of the simulator, the effect that causes it, and its reduction by a
+correction.
+"""

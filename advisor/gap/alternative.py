@@ -1,4 +1,4 @@
-"""Alternatives: what may explain a flight, each with its evidence and its probability."""
+"""Alternatives: possible explanations of a flight, each with its evidence and its probability."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -96,7 +96,9 @@ class Weighed:
     rival: str = ""
     """Label of the answer's strongest rival; empty without ``why``."""
     failed: tuple[FailedPart, ...] = ()
-    """Effects whose model a numerical fault of the advisor ended: no alternative among the evidence."""
+    """Effects without an alternative in the evidence, because a numerical fault of the advisor ended their
+    model.
+    """
     decisions: tuple[Decision, ...] = ()
     """Every statistic that was compared with a limit, in the order of the comparisons."""
 

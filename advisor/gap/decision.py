@@ -11,8 +11,9 @@ CERTAIN = 30.0
 present. On 40 flights of two generators no gain of moving air lies between 21 and 64."""
 SIGMAS = 5.0
 """Least number of standard deviations of a difference that a check without a model reports. Checked are air
-speed, weight, offset of α, wind, and speeds of manoeuvres. Errors of such checks are not Gaussian, so three
-would not do."""
+speed, weight, offset of α, wind, and speeds of manoeuvres. Errors of these checks are not Gaussian, so three
+standard deviations are too few.
+"""
 
 
 def differs_from_zero(value: float, std: float) -> bool:

@@ -1,4 +1,4 @@
-"""The diagnosis: where the gap lies, which effect causes it, and how far it shrinks with that effect."""
+"""The diagnosis: the place of the gap, the effect that causes it, and the gap's reduction by that effect."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -203,8 +203,8 @@ _NOT_GIVEN = (
     "to it, which shows effects beyond eight parameters alone."
 )
 _STATEMENT = (
-    "There is no model to compare with, so no gap can be stated. A model fitted to this flight leaves no "
-    "effect to name."
+    "There is no model to compare with, so no gap can be stated. A model fitted to this flight shows no "
+    "effect."
 )
 
 
@@ -217,7 +217,9 @@ _KEYS = {
 
 
 def _key_said(cause: Cause, aircraft: Aircraft) -> str:
-    """Return the sentence about an effect that a key of the aircraft file states; empty for another one."""
+    """Return the sentence about an effect that a key of the aircraft file states; empty for any
+    other effect.
+    """
     if cause.effect not in _KEYS or len(cause.parameters) != 1:
         return ""
     section, key, unit = _KEYS[cause.effect]

@@ -41,8 +41,7 @@ def can_do_without(maneuver: Maneuver, aircraft: Aircraft) -> bool:
 
 
 def why_not_measured(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
-    """Return the reason why these manoeuvres have no measured angle of attack, as half a sentence; else
-    empty."""
+    """Return the clause that says why these manoeuvres have no measured angle of attack; else empty."""
     if aircraft.alpha.source == "none":
         return "alpha is left out, as the aircraft file asks"
     if not all(has(m.channels, "alpha") for m in maneuvers):
@@ -53,7 +52,7 @@ def why_not_measured(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
 
 
 def why_left_out(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> str:
-    """Return the reason why no measured angle of attack is used, as half a sentence; else empty."""
+    """Return the clause that says why no measured angle of attack is used; else empty."""
     if why := why_not_measured(maneuvers, aircraft):
         return why
     check = combine(
@@ -82,5 +81,5 @@ def infer(maneuver: Maneuver, aircraft: Aircraft) -> Channel:
         speed = np.full(len(t), aircraft.airspeed_m_s or np.nan)
     found = inferred_alpha(maneuver.channels, speed)
     if found is None:
-        raise ValueError("the motion cannot stand in for an angle of attack")
+        raise ValueError("the motion cannot replace the angle of attack")
     return found

@@ -222,7 +222,7 @@ def _end(grid: Grid, shared: FloatArray, local: FloatArray) -> tuple[FloatArray,
 
 
 def _inverse(information: FloatArray) -> FloatArray | None:
-    """Return the inverse of a symmetric matrix; None where it is nearly singular."""
+    """Return the inverse of a symmetric matrix; None if it is nearly singular."""
     diagonal = np.diag(information)
     if not np.all(diagonal > 0.0):
         return None

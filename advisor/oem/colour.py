@@ -100,8 +100,9 @@ class _Residuals:
         self.freedom = sum(max(len(block) - block.shape[1] + 1, 1) for block in blocks)
         """Number of samples that no parameter explains."""
         self._floor = self.freedom * _ROUND_OFF
-        """Least residual power. A residual that the columns explain whole is left with round-off, of either
-        sign."""
+        """Least residual power. Of a residual that the columns explain wholly, round-off of either sign
+        remains.
+        """
         self._sizes = np.array([block.shape for block in blocks], np.int64)
         self._flat = np.concatenate([block.ravel() for block in blocks])
         self._pooled: dict[tuple[float, float], tuple[float, float]] = {}

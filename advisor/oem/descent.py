@@ -66,7 +66,7 @@ class Motion(Protocol):
     def respond(
         self, problem: Any, laid: Any, shared: FloatArray, local: FloatArray, nuisances: Sequence[Any], /
     ) -> Response | None:
-        """Return the response of the model; None where the simulation diverges."""
+        """Return the response of the model; None if the simulation diverges."""
 
     def begins(self, laid: Any, /) -> FloatArray:
         """Return the time of the first event of each record, shape (m,), s."""
@@ -107,7 +107,7 @@ class _Setting(NamedTuple):
     prior: Priors
 
     def at(self, problem: Any, assembly: Laid, shared: FloatArray, local: FloatArray) -> Fit | None:
-        """Return the fit at one setting; None where the simulation diverges."""
+        """Return the fit at one setting; None if the simulation diverges."""
         found = self.motion.respond(problem, assembly, shared, local, self.nuisances)
         if found is None:
             return None
@@ -142,7 +142,7 @@ class _Setting(NamedTuple):
         return found
 
     def moved(self, fit: Fit, step: "_Step") -> Fit | None:
-        """Return the fit after a step; None where the simulation diverges."""
+        """Return the fit after a step; None if the simulation diverges."""
         optimum, count = fit.optimum, len(fit.optimum.shared)
         problem, assembly = fit.problem, fit.assembly
         if self.nuisances:

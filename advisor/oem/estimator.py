@@ -102,7 +102,7 @@ class Fit:
         return None if isinstance(other, NoEstimate) else other.fitted.solution
 
     def _forces(self, solution: Solution, instruments: Sequence[Instrument]) -> Driven | None:
-        """Return the estimate with unknown forces; None where none are, or where the search diverges."""
+        """Return the estimate with unknown forces; None if there are none, or if the search diverges."""
         if not (self.prepared.alpha_left_out or self._shows_forces(solution)):
             return None
         estimate = driven_without_alpha if self.prepared.alpha_left_out else driven

@@ -91,7 +91,7 @@ def value_in_words(name: InstrumentName, value: float, std: float) -> str:
             return f"alpha is {abs(1e3 * value):.0f} ± {1e3 * half:.0f} ms {side} relative to the motion"
         case "accelerometer_arm_m":
             place = f"{abs(value):.2f} ± {half:.2f} m {_side(value)} the centre of gravity"
-            return f"the accelerometer reads as if {place}"
+            return f"the accelerometer reads as if it were {place}"
         case _:
             return (
                 "the moment that does not change with air speed, such as the thrust's, equals"

@@ -26,7 +26,7 @@ LARGEST_ERROR = 0.5
 """Largest corrected standard deviation over the parameter's natural size, for a usable value."""
 LEAST_OWN_MOTION = 0.02
 """Least RMS elevator motion that no feedback explains, as a share of the whole motion."""
-LEVEL_UNKNOWN = "not identifiable without a measured angle of attack, whose level it goes with"
+LEVEL_UNKNOWN = "not identifiable without a measured angle of attack, whose offset it depends on"
 
 
 def natural_size(theta: FloatArray) -> Mapping[str, float]:

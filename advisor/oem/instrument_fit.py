@@ -135,7 +135,7 @@ class _Pitch:
         names: Sequence[Instrument],
         /,
     ) -> Response | None:
-        """Return the response of the model; None where the simulation diverges."""
+        """Return the response of the model; None if the simulation diverges."""
         y, g = np.empty(len(laid.z)), np.empty((len(laid.z), N_PARAMETERS))
         if not respond(laid.grid, shared, local, y, g):
             return None
@@ -177,7 +177,7 @@ def _place(solution: Solution) -> tuple[FloatArray, FloatArray]:
 
 
 def _whole_posterior(best: Solution, names: Sequence[Instrument]) -> Solution:
-    """Return the solution with the posterior beyond its own hill, along a servo's lag that nobody states."""
+    """Return the solution with the posterior over every maximum along a servo's lag, if none is stated."""
     lag = next((x for x in names if x.name == SERVO_LAG.name and x.stated is None), None)
     if lag is None:
         return best
@@ -243,7 +243,7 @@ def _searched(
 
 
 def _evaluated(fit: Fit, final: bool = True) -> Solution | None:
-    """Return the solution at a fit; None where the data do not determine it."""
+    """Return the solution at a fit; None if the data do not determine it."""
     solution = evaluate(fit.problem, fit.assembly, fit.optimum, fit.extra, final=final)
     return solution if isinstance(solution, Solution) else None
 
@@ -290,7 +290,7 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
 
 
 def _cancels(one: Identified, all_of_them: Sequence[Identified]) -> bool:
-    """Return whether a delay of the command cancels a lag, of zero or nobody states one.
+    """Return whether a delay of the command cancels a lag that is stated as zero or not stated.
 
     Neither a command nor a measured surface acts before its own record. A lag and a negative delay that
     cancel are one net lateness, which the delay alone describes.

@@ -46,7 +46,7 @@ to 0.11 s; the longest is a nose boom of 13 m at 130 m/s."""
 
 
 FLAT = Prior(0.0, np.inf)
-"""Prior of a coefficient that nothing is known of."""
+"""Prior of an unknown coefficient."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -281,7 +281,7 @@ def _level(channels: Mapping[str, Channel]) -> Signal:
 def _no_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> NoEstimate:
     """Return the reason why there is neither an angle of attack nor a replacement."""
     absent = sorted({name for m in maneuvers for name in lacking(m, aircraft)})
-    text = f"{why}, and the motion cannot stand in for it: no {', no '.join(absent)} in the record."
+    text = f"{why}, and the motion cannot replace it: no {', no '.join(absent)} in the record."
     return NoEstimate("no_alpha", text[0].upper() + text[1:])
 
 

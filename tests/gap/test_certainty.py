@@ -47,7 +47,7 @@ def test_the_title_follows_the_size_of_the_largest_probability(kind, probability
 
 
 def before(name, nats):
-    return (Column(name, nats, "nats", "how often each is right"),)
+    return (Column(name, nats, "nats", "prior probability of each answer"),)
 
 
 def test_what_the_frequency_before_the_flight_turned_is_likely_and_never_found():

@@ -86,7 +86,7 @@ def test_a_manoeuvre_with_a_step_in_a_hole_of_the_log_is_left_out_and_said_so():
     flown[2] = without(flown[2], np.abs(elevator.t - step) < 0.15)
     assert [m.number for m in usable_of(flown)] == [1, 2, 4, 5, 6]
     (note,) = left_out(flown[2:3])
-    assert note == "Left out: manoeuvre 3: a step of the command fell into a hole of the log."
+    assert note == "Left out: manoeuvre 3: a step of the command lies in a gap of the log."
 
 
 @pytest.mark.parametrize(("hole_s", "is_hidden"), [((1.45, 2.15), True), ((1.55, 1.75), False)])

@@ -66,7 +66,7 @@ def test_the_air_and_refused_manoeuvres_limit_an_answer():
     said = list(limits_of(diagnosis(derivatives=DERIVATIVES, shrink=in_gusts)))
     assert said[0].endswith("Beyond the air the gap falls by 60 %.")
     (one,) = limits_of(diagnosis(derivatives=DERIVATIVES, gap=replace(diagnosis().gap, by_air=2.0)))
-    assert one.endswith("That flatters the gap after.")
+    assert one.endswith("So the gap after the correction looks smaller than it is.")
     (one,) = limits_of(diagnosis(derivatives=DERIVATIVES, although_refused=(2,)))
     assert one == "Manoeuvre 2 is used, although advisor analyze refuses it."
     (more,) = limits_of(diagnosis(derivatives=DERIVATIVES, although_refused=(2, 3)))
@@ -107,13 +107,13 @@ def test_wrong_numbers_are_put_as_numbers_and_name_the_file_though_a_propeller_b
     ("derivatives", "first"),
     [
         (DERIVATIVES, "Put into the simulator: M_α −44.60 → −34.30 ± 0.71 1/s² (−23 %)."),
-        ((), "To exclude gust: fly more manoeuvres: a gust does not come back, turbulence does."),
+        ((), "To exclude gust: fly more manoeuvres: turbulence recurs in each, a single gust does not."),
     ],
 )
 def test_moving_air_is_never_put_into_the_simulator(derivatives, first):
     air = Cause(
         "turbulence", "air", 0.95, {"sigma_w_m_s": Value(0.5, 0.1)}, ("gust",),
-        "fly more manoeuvres: a gust does not come back, turbulence does", 0.1, True,
+        "fly more manoeuvres: turbulence recurs in each, a single gust does not", 0.1, True,
     )  # fmt: skip
     step, *_ = next_steps(diagnosis(causes=(air,), derivatives=derivatives), LOGS, "mine.yaml")
     assert step.text.startswith(first)

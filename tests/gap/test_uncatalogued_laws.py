@@ -67,9 +67,9 @@ def test_an_elevator_that_loses_power_in_flight_is_no_mass_and_no_ice(setup):
 @pytest.mark.parametrize(("channel", "reading", "block", "says"), [
     pytest.param("alpha", lambda y: np.minimum(y, np.median(y) + 0.04), "alpha_sensor", "meets a stop",
                  marks=pytest.mark.study),
-    pytest.param("a_z", lambda y: np.maximum(y, -14.0), "accelerometer", "does not read in proportion",
+    pytest.param("a_z", lambda y: np.maximum(y, -14.0), "accelerometer", "is not linear",
                  marks=pytest.mark.study),
-    ("a_z", lambda y: y + 0.02 * (y + 9.8) ** 2, "accelerometer", "does not read in proportion"),
+    ("a_z", lambda y: y + 0.02 * (y + 9.8) ** 2, "accelerometer", "is not linear"),
 ])  # fmt: skip
 def test_a_bent_reading_is_no_sum_of_bent_forces_even_in_moving_air(channel, reading, block, says):
     found = diagnose(with_reading(replace(HARD, maneuvers=9), channel, reading), Aircraft())
@@ -90,7 +90,7 @@ def test_a_gyro_that_feels_the_acceleration_is_unknown_in_the_gyro(setup, felt):
         flown.append(replace(maneuver, channels={**maneuver.channels, "q": wrong}))
     found = diagnose(flown, Aircraft())
     assert (found.verdict, found.where.block) == ("unknown", "pitch_rate_sensor")
-    assert any("The pitch rate feels the acceleration." in note for note in found.notes)
+    assert any("The acceleration disturbs the measured pitch rate." in note for note in found.notes)
 
 
 @pytest.mark.parametrize(("setup", "lowest", "highest"), [
@@ -201,7 +201,7 @@ def test_damping_that_bends_is_no_sum_of_bent_moments(setup, switches, says):
 def test_lift_that_is_lost_with_the_pitch_rate_is_no_lift_that_bends():
     found = diagnose(fly(replace(HARD, switches={"cl_q_abs": -0.25})), Aircraft())
     assert (found.verdict, found.where.block) == ("unknown", "force_equation")
-    assert any("The lift changes with the pitch rate" in note for note in found.notes)
+    assert any("The lift is not linear in the pitch rate" in note for note in found.notes)
 
 
 @pytest.mark.study

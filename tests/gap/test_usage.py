@@ -170,7 +170,7 @@ def test_more_manoeuvres_to_keep_out_than_there_are_and_an_unusual_elevator_are_
     canard = dict(zip(PARAMETERS, (0.04, -4.3, -0.03, -0.28, 0.0, -37.0, -4.8, 52.0), strict=True))
     notes = diagnose(fly(Setup(maneuvers=3)), Aircraft(model=canard), holdout=3).notes
     assert notes[0] == (
-        "3 manoeuvres cannot be kept out of 3: each was kept out in turn instead. Give --holdout 2 at most."
+        "3 manoeuvres cannot be held out of 3: each was held out in turn instead. Give --holdout 2 at most."
     )
     assert any("M_delta_e is 52, above zero" in note for note in notes)
 

@@ -46,7 +46,9 @@ def need_of(name: str, flights: PreparedManeuvers) -> Need:
 
 
 def hidden_from(effect: str, flights: PreparedManeuvers) -> tuple[str, str]:
-    """Return the reason why an effect has no signature of its own, and the channel or manoeuvre to add."""
+    """Return the reason why other effects imitate an effect completely, and the channel or
+    manoeuvre to add.
+    """
     if not EFFECTS[effect].of_the_stick:
         need = need_of(effect, flights)
         return need.because, need.add

@@ -96,7 +96,7 @@ def less_of_the_servo(
 
 
 def stated_in(aircraft: Aircraft, effect: str) -> float | None:
-    """Return the value that the aircraft file states for an effect; None where it states nothing."""
+    """Return the value that the aircraft file states for an effect; None if the file states no value."""
     where = EFFECTS[effect].stated
     stated: float | None = None if where is None else getattr(getattr(aircraft, where[0]), where[1])
     return stated

@@ -20,7 +20,7 @@ LOOP = Variant(
     "latency", "input", ("latency_s",), ((0.001,),), (5e-4,), ((-0.004, 0.005),), 0.0,
     entries=("latency_s",), is_nuisance=True,
 )  # fmt: skip
-"""Delay of the command between its stamps: a nuisance parameter until the command's motion is known. Stamps
+"""Nuisance parameter until the command's motion is known: delay of the command between its stamps. Stamps
 have a resolution, and a command takes effect within a loop of the autopilot."""
 
 PROPELLER = Variant(

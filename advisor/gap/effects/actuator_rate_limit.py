@@ -16,7 +16,7 @@ EFFECT = Effect(
     variants=always(RATE_LIMIT),
     said=(
         "The real elevator moves no faster than {rate_rad_s_deg:.0f} deg/s",
-        "The simulator's elevator moves no faster than {rate_rad_s_deg:.0f} deg/s, and the real one does",
+        "The simulator's elevator reaches at most {rate_rad_s_deg:.0f} deg/s, but the real one is faster",
     ),
     distinguished_by={"transport_delay": "fly two amplitudes: a rate limit delays larger steps more"},
     servo={"rate_rad_s": ("rate_rad_s", 1.0)},

@@ -58,5 +58,5 @@ EFFECT = Effect(
     },
     need=Need("change", "the air speed was constant", "fly at two air speeds"),
     unrecorded=("airspeed", "no air speed in the log", "VFR_HUD at 10 Hz"),
-    without_speed=("the air speed reads next to nothing", "check the air speed sensor"),
+    without_speed=("the air speed reads almost zero", "check the air speed sensor"),
 )

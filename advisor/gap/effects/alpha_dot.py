@@ -19,7 +19,7 @@ EFFECT = Effect(
     need=Need("M_alpha_dot", "the derivatives mimic it", "pulses of a flap, which move α and not q"),
     imitated_by=(
         "other derivatives of the pitching moment",
-        "see which elevator trims level flight at several speeds: there the angle of attack is steady",
+        "compare the elevator that trims level flight at several speeds: the angle of attack is then steady",
     ),
     distinguished_by={"unsteady_lift": "log the accelerometer at a higher rate"},
     curve=Curve("alpha_dot", {"M_alpha_dot": 1}),

@@ -31,6 +31,6 @@ EFFECT = Effect(
     need=Need("lag_s", "no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
     distinguished_by={
         "alpha_skew": "fly faster steps, or compare the channel's stamps with the vane's",
-        "alpha_vane_offset": "fly at two air speeds: the arm's part goes with 1/V, the other does not",
+        "alpha_vane_offset": "fly at two air speeds: only the arm's part is proportional to 1/V",
     },
 )

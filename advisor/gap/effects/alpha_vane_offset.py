@@ -37,9 +37,8 @@ EFFECT = Effect(
     ),
     need=Need("arm_m", "no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
     distinguished_by={
-        "accelerometer_offset": "measure where the vane and the IMU sit: alpha.vane_arm_m, "
-        "accelerometer.arm_m",
-        "alpha_skew": "fly at two air speeds: the arm's part goes with 1/V, the other does not",
+        "accelerometer_offset": "measure where vane and IMU are: alpha.vane_arm_m, accelerometer.arm_m",
+        "alpha_skew": "fly at two air speeds: only the arm's part is proportional to 1/V",
     },
     stated=("alpha", "vane_arm_m"),
     # A vane behind the centre of gravity is rare.

@@ -16,7 +16,7 @@ EFFECT = Effect(
     keys={"M_delta2": ANY, "M_delta3": ANY, "about_rad": ANY},
     variants=bending(_CURVED, _CURVE),
     said="The real elevator's moment is not proportional to its deflection",
-    said_beyond="The real elevator's moment bends with its deflection otherwise than the simulator's",
+    said_beyond="The curve of the elevator's moment over its deflection differs from the simulator's",
     distinguished_by={"nonlinear_pitching_moment": "fly slow and fast steps of equal size"},
     curve=_CURVE,
 )

@@ -38,7 +38,7 @@ EFFECT = Effect(
     keys={"Z_h": ANY, "lift_h": ANY, "M_h": ANY, "scale_m": 0.0},
     variants=_variants,
     of_the_stick=False,
-    said="The ground was near enough to be felt",
+    said="The ground was near enough to change lift or trim",
     need=Need("Z_h", "the height hardly varied", "fly low and high with a range finder"),
     unrecorded=("height", "no height in the log", "fly low and high with a range finder"),
 )

@@ -1,4 +1,4 @@
-"""Lift slope and control power decrease at once between two manoeuvres, each by its own share."""
+"""Lift slope and control power decrease together between two manoeuvres, by separate fractions."""
 
 from collections.abc import Sequence
 

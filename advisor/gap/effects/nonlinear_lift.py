@@ -45,6 +45,6 @@ EFFECT = Effect(
     keys={"Z_alpha2": ANY, "Z_alpha3": ANY, "about_rad": ANY, "stall_rad": ANY, "sharpness": 0.0},
     variants=_variants,
     said="The real lift is not linear in the angle of attack",
-    said_beyond="The real lift bends with the angle of attack otherwise than the simulator's",
+    said_beyond="The curve of lift over the angle of attack differs from the simulator's",
     curve=_CURVE,
 )

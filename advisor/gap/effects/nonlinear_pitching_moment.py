@@ -16,6 +16,6 @@ EFFECT = Effect(
     keys={"M_alpha2": ANY, "M_alpha3": ANY, "about_rad": ANY},
     variants=bending(_CURVED, _CURVE),
     said="The real pitching moment is not linear in the angle of attack",
-    said_beyond="The real pitching moment bends with the angle of attack otherwise than the simulator's",
+    said_beyond="The curve of pitching moment over the angle of attack differs from the simulator's",
     curve=_CURVE,
 )

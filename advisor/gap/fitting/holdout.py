@@ -148,8 +148,9 @@ def measured_in(
 
 
 def sole_informative_maneuver(fitted: EffectFit, index: int) -> int | None:
-    """Return the only manoeuvre that determines a shared parameter; None where another manoeuvre could
-    confirm it."""
+    """Return the only manoeuvre that determines a shared parameter; None if another manoeuvre could confirm
+    the parameter.
+    """
     weights = 1.0 / fitted.noise
     information = [own_eliminated(block, weights)[0][index, index] for block in fitted.linear]
     return int(np.argmax(information)) if max(information) > _SOLE_SHARE * sum(information) else None

@@ -128,7 +128,7 @@ def are_near(one: SearchPoint, other: SearchPoint) -> bool:
 
 
 def shifted_points(point: SearchPoint, which: range) -> list[SearchPoint]:
-    """Return the point with one shared parameter after the other moved by its step."""
+    """Return one point for each shared parameter, with this parameter moved by its step."""
     shifts = np.diag(shared_steps(point))[which]
     return [point.moved(point.shared + shift, point.own) for shift in shifts]
 

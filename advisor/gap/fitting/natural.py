@@ -1,4 +1,4 @@
-"""A given simulator on a flight, with the flight's own natural numbers.
+"""A given simulator on a flight, with the flight's own nuisance parameters ("natural numbers").
 
 Lateness, filters, the true over the read air speed and the autopilot's angle of attack belong to the flight,
 not to the simulator. Every simulator that is compared on a flight therefore flies with natural numbers fitted

@@ -140,7 +140,7 @@ class Neighbourhood:
             self.kept.append(_Kept(coarser, measured, by_row, columns, products, inner, m, chol))
 
     def at_all(self, points: Sequence[SearchPoint]) -> list[SimulatedPoint | None]:
-        """Evaluate every point with refitted nuisance parameters; the entry is None where the simulation
+        """Evaluate every point with refitted nuisance parameters; the entry is None if the simulation
         fails."""
         problem = self.problem
         asked: list[_Asked] = []

@@ -20,8 +20,9 @@ excitation."""
 _SIMULTANEOUS = 0.01
 """Numerical: product of both equations' residual shares below which no shift of a channel is tried."""
 _BETTER = 0.5
-"""Numerical: ratio of residual shares with and without a shift, below which the shifted regression is a
-start."""
+"""Numerical: ratio of residual shares with and without a shift, below which the shifted regression becomes a
+start.
+"""
 
 
 class Late(NamedTuple):

@@ -1,4 +1,4 @@
-"""Effects that a plan can detect before it is flown, and effects that a flight could not have shown.
+"""Effects that a planned flight could show, and effects that a past flight could not have shown.
 
 An effect is detectable if its signature has enough likelihood and enough change of the outputs.
 """

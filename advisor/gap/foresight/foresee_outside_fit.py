@@ -95,7 +95,7 @@ def foresee_offset(problem: EffectProblem, noise: FloatArray) -> Foreseen:
     angles = [noise[flights.channels.index(c)] for c in ("alpha", "theta")]
     reading = float(np.hypot(np.hypot(*angles), CLIMB_RATE_STD_M_S / flights.reference_m_s))
     std = reading / np.sqrt(sum(f.duration_s for f in flights.flights))
-    way = "level the attitude's zero on the ground, and fly in still air: both look the same"
+    way = "set the attitude's zero on the ground and fly in still air, because both causes look alike"
     return Foreseen("alpha_bias", "bias_rad", least_offset_rad(std), (), way)
 
 

@@ -39,7 +39,7 @@ TYPICAL_NOISE = {"alpha": np.radians(0.1), "q": np.radians(0.2), "a_z": 0.1, "th
 """Prior: standard deviations assumed for unmeasured instruments, in SI units of the channel."""
 SPARED = ("alpha", "a_z", "theta", "airspeed", "climb_rate", "throttle")
 """Channels that a planned flight may lack."""
-_IN_FILE = "it is in the aircraft file, and taken as it stands there"
+_IN_FILE = "this effect is in the aircraft file, and its values are used unchanged"
 """Remark about an effect whose shape in the aircraft file is used as stated."""
 _SPACING_S = 30.0
 """Numerical: time between two manoeuvres of a plan, s."""
@@ -68,7 +68,7 @@ def foresee_plan(
         raise ConfigurationError(f"foresee needs the aircraft file's model; add {missing} under model.")
     if aircraft.model["M_delta_e"] == 0.0:
         raise ConfigurationError(
-            "model.M_delta_e: an elevator of no effect (0) shows nothing; give the moment it makes, in 1/s²."
+            "model.M_delta_e: an elevator without effect (0) shows nothing; give its derivative in 1/s²."
         )
     _refuse(plan, rate_hz, amplitude_deg, without)
     unit = min(max(2.0 / max(natural_frequency(derivatives), 1.0), 0.2), 1.5)
@@ -137,7 +137,7 @@ def _refuse(plan: Sequence[str], rate_hz: float, amplitude_deg: float, without: 
         raise ConfigurationError(f"plan: {what} {', '.join(STEPS)}.")
     if len(plan) < 2:
         raise ConfigurationError(
-            "plan: one manoeuvre proves no cause, for none is left to keep out of the fit; plan at least two."
+            "plan: one manoeuvre proves no cause, because none is left to hold out; plan at least two."
         )
     if not (0.0 < rate_hz <= _HIGHEST_RATE_HZ and 0.0 < amplitude_deg <= _LARGEST_STEP_DEG):
         raise ConfigurationError(

@@ -1,2 +1,3 @@
-"""Inference: every explanation of a flight is a full model with its evidence, and their posterior is the
-answer."""
+"""Inference: every explanation of a flight is a full model with its evidence, and the posterior of all models
+is the answer.
+"""

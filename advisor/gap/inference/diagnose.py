@@ -37,7 +37,7 @@ _OFF_BY_RAD = 0.03
 
 @dataclass(frozen=True)
 class Inference(Decided[PitchModel]):
-    """Everything that the answer of a diagnosis is made from."""
+    """Data and posterior from which the answer of a diagnosis is made."""
 
     problem: EffectProblem
     sought_air: SoughtAir
@@ -74,7 +74,7 @@ def infer(
         with_offset = _with_offset(rows, kinematics, problem, prior, flight.tried[0])
         return _named_air(with_offset, stage.plain, sought, known, floor)
 
-    progress("looking for a second cause", 0.52)
+    progress("searching for a second cause", 0.52)
     found = decided(flight, stage, prior, beyond)
     return Inference(found.posteriors, found.chosen, found.failed, found.heat, problem, sought, floor)
 
@@ -131,7 +131,7 @@ def _named_air(
 
     Air that exceeds natural air acts in every model. Next to right derivatives the air is the answer. Next to
     an effect, the pair has the name of the cause that removes more of the gap. Wrong derivatives stay wrong
-    in moving air, and an effect without a name is what the air does not explain.
+    in moving air, and a residual beyond the air stays an effect without a name.
     """
     air = sought.found
     if air is None or air.is_natural or (not air.gust and air.angle_std <= known):

@@ -63,7 +63,9 @@ def decided(
 
 
 def _lead(flight: Flight[E], stage: Stage[E]) -> E | None:
-    """Return the likely effect that explains most together with a second one, by a look at every pair."""
+    """Return the likely effect that explains most together with a second effect, from quick fits of every
+    pair.
+    """
     likely: dict[str, E] = {}
     for one in sorted(stage.effects, key=lambda one: -one.evidence.either):
         likely.setdefault(one.name, one)

@@ -70,7 +70,7 @@ def rows_of(
     Parameters
     ----------
     second
-        First effect with its following stage: a second cause leaves another residual.
+        First effect, and the stage that adds a second cause to it, which leaves another residual.
     """
     ways = [*_ways(flight, stage, prior)]
     if second is not None:
@@ -174,7 +174,9 @@ def _row(alternative: Alternative, one: E, evidence: float, share: float) -> Row
 
 
 def _with_residual(way: Row[E], residual: Residual, prior: FieldPrior) -> Iterator[Row[E]]:
-    """Yield the row as right, and as a model that only resembles an effect without a name."""
+    """Yield the row for a right model, and the row for a model that only resembles an effect
+    without a name.
+    """
     size = residual.beside_air if way.in_moving_air else residual.size
     yield replace(way, terms={**way.terms, "residual": if_right(size)})
     lacking = float(np.log(0.5 * prior.unknown / (prior.none + prior.parameters + prior.effect)))

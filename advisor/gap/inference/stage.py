@@ -86,9 +86,8 @@ class Flight(Protocol[E]):
     def explained(self, base: E | None, most: int) -> tuple[float, list[E]]:
         """Return the temperature, the model ``base`` alone, and ``base`` with each likely effect or law.
 
-        ``most`` is the number of effects that are fully fitted. A model that cannot be fitted is left out, as
-        is a model that a numerical fault ends.
-        The effect None stands for the plain model.
+        ``most`` is the number of effects that are fully fitted. A model that cannot be fitted, or that a
+        numerical fault ends, is left out. The effect None stands for the plain model.
         """
 
     def at_the_files(self, one: E, plain: E, heat: float) -> E | None:

@@ -1,8 +1,8 @@
 """Part of a residual that grows with the motion, and repeats in every manoeuvre.
 
-A law that a simulator lacks acts when the aircraft moves, in each manoeuvre again. Moving air, drift and
+A law that a simulator lacks acts whenever the aircraft moves, in every manoeuvre. Moving air, drift and
 noise act before, during and after an input alike. The squared residual is a level of each manoeuvre plus a
-share of the squared motion. Only that share speaks for a missing law.
+share of the squared motion. Only that share is evidence for a missing law.
 """
 
 from collections.abc import Sequence
@@ -22,7 +22,8 @@ def moving_power(residuals: Sequence[FloatArray], motions: Sequence[FloatArray])
     """Return the mean square of the residual that grows with the motion; 0 with fewer than three manoeuvres.
 
     The share of the squared motion is estimated with a level of each manoeuvre. One standard error of the
-    share, from the scatter between manoeuvres, is subtracted, because a share that does not repeat is none.
+    share, from the scatter between manoeuvres, is subtracted, because a share that does not repeat is no
+    evidence.
 
     Parameters
     ----------

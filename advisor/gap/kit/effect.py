@@ -57,7 +57,7 @@ class Effect:
     said_beyond: Said = ""
     """Sentence if the simulator already has some of the effect; empty if ``said`` is used."""
     channel: str = ""
-    """Output without which the effect cannot be tried; empty where any output will do."""
+    """Output without which the effect cannot be tried; empty if any output suffices."""
     stated: tuple[str, str] | None = None
     """Section and key of the aircraft file that state the effect's size in the simulator."""
     outside_fits: Callable[[PreparedManeuvers], bool] | None = None

@@ -128,7 +128,9 @@ def _begun_anew(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) ->
 
 
 def _likelier(problem: EffectProblem, fitted: EffectFit, i: int, noise: FloatArray) -> float:
-    """Return how much better moving air explains a manoeuvre's residual than any other block, at least 0."""
+    """Return the gain in log likelihood of moving air over any other block in a manoeuvre's residual, at
+    least 0.
+    """
     best, second, *_ = probe_blocks(*in_one_maneuver(problem, fitted, i), noise)
     return best.gain / max(second.gain, 1e-9) if best.block == "air" else 0.0
 

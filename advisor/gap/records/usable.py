@@ -107,7 +107,7 @@ def why_left_out(m: Maneuver) -> str:
     if _departed(m):
         return "the aircraft departed"
     if not _steps_seen(m):
-        return "a step of the command fell into a hole of the log"
+        return "a step of the command lies in a gap of the log"
     return "no angle of attack was recorded"
 
 

@@ -126,8 +126,8 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
 def _steady(problem: EffectProblem, fitted: EffectFit, found: Turbulence) -> float:
     """Return the log density of turbulence of equal strength with and without an input, relative to its peak.
 
-    Turbulence does not know when the elevator moves. A disturbance that the elevator drives rests with the
-    elevator. A record shows one independent square per correlation time of the air. The log of a standard
+    Turbulence does not depend on the elevator. A disturbance that the elevator drives ends when the elevator
+    rests. A record shows one independent square per correlation time of the air. The log of a standard
     deviation from n squares is known to (2 n)^-1/2 (Bendat and Piersol, *Random Data*, chapter 8).
     """
     rows = quiet_rows(problem, fitted)

@@ -189,9 +189,9 @@ RINGING = Variant(
     (0.05, 0.01), ((4.0, 80.0), (0.02, 0.45)), 0.0, apply_with=_rings,
 )  # fmt: skip
 _SENTENCES = {
-    "accelerometer_curve": "The accelerometer does not read in proportion: it clips, rectifies or bends.",
-    "alpha_curve": "The angle of attack does not read in proportion: its vane bends, rubs or meets a stop.",
-    "attitude_scale": "The attitude reads {percent:+.1f} % against what the pitch rate says.",
+    "accelerometer_curve": "The accelerometer is not linear: it clips, rectifies or bends.",
+    "alpha_curve": "The measured angle of attack is not linear: its vane bends, rubs or meets a stop.",
+    "attitude_scale": "The measured attitude differs from the integrated pitch rate by {percent:+.1f} %.",
     _RUBS: "The vane's bearing rubs: the air turns by {degrees} deg before it follows.",
     VANE_STOP: "The vane turns {degrees} deg from its trim and no further: it meets a stop.",
     SURFACE_STOP: "The surface stops before the command does: it moves {degrees} deg from its trim and no "
@@ -201,13 +201,13 @@ _SENTENCES = {
     FLOW_LETS_GO: "The flow separates at one angle and reattaches at a lower one: a stall with hysteresis.",
     LIFT_MEMORY: "The lift differs between rising and falling angle of attack: a stall with hysteresis.",
     _WEAKER: "In flight the elevator's power changed by {percent:+.0f} %: a horn slipped, or a part is gone.",
-    _PULLED: "The pitch rate feels the acceleration.",
+    _PULLED: "The acceleration disturbs the measured pitch rate.",
     **{
         f"{channel}{_FILTERED}": f"{what} passes a filter: it is {{ms:.0f}} ms late, and rounded."
         for channel, what in (("q", "The pitch rate"), ("a_z", "The acceleration"), ("theta", "The attitude"))
     },
     "damping_curve": "The damping in pitch is not the same up and down, or fast and slow.",
-    "lift_of_turning": "The lift changes with the pitch rate, and not in proportion.",
+    "lift_of_turning": "The lift is not linear in the pitch rate.",
     "crossed_moment": "The damping in pitch or the power of the elevator changes with the angle of attack.",
 }
 

@@ -40,8 +40,8 @@ class WeightReading:
     def sentence(self) -> str:
         """Sentence of the diagnosis about the accelerometer's weight reading."""
         return (
-            f"The accelerometer reads {self.share:.2f} ± {NORMAL_95 * self.std:.2f} of what weight and path "
-            "demand: its scale or its zero is off."
+            f"The accelerometer reads {self.share:.2f} ± {NORMAL_95 * self.std:.2f} of the force "
+            "from weight and path: its scale or its zero is wrong."
         )
 
 

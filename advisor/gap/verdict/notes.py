@@ -48,7 +48,7 @@ def notes_of(
 def _of_the_hold_out(holdout: int | None, flown: int) -> Iterator[str]:
     if holdout is not None and holdout >= flown:
         yield (
-            f"{holdout} manoeuvres cannot be kept out of {flown}: each was kept out in turn instead. "
+            f"{holdout} manoeuvres cannot be held out of {flown}: each was held out in turn instead. "
             f"Give --holdout {flown - 1} at most."
         )
 
@@ -112,7 +112,7 @@ def _of_single_witnesses(e: Findings) -> Iterator[str]:
             number = e.problem.flights.flights[added.sole_maneuver].number
             yield (
                 f"Manoeuvre {number} alone shows the {spelled(added.effect)}: "
-                "it is measured there, and no other manoeuvre could confirm it."
+                "no other manoeuvre could confirm its size."
             )
 
 
@@ -123,7 +123,7 @@ def _of_the_air(e: Findings) -> Iterator[str]:
         yield f"The gust shows most in manoeuvre {e.air.gust_number}."
     if e.problem.flights.alpha_is_derived:
         yield (
-            "The angle of attack is an estimate that sees no gust. This flight's derivatives are rough, and "
+            "The angle of attack is an estimate without gusts. This flight's derivatives are rough, and "
             "the strength of the gusts is overestimated."
         )
 
@@ -139,7 +139,7 @@ def _of_the_file(e: Findings, aircraft: Aircraft, nuisances: Collection[str]) ->
     if had := [effect for effect in aircraft.effects if effect not in aside]:
         yield f"The simulator already has {_listed(had)} from the file; sizes found here add to that."
     if aside:
-        yield f"The file's {_listed(aside)} belongs to another flight and is left aside."
+        yield f"The file's {_listed(aside)} belongs to another flight and is not used."
 
 
 def _of_what_is_missing(e: Findings, aircraft: Aircraft) -> Iterator[str]:
@@ -153,7 +153,7 @@ def _of_what_is_missing(e: Findings, aircraft: Aircraft) -> Iterator[str]:
     if missing:
         yield f"Without {' and '.join(missing)} several instrument effects cannot be seen."
     if len(flights) == 1:
-        yield "Only one manoeuvre: none is left for the hold-out, so no cause is sought."
+        yield "Only one manoeuvre was flown. None can be held out, so no cause is sought."
     elif len(flights) < _FEW:
         yield f"Only {len(flights)} manoeuvres: intervals are wide, and changes in flight are hard to see."
     yield from unusual_signs(aircraft.model)
@@ -164,10 +164,10 @@ def _of_what_is_missing(e: Findings, aircraft: Aircraft) -> Iterator[str]:
 def _command(e: Findings) -> str:
     """Return a note on the motion of the command between its stamps, and on the alternative."""
     if not e.problem.held:
-        return "The command was taken as linear between its stamps, with edges anywhere between two."
+        return "The command was taken as linear between its stamps. An edge may lie anywhere between two."
     half = 0.5 * float(np.median(np.diff(e.problem.flights.flights[0].t_u)))
     return (
-        "The command was taken as held between its stamps. A linear command with a delay of "
+        "The command was taken as constant between its stamps. A linear command with a delay of "
         f"{1e3 * half:.0f} ms looks the same."
     )
 

@@ -15,19 +15,19 @@ from advisor.words.certainty import DECIDED
 VISIBLE_GAP, _LEAST_DOUBT = 2.0, 0.05
 """Contract: gap on held-out manoeuvres, and the largest probability of "no gap" in its presence."""
 _WORDS = {
-    "prior": "how often each is right, before the flight is looked at",
+    "prior": "prior probability of each answer",
     "fit": "fit to the manoeuvres",
     "numbers": "price of its numbers, and agreement with the aircraft file",
-    "unseen": "loss on manoeuvres kept out of the fit",
+    "unseen": "loss on held-out manoeuvres",
     "model_error": "allowance for the error of every simulator",
-    "residual": "residual that is left",
+    "residual": "remaining residual",
     "second": "second cause in addition",
-    "natural": "first cause as small as on every aircraft",
+    "natural": "first cause no larger than on every aircraft",
     "air": "how often the air moves",
     "offset": "offset of the angle of attack by the flight path",
     "steady": "air as strong before and after the input as during it",
     "gap": "visible gap of the simulator as given",
-    "rest": "other ways in which each may be true",
+    "rest": "less likely variants of each answer",
 }
 """Words: name of each part of the log odds."""
 

@@ -155,7 +155,7 @@ def limits_of(d: Diagnosis) -> Iterator[str]:
     if beyond_air is not None:
         yield f"{air} Beyond the air the gap falls by {beyond_air:.0f} %."
     elif d.gap.by_air > VISIBLE:
-        yield f"{air} That flatters the gap after."
+        yield f"{air} So the gap after the correction looks smaller than it is."
     if len(d.maneuvers) == 1:
         yield "One manoeuvre alone proves no cause."
     if d.although_refused:

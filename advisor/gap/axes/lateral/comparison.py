@@ -32,8 +32,8 @@ def compare_side(
     """Compare roll and yaw of the aircraft file with accepted manoeuvres.
 
     A derivative that the file does not state is taken from the flight. ``prior`` holds the probability of
-    each kind of answer before the flight. ``logged`` is the estimate from the manoeuvres as logged, and
-    ``as_logged`` tells that these are the manoeuvres.
+    each kind of answer before the flight. ``logged`` is the estimate from the logged manoeuvres.
+    ``as_logged`` says that ``maneuvers`` are the logged ones.
     """
     model = logged if logged is not None and as_logged else estimate_lateral(maneuvers, aircraft)
     if isinstance(model, NoEstimate):
@@ -73,11 +73,11 @@ def sentence_of_side(verdict: GapVerdict, derivatives: Sequence[ComparedDerivati
     """Return the sentence of the report for an answer without an effect."""
     if verdict == "untested":
         return (
-            "The aircraft file states no derivative of roll and yaw that the flight tells: give model.L_p "
-            "and the like."
+            "The aircraft file states no derivative of roll and yaw that the flight determines: give "
+            "model.L_p and others."
         )
     if verdict == "none":
-        return "The simulator's derivatives of roll and yaw are those of the flight; no effect is missing."
+        return "The simulator's derivatives of roll and yaw agree with the flight's; no effect is missing."
     wrong = [derivative.name for derivative in derivatives if derivative.differs]
     listed = f": {', '.join(wrong)}" if wrong else " together, though none alone"
-    return f"The simulator's derivatives of roll and yaw are not those of the flight{listed}."
+    return f"The simulator's derivatives of roll and yaw differ from the flight's{listed}."

@@ -37,7 +37,7 @@ SIDE_GUSTS = Alternative("air", "side_gusts", "air")
 
 
 def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
-    """Return the probabilities of all explanations; None where no plain fit exists.
+    """Return the probabilities of all explanations; None if no plain fit exists.
 
     If one effect is the likeliest explanation, a second effect is sought in addition to the first.
 
@@ -90,7 +90,8 @@ def verdict_of(weights: Weighed) -> GapVerdict:
 
 
 def where_of(evidence: Sequence[AlternativeEvidence], causes: Sequence[Cause]) -> Where:
-    """Return the block of the first cause, or of the likeliest law without a name; nowhere without both.
+    """Return the block of the first cause, or of the likeliest law without a name; an empty block without
+    both.
 
     Parameters
     ----------
@@ -140,8 +141,8 @@ def _first(case: Case) -> Fit | None:
 def _held_out(case: Case, model: SideModel, heat: float) -> FloatArray:
     """Return the sums of squared errors (m, outputs) of a model on manoeuvres held out one by one.
 
-    A manoeuvre that alone moves a control is not held out, because no other one shows the control's
-    derivatives: its sums are NaN.
+    A manoeuvre that alone moves a control is not held out, because no other manoeuvre shows the control's
+    derivatives. Its sums are NaN.
     """
     known = case.prior_of(model.tolerance, model.fit.free)
     found = squares_of(model.fit, information_of(model.fit, heat**-0.5), known).held_out

@@ -68,7 +68,7 @@ class SideEffect:
 
     @property
     def starts(self) -> tuple[tuple[float, ...], ...]:
-        """Sizes at which a search starts; empty where the outputs are linear in the size."""
+        """Sizes at which a search starts; empty if the outputs are linear in the size."""
         return tuple(start for start in self.variant.starts if start[0])
 
     @property

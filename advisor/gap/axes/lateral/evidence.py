@@ -55,8 +55,8 @@ def colour_share(fit: Fit, lacking: bool = False) -> float:
 def posterior_at(fit: Fit, known: Known, share: float) -> tuple[FloatArray, FloatArray]:
     """Return the mean (15 + k,) and the standard errors of derivatives and effect parameters.
 
-    The errors are those of an estimate: they contain the scatter between the manoeuvres and the dynamics that
-    the model lacks.
+    Like the errors of an estimate, these errors contain the scatter between the manoeuvres and the dynamics
+    that the model lacks.
     """
     mean = fit.values + step_of(fit, information_of(fit, share), known)
     weight, off = known.precision[N:] ** 0.5, (known.mean - fit.values)[N:]
@@ -99,7 +99,7 @@ def squares_of(fit: Fit, information: Information, known: Known) -> Squares:
 
 
 def gained(before: FloatArray, after: FloatArray, counts: FloatArray, share: float) -> Value:
-    """Return the log likelihood that a second model gains over a first one, nats, with its standard error.
+    """Return the gain in log likelihood of a second model over a first model, nats, with its standard error.
 
     The error follows from the scatter between manoeuvres.
 

@@ -151,7 +151,7 @@ class Fit:
 
 
 def fitted(flown: Flown, begin: Point, free: Sequence[Free], known: Known, most: int = MOST) -> Fit | None:
-    """Return the optimum from a start; None where the simulation diverges."""
+    """Return the optimum from a start; None if the simulation diverges."""
     std = known.precision**-0.5
     widths = [one._replace(std=width) for one, width in zip(free, std[N:].tolist(), strict=True)]
     prior, place = Priors(known.mean[:N], std[:N]), (begin.theta, begin.local)
@@ -164,7 +164,7 @@ def fitted(flown: Flown, begin: Point, free: Sequence[Free], known: Known, most:
 def moved_by(flown: Flown, fit: Fit, change: FloatArray) -> Fit | None:
     """Return a fit after a change (15 + k,) of derivatives and effect parameters.
 
-    Trims, initial states and biases follow the change. None where the simulation diverges.
+    Trims, initial states and biases follow the change. None if the simulation diverges.
     """
     columns = np.column_stack([fit.sensitivities[:, :N], fit.slopes])
     left = (fit.residual - columns @ change) * fit.weight
@@ -194,7 +194,7 @@ class _Motion:
     def respond(
         problem: Flying, laid: LateralAssembly, theta: FloatArray, local: FloatArray, free: Sequence[Free], /
     ) -> Response | None:
-        """Return the response of the model; None where the simulation diverges."""
+        """Return the response of the model; None if the simulation diverges."""
         found = simulate(laid, theta, local)
         if found is None:
             return None

@@ -38,7 +38,7 @@ _TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
 LIKELY = 0.01
 """Probability above which an effect is also fitted with side gusts, and above which its sizes are stated."""
 _STEPS = 2
-"""Numerical: number of Gauss-Newton steps from the optimum in white noise to the one in gusts."""
+"""Numerical: number of Gauss-Newton steps from the optimum in white noise to the optimum in gusts."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,7 +125,9 @@ class SideFlight:
         return self.case.fit(start, self.case.natural, ERROR_IF_RIGHT, share)
 
     def _searched_again(self, everyone: Sequence[SideModel], share: float) -> Fit | None:
-        """Return the plain model from where the likeliest effect ended; None if that is no better optimum."""
+        """Return the plain model from a search that starts at the likeliest effect's derivatives; None if it
+        is no better optimum.
+        """
         plain, *added = everyone
         best = max(added, key=lambda one: one.likelihood, default=None)
         if best is None or best.effect is None:
@@ -137,7 +139,7 @@ class SideFlight:
         return fit if better else None
 
     def _added(self, one: Start, at: Fit, tolerance: float, plain: Fit, share: float) -> SideModel | None:
-        """Return the model with an effect; None where the model runs away or a fault ends the fit."""
+        """Return the model with an effect; None if the model diverges or a fault ends the fit."""
 
         def work() -> SideModel | None:
             fit = self.case.fit(one.point, free_with(self.case, one.effect, at), tolerance, share)
@@ -166,7 +168,8 @@ class SideFlight:
         return residual_of(one.fit, self.case.flown, heat**-0.5)
 
     def pairs(self, stage: Stage[SideModel], leads: Sequence[SideModel]) -> Pairs:
-        """Yield the price of each pair of effects with both names, if the second effect may be a cause too.
+        """Yield the price of each pair of effects and both names, if the second effect may be a cause as
+        well.
 
         The second effect's likelihood gain must exceed the cost of its prior probability.
         """
@@ -219,7 +222,8 @@ class SideFlight:
     def _blown(self, one: SideModel, courses: Sequence[Course], air: Gusts) -> SideModel:
         """Return an explanation with side gusts in addition, at its optimum in these gusts.
 
-        A fit in white noise has taken part of the gusts for derivatives, far from the optimum in gusts.
+        A fit in white noise has absorbed part of the gusts in the derivatives, and lies far from the optimum
+        in gusts.
         """
         wide = self._wide(one.fit)
         gusts = side_gusts(one.fit, courses, wide, air)

@@ -43,7 +43,7 @@ class Gusts:
         return self.likelihood - 0.5 * float(known.precision @ (fit.values - known.mean) ** 2)
 
     def at(self, fit: Fit, courses: Sequence[Course]) -> "Gusts":
-        """Return gusts of the same statistics, with the likelihood and its slopes at another fit."""
+        """Return gusts with unchanged statistics, with the likelihood and its slopes at another fit."""
         volume, inner = self.air.weighed(_sums(fit, courses))
         likelihood = -0.5 * (volume + float(inner[0, 0]) - len(fit.fitted))
         return replace(self, likelihood=likelihood, matrix=inner[1:, 1:], gradient=inner[1:, 0])

@@ -1,7 +1,7 @@
 """Laws of roll and yaw without a name: surfaces that stop, stick or ring, and nonlinear curves.
 
 A curve is a disturbance of one block. The curve consists of x·|x| and x³, where x is a deflection, a state or
-a reading. The curve is equal to the left and to the right.
+a reading. The curve is symmetric to the left and to the right.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

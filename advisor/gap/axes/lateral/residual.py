@@ -15,7 +15,7 @@ from advisor.process.arrays import FloatArray
 
 
 def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
-    """Return the disturbance that explains a fit's residual best, in any block but the air.
+    """Return the disturbance that explains a fit's residual best, in any block except the air.
 
     Parameters
     ----------

@@ -136,7 +136,7 @@ class LateralFit(NamedTuple):
 
 @dataclass(slots=True)
 class JointSearch:
-    """Joint searches of a campaign, each of which goes on from the one before.
+    """Joint searches of a campaign, each of which continues the one before.
 
     A further manoeuvre then takes one fit, not three.
     """
@@ -152,7 +152,7 @@ def estimate_lateral(
     Parameters
     ----------
     search
-        Searches of earlier manoeuvres of the aircraft, from which this one goes on. None: the search begins
+        Searches of earlier manoeuvres of the aircraft, which this one continues. None: the search begins
         with a regression.
     """
     fit = fit_lateral(maneuvers, aircraft, None if search is None else search.newest)
@@ -171,7 +171,7 @@ def fit_lateral(
     Parameters
     ----------
     earlier
-        Fit of earlier manoeuvres of one aircraft, from which the search goes on.
+        Fit of earlier manoeuvres of one aircraft, which this search continues.
     """
     if not maneuvers:
         return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")

@@ -88,7 +88,7 @@ class LateralMotion:
         nuisances: Sequence[Nuisance],
         /,
     ) -> Response | None:
-        """Return the response of the model; None where the simulation diverges."""
+        """Return the response of the model; None if the simulation diverges."""
         found = simulate(laid, shared, local)
         if found is None:
             return None

@@ -2,8 +2,8 @@
 
 The influence of the measurements and the noise model are those of the pitch axis. A white-noise model makes
 coloured residuals look too accurate relative to a prior. A first fit gives the colour of the noise. The
-second and third fit weight the priors by the noise colour of the fit before. A search that goes on from
-earlier records has their colour, and needs one fit.
+second and third fit weight the priors by the noise colour of the fit before. A search that continues an
+earlier one has its noise colour, and needs one fit.
 """
 
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ FIRST_LOOK = 8
 """Iterations of the first fit, whose residuals give the first colour of the noise. With servos and clocks
 fixed, a longer search may leave physical values. In a rudder doublet L_p of -10 1/s became -220 1/s."""
 WITHOUT_FORCE = (
-    "neither a lateral acceleration nor a sideslip was recorded, so that only the modes are told; record a_y"
+    "neither a lateral acceleration nor a sideslip was recorded, so only the modes are known; record a_y"
 )
 N = len(LATERAL.shared)
 _MOTION = LateralMotion()
@@ -76,7 +76,7 @@ def search_lateral(
     Parameters
     ----------
     nuisances : servos and clocks that are estimated with the derivatives.
-    near : search of earlier records of one aircraft, from which the search goes on.
+    near : search of earlier records of one aircraft, which this search continues.
     """
     problem = begun(problem, nuisances)
     start = _holding(problem, lateral_start(problem))
