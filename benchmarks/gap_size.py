@@ -49,8 +49,8 @@ letter."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
     "lines of code": 7059,
-    "constants": 217,
-    "constants that decide": 26,
+    "constants": 208,
+    "constants that decide": 25,
     "names compared": 11,
     "complex functions": 0,
     "lines of estimation": 16640,

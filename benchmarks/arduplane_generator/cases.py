@@ -214,6 +214,9 @@ def truth_of(axis: str, withheld: Withheld, airframe: Airframe, read_m_s: float)
         acts = CONTROLS[axis] if lateral and block == "input" else ("",)
         names = [f"{c}_{name}" if c else ("side_gusts" if lateral else name) for c in acts]
         effects = [(each, acts[k] or block, size) for k, each in enumerate(names)]
+        if lateral and withheld.kind == "delay":
+            # All servo outputs have one stamp, so their delay is one cause.
+            effects.append(("common_transport_delay", "input", size))
     return truth(
         kind, "autopilot", effects, [], axis=axis, factors=wrong, mass_kg=airframe.mass_kg,
         derivatives=airframe.derivatives(TRUE_OVER_READ * read_m_s), servo_lag_s=withheld.lag_s,

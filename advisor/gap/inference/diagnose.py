@@ -68,7 +68,8 @@ def infer(
     progress("looking at the air", 0.5)
     sought = moving_air(problem, stage.best.fitted)
     floor = floor_of(problem, stage.best.fitted, stage.best.held_out)
-    known = _known_air(problem, aircraft)
+    # The aircraft file may state moving air.
+    known = aircraft.effects.get("turbulence", {}).get("sigma_w_m_s", 0.0) / problem.flights.reference_m_s
 
     def beyond(rows: list[Row[PitchModel]]) -> list[Row[PitchModel]]:
         with_offset = _with_offset(rows, kinematics, problem, prior, flight.tried[0])
@@ -116,12 +117,6 @@ def _with_offset(
 
 def _gaining(row: Row[PitchModel], term: str, nats: float) -> Row[PitchModel]:
     return replace(row, terms={**row.terms, term: nats})
-
-
-def _known_air(problem: EffectProblem, aircraft: Aircraft) -> float:
-    """Return the gust angle, rad, that the aircraft file states for moving air."""
-    sigma = aircraft.effects.get("turbulence", {}).get("sigma_w_m_s", 0.0)
-    return float(sigma) / problem.flights.reference_m_s
 
 
 def _named_air(

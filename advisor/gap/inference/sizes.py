@@ -14,8 +14,9 @@ from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import natural_frequency
 from advisor.process.arrays import FloatArray
 
-_TIME_S, _SHARE = 0.05, 0.1
-"""Prior: standard deviations of late stamps, s, and of relative errors of a reading."""
+_OF_READING = {"skew_s": 0.1, "scale": 0.1, "step": 0.1}
+"""Prior: standard deviations of late stamps, s, and of relative errors of any reading. A stream that is
+renewed at 10 Hz is late by its interval: ArduPlane's air speed by 118 ms."""
 BENT = 0.5
 """Prior: standard deviation of a nonlinear term at the largest flown deviation, relative to the linear
 term."""
@@ -75,14 +76,20 @@ def with_sizes(variant: Variant, derivatives: FloatArray, flights: PreparedManeu
         "M_alpha2": BENT * m_alpha / alpha, "M_alpha3": BENT * m_alpha / alpha**2,
         "Z_alpha2": BENT * z_alpha / alpha, "Z_alpha3": BENT * z_alpha / alpha**2,
         "M_throttle": 0.5 * m_delta * delta, "M_h": m_delta * delta, "Z_h": z_alpha * alpha,
-        "at_s": span, "over_s": span, "rate_per_s": 0.2 / span, "skew_s": _TIME_S, "scale": _SHARE,
-        "step": _SHARE, "arm_m": _ARM.get(variant.effect, 0.0) * way_m,
+        "at_s": span, "over_s": span, "rate_per_s": 0.2 / span,
+        "arm_m": _ARM.get(variant.effect, 0.0) * way_m,
     }  # fmt: skip
     stds = [
-        _OF_EFFECT.get(f"{variant.effect}.{name}", of_number.get(name, std))
+        width_of(variant.effect, name, of_number.get(name, std))
         for name, std in zip(variant.names, of_range(variant), strict=True)
     ]
     return replace(variant, prior_std=tuple(stds))
+
+
+def width_of(effect: str, name: str, other: float = np.nan) -> float:
+    """Return the prior width of a servo's or a reading's parameter on any axis; ``other`` of another
+    parameter."""
+    return _OF_EFFECT.get(f"{effect}.{name}", _OF_READING.get(name, other))
 
 
 def of_range(variant: Variant) -> tuple[float, ...]:

@@ -55,8 +55,6 @@ def read_otherwise(problem: EffectProblem, fitted: EffectFit) -> tuple[EffectPro
     return other, fit(other, fitted.point, fitted.noise)
 
 
-_LOUD = 1.5
-"""Residual power in quiet stretches over white noise above which an effect is sought."""
 _QUIETER = 0.7
 """Largest ratio of the quiet residual's power with an effect to that without, for the effect to be kept."""
 _MAIN = [DERIVATIVES.index(name) for name in ("Z_alpha", "M_alpha", "M_delta_e")]
@@ -219,7 +217,8 @@ def quietest(problem: EffectProblem, fitted: EffectFit) -> EffectFit:
     right effect removes the decaying motion, but no motion that occurs in still flight.
     """
     best, loud = fitted, loudness(problem, fitted)
-    while loud >= _LOUD:
+    # No effect removes the instruments' noise, whose power is 1.
+    while _QUIETER * loud >= 1.0:
         present = {variant.effect for variant in best.point.effects}
         # The drift represents all changes between manoeuvres, because their residuals decay equally fast.
         variants = [

@@ -138,6 +138,15 @@ def test_a_lag_of_all_servos_is_true_of_each_control_of_roll_and_yaw() -> None:
     assert set(truth_of("pitch", withheld, airframe(), 20.0)["effects"]) == {"actuator_lag"}
 
 
+def test_a_delay_of_all_commands_of_roll_and_yaw_is_also_one_cause() -> None:
+    told = truth_of("lateral", Withheld("delay", delay_s=0.09), airframe(), 20.0)["effects"]
+    assert set(told) == {"aileron_transport_delay", "rudder_transport_delay", "common_transport_delay"}
+    assert told["common_transport_delay"] == {"delay_s": 0.09}
+    assert set(truth_of("pitch", Withheld("delay", delay_s=0.09), airframe(), 20.0)["effects"]) == {
+        "transport_delay"
+    }
+
+
 def test_wrong_numbers_of_one_axis_are_no_fault_of_the_other() -> None:
     withheld = Withheld("parameters", {"M_alpha": 1.3, "L_p": 0.8})
     for axis, name in zip(AXES, ("M_alpha", "L_p"), strict=True):

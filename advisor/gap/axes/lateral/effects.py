@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from advisor.gap.axes.lateral.setting import PROPELLER, Flown, Place
+from advisor.gap.axes.lateral.setting import COMMAND, PROPELLER, Flown, Place
 from advisor.gap.effects.accelerometer_offset import ARM
 from advisor.gap.effects.actuator_backlash import BACKLASH
 from advisor.gap.effects.actuator_deadband import DEADBAND_ABOUT_TRIM
@@ -19,6 +19,7 @@ from advisor.gap.effects.pitch_rate_scale import SCALE
 from advisor.gap.effects.thrust_moment import EFFECT as THRUST
 from advisor.gap.effects.thrust_moment import THROTTLE_MOVES
 from advisor.gap.effects.transport_delay import DELAY
+from advisor.gap.inference.sizes import width_of
 from advisor.gap.kit.effect import without_sizes
 from advisor.gap.kit.least import FILTERED_S
 from advisor.gap.kit.skew import skew_beyond
@@ -77,18 +78,17 @@ class SideEffect:
         return None if self.variant.sides is None else ((self.of, self.variant.sides[0]), (-1.0, 0.0, 1.0))
 
 
-_BLOCKS = {**{output: block for block, output in SENSORS.items()}, "throttle": "rolling_moment"}
-"""Block of each output and of the throttle, by its name; a control is a block itself."""
+_BLOCKS = {output: block for block, output in SENSORS.items()}
+_BLOCKS |= {"throttle": "rolling_moment", "command": "input"}
+"""Block of each output, of the throttle and of all commands, by its name; a control is a block itself."""
 _SERVO = (
-    (LAG, ("lag_s",), (0.05,)),
-    (DELAY, ("delay_s",), (0.05,)),
-    (RATE_LIMIT, ("slowness_s_rad",), (1.5,)),
-    (BACKLASH, ("half_play_rad",), (0.01,)),
-    (DEADBAND_ABOUT_TRIM, ("half_deadband_rad", "neutral_rad"), (0.01, 0.005)),
+    (LAG, ("lag_s",)),
+    (DELAY, ("delay_s",)),
+    (RATE_LIMIT, ("slowness_s_rad",)),
+    (BACKLASH, ("half_play_rad",)),
+    (DEADBAND_ABOUT_TRIM, ("half_deadband_rad", "neutral_rad")),
 )
-"""Prior: effects of a servo, each with its entries in the simulator and their prior standard deviations.
-Servos of small aircraft lag by about 50 ms. A slowness of 1.5 s/rad is a rate of 40 deg/s. Worn linkages have
-half a degree of play."""
+"""Effects of a servo, each with its entries in the simulator."""
 _READINGS = {
     "p": ("roll rate", "pitch_rate_skew", "pitch_rate_sensor"),
     "r": ("yaw rate", "pitch_rate_skew", "pitch_rate_sensor"),
@@ -97,8 +97,8 @@ _READINGS = {
     "beta": ("sideslip", "alpha_skew", "alpha_sensor"),
 }
 """Name of each output, its skew effect in pitch, and the block of its scale error, if any."""
-_SCALE_STD, _SKEW_STD_S, _ARM_STD_M = 0.1, 0.1, 0.3
-"""Prior: standard deviations of scale error (1), skew of stamps (s), and arm of an accelerometer (m)."""
+_ARM_STD_M = 0.3
+"""Prior: standard deviation of the arm of an accelerometer or of a vane, m."""
 
 
 def block_of(of: str) -> str:
@@ -109,18 +109,21 @@ def block_of(of: str) -> str:
 def side_effects(flown: Flown) -> Iterator[SideEffect]:
     """Yield every lateral effect that the records of a flight can show."""
     problem = flown.problem
-    for of in filter(problem.flies, LATERAL.inputs):
-        for variant, entries, std in _SERVO:
-            yield SideEffect(of, variant, tuple((of, e) for e in entries), std, {"elevator": of})
+    controls = list(filter(problem.flies, LATERAL.inputs))
+    for of in controls:
+        for variant, entries in _SERVO:
+            yield _sized(of, variant, tuple((of, entry) for entry in entries), {"elevator": of})
+    if len(controls) > 1:
+        # A delay before the commands part delays all surfaces equally, and is one cause.
+        words = {"transport": "common transport", "command and surface": "all commands and surfaces"}
+        yield _sized("command", replace(DELAY, starts=()), (COMMAND,), words)
     measured = set.intersection(*(set(record.outputs) for record in problem.records))
-    readings = {of: told for of, told in _READINGS.items() if of in measured}
-    for of, (spoken, skew, _) in readings.items():
+    for of in filter(measured.__contains__, _READINGS):
+        spoken, skew, block = _READINGS[of]
         words = dict.fromkeys(("pitch rate", "angle of attack"), spoken)
-        yield SideEffect(of, skew_beyond(skew, FILTERED_S), ((of, "skew_s"),), (_SKEW_STD_S,), words)
-    for of, (spoken, _, block) in readings.items():
+        yield _sized(of, skew_beyond(skew, FILTERED_S), ((of, "skew_s"),), words)
         if block:
-            scale = replace(SCALE, block=block)
-            yield SideEffect(of, scale, ((of, "scale"),), (_SCALE_STD,), {"pitch rate": spoken})
+            yield _sized(of, replace(SCALE, block=block), ((of, "scale"),), {"pitch rate": spoken})
     if "a_y" in measured:
         yield SideEffect("a_y", ARM, (("a_y", "arm_m"),), (_ARM_STD_M,))
     if "beta" in measured and flown.arm_is_stated:
@@ -128,6 +131,12 @@ def side_effects(flown: Flown) -> Iterator[SideEffect]:
         yield SideEffect("beta", vane, (("beta", "arm_m"),), (_ARM_STD_M,))
     if _throttle_moves(flown):
         yield _propeller()
+
+
+def _sized(of: str, variant: Variant, places: tuple[Place, ...], words: Mapping[str, str]) -> SideEffect:
+    """Return an effect with the prior widths of the pitch axis, whose servos and streams are the same."""
+    std = tuple(width_of(variant.effect, name) for name in variant.names)
+    return SideEffect(of, variant, places, std, words)
 
 
 def unseen(flown: Flown) -> Iterator[Unseen]:

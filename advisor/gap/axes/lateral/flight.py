@@ -11,8 +11,9 @@ from advisor.gap.axes.lateral.evidence import colour_share, gained, information_
 from advisor.gap.axes.lateral.fit import Fit, Free, Known, moved_by
 from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
 from advisor.gap.axes.lateral.measure import sums
-from advisor.gap.axes.lateral.models import Case, base_of, base_setting, free_near, free_with
+from advisor.gap.axes.lateral.models import Case, base_of, free_near, free_with
 from advisor.gap.axes.lateral.residual import residual_of
+from advisor.gap.axes.lateral.setting import moved_to
 from advisor.gap.axes.lateral.starts import Start, Starts
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.inference.explanation import Evidence, Explanation
@@ -132,7 +133,7 @@ class SideFlight:
         best = max(added, key=lambda one: one.likelihood, default=None)
         if best is None or best.effect is None:
             return None
-        setting = {**best.fit.point.setting, **base_setting(self.case, best.effect)}
+        setting = moved_to(best.fit.point.setting, best.effect.places, base_of(self.case, best.effect))
         fit = self.case.fit(best.fit.point._replace(setting=setting), self.case.natural, share=share)
         known = self.case.prior_of(ERROR_IF_WRONG, self.case.natural, share)
         better = fit is not None and known.height(fit) > known.height(plain.fit) + SAME_OPTIMUM

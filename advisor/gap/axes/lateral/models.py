@@ -141,12 +141,3 @@ def base_of(case: Case, effect: SideEffect) -> FloatArray:
     """Return the values that the simulator has at an effect's places."""
     setting = case.begin.setting
     return np.array([setting[place][0] if place in setting else 0.0 for place in effect.places])
-
-
-def base_setting(case: Case, effect: SideEffect) -> dict[Place, FloatArray]:
-    """Return the simulator's values at an effect's places, by place, shape (m,) each."""
-    count = len(case.flown)
-    return {
-        place: np.full(count, value)
-        for place, value in zip(effect.places, base_of(case, effect), strict=True)
-    }

@@ -5,13 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.gap.axes.lateral.effects import side_effects, unseen
+from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.axes.lateral.effects import block_of, side_effects, unseen
 from advisor.gap.axes.lateral.fit import Flying, Free, Point, outputs
-from advisor.gap.axes.lateral.setting import PROPELLER, Flown, laid_out
+from advisor.gap.axes.lateral.setting import COMMAND, PROPELLER, Flown, laid_out
+from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.effects.thrust_moment import EFFECT as THRUST
+from advisor.gap.inference.sizes import with_sizes
+from advisor.gap.records.prepare import prepare
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.rows import Signal
+from tests.gap.generator import Setup, fly
 from tests.oem.axes.lateral.builders import JET, aileron_doublet, flown, rudder_doublet, vector
 
 T = np.arange(0.0, 8.0, 0.02)
@@ -133,3 +138,26 @@ def test_a_parameter_moves_within_its_bounds(change, value):
     moved = free.moved(Flying(None, {("p", "scale"): np.full(2, 0.02)}), change)
     assert free.read(moved) == pytest.approx(value)
     assert free.read(Flying(None, {})) == 0.0
+
+
+def test_a_delay_of_all_commands_is_one_cause_where_two_controls_are_flown():
+    both = {
+        effect.name: effect for effect in side_effects(Flown(LateralProblem((AILERON, RUDDER)), (None, None)))
+    }
+    common = both["common_transport_delay"]
+    assert common.places == (COMMAND,)
+    assert block_of(common.of) == "input"
+    said = common.said("The simulator responds 92 ms too early: a delay between command and surface")
+    assert said == "The simulator responds 92 ms too early: a delay between all commands and surfaces"
+    assert "common_transport_delay" not in {effect.name for effect in side_effects(FLOWN)}
+
+
+def test_servos_and_streams_have_equal_prior_widths_on_both_axes():
+    flights = prepare(fly(Setup(maneuvers=3, seed=4)), Aircraft())
+    derivatives = np.array([-4.0, 0.0, -0.4, -40.0, -5.0, -60.0])
+    sized = [with_sizes(variant, derivatives, flights) for variant in variants_for(flights)]
+    pitch = {(v.effect, v.names): v.prior_std for v in sized}
+    side = {(e.variant.effect, e.variant.names): e.std for e in side_effects(FLOWN)}
+    shared = {key for key in pitch.keys() & side.keys() if key[0] != "accelerometer_offset"}
+    assert {"actuator_lag", "attitude_skew", "pitch_rate_scale"} <= {effect for effect, _ in shared}
+    assert all(pitch[key] == side[key] for key in shared)
