@@ -9,6 +9,7 @@ from scipy.stats import multivariate_normal
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.gap.axes.lateral.effects import side_effects
 from advisor.gap.axes.lateral.fit import fitted, moved_by
+from advisor.gap.axes.lateral.flight import SideFlight
 from advisor.gap.axes.lateral.gusts import Gusts, coloured_likelihood, side_gusts
 from advisor.gap.axes.lateral.laws import lacking, side_laws
 from advisor.gap.axes.lateral.models import case_of
@@ -212,3 +213,20 @@ def test_a_late_roll_rate_promises_as_much_as_an_early_yaw_rate_where_all_other_
     promised = {one.name: one.price + 2.0 * plain.likelihood for one in Starts(case, plain, table).of_each}
     assert promised["late_roll_rate_stamps"] < -50.0
     assert promised["late_roll_rate_stamps"] == pytest.approx(promised["late_yaw_rate_stamps"], rel=0.01)
+
+
+def test_a_delay_of_all_commands_beyond_that_of_telemetry_is_evidence_of_one_cause(case):
+    late = [
+        replace(record, inputs={n: s._replace(t=s.t - 0.2) for n, s in record.inputs.items()})
+        for record in case.flown.problem.records
+    ]
+    flown = replace(case.flown, problem=replace(case.flown.problem, records=tuple(late)))
+    case = replace(case, flown=flown)
+    table = [one for one in side_effects(flown) if one.name.endswith("_transport_delay")]
+    plain = case.fit(case.begin, case.natural)
+    _, (without, *models) = SideFlight(case, plain, table).explained(None, len(table))
+    gained = {one.name: one.evidence.either - without.evidence.either for one in models}
+    size = next(one.fit.values[-1] for one in models if one.name == "common_transport_delay")
+    assert size == pytest.approx(0.2, abs=0.03)
+    assert gained["common_transport_delay"] > 5.0
+    assert max(gained["aileron_transport_delay"], gained["rudder_transport_delay"]) < 2.0
