@@ -17,6 +17,7 @@ from advisor.flight.maneuvers.events import (
     ManeuverAgain,
     ManeuverFlown,
     Notice,
+    SideManeuverFlown,
 )
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.stream.flights import Flights
@@ -57,15 +58,26 @@ class GapFlights:
     """Number of repeated manoeuvres that were omitted."""
     notes: tuple[str, ...]
     """Assumptions about the elevator, and the manoeuvres excluded by hand, as sentences."""
+    lateral: bool = False
+    """Whether the logs hold a manoeuvre of aileron or rudder, if these were looked for."""
 
 
 def maneuvers_of(
-    logs: Sequence[Path], aircraft: Aircraft, target_system: int | None = None, by_hand: Sequence[ByHand] = ()
+    logs: Sequence[Path],
+    aircraft: Aircraft,
+    target_system: int | None = None,
+    by_hand: Sequence[ByHand] = (),
+    lateral: bool = False,
 ) -> GapFlights:
     """Read the manoeuvres of all logs, with the decisions by hand on each log.
 
     The logs are taken in the order of their times, as in a campaign. The clock begins with the first log's,
     and continues across other logs and restarts of the vehicle.
+
+    Parameters
+    ----------
+    lateral
+        Whether inputs of aileron and rudder are looked for, too.
 
     Raises
     ------
@@ -77,7 +89,7 @@ def maneuvers_of(
     by_hand_on_all = on_all([decided[log] for log in series.logs])
 
     def begin() -> tuple[Flights, list[FlightEvent]]:
-        return Flights(aircraft, target_system, by_hand_on_all.marks, series.names), []
+        return Flights(aircraft, target_system, by_hand_on_all.marks, series.names, lateral), []
 
     flights, events = series.fed_to(begin, lambda read, columns: read[1].extend(read[0].feed(columns)))
     events += flights.finish()
@@ -104,7 +116,8 @@ def maneuvers_of(
         elif maneuver.flight not in series.unreadable:
             used.append(replace(maneuver, number=len(used) + 1))
     again = sum(x.again for x in heard)
-    return GapFlights(_on_one_clock(used), again, tuple(dict.fromkeys(filter(None, notes))))
+    sideways = any(isinstance(event, SideManeuverFlown) for event in events)
+    return GapFlights(_on_one_clock(used), again, tuple(dict.fromkeys(filter(None, notes))), sideways)
 
 
 def _on_one_clock(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:

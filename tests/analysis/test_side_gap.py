@@ -9,6 +9,7 @@ from click.testing import CliRunner
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.axes import side_comparison as side_gap
+from advisor.analysis.log_series import LogSeries
 from advisor.cli.axes import lateral_gap as side_gap_command
 from advisor.cli.group import advisor
 from advisor.gap.result import Diagnosis, Gap
@@ -103,7 +104,7 @@ def test_the_axis_is_what_has_accepted_manoeuvres(monkeypatch, found, refused, s
     def read(*_, **__):
         if found is None:
             raise UnusableInputError("no_maneuver", "none", "fly")
-        return SimpleNamespace(maneuvers=[0] * found)
+        return SimpleNamespace(maneuvers=[0] * found, lateral=sideways)
 
     def whole(*_, **__):
         if not sideways:
@@ -113,7 +114,6 @@ def test_the_axis_is_what_has_accepted_manoeuvres(monkeypatch, found, refused, s
     monkeypatch.setattr(side_gap, "maneuvers_of", read)
     monkeypatch.setattr(side_gap, "read_whole", whole)
     monkeypatch.setattr(side_gap, "accepted_of", lambda _: [0])
-    monkeypatch.setattr(side_gap, "flies_roll_or_yaw", lambda *_: sideways)
     monkeypatch.setattr(
         side_gap,
         "without_refused",
@@ -122,10 +122,18 @@ def test_the_axis_is_what_has_accepted_manoeuvres(monkeypatch, found, refused, s
     assert side_gap.axis_flown([Path("a.tlog")], Aircraft())[0] == axis
 
 
+def test_a_flight_of_the_elevator_alone_is_read_once(monkeypatch):
+    readings, fed = [], LogSeries.fed_to
+    monkeypatch.setattr(LogSeries, "fed_to", lambda self, *a: readings.append(self.logs) or fed(self, *a))
+    log = Path("logs/bundled-demo.tlog")
+    assert side_gap.axis_flown([log], Aircraft()).axis == "pitch"
+    assert readings == [[log]]
+
+
 def test_a_flight_that_roll_and_yaw_answer_is_read_once(monkeypatch):
     state, compared = SimpleNamespace(), []
 
-    def no_elevator(*_):
+    def no_elevator(*_, **__):
         raise UnusableInputError("no_maneuver", "none", "fly")
 
     def compare(found, *_):

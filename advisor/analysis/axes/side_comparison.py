@@ -116,15 +116,19 @@ def axis_flown(
     Without an accepted manoeuvre, the axis is pitch.
     """
     flown = None
-    is_pitch = False
+    is_pitch = sideways = False
     try:
-        flown = maneuvers_of(logs, aircraft, target_system, by_hand)
+        flown = maneuvers_of(logs, aircraft, target_system, by_hand, lateral=True)
+        sideways = flown.lateral
+        if sideways:
+            # An input of all controls at once has other ends where roll and yaw are looked for.
+            flown = maneuvers_of(logs, aircraft, target_system, by_hand)
         chosen = without_refused(flown.maneuvers, aircraft)
         is_pitch = len(chosen.although_refused) < len(chosen.maneuvers)
     except UnusableInputError:
         pass  # The diagnosis of pitch gives the reason, where roll and yaw have no manoeuvre either.
     try:
-        if is_pitch and not any(flies_roll_or_yaw(log, aircraft, target_system, marks) for log in logs):
+        if is_pitch and not sideways:
             return AxisFlown("pitch", flown)
         state = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral").state
         accepted_of(state)
