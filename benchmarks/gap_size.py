@@ -48,13 +48,13 @@ OF_AN_AXIS = frozenset(
 letter."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
-    "lines of code": 7059,
-    "constants": 208,
+    "lines of code": 7056,
+    "constants": 207,
     "constants that decide": 25,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 16640,
-    "files naming an axis": 116,
+    "lines of estimation": 16636,
+    "files naming an axis": 114,
 }
 """Upper bound of each count."""
 MOST_COMPLEX = 15
