@@ -12,6 +12,7 @@ import signal
 import sys
 import threading
 import time
+from collections import deque
 from multiprocessing.connection import Connection, Listener
 from multiprocessing.reduction import send_handle
 from pathlib import Path
@@ -99,6 +100,8 @@ class Keeper:
         self._readers: list[Reader] = []
         self._observers: list[Reader] = []
         self._passed_on = 0
+        self._kept: deque[bytes] = deque()
+        self._kept_bytes = 0
         self._looked_s = time.monotonic()
         self._guards = 0
         self._alone_since_s: float | None = None
@@ -133,6 +136,7 @@ class Keeper:
                 if records:
                     self._send(Heard(self._passed_on, records, self._link.read_to_s))
                     self._passed_on += len(records)
+                    self._keep(records)
                 self._looked_s = time.monotonic()
                 self._admit()
                 if time.monotonic() - told_s >= TELL_EVERY_S:
@@ -155,9 +159,18 @@ class Keeper:
     def _hello(self) -> Hello:
         recorder = self._link.recorder
         if recorder is None:
-            return Hello(None, 0, b"", 0)
+            kept = b"".join(self._kept)
+            return Hello(None, self._passed_on - len(kept), kept, 0)
         recorded = recorder.recorded()
         return Hello(recorder.path, recorded.written, recorded.unsaved, recorder.before)
+
+    def _keep(self, records: bytes) -> None:
+        """Keep the newest records for later readers where no recording has them."""
+        if self._link.recorder is None:
+            self._kept.append(records)
+            self._kept_bytes += len(records)
+            while self._kept_bytes > MOST_BEHIND_BYTES:
+                self._kept_bytes -= len(self._kept.popleft())
 
     def _tell(self) -> None:
         notices: tuple[str, ...] = tuple(self._link.take_notices()) if self._readers else ()

@@ -8,7 +8,9 @@ from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as dialect
 
+from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link import health, kept_link, link_process
 from advisor.mavlink.link.keeping import Keeping, new_door
 from advisor.mavlink.link.kept_link import KeptLink
@@ -65,6 +67,25 @@ def test_a_reader_that_comes_late_hears_everything_once_and_in_order(
         vehicle.send(*(attitude(i) for i in range(400, 500)))
         assert heard(early, 200) == list(range(300, 500))
         assert heard(late, 100) == list(range(400, 500))
+
+
+def test_without_a_recording_a_late_reader_hears_the_parameters_that_arrived_before_it() -> None:
+    with LinkProcess(keeping(free_port(), None)) as process, process.link() as early:
+        vehicle = UdpVehicle(int(process.master.rpartition(":")[2]))
+        function = dialect.MAVLink_param_value_message(b"SERVO2_FUNCTION", 19.0, 9, 1, 0)
+        vehicle.send(heartbeat(), function, attitude(0))
+        heard(early, 1)
+        with process.link() as late:
+            vehicle.send(attitude(1))
+            columns: list[Columns] = []
+
+            def both() -> bool:
+                columns.extend(late.read(0.05))
+                return values(columns, "ATTITUDE", "time_boot_ms") == [0, 1]
+
+            wait_until(both)
+        vehicle.close()
+    assert values(columns, "PARAM_VALUE", "param_value") == [19.0]
 
 
 def test_what_arrives_while_the_process_is_dead_is_heard_by_the_next_one(
