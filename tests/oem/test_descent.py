@@ -1,4 +1,4 @@
-"""Steps of the search at the ends of the parameters' ranges."""
+"""Steps of the search: at the ends of the parameters' ranges, and in a bent valley."""
 
 from types import SimpleNamespace
 
@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.oem import descent
-from advisor.oem.descent import _Setting, _Step
+from advisor.oem.descent import Fit, _Setting, _Step, descended
+from advisor.oem.gauss_newton import CONVERGED, EXHAUSTED, Optimum
 
 
 class Parameter:
@@ -39,3 +40,37 @@ def test_a_parameter_at_its_end_stays_there_while_a_second_one_reaches_its_own(m
     step = _Setting(None, [Parameter(k) for k in range(3)], None).step(fit, 0.0)
     assert asked == [{}, {0: 1.0}, {0: 1.0, 1: -1.0}]
     assert step.shared == pytest.approx([1.0, -1.0, 0.2])
+
+
+BENT = 30.0
+"""True curvature of a valley over the one that small residuals would give."""
+
+
+class Valley:
+    """A valley along one parameter, in which undamped steps go far beyond the bottom."""
+
+    def __init__(self, *_):
+        pass
+
+    def at(self, problem, laid, x, local):
+        empty = np.empty(0)
+        cost = float(BENT * x[0] ** 2)
+        return Fit(None, None, Optimum(EXHAUSTED, x, local, empty, cost, 0, empty, empty), (), None)
+
+    def step(self, fit, damping):
+        x = float(fit.optimum.shared[0])
+        move = -BENT * x / (1.0 + 1e5 * damping)
+        return _Step(np.array([move]), np.empty(0), -2.0 * BENT * x * move - move**2)
+
+    def moved(self, fit, step):
+        return self.at(None, None, fit.optimum.shared + step.shared, fit.optimum.local)
+
+
+def test_a_valley_that_large_residuals_bend_takes_few_trials(monkeypatch):
+    """Dampings by powers of ten alternate between steps that are far too long and too short."""
+    monkeypatch.setattr(descent, "_Setting", Valley)
+    motion = SimpleNamespace(laid=lambda _: None)
+    fit = descended(motion, None, (), None, (np.array([100.0]), np.empty(0)))
+    assert fit.optimum.status == CONVERGED
+    assert fit.optimum.iterations < 30
+    assert abs(fit.optimum.shared[0]) < 0.01

@@ -6,8 +6,10 @@ The kinematics give the sideslip without its level and drift,
 
 from the specific force a_y, or without a_y from the weak guess a_y/V = Y_β·β. The integrated equations of the
 rates are linear in the derivatives. This is the integral form of the equation-error method (Klein & Morelli,
-*Aircraft System Identification*, Ch. 5).
+*Aircraft System Identification*, Ch. 5). A long record is cut into parts, as in multiple shooting.
 """
+
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,7 +19,12 @@ from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.problem import LateralProblem, LateralRecord
 from advisor.oem.prior import guessed_y_beta
 from advisor.oem.regression import Equations, regressed
+from advisor.oem.rows import Signal
 from advisor.process.arrays import FloatArray
+
+PART_S = 5.0
+"""Numerical: length of the parts of a record that have trims of their own in the regression, s. Over 20 s the
+drift of a sideslip that is integrated from a noisy force hides a small sideslip."""
 
 
 def lateral_start(problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
@@ -25,31 +32,33 @@ def lateral_start(problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
 
     The values are always finite; a record without information has a least-norm solution.
     """
-    prepared = [_Motion(record, problem) for record in problem.records]
     names = LATERAL.names
-    shared = np.zeros(len(names.shared))
-    local = np.zeros((len(prepared), len(names.local)))
-    for letter in "LN":
-        output = {"L": "p", "N": "r"}[letter]
-        columns = [k for k, name in enumerate(names.shared) if name.startswith(f"{letter}_")]
-        found, own = regressed([Equations(m.integrals(letter), m.signals[output], m.own()) for m in prepared])
-        shared[columns] = found
-        local[:, names.local.index(f"{letter}_0")] = [coefficients[0] for coefficients in own]
-    columns = [k for k, name in enumerate(names.shared) if name.startswith("Y_")]
-    forces = [m.force() for m in prepared if m.has_force]
-    if forces:
-        found, own = regressed(forces)
-        kept = np.array([name not in ("Y_p", "Y_r") for name in np.array(names.shared)[columns]])
-        shared[columns] = np.where(kept, found, 0.0)
-        local[[m.has_force for m in prepared], names.local.index("Y_0")] = [
-            coefficients[0] for coefficients in own
-        ]
-    else:
-        shared[columns[0]] = guessed_y_beta(problem)
-    for i, motion in enumerate(prepared):
-        for state in LATERAL.states:
-            local[i, names.local.index(f"{state}_initial")] = motion.signals[state][0]
+    shared, local = np.zeros(len(names.shared)), np.zeros((len(problem.records), len(names.local)))
+    has_force = ["a_y" in record.outputs for record in problem.records]
+    whole = lateral_equations(problem).values()
+    for (columns, parts), records in zip(lateral_equations(_in_parts(problem)).items(), whole, strict=True):
+        if parts:
+            letter = columns[0][0]
+            shared[[names.shared.index(name) for name in columns]] = regressed(parts)[0]
+            own = [coefficients[0] for coefficients in regressed(records)[1]]
+            local[has_force if letter == "Y" else slice(None), names.local.index(f"{letter}_0")] = own
+    shared[[names.shared.index(name) for name in ("Y_p", "Y_r")]] = 0.0
+    if not any(has_force):
+        shared[names.shared.index("Y_beta")] = guessed_y_beta(problem)
+    begun = [_Motion(record, problem).signals for record in problem.records]
+    for state in LATERAL.states:
+        local[:, names.local.index(f"{state}_initial")] = [signals[state][0] for signals in begun]
     return shared, local
+
+
+def _in_parts(problem: LateralProblem) -> LateralProblem:
+    """Return the problem with each record cut into parts of about ``PART_S``, by its roll rate."""
+    parts = []
+    for record in problem.records:
+        rate = record.outputs["p"]
+        cuts = np.array_split(np.array(rate), max(1, round(float(np.ptp(rate.t)) / PART_S)), axis=1)
+        parts += [replace(record, outputs={**record.outputs, "p": Signal(*cut)}) for cut in cuts]
+    return replace(problem, records=tuple(parts))
 
 
 def lateral_equations(problem: LateralProblem) -> dict[tuple[str, ...], list[Equations]]:
@@ -92,13 +101,12 @@ class _Motion:
 
     def integrals(self, letter: str) -> FloatArray:
         """Return the integrals (n, 5) whose coefficients are the derivatives of one moment."""
-        return np.column_stack(
-            [
-                integrated(self.t, self.ratio**term.power * self.signals[term.factor])
-                for term in LATERAL.shared
-                if term.name.startswith(f"{letter}_")
-            ]
-        )
+        return np.column_stack([integrated(self.t, column) for column in self.columns(letter)])
+
+    def columns(self, letter: str) -> list[FloatArray]:
+        """Return the factors (n,) of the derivatives of one force or moment."""
+        terms = [term for term in LATERAL.shared if term.name.startswith(f"{letter}_")]
+        return [self.ratio**term.power * self.signals[term.factor] for term in terms]
 
     def own(self) -> FloatArray:
         """Return the manoeuvre's own columns: trim constant, initial rate, drift of β."""
@@ -108,14 +116,8 @@ class _Motion:
     def force(self) -> Equations:
         """Return the regression equations of Y: five columns, the force per mass and speed, and the
         manoeuvre's own columns."""
-        columns = np.column_stack(
-            [
-                self.ratio**term.power * self.signals[term.factor]
-                for term in LATERAL.shared
-                if term.name.startswith("Y_")
-            ]
-        )
         since = self.t - self.t[0]
+        columns = np.column_stack(self.columns("Y"))
         return Equations(columns, self.force_rate, np.column_stack([self.ratio, since, since**2]))
 
 

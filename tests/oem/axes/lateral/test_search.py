@@ -180,3 +180,20 @@ def test_a_search_that_goes_on_from_earlier_records_ends_where_one_from_a_regres
     assert np.max(np.abs(resumed.theta - anew.theta) / std) < 0.02
     assert np.sqrt(np.diag(resumed.widened))[:15] == pytest.approx(std, rel=0.02)
     assert trials[0] < 0.6 * trials[1]
+
+
+def test_a_long_record_with_little_sideslip_starts_near_the_stiffness_in_yaw():
+    """An aileron without yaw moves a small aircraft of 20 m/s, whose side force is noisy."""
+    elevons = JET | {"Y_beta": -2.7, "L_beta": -26.0, "L_p": -4.9, "L_r": 1.4, "L_delta_a": -64.0}
+    elevons |= {"N_beta": 41.0, "N_p": 0.2, "N_r": -2.4, "N_delta_a": 0.0}
+    t, rng = np.arange(0.0, 20.0, 0.02), np.random.default_rng(0)
+    sines = Signal(t, 0.012 * sum(np.sin(2.0 * np.pi * f * t + f) for f in (0.3, 0.5, 0.7, 0.9, 1.1)))
+    record = flown(
+        elevons, aileron=sines, seconds=20.0, rate_hz=50.0, airspeed=20.0,
+        measured=("p", "r", "bank", "a_y"), rng=rng, initial=(0.0, 0.0, 0.0, 0.0),
+    )  # fmt: skip
+    force = record.outputs["a_y"]
+    noisy = Signal(t, force.y + rng.normal(0.0, 0.15, len(t)))
+    problem = LateralProblem((replace(record, outputs={**record.outputs, "a_y": noisy}),))
+    started = lateral_start(problem)[0][LATERAL.names.shared.index("N_beta")]
+    assert elevons["N_beta"] / 6.0 < started < elevons["N_beta"]
