@@ -55,8 +55,8 @@ class Elevator:
         example="0.05",
         question="First-order lag of the elevator's servo, s",
         cost=(
-            "The lag is estimated with the derivatives: wider intervals, and M_α and M_δe too "
-            "small where a flight does not determine it."
+            "The lag is estimated with the derivatives. Intervals are wider, and M_α and M_δe are too "
+            "small if a flight does not determine the lag."
         ),
         mend="film a step of the servo on the ground; the lag is the time to 63 % of the step",
         within=(0.0, 2.0),

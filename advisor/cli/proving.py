@@ -20,8 +20,8 @@ prove_option = click.option(
     is_flag=False,
     flag_value="",
     metavar="[LOG]",
-    help="Fly the improved simulator on manoeuvres that no fit has used. These are the manoeuvres of LOG, "
-    "else the last third.",
+    help="Fly the improved simulator on manoeuvres that no fit has used. Without LOG, "
+    "these are the last third of the flight's manoeuvres.",
 )
 
 

@@ -93,7 +93,7 @@ def _denied(criterion: Criterion, heard: Sequence[Heard]) -> str:
     stopped_at = criterion.chosen.stopped_at
     if first_stop(heard, criterion.rule) is not None:
         return f"a manoeuvre behind the stop after manoeuvre {stopped_at} does not count any more"
-    return f"later manoeuvres deny the stop after manoeuvre {stopped_at}"
+    return f"later manoeuvres contradict the stop after manoeuvre {stopped_at}"
 
 
 def _foretold(

@@ -69,8 +69,8 @@ def rate_limits(
     Parameters
     ----------
     paced
-        Rates of elevator and q, and of alpha and a_z where these are measured. A slow angle of attack
-        prevents no identification if a_z and air speed are measured.
+        Rates of elevator and q, and of alpha and a_z where these are measured. A low rate
+        of alpha does not prevent identification if a_z and air speed are measured.
     """
     period_s = 2.0 * np.pi / frequency(assumed.model)
     fewest_hz = max(SLOWEST_HZ, needed_hz(period_s))

@@ -104,8 +104,8 @@ def efficient_step(solution: Solution) -> Step | None:
 def _unsure(solution: Solution, change: FloatArray) -> FloatArray:
     """Return the step's covariance due to the noise model's uncertainty, shape (8, 8).
 
-    The estimate's covariance is larger by this term than with a known noise model. The usual formula with an
-    estimated model is smaller, so the term counts twice (Kenward & Roger, *Biometrics* 53, 1997).
+    The estimate's covariance is larger by this term than with a known noise model. The usual formula is too
+    small by this term again. The term therefore counts twice (Kenward & Roger, *Biometrics* 53, 1997).
     """
     total = np.zeros((N, N))
     for output, colour in solution.noise.colours.items():

@@ -163,7 +163,7 @@ class Estimate:
 
     @property
     def structured(self) -> Self | None:
-        """The estimate where the user holds a parameter or adds a term; None otherwise."""
+        """The estimate if the user holds a parameter or adds a term; None otherwise."""
         return self if self.fixed or self.terms else None
 
     @property

@@ -18,7 +18,7 @@ from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
 FLAT = 1e-11
-"""Promised change of log J below which a step ends the search; the remaining change is far smaller."""
+"""Promised change of log J below which a step ends the search. Further steps would change log J far less."""
 MOST_ITERATIONS = 120
 FIRST_DAMPING = 1e-8
 """First damping relative to the diagonal. Damping of this size does not hide a step that promises a

@@ -9,8 +9,9 @@ the knowledge before the flight:
 - *An open parameter*, such as a servo's lag, has the prior of an unmeasured instrument. On a well damped
   aircraft a lag is correlated with M_q and M_δe over a long range, and every interval includes that error.
 - *A stated parameter* is also estimated without the statement. If data and statement agree, the statement is
-  a prior with a width. A stated lag of zero that the data doubt is as wide as they are away from zero. If
-  data and statement exclude each other, the data decide alone, and the contradiction is reported.
+  a prior with a width. If the data contradict a stated lag of zero slightly, its prior is as wide as their
+  distance from zero. If data and statement exclude each other, the data decide alone, and the contradiction
+  is reported.
 """
 
 from collections.abc import Sequence
@@ -292,8 +293,8 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
 def _cancels(one: Identified, all_of_them: Sequence[Identified]) -> bool:
     """Return whether a delay of the command cancels a lag that is stated as zero or not stated.
 
-    Neither a command nor a measured surface acts before its own record. A lag and a negative delay that
-    cancel are one net lateness, which the delay alone describes.
+    Neither a command nor a measured surface acts before its own record. If a lag and a negative delay cancel,
+    the delay alone describes their sum.
     """
     x, found = one
     delays = [other.found.value for other in all_of_them if other.instrument.name == COMMAND_DELAY.name]
@@ -302,7 +303,9 @@ def _cancels(one: Identified, all_of_them: Sequence[Identified]) -> bool:
 
 
 def _uncancelled(alone: tuple[Identified, ...]) -> tuple[Identified, ...]:
-    """Return the instruments, where a lag that a delay cancels contradicts no stated zero."""
+    """Return the instruments. A lag that a delay cancels does not count as a contradiction of a
+    stated zero.
+    """
     return tuple(
         one._replace(found=replace(one.found, contradicts=False)) if _cancels(one, alone) else one
         for one in alone

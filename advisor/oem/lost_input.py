@@ -22,7 +22,7 @@ from advisor.process.arrays import FloatArray
 LOST_INTERVAL = 1.5
 """Interval between two stamps, in usual intervals, above which a sample was lost."""
 LONGEST_GAP_S = 0.25
-"""Longest gap, s, that is restored. A longer gap is an outage, which no step of the stick explains."""
+"""Longest gap, s, that is restored. A longer gap is an outage, and not a sample lost at a step."""
 STEP_SHARE = 0.05
 """Least change of the command across the gap, as a share of the input's range."""
 MOST_ROUNDS = 6

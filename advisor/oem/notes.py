@@ -69,7 +69,7 @@ def _outputs(solution: Solution, prepared: Prepared) -> str:
 
 
 def _ridge(solution: Solution) -> str:
-    """Return a sentence about two lags that explain the record alike; empty for one hill of the posterior.
+    """Return a sentence about two lags that explain the record alike; empty for a posterior with one maximum.
 
     The sentence names the derivative that differs most. No sentence is needed where the linear interval of
     every derivative holds both lags.
@@ -97,8 +97,9 @@ def _ridge(solution: Solution) -> str:
 
 
 def _is_worth_saying(identified: Identified) -> bool:
-    """Return whether the data give an instrument value that neither the file nor a sound instrument
-    explains."""
+    """Return whether the data give an instrument value that differs from the file and from a sound
+    instrument.
+    """
     x, found = identified.instrument, identified.found
     if x.stated is not None or x.prior is None:
         return found.contradicts
@@ -199,7 +200,7 @@ def _missing(solution: Solution, prepared: Prepared, priced: bool) -> str:
     if "a_z" not in prepared.missing:
         return ""
     return (
-        "No vertical acceleration was used, which needs a_z and air speed. Z_alpha, Z_q, Z_delta_e and M_q"
-        " depend on the delay and the arm of the angle of attack. Give alpha.vane_arm_m for a vane."
+        "The fit lacks the vertical acceleration, which needs a_z and air speed. Z_alpha, Z_q, Z_delta_e and"
+        " M_q depend on the delay and the arm of the angle of attack. Give alpha.vane_arm_m for a vane."
         + in_words(price(solution) if priced else None)
     )

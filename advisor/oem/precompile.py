@@ -1,4 +1,5 @@
-"""Compile the estimator once, so that no pilot waits for it: ``python -m advisor.oem.precompile``.
+"""Compile the estimator before the first flight, so that no pilot waits: ``python -m
+advisor.oem.precompile``.
 
 The compiled code is stored next to the modules (or in ``NUMBA_CACHE_DIR``). Every later start loads the
 compiled code in a fraction of a second.

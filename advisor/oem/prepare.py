@@ -256,7 +256,7 @@ def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Seq
 def _sideslip_turn(channels: Mapping[str, Channel], alpha: Signal) -> Signal | None:
     """Return the rate of α by rolling in sideslip, rad/s; None without a sideslip or a roll rate.
 
-    The level of a computed sideslip follows the estimated wind, so that only its changes count.
+    The level of a computed sideslip depends on the estimated wind, so only its changes are used.
     """
     if not all(_has(channels, name) for name in ("beta", "p")):
         return None
@@ -293,7 +293,9 @@ def constant_speed(maneuver: Maneuver, speed: float | None) -> Signal | None:
 
 
 def stated_reference(aircraft: Aircraft, maneuvers: Sequence[Maneuver]) -> float | None:
-    """Return the true air speed at the file's reference speed, which is an air speed as read."""
+    """Return the true air speed at the file's reference speed. The file states the speed that the sensor
+    reads.
+    """
     read = aircraft.reference_airspeed_m_s
     return None if read is None else read * true_over_read(m.channels for m in maneuvers)
 

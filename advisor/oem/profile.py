@@ -1,11 +1,11 @@
-"""Posterior along one parameter whose linear interval is no interval of the posterior.
+"""Posterior along one parameter for which the interval by linearisation does not describe the posterior.
 
 A covariance at an optimum describes the nearest hill of the posterior. A servo's lag that the data hardly
 determine has a long, flat ridge, along which the derivatives bend. The parameter is held at several values,
 and all others are searched again. MINOS (James & Roos, *Computer Physics Communications* 10, 1975) and the
-profile likelihood (Venzon & Moolgavkar, *Applied Statistics* 37, 1988) do so, too. The second moment of these
-optima replaces the linear part of the covariance that the parameter causes. An interval about the best
-optimum reaches at least to the ends of the profile's own interval.
+profile likelihood (Venzon & Moolgavkar, *Applied Statistics* 37, 1988) do the same. The second moment of
+these optima replaces the linear part of the covariance that the parameter causes. The resulting interval
+about the best optimum contains the interval of the profile.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -89,8 +89,9 @@ class Profile:
 
 
 def needs_profile(value: float, std: float) -> bool:
-    """Return whether the linear interval of a positive parameter reaches zero, so that its hill is no
-    parabola within the interval."""
+    """Return whether the linear interval of a positive parameter reaches zero, so that the posterior is not
+    Gaussian within it.
+    """
     return NORMAL_95 * std >= value
 
 

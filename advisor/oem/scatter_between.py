@@ -1,4 +1,4 @@
-"""Errors that include the scatter between manoeuvres, which no noise model within one manoeuvre contains.
+"""Errors that include the scatter between manoeuvres. A noise model of single manoeuvres lacks this scatter.
 
 The influence of the measurements on a joint estimate is the sum of the manoeuvres' contributions. At the
 optimum the contributions sum to zero. The scatter of the contributions is a covariance that is valid for any

@@ -41,7 +41,7 @@ def commit(folder: Path, answers: Path) -> str:
     digest = hashlib.sha256(answers.read_bytes()).hexdigest()
     place = folder / COMMITMENT
     if place.exists() and place.read_text(encoding="utf-8").strip() != digest:
-        raise SealError(f"{place}: other answers were committed before; cases can be answered once")
+        raise SealError(f"{place}: other answers were committed before; cases can be answered only once")
     place.write_text(digest + "\n", encoding="utf-8")
     return digest
 

@@ -120,7 +120,7 @@ def test_an_answer_that_is_wrong_is_asked_again(advisor: Advisor, tmp_path: Path
     run = advisor("aircraft", "new", "-o", tmp_path / "a.yaml")
     assert run.returncode == 0
     for sentence in (
-        "two is no output",
+        "two is not an output",
         "99 is not a servo output",
         "Give pairs",
         "PWM must rise",

@@ -65,7 +65,9 @@ def test_a_stop_whose_criterion_is_not_computed_again_says_that_nothing_changed(
 
 def test_a_stop_that_later_data_deny_is_said_as_that_with_what_is_open():
     denied = concluded(criterion(False, stopped_at=2), [])
-    assert denied.sentence == "CONTINUE: later manoeuvres deny the stop after manoeuvre 2; stop is False"
+    assert (
+        denied.sentence == "CONTINUE: later manoeuvres contradict the stop after manoeuvre 2; stop is False"
+    )
 
 
 def test_a_confirmed_change_of_the_aircraft_ends_a_stop_that_was_heard():

@@ -84,7 +84,7 @@ def test_a_later_contradiction_takes_the_stop_back_and_says_so() -> None:
     verdict = flight_test(history, PLAN)
     assert verdict.decision == "continue"
     assert verdict.stopped_at == 3
-    assert verdict.sentence.startswith("CONTINUE: later manoeuvres deny the stop after manoeuvre 3; ")
+    assert verdict.sentence.startswith("CONTINUE: later manoeuvres contradict the stop after manoeuvre 3; ")
     assert not any("stop" in w for w in verdict.warnings)
 
 

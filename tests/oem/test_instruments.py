@@ -96,7 +96,7 @@ def test_acceleration_makes_the_lift_derivatives_sharper():
         aircraft(),
     )
     assert with_it.std[3] < 0.6 * without.std[3]
-    assert any("No vertical acceleration" in note for note in without.notes)
+    assert any("The fit lacks the vertical acceleration" in note for note in without.notes)
 
 
 def test_quantised_acceleration_gets_the_weight_it_deserves():

@@ -53,5 +53,5 @@ def test_a_channel_that_would_bring_nothing_is_said_to():
 def test_the_notes_of_an_estimate_put_the_price_beside_the_missing_channel():
     known = Aircraft(elevator=Elevator(lag_s=0.0), airspeed_m_s=SPEED_M_S)
     found = estimate(flown(UAV, unit_s=0.4, noise=0.02, length_s=8.0), known)
-    note = next(note for note in found.notes if "No vertical acceleration" in note)
+    note = next(note for note in found.notes if "The fit lacks the vertical acceleration" in note)
     assert "by factors" in note or "more than 5 %" in note

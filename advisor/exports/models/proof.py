@@ -123,7 +123,7 @@ def lines_of(proof: Proof) -> Iterator[str]:
     for number, before, after in proof.by_maneuver:
         yield f"  manoeuvre {number}: {before:.2f} → {after:.2f}"
     if proof.alone:
-        yield "  The correction is that of all manoeuvres; its sizes are fitted without those of the proof."
+        yield "  The correction is that of all manoeuvres; its sizes are fitted without those flown here."
         yield f"  Without them the flight says: {proof.alone}"
     left = "nothing above the noise" if proof.second == "none" else proof.sentence
     yield f"  asked again, the improved simulator lacks: {left}"

@@ -139,7 +139,7 @@ class Mixing:
             self._answered = (
                 f"The aircraft's response in pitch decides: the sign of output {listed} is turned."
                 if turned
-                else "The aircraft's response in pitch decides: no output's sign is turned."
+                else "The aircraft's response in pitch decides: every output keeps its sign."
             )
         elif turned and len(turned) < len(surface.outputs):
             others = joined_numbers([n for n in surface.outputs if n not in turned])

@@ -31,7 +31,7 @@ EFFECT = Effect(
     keys={**dict.fromkeys(_ICED, ANY), "at_s": ANY, "over_s": 0.0},
     variants=_variants,
     of_one_flight=True,
-    said="Lift and control weakened during the flight, as ice does",
+    said="Lift and control weakened during the flight, as by ice",
     need=Need("Z_alpha", "fewer than three manoeuvres", "repeat the same manoeuvre early and late"),
     distinguished_by={
         "airspeed_variation": "repeat the same manoeuvre at the same air speed, early and late"

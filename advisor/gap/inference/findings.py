@@ -19,8 +19,7 @@ class Added:
 
     effect: str
     sole_maneuver: int | None = None
-    """Index of the only manoeuvre that determines the effect; None where another manoeuvre could confirm
-    it."""
+    """Index of the only manoeuvre that determines the effect; None if another manoeuvre could confirm it."""
 
 
 @dataclass(frozen=True)

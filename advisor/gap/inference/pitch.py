@@ -175,7 +175,9 @@ class PitchFlight:
 
 
 def _without_the_effect(problem: FlightProblem, plain: EffectFit, fits: Sequence[EffectFit]) -> EffectFit:
-    """Return the plain model, searched again from where the likeliest model with an effect ended."""
+    """Return the plain model from a search that starts at the optimum of the likeliest model with
+    an effect.
+    """
     best = min(fits, key=lambda made: made.cost, default=plain)
     if best.cost >= plain.cost - 2.0 * SAME_OPTIMUM:
         return plain

@@ -65,7 +65,7 @@ class Flight(Protocol[E]):
 
     @property
     def parts(self) -> Parts:
-        """Return the wall that keeps a numerical fault inside the model of one effect."""
+        """Return the guard that confines a numerical fault to the model of one effect."""
 
     @property
     def is_stated(self) -> bool:

@@ -96,7 +96,7 @@ def hold_over_step(
     level
         Cosine of the bank.
     disturbed
-        Disturbances of δ (rad), α̇ (rad/s) and q̇ (rad/s²), for a dose of 1.
+        Disturbances of δ (rad), α̇ (rad/s) and q̇ (rad/s²), for a scale of 1 (entry ``DOSE``).
     """
     throttle, thrust = slow[SLOW.throttle], slow[SLOW.thrust]
     d_delta, d_force, d_moment = disturbed

@@ -29,7 +29,7 @@ _OTHER_FILES = {
     stat.S_ISDIR: ("not_a_file", "is a folder", "Give the log file inside it."),
     stat.S_ISFIFO: ("not_a_file", "is a pipe", "Write the pipe's bytes to a file and give that file."),
     stat.S_ISCHR: ("not_a_file", "is a device", "For a live link use: advisor live --master."),
-    stat.S_ISBLK: ("not_a_file", "is a device", "Give a file on it."),
+    stat.S_ISBLK: ("not_a_file", "is a device", "Give the log file on the device."),
     stat.S_ISSOCK: ("not_a_file", "is a socket", "For a live link use: advisor live --master."),
 }
 

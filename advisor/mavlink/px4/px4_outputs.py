@@ -155,7 +155,7 @@ def _pulses(port: int, at: IntArray, pulses: Mapping[int, FloatArray]) -> TimedM
 
 _FOLLOWS = 0.5
 """Least share of an output's movement that the pitch command must explain, after removal of other commands.
-At 10 Hz two topics sample different moments of each step and share about 0.8."""
+At 10 Hz two topics sample each step at different moments. The share is then about 0.8."""
 _SMALLER = 0.3
 """Least effect of pitch on an output, over the largest effect on any output. A smaller effect belongs to a
 mixer's trim, such as compensating flaps."""

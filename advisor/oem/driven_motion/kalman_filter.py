@@ -1,4 +1,4 @@
-"""Compiled Kalman filter of a linear motion that white noise drives, seen by instruments with coloured noise.
+"""Compiled Kalman filter of a linear motion that white noise drives, measured with coloured noise.
 
 The states of the motion come first, then one state for the coloured noise of each output. Rows are in order
 of time, so that every update is scalar.
@@ -108,7 +108,7 @@ def driven_filter(
     memory_s: float,
     columns: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the innovations of ``columns`` (n, k) over their standard deviations (n,), and these.
+    """Return the innovations of ``columns`` (n, k) over their standard deviations, and these deviations (n,).
 
     Parameters
     ----------

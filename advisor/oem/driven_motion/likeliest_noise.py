@@ -28,7 +28,9 @@ _FLAT = 0.01
 _DAMPINGS = (0.0, 0.3, 3.0, 30.0)
 """Numerical: tried dampings of a step, as shares of the information's diagonal."""
 _MOST = 0.1
-"""Numerical: largest start of an intensity's root, which a state that no output shows begins with, SI."""
+"""Numerical: largest starting value of an intensity's root, SI. A state that no output shows starts from this
+value.
+"""
 
 
 def first_noise(setting: Setting) -> Noise:

@@ -1,4 +1,4 @@
-"""Linear motion near a fitted one, which unknown forces drive."""
+"""Linearisation of a fitted motion that unknown forces drive."""
 
 from typing import Any, NamedTuple, Protocol
 
@@ -8,7 +8,7 @@ from advisor.process.arrays import FloatArray
 
 
 class Linear(NamedTuple):
-    """Motion near a fitted one, of s states and o outputs."""
+    """Linearisation of a fitted motion with s states and o outputs."""
 
     matrix: FloatArray
     """Shape (s, s): rates of the states by the states."""

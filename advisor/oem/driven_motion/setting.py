@@ -19,8 +19,9 @@ from advisor.process.arrays import FloatArray
 STAMP_S = 1e-3 / 12.0**0.5
 """Standard deviation of a stamp in whole milliseconds, s."""
 _GRID_S = 1e-4
-"""Numerical: grid of the time steps, s, of which equal ones share their matrices. Residuals hardly move in
-half of it."""
+"""Numerical: grid of the time steps, s, so that equal steps share their matrices. Residuals hardly change
+within half of this time.
+"""
 
 
 class Record(NamedTuple):
@@ -30,10 +31,11 @@ class Record(NamedTuple):
     seen: FloatArray
     """Shape (c, s + 1): measured outputs by the states and by the gust's angle."""
     order: Index
-    """Rows among those of all manoeuvres."""
+    """Indices of the rows among the rows of all manoeuvres."""
     steps: tuple[FloatArray, Index, Index]
-    """Distinct lengths of the time steps, s, and two indices of each row. They are those of the step before
-    the row, and of the row's output in ``measured``."""
+    """Distinct lengths of the time steps, s, the index of the step before each row, and the index of its
+    output in ``measured``.
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +49,7 @@ class Setting:
     residual: FloatArray
     sensitivities: FloatArray
     columns_of: Callable[[], FloatArray]
-    """Function that returns the derivatives by servos and clocks, which a rejected trial step needs not."""
+    """Function that returns the derivatives by servos and clocks. A rejected trial step does not call it."""
     parameters: Sequence[Parameter]
     records: Sequence[Record]
     measured: Index
@@ -75,7 +77,8 @@ class Setting:
     def innovations(
         self, columns: FloatArray, noise: Noise, newest: int = 0
     ) -> Iterator[tuple[Index, FloatArray, FloatArray]]:
-        """Yield rows, innovations over their standard deviations, and these, for each manoeuvre.
+        """Yield rows, innovations over their standard deviations, and the standard deviations, for each
+        manoeuvre.
 
         The innovations (n, k) are those of ``columns`` (N, k). Only the ``newest`` manoeuvres count; 0 means
         all.
@@ -153,7 +156,9 @@ class Model:
 
 
 def _floor(laid: Laid, y: FloatArray) -> FloatArray:
-    """Return the least white noise of each output, shape (o,): its change within the error of a stamp."""
+    """Return the least white noise of each output, shape (o,): the output's change within the error of a
+    stamp.
+    """
     floor = np.full(len(laid.names.outputs), RANGE[0])
     for c in np.unique(laid.channel):
         parts = [rows for named in laid.rows if (rows := named.get(laid.names.outputs[c])) is not None]

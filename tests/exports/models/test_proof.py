@@ -162,7 +162,7 @@ def test_few_manoeuvres_without_an_answer_fly_the_answer_of_all_with_their_own_s
     made = proof.prove(flights(1, 2, 3, 4, 5, 6), None, FILE, whole=whole)
     assert sized == [("findings of all", [5, 6])]
     assert (made.before, made.after) == (6.0, 0.1)
-    assert "  The correction is that of all manoeuvres; its sizes are fitted without those of the proof." in (
+    assert "  The correction is that of all manoeuvres; its sizes are fitted without those flown here." in (
         lines_of(made)
     )
 

@@ -127,8 +127,7 @@ def _traces(numbers: Sequence[int], as_given: Fit, last: Fit) -> Iterator[Trace]
 
 
 def _first(case: Case) -> Fit | None:
-    """Return the likelier fit without effects of two searches: from the flight's derivatives and from the
-    file's.
+    """Return the likelier of two fits without effects: from the flight's derivatives and from the file's.
 
     An effect that distorts the derivatives of the flight leads the first search into a local minimum.
     """

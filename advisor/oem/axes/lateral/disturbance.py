@@ -63,8 +63,9 @@ class Course(NamedTuple):
     knots: FloatArray
     """Shape (k,): times of the disturbance's knots, s."""
     columns: FloatArray
-    """Shape (n, k): change of the outputs per unit disturbance at each knot, without what trims and initial
-    states absorb."""
+    """Shape (n, k): change of the outputs per unit disturbance at each knot, without the part that trims and
+    initial states absorb.
+    """
 
 
 def blocks_of(fit: Linear) -> Iterator[str]:
@@ -113,7 +114,9 @@ def answered(fit: Linear, m: int, block: str, t: FloatArray, course: FloatArray)
 
 
 def _read(fit: Linear, m: int, t: FloatArray, seen: Mapping[str, FloatArray]) -> FloatArray:
-    """Return the changes (n, k) of outputs, known at the times ``t``, at the stamps of a manoeuvre."""
+    """Return the changes (n, k) of outputs, interpolated from the times ``t`` to the stamps of a
+    manoeuvre.
+    """
     parts = []
     for name, rows in fit.assembly.rows[m].items():
         change = seen.get(name, np.zeros((len(t), next(iter(seen.values())).shape[1])))

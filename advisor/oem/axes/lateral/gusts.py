@@ -22,7 +22,9 @@ MEMORY_S = 0.5, 5.0
 """Prior: range of the gust angle's correlation time, s, uniform in its logarithm.
 
 Dryden's lengths are 20 to 600 m near the ground, and aircraft pass them at 20 to 130 m/s. One test hardly
-determines the time. With any time allowed, slow errors of a model in still air become gusts of 60 s."""
+determines the time. Without this range, slow model errors in still air look like gusts with a correlation
+time of 60 s.
+"""
 _RANGE, _MOST_STEPS = (1e-3, 1e3), 100
 """Numerical: range of every standard deviation relative to its start, and most steps of the search."""
 _BEND = 0.2
@@ -61,8 +63,9 @@ class Sums(NamedTuple):
 
 
 class Integrated(NamedTuple):
-    """Gaussian prior of the parameters over which a likelihood is integrated; of zero precision for a
-    restricted likelihood."""
+    """Gaussian prior of the parameters over which a likelihood is integrated. The precision is zero for a
+    restricted likelihood.
+    """
 
     precision: FloatArray
     """Shape (k,): inverse prior variances."""
@@ -70,9 +73,10 @@ class Integrated(NamedTuple):
     """Shape (k,): prior means minus the values of a fit."""
 
     def left(self, inner: FloatArray) -> tuple[float, float, FloatArray]:
-        """Return the squares that the parameters leave, and the log determinant of their information.
+        """Return the sum of squares after a fit of the parameters, and the log determinant of their
+        information.
 
-        The third result are the slopes (1 + k, 1 + k) of both by ``inner``.
+        The third result contains the slopes (1 + k, 1 + k) of their sum with respect to ``inner``.
         ``inner`` (1 + k, 1 + k) holds weighted products of the residual and of the parameters' derivatives.
         """
         whole = inner[1:, 1:] + np.diag(self.precision)
@@ -218,7 +222,7 @@ def likeliest(sums: Sequence[Sums], noise: FloatArray, prior: Integrated, near: 
         return value, np.append(slopes[there], slopes[-2:]) * unit
 
     def place(noise: FloatArray, angle: float, memory_s: float) -> FloatArray:
-        """Return the search's variables; of small gusts the likelihood is a parabola in their angle."""
+        """Return the search's variables. For small gusts the likelihood is a parabola in the gust angle."""
         return np.append(np.log(noise), (np.arcsinh(angle / size), np.log(memory_s))) / unit
 
     low, high = (place(share * own, share * size, end) for share, end in zip(_RANGE, MEMORY_S, strict=True))

@@ -41,7 +41,8 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
     known = [speed for speed in speeds if speed is not None]
     if len(known) < len(maneuvers):
         return NoEstimate(
-            "no_airspeed", "No air speed is known, which the turn of the path needs: set airspeed_m_s."
+            "no_airspeed",
+            "No air speed is known, and the turn rate of the path depends on it: set airspeed_m_s.",
         )
     reference = reference_speed(
         known,

@@ -140,7 +140,9 @@ class LateralProblem:
         return max((float(np.ptp(r.inputs[name].y)) for r in self.records if name in r.inputs), default=0.0)
 
     def flies(self, name: str) -> bool:
-        """Return whether an input is a part of the test, and not hands that hold the wings level."""
+        """Return whether an input is a part of the test, and not a pilot's correction that holds the wings
+        level.
+        """
         return self.motion(name) > LEAST_PART * max(self.motion(other) for other in LATERAL.inputs)
 
 

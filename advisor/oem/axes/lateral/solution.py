@@ -116,9 +116,9 @@ def search_lateral(
 def _with_modes(solution: Solution, prior: Priors, other: FloatArray | None) -> Solution:
     """Return the solution with another mode's second moment, and with the errors by controls that follow.
 
-    What the model lacks also moves a control that follows the motion. A fit that takes a yaw damper's rudder
-    for a cause counts a part of the damper as the aircraft's own damping. The external part of a control and
-    the prior alone tell its derivatives. Their error carries along what the record relates to them.
+    Dynamics that the model lacks also move a control that follows the motion. A fit that takes a yaw damper's
+    rudder for a cause counts a part of the damper as the aircraft's own damping. Only the control's external
+    part and the prior determine the control's derivatives. Errors correlated with theirs grow accordingly.
     """
     covariance, records = solution.scattered, solution.problem.records
     total = np.zeros_like(covariance) if other is None else other.copy()
@@ -138,8 +138,9 @@ def _with_modes(solution: Solution, prior: Priors, other: FloatArray | None) -> 
 def _of_both_hills(fit: Fit, nuisances: Sequence[Nuisance], prior: Priors) -> tuple[Fit, FloatArray | None]:
     """Return the likelier of two fits, with the other one's second moment times its probability.
 
-    An unknown lag of the aileron and the time constant of the roll mode act on the roll rate alike. With both
-    exchanged the roll rate after an aileron stays, and yawing and the rudder distinguish the two fits.
+    An unknown lag of the aileron and the time constant of the roll mode act on the roll rate alike. If both
+    are exchanged, the roll rate after an aileron input is unchanged. Only yaw and the rudder distinguish the
+    two fits.
     """
     lag = next((x for x in nuisances if x.name == "aileron_lag_s"), None)
     roll = -float(fit.optimum.shared[LATERAL.names.shared.index("L_p")])
