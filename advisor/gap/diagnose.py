@@ -203,8 +203,7 @@ _NOT_GIVEN = (
     "to it, which shows effects beyond eight parameters alone."
 )
 _STATEMENT = (
-    "There is no model to compare with, so no gap can be stated. A model fitted to this flight shows no "
-    "effect."
+    "There is no model to compare with, so no gap can be stated. A fit to this flight shows no effect."
 )
 
 
