@@ -130,11 +130,8 @@ def driven_filter(
     n = s + o
     P, X, out, std = np.zeros((n, n)), np.zeros((n, k)), np.empty(columns.shape), np.empty(len(columns))
     moved, gain, turned = np.empty((s, n)), np.empty(n), np.empty((s, k))
-    steps, fresh, keep = (
-        np.empty((len(lengths), s, s)),
-        np.empty((len(lengths), s, s)),
-        np.exp(-lengths / memory_s),
-    )
+    steps, fresh = np.empty((len(lengths), s, s)), np.empty((len(lengths), s, s))
+    keep = np.exp(-lengths / memory_s)
     for u in range(len(lengths)):
         steps[u], fresh[u] = _over(lengths[u], matrix, drive)
     for a in range(s):

@@ -33,6 +33,8 @@ from advisor.words.quantiles import NORMAL_95
 FIRST_LOOK = 8
 """Iterations of the first fit, whose residuals give the first colour of the noise. With servos and clocks
 fixed, a longer search may leave physical values. In a rudder doublet L_p of -10 1/s became -220 1/s."""
+SAME = 0.01
+"""Numerical: second moment between two optima, as a share of the bound, at which both are one hill."""
 WITHOUT_FORCE = (
     "neither a lateral acceleration nor a sideslip was recorded, so only the modes are known; record a_y"
 )
@@ -52,6 +54,8 @@ class Searched(NamedTuple):
     """Solution whose errors contain the instruments' noise alone."""
     noise: Noise | None
     """Noise of instruments and unknown forces; None without unknown forces."""
+    merged: bool
+    """Whether the search from the other hill ends at this solution."""
 
 
 class Near(NamedTuple):
@@ -82,6 +86,8 @@ def search_lateral(
     start = _holding(problem, lateral_start(problem))
     prior = priors_of(problem, start[0])
     resumed = None if near is None else _resumed(problem, nuisances, start[1], near)
+    # One hill of earlier records stays one with further records.
+    merged = resumed is not None and near is not None and near.searched.merged
     if resumed is None:
         fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
         if isinstance(fit, NoEstimate) or _has_diverged(fit):
@@ -101,16 +107,16 @@ def search_lateral(
         if (why := refused(fit.optimum)) is not None:
             return why
         problem, start = fit.problem, fit.place
-        best, modes = _of_both_hills(fit, weighed, prior) if final else (fit, None)
+        best, modes = _of_both_hills(fit, weighed, prior) if final and not merged else (fit, None)
         solution = _evaluated(best, prior, final)
     if isinstance(solution, NoEstimate):
         return solution
+    merged = merged if modes is None else bool(np.all(np.diag(modes - SAME * solution.covariance_cr) <= 0.0))
     solution = _with_modes(solution, prior, modes)
     noise = None if near is None else near.searched.noise
     forces = driven(solution, _MOTION, nuisances, lambda *_: replace(prior, share=1.0), near=noise)
-    if forces is None:
-        return Searched(solution, solution, None)
-    return Searched(_with_modes(_above_bound(forces.solution), prior, modes), solution, forces.noise)
+    answer = solution if forces is None else _with_modes(_above_bound(forces.solution), prior, modes)
+    return Searched(answer, solution, forces and forces.noise, merged)
 
 
 def _with_modes(solution: Solution, prior: Priors, other: FloatArray | None) -> Solution:

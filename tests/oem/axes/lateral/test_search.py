@@ -197,3 +197,22 @@ def test_a_long_record_with_little_sideslip_starts_near_the_stiffness_in_yaw():
     problem = LateralProblem((replace(record, outputs={**record.outputs, "a_y": noisy}),))
     started = lateral_start(problem)[0][LATERAL.names.shared.index("N_beta")]
     assert elevons["N_beta"] / 6.0 < started < elevons["N_beta"]
+
+
+def test_a_search_that_goes_on_looks_for_no_other_hill_where_earlier_records_have_one(doublets, monkeypatch):
+    fits = []
+
+    def counted(*told):
+        fits.append(told)
+        return descended(*told)
+
+    lag = Nuisance("lag", "aileron", Prior(0.05, 0.03))
+    whole = lagged(doublets, 0.06, 0.0)
+    earlier = search_lateral(whole, (lag,))
+    assert earlier.merged
+    monkeypatch.setattr(lateral_solution, "descended", counted)
+    resumed = search_lateral(whole, (lag,), Near(earlier, [0, 1]))
+    assert len(fits) == 1
+    assert resumed.merged
+    search_lateral(whole, (lag,), Near(earlier._replace(merged=False), [0, 1]))
+    assert len(fits) == 3
