@@ -7,9 +7,9 @@ Two models of the control compete. In the first, hands go on as in the seconds b
 
 in which w is the hands' remnant, coloured noise of first order (McRuer & Krendel, Mathematical Models of
 Human Pilot Behavior, AGARDograph 188, 1974). Hands may take over at the begin of the movement. In the second,
-the loop ends where the movement begins, and the movement is piecewise constant, or larger than the remnant
-before. All models have the same seconds before and the same samples. Each costs its likelihood and half of
-log n for each number (Schwarz 1978); the difference is the log-odds.
+the loop ends where the movement begins. The movement has levels and edges of one length, or is larger than
+the remnant before. All models have the same seconds before and the same samples. Each costs its likelihood
+and half of log n for each number (Schwarz 1978); the difference is the log-odds.
 """
 
 from collections.abc import Sequence

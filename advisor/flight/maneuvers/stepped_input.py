@@ -1,4 +1,4 @@
-"""Cost of models of a control, and the piecewise constant input with the least cost."""
+"""Cost of models of a control, and the input of levels and edges with the least cost."""
 
 from collections.abc import Callable
 from copy import copy
@@ -19,6 +19,8 @@ _REMNANT = 0.02
 _EDGE_BINS = 4
 """Least distance of the first and the last step of an own input, in bins. A hand-flown edge lasts 0.2 to
 0.4 s."""
+_WIDTHS = (1, 2, 3, 4)
+"""Lengths of the input's edges, in bins: 0.1 to 0.4 s."""
 _SMALL = 0.2
 """Least height of an edge of the input, over the highest edge. The first edge of a 3-2-1-1 with balanced
 areas has a quarter."""
@@ -98,7 +100,7 @@ class Cost:
 def stepped_input(
     cost: Cost, until: Callable[[int], float], before: float, whole: tuple[float, float]
 ) -> Own:
-    """Return the piecewise constant input with the least cost, from the begin or after hands.
+    """Return the input of levels and equal edges with the least cost, from the begin or after hands.
 
     Parameters
     ----------
@@ -109,24 +111,33 @@ def stepped_input(
     whole
         Begin and last step of the movement, s.
     """
+    return min((_of_width(cost, until, before, whole, w) for w in _WIDTHS), key=lambda it: it.nats)
+
+
+def _of_width(
+    cost: Cost, until: Callable[[int], float], before: float, whole: tuple[float, float], width: int
+) -> Own:
+    """Return the input with the least cost whose edges are ``width`` bins long."""
     bins, n = cost.bins, cost.bins.within
-    left, steps = _steps(cost, before)
+    shapes = _edges(n, width)
+    left, steps = _steps(cost, before, shapes)
     order = np.sort(np.array(steps, dtype=int))
     own = cost.ratio * np.append(np.cumsum((left**2)[::-1])[::-1], 0.0)
-    best = cost.of(before + float(own[0])) + cost.loop + cost.step * len(steps)
+    fixed = cost.loop + log(len(_WIDTHS))
+    best = cost.of(before + float(own[0])) + fixed + cost.step * len(steps)
     first = 0
     for k, begin in enumerate(order.tolist()):
         # One edge is no input: hands that take over make one.
         if begin < FEWEST or begin + _EDGE_BINS > order[-1]:
             continue
         left_over = cost.of(until(begin) + float(own[begin]))
-        later = left_over + cost.loop + cost.step * (len(order) - k) + log(n) + _SHOWN
+        later = left_over + fixed + cost.step * (len(order) - k) + log(n) + _SHOWN
         if later < best:
             best, first = later, k
     order = order[first:]
     if len(order) == 0:
         return Own(best, *whole)
-    begin, end = _extent(cost, order)
+    begin, end = _extent(cost, order, shapes)
     return Own(
         best,
         whole[0] if begin == 0 else bins.begin_s(begin),
@@ -134,7 +145,7 @@ def stepped_input(
     )
 
 
-def _extent(cost: Cost, order: IntArray) -> tuple[int, int]:
+def _extent(cost: Cost, order: IntArray, shapes: FloatArray) -> tuple[int, int]:
     """Return the first bin of the input that the steps form, and the bin of its last step.
 
     Before the input, hands hold no level away from the earlier level. Hands that rest for a free response
@@ -147,8 +158,7 @@ def _extent(cost: Cost, order: IntArray) -> tuple[int, int]:
     if after_hands:
         control = control - np.median(control[order[0] - LEVEL : order[0] - 1])
     moved = np.abs(control)
-    shapes = np.triu(np.ones((n, n)))[order][:, order[0] :]
-    fitted = np.linalg.lstsq(shapes.T, control[order[0] :], rcond=None)
+    fitted = np.linalg.lstsq(shapes[order][:, order[0] :].T, control[order[0] :], rcond=None)
     sizes = np.asarray(fitted[0], dtype=np.float64)
     edges = np.split(np.arange(len(order)), np.flatnonzero(np.diff(order) >= _EDGE_BINS) + 1)
     heights = np.array([_height(sizes[edge]) for edge in edges])
@@ -174,7 +184,13 @@ def _height(steps: FloatArray) -> float:
     return float(np.max(np.abs(np.cumsum(steps))))
 
 
-def _steps(cost: Cost, before: float) -> tuple[FloatArray, list[int]]:
+def _edges(n: int, width: int) -> FloatArray:
+    """Return an edge of unit height that begins in each of ``n`` bins, shape (n, n)."""
+    since = np.arange(n) - np.arange(n)[:, None] + 1.0
+    return np.asarray(np.clip(since / width, 0.0, 1.0))
+
+
+def _steps(cost: Cost, before: float, edges: FloatArray) -> tuple[FloatArray, list[int]]:
     """Return the movement's residual after its steps, and the steps' bins. Steps are added while each lowers
     the cost.
 
@@ -182,9 +198,10 @@ def _steps(cost: Cost, before: float) -> tuple[FloatArray, list[int]]:
     ----------
     before
         Sum of squares of the seconds before.
+    edges
+        Shape (n, n): edge of unit height that begins in each bin.
     """
-    n = cost.bins.within
-    shapes = cost.white(np.triu(np.ones((n, n))))
+    n, shapes = cost.bins.within, cost.white(edges)
     moved = cost.moved[cost.bins.movement]
     left, steps = moved, list[int]()
     while len(steps) < min(_MOST_STEPS, n - 1):

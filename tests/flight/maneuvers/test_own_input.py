@@ -20,8 +20,17 @@ ONSETS, LEVELS = (0.0, 0.9, 1.5, 1.8, 2.1), (1.0, -1.0, 1.0, -1.0, 0.0)
 """Steps of a 3-2-1-1, s after its begin, and their levels."""
 
 
-def flight(control=-20.0, tremor=0.1, test_s=TEST_S, size=4.0, late=HAND_S):
-    """Channels of hands that hold the attitude, of a 3-2-1-1 with still hands, and of hands that recover."""
+def slewed(since_s, edge_s):
+    """Level of a doublet of 2 s whose edges last a time."""
+    times = [0.0, edge_s, 1.0, 1.0 + edge_s, 2.0, 2.0 + edge_s]
+    return float(np.interp(since_s, times, [0.0, 1.0, 1.0, -1.0, -1.0, 0.0]))
+
+
+def flight(control=-20.0, tremor=0.1, test_s=TEST_S, size=4.0, late=HAND_S, edge_s=0.0):
+    """Channels of hands that hold the attitude, of a test with still hands, and of hands that recover.
+
+    The test is a 3-2-1-1, or with an ``edge_s`` a doublet.
+    """
     rng = np.random.default_rng(5)
     shaken = tremor * DEG * coloured(rng, T, 0.3)
     elevator, q, theta, alpha = (np.zeros(len(T)) for _ in range(4))
@@ -31,6 +40,7 @@ def flight(control=-20.0, tremor=0.1, test_s=TEST_S, size=4.0, late=HAND_S):
         since_s = T[i - 1] - test_s
         if 0.0 <= since_s < RECOVERY_S - TEST_S:
             level = LEVELS[int(np.searchsorted(ONSETS, since_s, side="right")) - 1]
+            level = slewed(since_s, edge_s) if edge_s else level
             elevator[i - 1] = size * DEG * level + 0.1 * shaken[i - 1]
         else:
             seen = max(i - 1 - behind, 0)
@@ -105,6 +115,11 @@ def test_hands_without_any_delay_are_told_too():
 
 def test_a_test_no_larger_than_the_hands_before_is_in_doubt():
     assert probability(TEST, flight(tremor=4.0, size=0.5)) < 0.95
+
+
+def test_the_slow_edges_of_a_hand_leave_more_than_half_of_the_odds_of_sharp_ones():
+    slow, sharp = (odds(TEST, flight(size=3.0, tremor=0.3, edge_s=edge_s)).log_odds for edge_s in (0.4, 0.2))
+    assert slow > 0.5 * sharp
 
 
 def test_the_integral_of_the_rate_stands_for_a_missing_angle():
