@@ -76,8 +76,7 @@ def _words(port: int, folder: Path, tolerance_percent: float) -> list[str]:
     lags = "".join(f"{control}: {{lag_s: {LAG_S}}}\n" for control in ("elevator", "aileron", "rudder"))
     file.write_text(f"name: light\n{lags}campaign: {{tolerance_percent: {tolerance_percent:g}}}\n")
     words = [sys.executable, "-m", "advisor", "live", "--master", f"tcp:127.0.0.1:{port}", "--uplink"]
-    # Without a recording the parameters that arrive before the reader starts are lost.
-    return [*words, "--request-rates", "--record", str(folder / "live.tlog"), "--aircraft", str(file)]
+    return [*words, "--request-rates", "--no-record", "--aircraft", str(file)]
 
 
 def _wait(flight: ScriptFlight) -> None:

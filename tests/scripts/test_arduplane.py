@@ -1,5 +1,7 @@
 """The written script in ArduPlane itself: inputs as asked, aborts, and the marks that are read."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -8,11 +10,13 @@ from advisor.analysis.log_series import LogSeries
 from advisor.flight.maneuvers.events import ManeuverFlown, SideManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.stream.stream import FlightStream
+from advisor.scripts.ardupilot import ardupilot_script
 from advisor.scripts.flight_limits import FlightLimits
 from advisor.scripts.table import Source, script_table
-from benchmarks.scripted.flight import ScriptFlight, fly_table
+from benchmarks.scripted.flight import ScriptFlight, fly_table, level
 from benchmarks.scripted.measured import TELEMETRY_MS, deflections, flown_of
-from benchmarks.scripted.pilot import SITL, SlowMachineError
+from benchmarks.scripted.pilot import SITL, SlowMachineError, airborne
+from tests.conftest import Advisor
 
 pytestmark = [
     pytest.mark.skipif(
@@ -114,3 +118,30 @@ def test_a_found_input_begins_where_it_was_announced(
     _on_time(flight, number)
     begin_s = flight.pilot.at(f"ADVISOR BEGIN {number} ")
     assert maneuvers[number - 1].span.start_s == pytest.approx(begin_s, abs=0.15)
+
+
+@pytest.mark.study
+def test_expectations_of_the_flight_hold_for_it_and_more_fail(
+    flight: ScriptFlight, advisor: Advisor, tmp_path: Path
+) -> None:
+    file = tmp_path / "expectations.yaml"
+    assert advisor("expect", flight.tlog, file, "--write").returncode == 0
+    told = advisor("expect", flight.tlog, file)
+    assert (told.returncode, "accepted." in told.stdout) == (0, True), told.stdout
+    file.write_text("accepted: {pitch: 2}\n")
+    assert advisor("expect", flight.tlog, file).returncode == 1
+
+
+@pytest.mark.study
+def test_a_script_in_manual_flies_its_input_and_leaves_the_mode(tmp_path: Path) -> None:
+    try:
+        with airborne(ardupilot_script(TABLE), tmp_path) as pilot:
+            flight = ScriptFlight(pilot, TABLE, tmp_path / "flight.tlog")
+            level(pilot, "MANUAL")
+            flight.begun(1)
+            flight.over(1)
+            pilot.fly(2.0)
+    except SlowMachineError as slow:
+        pytest.skip(str(slow))
+    assert pilot.said("ADVISOR END 1 ") == "ADVISOR END 1 done"
+    assert pilot.link.flightmode == "MANUAL"
