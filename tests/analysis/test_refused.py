@@ -100,5 +100,5 @@ def test_what_the_gap_has_in_its_model_is_no_objection(change):
 
 @pytest.mark.parametrize("spoil", [lambda m: slowing(m, 50.0), lambda m: contradicted(m, "sign")])
 def test_a_log_of_a_contradicted_instrument_or_of_any_speed_cannot_serve(spoil):
-    with pytest.raises(UnusableInputError, match="No manoeuvre of the log can serve"):
+    with pytest.raises(UnusableInputError, match="No manoeuvre of the log can be used"):
         without_refused([spoil(m) for m in flown(maneuvers=3)], Aircraft())

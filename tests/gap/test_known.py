@@ -61,7 +61,7 @@ def test_an_offset_of_alpha_that_the_file_has_is_no_gap():
 def test_what_belongs_to_one_flight_is_left_aside_and_said_so(late):
     found = diagnose(late, Aircraft(effects={"icing": {"Z_alpha": -0.2}, "gust": {"amplitude_m_s": 2.0}}))
     assert found.causes[0].effect == "transport_delay"
-    assert any("icing, gust" in note and "left aside" in note for note in found.notes)
+    assert any("icing, gust" in note and "not used" in note for note in found.notes)
 
 
 def test_numbers_of_the_file_become_the_simulations_own(late):

@@ -178,4 +178,4 @@ def test_more_manoeuvres_to_keep_out_than_there_are_and_an_unusual_elevator_are_
 @pytest.mark.study
 def test_what_can_be_kept_out_needs_no_note():
     notes = diagnose(fly(Setup(maneuvers=3)), Aircraft(), holdout=2).notes
-    assert not any("kept out" in note for note in notes)
+    assert not any("held out" in note for note in notes)

@@ -52,7 +52,7 @@ class Late(Nonlinear):
 def test_a_cause_of_the_simulator_is_said_as_what_it_has_too_much_of():
     limit = Cause("actuator_rate_limit", "input", 0.9, {"rate_rad_s": Value(0.3, 0.01)}, (), "", 0.0, True)
     play = Cause("actuator_backlash", "input", 0.9, {"half_width_rad": Value(0.006, 1e-4)}, (), "", 0.0, True)
-    assert what(_negative(limit)).startswith("The simulator's elevator moves no faster than 17 deg/s")
+    assert what(_negative(limit)).startswith("The simulator's elevator reaches at most 17 deg/s")
     assert what(_negative(play)).startswith("The simulator's elevator has 0.34 deg too much play")
 
 
