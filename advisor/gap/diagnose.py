@@ -154,7 +154,7 @@ def _explained(
     found = infer(problem, baseline, aircraft, kinematics, prior, progress)
     progress("measuring the gap", 0.97)
     aside = left_aside(given, aircraft.effects, () if found.sought_air.found is None else AIR)
-    circumstances = Circumstances(shear, weight, aside)
+    circumstances = Circumstances(shear, weight, aside, speed is None)
     answer = partial(answer_of, found, aircraft, kinematics, holdout, circumstances)
     whole = noted(*answer())
     return replace(whole, fewer=lambda most: noted(*answer(most)), seen_in=lambda x: noted(*answer(seen=x)))

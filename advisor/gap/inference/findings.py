@@ -57,6 +57,8 @@ class Circumstances:
     """Weight that the accelerometer reads; None with too few manoeuvres for a reading."""
     left_aside: tuple[str, ...] = ()
     """Changes in flight of the aircraft file that this flight does not show."""
+    speed_is_stated: bool = True
+    """Whether the air speed of the file's derivatives is not inferred from the flight."""
 
 
 @dataclass(frozen=True)

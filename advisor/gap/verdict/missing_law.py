@@ -71,8 +71,7 @@ def law_in(block: str, lacking: Iterable[Lacking], heat: float) -> MissingLaw | 
         columns = np.concatenate([m.responses @ _forms(m.quantities[name]) for m in maneuvers])
         fits[name] = _Fit(columns - basis @ (basis.T @ columns), left)
     every = range(len(_FORMS))
-    variable = max(fits, key=lambda name: fits[name].explained(every))
-    fit = fits[variable]
+    variable, fit = max(fits.items(), key=lambda named: named[1].explained(every))
     nearest, runner_up = sorted(every, key=lambda k: -fit.explained([k]))[:2]
     texts = [text.format(variable) if variable != "t" else "" for text in _FORMS]
     value, covariance = fit.solution([nearest])

@@ -57,7 +57,7 @@ def _of_the_speed(e: Findings, aircraft: Aircraft) -> Iterator[str]:
     """Yield notes on the source of the air speed and its errors."""
     flights = e.problem.flights
     flown, reference = _mean_speed(flights), flights.reference_m_s
-    is_stated = aircraft.reference_airspeed_m_s is not None
+    is_stated = aircraft.reference_airspeed_m_s is not None and e.circumstances.speed_is_stated
     if not flights.speed_measured:
         yield _without_air_speed(flights, bool(aircraft.stated_airspeed_m_s))
     elif not is_stated and abs(reference / flown - 1.0) > _ANOTHER_SPEED:
