@@ -197,7 +197,7 @@ class Aircraft:
         mend="write the simulator's derivatives, or give simulator",
     )] = field(default_factory=dict)  # fmt: skip
     effects: Annotated[Mapping[str, Mapping[str, float]], Key(
-        "Effects added to the simulator's model: effect name of the gap diagnosis to its parameters.",
+        "Effects added to the simulator's model: effect names of the gap diagnosis with their parameters.",
     )] = field(default_factory=dict)  # fmt: skip
     campaign: CampaignPlan = field(default_factory=CampaignPlan)
     estimation: Estimation = field(default_factory=Estimation)

@@ -154,9 +154,15 @@ class FmuVariables:
     bank: Annotated[str | None, Key("Output: bank angle.")] = None
     a_y: Annotated[str | None, Key("Output: specific force along body y, m/s².")] = None
     beta: Annotated[str | None, Key("Output: sideslip, positive where the wind comes from the right.")] = None
-    aileron: Annotated[str | None, Key("Input: aileron, flown where the log has one.")] = None
-    rudder: Annotated[str | None, Key("Input: rudder, flown where the log has one.")] = None
-    throttle: Annotated[str | None, Key("Input: throttle, flown where the log has one.")] = None
+    aileron: Annotated[str | None, Key("Input: aileron; the replay uses the logged one if there is one.")] = (
+        None
+    )
+    rudder: Annotated[str | None, Key("Input: rudder; the replay uses the logged one if there is one.")] = (
+        None
+    )
+    throttle: Annotated[
+        str | None, Key("Input: throttle; the replay uses the logged one if there is one.")
+    ] = None
     force_increment: Annotated[str | None, Key(
         "Input that the FMU adds to the rate of α, per second in ``units``. Needs ``moment_increment``.",
     )] = None  # fmt: skip

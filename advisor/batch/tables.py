@@ -181,7 +181,12 @@ def _maneuvers(flights: Sequence[Analyzed]) -> FlightTable:
     columns = [
         Column("flight", counts([k for k, _ in rows]), "", "number of the flight"),
         Column("maneuver", counts([m["number"] for m in flown]), "", "number in the flight"),
-        Column("boot", counts([m["boot"] for m in flown]), "", "power-on in the log, from 0"),
+        Column(
+            "boot",
+            counts([m["boot"] for m in flown]),
+            "",
+            "number of the power-on in the log, counted from 0",
+        ),
         Column("start_boot_s", numbers([m["start_boot_s"] for m in flown]), "s", "onset of the first step"),
         Column("end_boot_s", numbers([m["end_boot_s"] for m in flown]), "s", "end of the free response"),
         Column("input", texts([m["input"] for m in flown]), "", "kind of input"),

@@ -16,7 +16,7 @@ from advisor.words.quantities import symbol
 
 
 def as_known_by(maneuver: Maneuver, newest: Maneuver) -> Maneuver:
-    """Return an earlier manoeuvre with the contradictions that a later manoeuvre of its power-on shows.
+    """Return a manoeuvre with the instruments' contradictions that a later one of its power-on shows.
 
     A contradiction that only later manoeuvres show was not removed from the earlier manoeuvre's channels.
     """

@@ -243,9 +243,9 @@ class _Summed:
     information: FloatArray
     """Shape (n, d, d): information Iᵢ of each estimate."""
     pull: FloatArray
-    """Shape (n, d): products Iᵢdᵢ."""
+    """Shape (n, d): products Iᵢdᵢ of the information and the estimate dᵢ."""
     own: FloatArray
-    """Shape (n,): products dᵢᵀIᵢdᵢ."""
+    """Shape (n,): products dᵢᵀIᵢdᵢ of each estimate dᵢ and its information Iᵢ."""
     known: FloatArray
     """Shape (n,): number of known derivatives in each estimate."""
 

@@ -26,8 +26,8 @@ class Equations(NamedTuple):
 def regressed(parts: Sequence[Equations]) -> tuple[FloatArray, list[FloatArray]]:
     """Return the common coefficients (k,), and the own coefficients (l,) of each manoeuvre.
 
-    The manoeuvre's own columns are removed from both sides by regression. The coefficients are always finite;
-    without information the solution has least norm.
+    Each manoeuvre's own columns are projected out of its common columns and of its right side. The
+    coefficients are always finite; without information the solution has least norm.
     """
     gains = [np.linalg.pinv(part.own) for part in parts]
     rest = [

@@ -77,7 +77,7 @@ def _look_over(text: str) -> None:
         line = event.start_mark.line + 1  # type: ignore[union-attr]
         if isinstance(event, yaml.AliasEvent):
             raise _Refused(
-                f"line {line}: the reference *{event.anchor} is not read; write the values there instead"
+                f"line {line}: the reference *{event.anchor} is not read; write its values in this line"
             )
         if isinstance(event, yaml.CollectionStartEvent):
             depth += 1

@@ -109,7 +109,7 @@ class Fmu:
         try:
             setter(list(values), [float(value) for value in values.values()])
         except Exception as error:
-            raise self._refused("where a value is set", error) from error
+            raise self._refused("while a value was set", error) from error
 
     def read(self, references: Iterable[int]) -> list[float]:
         """Return the values of real variables by value reference."""

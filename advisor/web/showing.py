@@ -1,5 +1,7 @@
-"""A running campaign and its newest report, for any number of pages, and the connection to their
-processes."""
+"""A running campaign and its newest report, shared by any number of pages.
+
+The module also holds the connection to the campaign's processes.
+"""
 
 import time
 from collections.abc import Callable

@@ -103,5 +103,5 @@ class Transformed:
         self.channel, self.shown = channel, shown
 
     def apply(self, motion: Motion, reading: Reading, dt: float) -> None:
-        """Replace the reading by the function of the true value."""
+        """Replace the sensor's reading by this effect's function of the true value."""
         setattr(reading, self.channel, self.shown(getattr(reading, self.channel), motion))

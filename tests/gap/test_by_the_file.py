@@ -26,7 +26,7 @@ def test_a_file_that_does_not_say_at_which_speed_it_holds_is_believed_at_one_tha
     assert silent.verdict == "none"
     assert silent.reference_airspeed_m_s == pytest.approx(1.05 * plane.reference_airspeed_m_s, rel=0.01)
     assert any("state reference_airspeed_m_s" in note for note in silent.notes)
-    assert any("At constant speed it would leave a gap" in note for note in silent.notes)
+    assert any("At constant speed the simulator would leave a gap" in note for note in silent.notes)
     stated = Aircraft(model=faster, reference_airspeed_m_s=plane.reference_airspeed_m_s)
     wrong = diagnose(flown, stated)
     assert wrong.verdict == "parameters"

@@ -64,7 +64,7 @@ def test_the_limits_of_an_answer_are_sentences_of_every_face():
 def test_the_air_and_refused_manoeuvres_limit_an_answer():
     in_gusts = Shrink((1, 2), 10.0, 0.1, 99.0, (98.0, 100.0), beyond_air_percent=60.0)
     said = list(limits_of(diagnosis(derivatives=DERIVATIVES, shrink=in_gusts)))
-    assert said[0].endswith("Beyond the air the gap falls by 60 %.")
+    assert said[0].endswith("Without the air's part the gap falls by 60 %.")
     (one,) = limits_of(diagnosis(derivatives=DERIVATIVES, gap=replace(diagnosis().gap, by_air=2.0)))
     assert one.endswith("So the gap after the correction looks smaller than it is.")
     (one,) = limits_of(diagnosis(derivatives=DERIVATIVES, although_refused=(2,)))

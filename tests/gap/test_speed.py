@@ -141,7 +141,7 @@ def test_an_air_speed_that_is_not_quite_the_true_one_is_said_and_no_cause_where_
         read.append(replace(m, channels={**m.channels, "airspeed": indicated, "altitude": height}))
     found = diagnose(read, Aircraft())
     assert found.verdict == verdict
-    [said] = [note for note in found.notes if note.startswith("By the motion, the true air speed is")]
+    [said] = [note for note in found.notes if note.startswith("The motion shows a true air speed")]
     assert float(said.split()[8]) == pytest.approx(100.0 / off - 100.0, abs=0.7)
 
 

@@ -35,7 +35,8 @@ def with_rival(joint, cost, monkeypatch):
     monkeypatch.setattr(instrument_fit, "_evaluated", lambda *_: rival)
     monkeypatch.setattr(instrument_fit, "reported", lambda *_: rival.theta)
     names = [x.instrument for x in joint.identified]
-    return best, rival, instrument_fit._between_modes(best, names)
+    share = instrument_fit.colour_share(best)
+    return best, rival, instrument_fit._between_modes(best, names, SERVO_LAG, share)
 
 
 def test_a_peak_as_high_as_the_best_adds_half_of_the_squared_distance(joint, monkeypatch):

@@ -63,7 +63,12 @@ def _channels(flights: WholeFlights) -> FlightTable:
     columns = (
         Column("record", counts([number for number, *_ in rows]), "", "number of the record"),
         Column("log", texts([str(log) for _, log, _, _ in rows]), "", "file of the log"),
-        Column("boot", counts([boot for *_, boot, _ in rows]), "", "power-on in the log, from 0"),
+        Column(
+            "boot",
+            counts([boot for *_, boot, _ in rows]),
+            "",
+            "number of the power-on in the log, counted from 0",
+        ),
         Column("channel", texts([c.name for c in channels]), "", "name of the channel"),
         Column("unit", texts([ALL_UNITS[c.name] for c in channels]), "", "SI unit of the channel"),
         Column("source", texts([c.source for c in channels]), "", "message and field"),

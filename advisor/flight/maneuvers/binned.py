@@ -103,7 +103,7 @@ class Motion:
         self._since_s = bins.middle_s - start_s + 0.5 * BIN_S
 
     def terms(self, delay_s: float, taken_over_s: Sequence[tuple[float, float]]) -> FloatArray:
-        """Return the loop's terms with each time of the take-over, shape (4·k, n).
+        """Return the terms of the hands' control loop for k times at which hands take over, shape (4·k, n).
 
         The terms are the rate, the angle from the least and from the largest target, and the integral.
         """

@@ -70,7 +70,7 @@ class SurfacesHeard:
         return maneuver if scale is None or maneuver.scale is None else maneuver.rescaled(scale)
 
     def hear(self, columns: Columns, now_s: float, flown: bool) -> list[FlightEvent]:
-        """Take parameter messages, and return events about changed scales.
+        """Take parameter messages, and return an event for each change of a surface's calibration.
 
         Parameters
         ----------

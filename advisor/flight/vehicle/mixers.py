@@ -1,7 +1,7 @@
 """Mixing of servo outputs into aileron, elevator, rudder and flap, with one row per function.
 
-An output is a share of its travel and rises with its demand. A control is the weighted sum of the outputs.
-The weights invert the mixer, so that every other demand cancels.
+An output is a share of its travel and rises with its demand. A control is the weighted sum of its servo
+outputs. The weights invert the mixer, so that every other demand cancels.
 
 ArduPlane: ``servos.cpp`` (channel_function_mixer, flaperon_update, dspoiler_update) and ``SRV_Channel.h``.
 PX4 since 1.13: the rules in ``control_allocator/module.yaml``. PX4 counts horizontal and mixed surfaces

@@ -209,7 +209,8 @@ class EffectProblem:
         return self._read(flight, packs, np.arange(len(p)) if flown is None else flown, p)
 
     def fly_and_read(self, flight: PreparedManeuver, p: FloatArray) -> FloatArray:
-        """Return one manoeuvre simulated and read with every row of ``p`` (k, entries), as shape (rows, k).
+        """Return the readings of one manoeuvre in simulations with every row of ``p`` (k, entries), shape
+        (rows, k).
 
         Rows that differ only in the instruments' stamps or filters share a simulation.
         """

@@ -23,5 +23,5 @@ def sentence_of_law(law: str, values: FloatArray) -> str:
     """Return a sentence about a law with its parameter values, shape (numbers,)."""
     if law == AIR_SPEED.effect:
         percent = 100.0 * float(values[0])
-        return f"By the motion, the true air speed is {percent:+.0f} % off the measured one."
+        return f"The motion shows a true air speed {percent:+.0f} % off the measured one."
     return sentence_of(law, values)

@@ -38,7 +38,7 @@ class AirspeedScale:
         too = "too high" if self.scale > 0.0 else "too low"
         off = f"{100.0 * self.scale:+.1f} ± {100.0 * NORMAL_95 * self.std:.1f} %"
         return (
-            f"By the motion, the true air speed is {off} off the speed in use. An accelerometer that reads "
+            f"The motion shows a true air speed {off} off the speed in use. An accelerometer that reads "
             f"as much {too} looks the same: compare air speed and ground speed on opposite headings."
         )
 

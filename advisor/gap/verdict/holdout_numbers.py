@@ -37,7 +37,7 @@ def on_holdout(e: Findings, holdout: int | None) -> tuple[Findings, list[int]]:
 def as_measured(problem: EffectProblem, models: Sequence[Model]) -> tuple[Model, ...]:
     """Return the models with the fit's residuals in manoeuvres that alone determine an effect.
 
-    No other manoeuvre predicts such a manoeuvre.
+    No other manoeuvre predicts a manoeuvre that alone determines an effect.
     """
     sole: set[int] = set()
     found = []

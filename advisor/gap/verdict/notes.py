@@ -87,7 +87,7 @@ def _of_a_constant_speed(e: Findings, verdict: GapVerdict) -> Iterator[str]:
         percent = 100.0 * e.problem.flights.speed_moves
         yield (
             f"The simulator was given the air speed of the log, which varied by up to {percent:.0f} %. "
-            f"At constant speed it would leave a gap of {constant:.1f}."
+            f"At constant speed the simulator would leave a gap of {constant:.1f}."
         )
 
 
@@ -164,7 +164,7 @@ def _of_what_is_missing(e: Findings, aircraft: Aircraft) -> Iterator[str]:
 def _command(e: Findings) -> str:
     """Return a note on the motion of the command between its stamps, and on the alternative."""
     if not e.problem.held:
-        return "The command was taken as linear between its stamps. An edge may lie anywhere between two."
+        return "The command was taken as linear between its stamps. An edge may lie anywhere between them."
     half = 0.5 * float(np.median(np.diff(e.problem.flights.flights[0].t_u)))
     return (
         "The command was taken as constant between its stamps. A linear command with a delay of "

@@ -25,7 +25,7 @@ _WORDS = {
     "natural": "first cause no larger than on every aircraft",
     "air": "how often the air moves",
     "offset": "offset of the angle of attack by the flight path",
-    "steady": "air as strong before and after the input as during it",
+    "steady": "turbulence as strong before and after the input as during it",
     "gap": "visible gap of the simulator as given",
     "rest": "less likely variants of each answer",
 }

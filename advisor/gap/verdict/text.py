@@ -153,7 +153,7 @@ def limits_of(d: Diagnosis) -> Iterator[str]:
     air = "The air moved, and its course was fitted to the same samples."
     beyond_air = None if d.shrink is None else d.shrink.beyond_air_percent
     if beyond_air is not None:
-        yield f"{air} Beyond the air the gap falls by {beyond_air:.0f} %."
+        yield f"{air} Without the air's part the gap falls by {beyond_air:.0f} %."
     elif d.gap.by_air > VISIBLE:
         yield f"{air} So the gap after the correction looks smaller than it is."
     if len(d.maneuvers) == 1:

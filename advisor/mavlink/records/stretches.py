@@ -85,7 +85,7 @@ class _Growing:
 
 
 class _Collected:
-    """Records of one log's wanted types, until definitions show that another log begins.
+    """Records of the wanted message types of one log, until message definitions show that another log begins.
 
     Definitions come in groups. If a definition redefines a type, its whole group belongs to another log.
     """

@@ -72,7 +72,7 @@ def _heard_ago(packets: Ints, newest: Ints, sequence: int, mark: int, now_us: in
 
 @kernel()
 def _has_path(senders: Ints, source: int, now_us: int) -> bool:
-    """Return whether a second path was heard recently."""
+    """Return whether copies of packets arrived recently over a second path."""
     return bool(senders[source, _ECHO_RUN] > 0 and 0 <= now_us - senders[source, _ECHO_US] <= _PATH_US)
 
 

@@ -174,6 +174,7 @@ def _bare(axes: Axes, title: str) -> None:
 
 
 def _arrays(trace: Trace, factor: float) -> tuple[Any, Any, Any, Any]:
-    """Return time from the first sample, and the three curves in the unit for people; each of shape (n,)."""
+    """Return the time since the first sample, s, and the measured, original and corrected curves in display
+    units, shape (n,) each."""
     t = np.asarray(trace["t"])
     return t - t[0], *(factor * np.asarray(trace[name]) for name in ("measured", "before", "after"))

@@ -16,7 +16,7 @@ from advisor.gap.axes.lateral.models import case_of
 from advisor.gap.axes.lateral.residual import residual_of
 from advisor.gap.axes.lateral.starts import Starts
 from advisor.gap.verdict.missing_law import law_in
-from advisor.oem.axes.lateral.disturbance import STEP_S, answered, courses_of
+from advisor.oem.axes.lateral.disturbance import answered, courses_of
 from advisor.oem.axes.lateral.gusts import Air
 from tests.gap.axes.lateral.test_comparison import AIRCRAFT, maneuvers
 from tests.oem.axes.lateral.builders import JET
@@ -53,7 +53,7 @@ def wandering(n, memory, rng):
 def flown_law(case, fit, m, block, of):
     """Return the outputs' change by a law x·|x| of a rate in an equation, from the fitted motion."""
     rows, stamps = fit.assembly.rows[m][of], fit.assembly.t[fit.assembly.blocks[m]]
-    t = np.arange(np.min(stamps), np.max(stamps), STEP_S)
+    t = np.arange(np.min(stamps), np.max(stamps), 0.02)  # as finely as the model answers
     x = np.interp(t, fit.assembly.t[rows], fit.fitted[rows])
     return answered(fit.linear(case.flown), m, block, t, (x * np.abs(x))[:, None])[:, 0]
 
