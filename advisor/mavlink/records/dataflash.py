@@ -62,13 +62,6 @@ class RecordTable:
         """Time stamps, shape (n,), microseconds since boot."""
         return np.asarray(self.fields["TimeUS"], dtype=np.int64)
 
-    def first_instance(self) -> "RecordTable":
-        """Return the records of the first sensor or estimator, if there are several of one kind."""
-        for name in ("I", "C"):
-            if name in self.fields:
-                return self[self.fields[name] == 0]
-        return self
-
     def __getitem__(self, rows: NDArray[Any]) -> "RecordTable":
         return RecordTable(self.order[rows], {name: values[rows] for name, values in self.fields.items()})
 
