@@ -3,13 +3,15 @@
 import shlex
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.fitting.measure import by_phase
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import MissingLaw, Value
 from advisor.gap.search.baseline import fit_baseline
-from advisor.gap.verdict.missing_law import lacking, law_in
+from advisor.gap.verdict.missing_law import Lacking, lacking, law_in
 from advisor.report.facts.gap import law_said
 from advisor.report.gap_document import gap_document
 from advisor.report.gap_steps import next_steps
@@ -55,3 +57,26 @@ def test_a_formula_within_its_interval_is_not_offered_as_a_law():
 
 def test_a_law_in_a_sensor_is_no_curve():
     assert law_in("alpha_sensor", iter(()), heat=1.0) is None
+
+
+def test_the_error_of_the_coefficient_grows_with_the_root_of_the_heat():
+    rng = np.random.default_rng(4)
+    p, shared = rng.standard_normal(80), rng.standard_normal((80, 1))
+    residual = 3.0 * p * np.abs(p) + 0.1 * rng.standard_normal(80)
+    seen = Lacking({"p": p}, np.eye(80), np.column_stack([p, shared]), residual)
+    cool, hot = (law_in("rolling_moment", [seen], heat) for heat in (1.0, 9.0))
+    assert cool.term == "L:p*abs(p)"
+    assert cool.coefficient.value == pytest.approx(3.0, rel=0.1)
+    assert hot.coefficient.std == pytest.approx(3.0 * cool.coefficient.std)
+
+
+def test_a_residual_behind_the_steps_is_a_gap_at_the_step_edges_alone():
+    problem, _ = fit_baseline(prepare(fly(Setup(seed=8, maneuvers=2)), Aircraft()), Aircraft())
+    residuals = []
+    for flight in problem.flights.flights:
+        stamps = np.concatenate([flight.outputs[c].t for c in problem.channels])
+        since = stamps[:, None] - flight.edges[:, 0]
+        residuals.append(np.where(np.any((since > 0.02) & (since < 0.15), axis=1), 1.0, 0.0))
+    gaps = by_phase(problem, residuals, np.full(len(problem.channels), 0.1))
+    assert gaps["step edge"] > 10.0
+    assert gaps["plateau"] == gaps["free response"] == 0.0
