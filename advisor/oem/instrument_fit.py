@@ -19,7 +19,6 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import expit
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.instruments.lateness import CLOCKS_S
@@ -33,17 +32,17 @@ from advisor.oem.evaluation import share_of
 from advisor.oem.extra import Prior, penalty
 from advisor.oem.gauss_newton import CONVERGED
 from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, Instrument, extra_of
-from advisor.oem.prior import about_zero, precision
+from advisor.oem.prior import Priors, about_zero, precision, usual_moments
 from advisor.oem.problem import ASSUMED_M_S, Assembly, OutputErrorProblem, assemble
-from advisor.oem.profile import needs_profile, profiled
-from advisor.oem.solution import Solution, evaluate, reported, search, spread_of
+from advisor.oem.profile import Posterior, profiled
+from advisor.oem.solution import Solution, evaluate, spread_of
 from advisor.oem.weighing import Weighing
 from advisor.process.arrays import FloatArray
 
 N = len(PARAMETERS)
-ROUGHLY = 1e-4
-"""Promised change of log J per sample at which an intermediate search ends. The starting values of a lag
-differ by hundreds of times as much."""
+LOOK = 4
+"""Numerical: iterations of a search at a given lag. The starting values of a lag differ by hundreds of times
+as much as what is left."""
 MODEL_ERROR = 1e-3
 """Numerical: error of the model's outputs, relative to their spread. A surface with a lag is taken as linear
 between the grid's stamps (``surface``)."""
@@ -85,6 +84,14 @@ class InstrumentFit:
         found = self.solution
         prior = penalty(found.problem, [x.instrument for x in self.identified])
         return weighing.misfit(found.residual, found.sensitivities) + prior
+
+
+class Begin(NamedTuple):
+    """Start of a search."""
+
+    problem: OutputErrorProblem
+    place: tuple[FloatArray, FloatArray]
+    """Derivatives (7,) and local parameters (m, 7)."""
 
 
 class _Pitch:
@@ -162,84 +169,88 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
         return InstrumentFit(plain)
     share = colour_share(plain)
     names = tuple(weighed(x, share) for x in unknown)
-    found = _fitted(*_looked_about(plain, names), names, share, final=False)
+    best, *others = _hills(plain, names, share)
+    found = _fitted(best, names, share, final=False)
     if found is not None:
         share = colour_share(found)
         names = tuple(weighed(x, share) for x in unknown)
-        found = _fitted(found.problem, _place(found), names, share)
+        found = _fitted(_begin(found), names, share)
     if found is None:
         return InstrumentFit(plain)
-    return _with_statements(names, _whole_posterior(found, names), plain)
+    return _with_statements(names, _whole_posterior(found, names, others), plain, others)
 
 
-def _place(solution: Solution) -> tuple[FloatArray, FloatArray]:
-    """Return the derivatives and local parameters of a solution, as the start of another search."""
-    return solution.optimum.shared, solution.optimum.local
+def _begin(solution: Solution) -> Begin:
+    """Return a solution as the start of another search."""
+    return Begin(solution.problem, (solution.optimum.shared, solution.optimum.local))
 
 
-def _whole_posterior(best: Solution, names: Sequence[Instrument]) -> Solution:
-    """Return the solution with the posterior over every maximum along a servo's lag, if none is stated."""
+def _hills(plain: Solution, names: Sequence[Instrument], share: float) -> list[Begin]:
+    """Return a start on each hill of the posterior along a servo's lag, the highest hill first.
+
+    A lag delays the response as a pole of the aircraft does. If both are exchanged, the pitch rate after an
+    input is unchanged, and the posterior has a second hill. All other parameters are searched at each lag,
+    because a delay of the command hides the hill of a short lag. A measured surface has a stated lag of zero,
+    and one hill.
+    """
+    lag = next((x for x in names if x.starts and x.stated != 0.0), None)
+    if lag is None:
+        return [_begin(plain)]
+    others = [x for x in names if x is not lag]
+    near, costs, begins = _begin(plain), [np.inf], []
+    for value in lag.starts:
+        there = near._replace(problem=lag.write(near.problem, value))
+        fit = descended(PITCH, there.problem, others, _prior(there, share), there.place, LOOK)
+        if not isinstance(fit, NoEstimate):
+            costs.append(fit.cost + penalty(fit.problem, [lag]))
+            begins.append(near := Begin(fit.problem, fit.place))
+    heights = np.array([*costs, np.inf])
+    higher = np.flatnonzero((heights[1:-1] <= heights[:-2]) & (heights[1:-1] < heights[2:]))
+    return [begins[k] for k in sorted(higher, key=lambda k: float(heights[k + 1]))] or [_begin(plain)]
+
+
+def _whole_posterior(best: Solution, names: Sequence[Instrument], others: Sequence[Begin]) -> Solution:
+    """Return the solution with the posterior over every hill along a servo's lag, if none is stated.
+
+    ``others`` are starts on the other hills.
+    """
     lag = next((x for x in names if x.name == SERVO_LAG.name and x.stated is None), None)
     if lag is None:
         return best
-    share = colour_share(best)
-    place = N + list(names).index(lag)
-    if not needs_profile(lag.read(best.problem), float(np.sqrt(best.widened[place, place]))):
-        return _between_modes(best, names, lag, share)
-    others = [x for x in names if x is not lag]
+    posterior = Posterior(names, colour_share(best), usual_moments)
+    free = [x for x in names if x is not lag]
 
     def refit(problem: OutputErrorProblem, near: Solution) -> Solution | None:
-        return _fitted(problem, _place(near), others, share)
+        return _fitted(_begin(near)._replace(problem=problem), free, posterior.share)
 
-    return profiled(best, lag, names, share, refit)
+    return profiled(_of_two_hills(best, others, posterior), lag, posterior, refit)
 
 
-def _between_modes(best: Solution, names: Sequence[Instrument], lag: Instrument, share: float) -> Solution:
-    """Return the likelier of two posterior modes, with the other mode's second moment times its probability.
-
-    A servo's lag and the delay of its command have similar effects. The posterior of a lag may have a second
-    peak at a third of the lag, with other derivatives. Coloured noise distinguishes both peaks less than
-    white noise does. A single manoeuvre takes its lag from all manoeuvres, so it has no search for a second
-    peak.
-    """
-    if len(best.problem.records) == 1 or lag.read(best.problem) < lag.resolution:
-        return best
-    rival = _searched(lag.write(best.problem, lag.read(best.problem) / 3.0), _place(best), names, share)
+def _of_two_hills(best: Solution, others: Sequence[Begin], posterior: Posterior) -> Solution:
+    """Return the likelier of two solutions, with the other one's second moment times its probability."""
+    fits = [_searched(begin, posterior.parameters, posterior.share) for begin in others]
+    rival = min((fit for fit in fits if fit is not None), key=lambda fit: fit.cost, default=None)
     if rival is None:
         return best
-    apart = 0.5 * share**2 * (rival.cost - best.optimum.log_likelihood_cost)
-    likelier = best if apart >= 0.0 else _evaluated(rival)
-    if likelier is None:
-        return best
-    moved = [x.read(rival.problem) - x.read(best.problem) for x in names]
-    step = np.array([*(reported(*rival.place) - best.theta), *moved])
-    return replace(likelier, modes=float(expit(-abs(apart))) * np.outer(step, step))
+    lower, moment = posterior.apart(best, rival)
+    likelier = best if lower >= 0.0 else _evaluated(rival)
+    return best if likelier is None else replace(likelier, modes=moment)
 
 
-def _fitted(
-    problem: OutputErrorProblem,
-    place: tuple[FloatArray, FloatArray],
-    names: Sequence[Instrument],
-    share: float,
-    final: bool = True,
-) -> Solution | None:
+def _fitted(begin: Begin, names: Sequence[Instrument], share: float, final: bool = True) -> Solution | None:
     """Return the solution with instruments from a start; None if the search fails."""
-    fit = _searched(problem, place, names, share)
+    fit = _searched(begin, names, share)
     return None if fit is None else _evaluated(fit, final)
 
 
-def _searched(
-    problem: OutputErrorProblem,
-    place: tuple[FloatArray, FloatArray],
-    names: Sequence[Instrument],
-    share: float,
-) -> Fit | None:
-    """Return the fit with instruments from a start; None if the search fails.
+def _prior(begin: Begin, share: float) -> Priors:
+    """Return the derivatives' priors, with ``share`` as the factor on their widths in a white-noise fit."""
+    return replace(about_zero(precision(begin.problem, begin.place[0])), share=share)
 
-    ``share`` is the factor on the derivative priors' standard deviations in a white-noise fit.
-    """
-    prior = replace(about_zero(precision(problem, place[0])), share=share)
-    fit = descended(PITCH, problem, names, prior, place)
+
+def _searched(begin: Begin, names: Sequence[Instrument], share: float) -> Fit | None:
+    """Return the fit with instruments from a start; None if the search fails."""
+    fit = descended(PITCH, begin.problem, names, _prior(begin, share), begin.place)
     return None if isinstance(fit, NoEstimate) or fit.optimum.status != CONVERGED else fit
 
 
@@ -259,8 +270,13 @@ def weighed(x: Instrument, share: float) -> Instrument:
     return x if x.prior is None else replace(x, prior=replace(x.prior, share=share))
 
 
-def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: Solution) -> InstrumentFit:
-    """Return the fit in which a stated value is a prior unless the data exclude it."""
+def _with_statements(
+    names: tuple[Instrument, ...], solution: Solution, plain: Solution, others: Sequence[Begin]
+) -> InstrumentFit:
+    """Return the fit in which a stated value is a prior unless the data exclude it.
+
+    ``others`` are starts on the other hills of the posterior.
+    """
     alone = _uncancelled(identified_at(solution, names))
     white = np.sqrt(np.diag(solution.covariance_cr)[N:])
     if all((x.instrument.stated is None or x.found.contradicts) and not _cancels(x, alone) for x in alone):
@@ -283,10 +299,10 @@ def _with_statements(names: tuple[Instrument, ...], solution: Solution, plain: S
         else:
             problem = x.write(problem, x.stated)
     left = tuple(one.instrument for one in kept)
-    final = _fitted(problem, _place(solution), left, colour_share(solution))
+    final = _fitted(_begin(solution)._replace(problem=problem), left, colour_share(solution))
     if final is None:
         return InstrumentFit(plain)
-    final = final if solution.profile is None else _whole_posterior(final, left)
+    final = _whole_posterior(final, left, others)
     return InstrumentFit(final, refreshed(kept, final))
 
 
@@ -322,29 +338,6 @@ def refreshed(identified: Sequence[Identified], solution: Solution) -> tuple[Ide
         else x._replace(found=replace(x.found, value=there.found.value, std=there.found.std))
         for x, there in zip(identified, now, strict=True)
     )
-
-
-def _looked_about(
-    plain: Solution, names: Sequence[Instrument]
-) -> tuple[OutputErrorProblem, tuple[FloatArray, FloatArray]]:
-    """Return the best starting value of each instrument, one after another, with the derivatives.
-
-    The posterior of a lag may have a second, lower peak at a third of the lag. A measured surface has a
-    stated lag of zero, and no second peak.
-    """
-    optimum, problem = plain.optimum, plain.problem
-    place, lowest = (optimum.shared, optimum.local), optimum.log_likelihood_cost + penalty(problem, names)
-    for x in names:
-        near, here = place, problem
-        for start in x.starts if x.stated != 0.0 else ():
-            there = x.write(here, start)
-            found = search(there, begin=near, flat=ROUGHLY)[1]
-            if found.status != CONVERGED:
-                continue
-            near, cost = (found.shared, found.local), found.log_likelihood_cost + penalty(there, names)
-            if cost < lowest:
-                problem, place, lowest = there, near, cost
-    return problem, place
 
 
 def identified_at(solution: Solution, names: Sequence[Instrument]) -> tuple[Identified, ...]:

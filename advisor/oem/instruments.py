@@ -135,9 +135,7 @@ def _place(arm: str) -> Callable[[OutputErrorProblem], Prior]:
     return lambda problem: Prior(float(getattr(problem, arm)), PLACE_S * _speed(problem))
 
 
-SERVO_LAG = Instrument(
-    "servo_lag_s", 1e-4, 0.0, 0.4, lambda _: USUAL_LAG, (0.03, 0.06, 0.1, 0.15, 0.22, 0.3), KNOWN_TO
-)
+SERVO_LAG = Instrument("servo_lag_s", 1e-4, 0.0, 0.4, lambda _: USUAL_LAG, (0.0, 0.05, 0.1, 0.2), KNOWN_TO)
 COMMAND_DELAY = Instrument("command_delay_s", 1e-4, -0.5, 1.0, _command)
 VANE_ARM = Instrument("vane_arm_m", 1e-3, -100.0, 100.0, _place("vane_arm_m"))
 ALPHA_DELAY = Instrument("alpha_delay_s", 1e-4, -0.3, 0.5, _alpha)

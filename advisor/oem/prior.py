@@ -21,6 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
 from advisor.model.outputs import N_SHARED, SHARED
@@ -36,8 +37,9 @@ LIFT_OVER_MOMENT_S = 0.02
 """Prior standard deviation of Z_δe/M_δe, s. Published estimates give 0.008 (twin jet) and 0.010 (twin
 turboprop)."""
 COEFFICIENT_STD = {"M_alpha": 1.5, "M_q": 20.0}
-"""Prior standard deviation of C_mα and C_mq about zero if no angle of attack is measured. Published values
-are -0.3 to -1.8 and -10 to -25 for manned aircraft, and -2.7 and -38 for an unmanned one of 13 kg."""
+"""Prior standard deviation of C_mα and C_mq about zero, for hills of a posterior, and for a search without a
+measured angle of attack. Published values are -0.3 to -1.8 and -10 to -25 for manned aircraft, and -2.7 and
+-38 for an unmanned one of 13 kg."""
 SIDE_FORCE_STD = 0.05
 """Prior standard deviation of Y_p and Y_r about zero, without unit. C_Yp and C_Yr of 0.4 give 0.01 for a jet
 of 15 t and 0.04 for an aircraft of 3 kg."""
@@ -71,6 +73,18 @@ def precision(problem: OutputErrorProblem, shared: FloatArray) -> FloatArray:
     for name, size in problem.per_coefficient.items():
         weight[SHARED.index(name)] = (COEFFICIENT_STD[name] * size) ** -2
     return weight
+
+
+def usual_moments(problem: OutputErrorProblem, theta: FloatArray) -> float:
+    """Return -2 log density of usual C_mα and C_mq, for parameters ``theta`` (8,); 0 without a geometry.
+
+    A measured angle of attack determines both near an optimum, but not which of two exchanged poles is the
+    servo's. In a search without it, both priors are part of the search.
+    """
+    if not all("alpha" in record.outputs for record in problem.records):
+        return 0.0
+    sizes = problem.per_coefficient.items()
+    return sum((float(theta[PARAMETERS.index(name)]) / (COEFFICIENT_STD[name] * x)) ** 2 for name, x in sizes)
 
 
 def precision_without_alpha(shared: FloatArray) -> FloatArray:

@@ -1,21 +1,25 @@
-"""Posterior along one parameter for which the interval by linearisation does not describe the posterior.
+"""Posterior over several optima, and along a parameter for which it is not Gaussian.
 
-A covariance at an optimum describes the nearest hill of the posterior. A servo's lag that the data hardly
-determine has a long, flat ridge, along which the derivatives bend. The parameter is held at several values,
-and all others are searched again. MINOS (James & Roos, *Computer Physics Communications* 10, 1975) and the
-profile likelihood (Venzon & Moolgavkar, *Applied Statistics* 37, 1988) do the same. The second moment of
-these optima replaces the linear part of the covariance that the parameter causes. The resulting interval
-about the best optimum contains the interval of the profile.
+A covariance at an optimum describes the nearest hill of the posterior. A servo delays the response as a pole
+of the aircraft does. If both are exchanged, the rate after an input is unchanged, and the posterior has two
+hills. The less likely hill adds its second moment times its probability.
+
+A lag that the data hardly determine has a long, flat ridge, along which the derivatives bend. The parameter
+is held at several values, and all others are searched again. MINOS (James & Roos, *Computer Physics
+Communications* 10, 1975) and the profile likelihood (Venzon & Moolgavkar, *Applied Statistics* 37, 1988) do
+the same. The second moment of these optima replaces the linear part of the covariance that the parameter
+causes. The resulting interval about the best optimum contains the interval of the profile.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.special import expit
 
 from advisor.oem.extra import penalty
-from advisor.oem.solution import Solution
+from advisor.oem.solution import Solution, reported
 from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
@@ -88,6 +92,49 @@ class Profile:
         return np.array(found)
 
 
+class Posterior(NamedTuple):
+    """Knowledge with which optima are weighed."""
+
+    parameters: Sequence[Any]
+    """Nuisance parameters, whose derivatives are a solution's first extra columns."""
+    share: float
+    """Ratio of the parameters' errors under white noise to those under coloured noise."""
+    usual: Callable[[Any, FloatArray], float] = lambda *_: 0.0
+    """Function that returns -2 log density of knowledge that the search does not use, for a problem and the
+    reported parameters (p,)."""
+
+    def apart(self, best: Any, rival: Any) -> tuple[float, FloatArray]:
+        """Return how many nats a rival optimum lies below another one, and the moment of the less likely one.
+
+        The moment, shape (p + k, p + k), is the second moment of the distance times the probability of the
+        less likely optimum. ``best`` and ``rival`` are fits or solutions.
+        """
+        pair = (best, rival)
+        theta = [reported(at.optimum.shared, at.optimum.local, at.assembly.names) for at in pair]
+        costs = [
+            self.share**2 * at.optimum.log_likelihood_cost + self.usual(at.problem, there)
+            for at, there in zip(pair, theta, strict=True)
+        ]
+        nats = 0.5 * (costs[1] - costs[0])
+        moved = [x.read(rival.problem) - x.read(best.problem) for x in self.parameters]
+        step = np.array([*(theta[1] - theta[0]), *moved])
+        return nats, float(expit(-abs(nats))) * np.outer(step, step)
+
+    def density(self, solution: Solution, searched: Sequence[Any]) -> float:
+        """Return -log posterior density, up to a constant, with the residuals' colour in ``share``.
+
+        The cost of the fit holds the narrowed priors of the ``searched`` parameters.
+        """
+        data = solution.optimum.log_likelihood_cost - penalty(solution.problem, searched)
+        true = [replace(p, prior=replace(p.prior, share=1.0)) for p in self.parameters if p.prior is not None]
+        known = penalty(solution.problem, true) + self.usual(solution.problem, solution.theta)
+        return 0.5 * (self.share**2 * data + known)
+
+    def at(self, solution: Solution) -> FloatArray:
+        """Return parameters and nuisance parameters of a solution, shape (p + k,)."""
+        return np.array([*solution.theta, *(p.read(solution.problem) for p in self.parameters)])
+
+
 def needs_profile(value: float, std: float) -> bool:
     """Return whether the linear interval of a positive parameter reaches zero, so that the posterior is not
     Gaussian within it.
@@ -95,49 +142,37 @@ def needs_profile(value: float, std: float) -> bool:
     return NORMAL_95 * std >= value
 
 
-def profiled(solution: Solution, x: Any, parameters: Sequence[Any], share: float, refit: Refit) -> Solution:
-    """Return the solution with the second moment of the posterior along one parameter.
+def profiled(solution: Solution, x: Any, posterior: Posterior, refit: Refit) -> Solution:
+    """Return the solution with the second moment of the posterior along ``x``, where it needs one.
 
-    Parameters
-    ----------
-    x
-        Profiled parameter, one of ``parameters``.
-    parameters
-        Nuisance parameters, whose derivatives are the solution's first extra columns.
-    share
-        Ratio of the parameters' errors under white noise to those under coloured noise.
+    ``x`` is one of the posterior's parameters. The moment of another optimum remains.
     """
-    place = len(solution.theta) + list(parameters).index(x)
-    std = float(np.sqrt(solution.widened[place, place]))
-    if not std > 0.0:
+    place = len(solution.theta) + list(posterior.parameters).index(x)
+    column = replace(solution, modes=None).widened[:, place]
+    std = float(np.sqrt(column[place]))
+    if not std > 0.0 or not needs_profile(x.read(solution.problem), std):
         return solution
-    nodes = sorted(_walk(solution, x, parameters, share, refit, std), key=lambda node: node[0])
+    nodes = sorted(_walk(solution, x, posterior, refit, std), key=lambda node: node[0])
     if len(nodes) < 2:
         return solution  # no neighbouring value has an optimum
     values, nats, theta = (np.array(part) for part in zip(*nodes, strict=True))
-    profile = Profile(
-        place - len(solution.theta),
-        values,
-        nats - min(float(np.min(nats)), 0.0),
-        theta,
-        _at(solution, parameters),
-    )
-    column = solution.widened[:, place]
-    linear = np.outer(column, column) / column[place]
+    nats -= min(float(np.min(nats)), 0.0)
+    profile = Profile(place - len(solution.theta), values, nats, theta, posterior.at(solution))
     size = len(profile.best)
-    linear = linear[:size, :size]
+    linear = (np.outer(column, column) / column[place])[:size, :size]
     scale = np.sqrt(np.diag(profile.moment) + np.diag(linear))
-    return replace(solution, modes=_positive(profile.moment - linear, scale), profile=profile)
+    bent = _positive(profile.moment - linear, scale)
+    return replace(solution, modes=bent if solution.modes is None else solution.modes + bent, profile=profile)
 
 
 def _walk(
-    solution: Solution, x: Any, parameters: Sequence[Any], share: float, refit: Refit, std: float
+    solution: Solution, x: Any, posterior: Posterior, refit: Refit, std: float
 ) -> Iterator[tuple[float, float, FloatArray]]:
     """Yield value, fall of the log posterior density and parameters, outwards from the optimum."""
-    others = [p for p in parameters if p is not x]
-    begun = _density(solution, parameters, parameters, share)
+    others = [p for p in posterior.parameters if p is not x]
+    begun = posterior.density(solution, posterior.parameters)
     here = x.read(solution.problem)
-    yield here, 0.0, _at(solution, parameters)
+    yield here, 0.0, posterior.at(solution)
     for way in (1.0, -1.0):
         near = solution
         for k in range(1, MOST_STEPS + 1):
@@ -146,24 +181,10 @@ def _walk(
             if found is None:
                 break
             near = found
-            fall = _density(found, others, parameters, share) - begun
-            yield value, fall, _at(found, parameters)
+            fall = posterior.density(found, others) - begun
+            yield value, fall, posterior.at(found)
             if fall > FARTHEST_NATS or value in (x.lowest, x.highest):
                 break
-
-
-def _density(solution: Solution, searched: Sequence[Any], parameters: Sequence[Any], share: float) -> float:
-    """Return -log posterior density, up to a constant, with the residuals' colour in ``share``.
-
-    The cost of the fit holds the narrowed priors of the ``searched`` parameters.
-    """
-    data = solution.optimum.log_likelihood_cost - penalty(solution.problem, searched)
-    true = [replace(p, prior=replace(p.prior, share=1.0)) for p in parameters if p.prior is not None]
-    return 0.5 * (share**2 * data + penalty(solution.problem, true))
-
-
-def _at(solution: Solution, parameters: Sequence[Any]) -> FloatArray:
-    return np.array([*solution.theta, *(p.read(solution.problem) for p in parameters)])
 
 
 def _positive(matrix: FloatArray, scale: FloatArray) -> FloatArray:

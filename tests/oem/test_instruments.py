@@ -43,11 +43,12 @@ def equipped(
     seed=0,
     quantum=0.0,
     bias=0.0,
+    of=UAV,
 ):
-    """Return a manoeuvre of the small aircraft at constant speed: α from a vane, θ, a_z, servo."""
+    """Return a manoeuvre of an aircraft at constant speed: α from a vane, θ, a_z, servo."""
     rng = np.random.default_rng(seed)
     t = np.arange(0.0, 9.0, 1.0 / RATE)
-    u = elevator_3211(t, trim=trim_elevator(UAV), amplitude=0.02 * sign, unit_s=0.4)
+    u = elevator_3211(t, trim=trim_elevator(of), amplitude=0.02 * sign, unit_s=0.4)
     fine = np.arange(0.0, 9.0, 0.002)
     command = np.interp(fine - delay_s, t, u)
     surface = command.copy()
@@ -57,12 +58,12 @@ def equipped(
             decay = np.exp(-0.002 / lag_s)
             trailing = lag_s * (now - before) / 0.002
             surface[k] = now - trailing + (surface[k - 1] - before + trailing) * decay
-    x = simulate(UAV, [trim_alpha(UAV), 0.0], fine, surface, t[1:-1])
+    x = simulate(of, [trim_alpha(of), 0.0], fine, surface, t[1:-1])
     alpha, q, theta = x.T
     theta = theta + 0.05
     delta = np.interp(t[1:-1], fine, surface)
-    alpha_dot = UAV[0] + UAV[1] * alpha + (1 + UAV[2]) * q + UAV[3] * delta
-    q_dot = UAV[4] + UAV[5] * alpha + UAV[6] * q + UAV[7] * delta
+    alpha_dot = of[0] + of[1] * alpha + (1 + of[2]) * q + of[3] * delta
+    q_dot = of[4] + of[5] * alpha + of[6] * q + of[7] * delta
     a_z = SPEED * np.cos(alpha) * (alpha_dot - q) - GRAVITY * np.cos(theta) - imu_m * q_dot + bias
     channels = {"alpha": alpha - vane_m / SPEED * q, "q": q, "theta": theta, "a_z": a_z}
     for y in channels.values():

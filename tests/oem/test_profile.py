@@ -9,7 +9,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.oem import estimator
-from advisor.oem.profile import Profile, needs_profile, profiled
+from advisor.oem.profile import Posterior, Profile, needs_profile, profiled
 from benchmarks.accuracy import clean, flown
 
 STD = 0.04
@@ -90,7 +90,7 @@ def walked(theta, cost, asked=None):
         return at(problem, theta(problem), cost(problem))
 
     lag = Lag()
-    return profiled(at(LAG, theta(LAG), cost(LAG)), lag, (lag,), 1.0, refit)
+    return profiled(at(LAG, theta(LAG), cost(LAG)), lag, Posterior((lag,), 1.0), refit)
 
 
 def test_a_solution_on_a_ridge_has_the_interval_of_the_ridge():

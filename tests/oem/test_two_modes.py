@@ -7,12 +7,19 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.model.outputs import SHARED
 from advisor.oem import instrument_fit
 from advisor.oem.estimator import fit_jointly
 from advisor.oem.instruments import SERVO_LAG
+from advisor.oem.prior import usual_moments
+from advisor.oem.profile import Posterior
 from tests.oem.test_instruments import SPEED, equipped
 
-OFF = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 30.0, 2.0, 40.0])
+OFF = np.array([1.0, 0.0, 0.0, 30.0, 2.0, 40.0, 0.0])
+"""Distance of the second peak, in the order of ``SHARED``."""
+AWAY = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 30.0, 2.0, 40.0])
+"""Distance of the second peak, in the order of the eight parameters."""
+OVERDAMPED = np.array([0.092, -3.976, -0.032, -0.276, 0.3, -3.995, -7.953, -42.643])
 
 
 @pytest.fixture(scope="module")
@@ -22,29 +29,29 @@ def joint():
     return fit_jointly(flights, Aircraft(airspeed_m_s=SPEED)).fitted
 
 
-def with_rival(joint, cost, monkeypatch):
+def with_rival(joint, cost, monkeypatch, share=1.0):
     """Return the solution where a second search ends ``OFF`` away, at a cost higher by ``cost``."""
     best = replace(joint.solution, modes=None)
-    optimum = best.optimum._replace(log_likelihood_cost=best.optimum.log_likelihood_cost + cost)
-    rival = replace(
-        best, theta=best.theta + OFF, optimum=optimum, problem=SERVO_LAG.write(best.problem, 0.04)
+    optimum = best.optimum._replace(
+        log_likelihood_cost=best.optimum.log_likelihood_cost + cost, shared=best.optimum.shared + OFF
     )
-    place = rival.theta, np.zeros(0)
-    searched = SimpleNamespace(cost=optimum.log_likelihood_cost, problem=rival.problem, place=place)
+    rival = replace(best, optimum=optimum, problem=SERVO_LAG.write(best.problem, 0.04))
+    searched = SimpleNamespace(
+        cost=optimum.log_likelihood_cost, problem=rival.problem, assembly=best.assembly, optimum=optimum
+    )
     monkeypatch.setattr(instrument_fit, "_searched", lambda *_: searched)
     monkeypatch.setattr(instrument_fit, "_evaluated", lambda *_: rival)
-    monkeypatch.setattr(instrument_fit, "reported", lambda *_: rival.theta)
     names = [x.instrument for x in joint.identified]
-    share = instrument_fit.colour_share(best)
-    return best, rival, instrument_fit._between_modes(best, names, SERVO_LAG, share)
+    found = instrument_fit._of_two_hills(best, ["another start"], Posterior(names, share))
+    return best, rival, found
 
 
 def test_a_peak_as_high_as_the_best_adds_half_of_the_squared_distance(joint, monkeypatch):
     best, _, found = with_rival(joint, 0.0, monkeypatch)
-    assert found.theta is best.theta
-    np.testing.assert_allclose(found.modes[:8, :8], 0.5 * np.outer(OFF, OFF))
+    assert found.optimum is best.optimum
+    np.testing.assert_allclose(found.modes[:8, :8], 0.5 * np.outer(AWAY, AWAY), atol=1e-9)
     added = np.diag(found.widened)[:8] - np.diag(best.widened)[:8]
-    np.testing.assert_allclose(added, 0.5 * OFF**2, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(added, 0.5 * AWAY**2, rtol=1e-9, atol=1e-9)
 
 
 def test_a_peak_far_below_the_best_adds_nothing(joint, monkeypatch):
@@ -54,16 +61,30 @@ def test_a_peak_far_below_the_best_adds_nothing(joint, monkeypatch):
 
 def test_the_higher_peak_is_the_estimate(joint, monkeypatch):
     _, rival, found = with_rival(joint, -1e4, monkeypatch)
-    assert found.theta is rival.theta
+    assert found.optimum is rival.optimum
 
 
 def test_coloured_noise_brings_a_lower_peak_nearer(joint, monkeypatch):
-    monkeypatch.setattr(instrument_fit, "colour_share", lambda _: 0.1)
-    _, _, found = with_rival(joint, 200.0, monkeypatch)
-    np.testing.assert_allclose(found.modes[:8, :8], np.outer(OFF, OFF) / (1.0 + np.e), rtol=1e-9)
+    _, _, found = with_rival(joint, 200.0, monkeypatch, share=0.1)
+    np.testing.assert_allclose(found.modes[:8, :8], np.outer(AWAY, AWAY) / (1.0 + np.e), rtol=1e-6, atol=1e-9)
 
 
-def test_one_manoeuvre_looks_for_no_second_peak(monkeypatch):
-    alone = fit_jointly([equipped(lag_s=0.1, noise=0.02)], Aircraft(airspeed_m_s=SPEED)).fitted
-    best, _, found = with_rival(alone, 0.0, monkeypatch)
-    assert found is best
+def test_an_unusual_damping_makes_a_peak_less_likely(joint):
+    """The rival's C_mq is 20 times the usual one, at which both usual peaks would be equally likely."""
+    best = joint.solution
+    problem = replace(best.problem, per_coefficient={"M_q": abs(best.theta[6]) / 20.0})
+    shared = best.optimum.shared.copy()
+    shared[SHARED.index("M_q")] *= 20.0
+    rival = replace(best, problem=problem, optimum=best.optimum._replace(shared=shared))
+    nats, _ = Posterior((), 1.0, usual_moments).apart(replace(best, problem=problem), rival)
+    np.testing.assert_allclose(nats, 0.5 * (20.0**2 - 1.0))
+
+
+def test_the_pole_of_an_overdamped_aircraft_is_not_the_servos():
+    """A filter of 20 Hz, as a delay, looks like the aircraft's pole where the servo has the aircraft's."""
+    flights = [
+        equipped(number=i, sign=(-1.0) ** i, delay_s=0.017, noise=0.005, seed=i, of=OVERDAMPED)
+        for i in range(2)
+    ]
+    found = fit_jointly(flights, Aircraft(airspeed_m_s=SPEED)).estimate()
+    assert abs(found.theta[6] - OVERDAMPED[6]) < 1.0

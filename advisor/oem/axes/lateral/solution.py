@@ -11,7 +11,6 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import expit
 
 from advisor.flight.maneuvers.excitation import external_share
 from advisor.model.axes.lateral import CONTROLS, LATERAL, natural_size
@@ -26,6 +25,7 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
+from advisor.oem.profile import Posterior
 from advisor.oem.solution import RUNS_AWAY, Solution, evaluate, refused
 from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
@@ -158,10 +158,8 @@ def _of_both_hills(fit: Fit, nuisances: Sequence[Nuisance], prior: Priors) -> tu
     rival = descended(_MOTION, there, nuisances, prior, start)
     if isinstance(rival, NoEstimate) or refused(rival.optimum) is not None:
         return fit, None
-    apart = 0.5 * lag.prior.share**2 * (rival.cost - fit.cost)
-    moved = [x.read(rival.problem) - x.read(fit.problem) for x in nuisances]
-    step = np.array([*(rival.optimum.shared - fit.optimum.shared), *moved])
-    return fit if apart >= 0.0 else rival, float(expit(-abs(apart))) * np.outer(step, step)
+    lower, moment = Posterior(nuisances, lag.prior.share).apart(fit, rival)
+    return fit if lower >= 0.0 else rival, moment
 
 
 def _holding(problem: LateralProblem, place: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
