@@ -2,10 +2,11 @@
 
     python -m benchmarks.expected LOG [LOG ...]
 
-Doctor expects the errors of one 3-2-1-1 at the rates of a log. Each accepted 3-2-1-1 of that log, estimated
-alone, has errors of its own. The expected error is scaled to the amplitude flown, because errors fall with
-the amplitude. A line a log has the median of stated over expected errors, by derivative. The last line has
-the share of ratios between .7 and 1.4. An aircraft file of the same name beside a log is used.
+Doctor reads a log until half of its manoeuvres are flown, and expects the errors of one 3-2-1-1. Each later
+accepted 3-2-1-1, estimated alone, has errors of its own. The expected error is scaled to the amplitude
+flown, because errors fall with the amplitude. A line a log has the median of stated over expected errors, by
+derivative. The last line has the share of ratios between .7 and 1.4. An aircraft file of the same name next
+to a log is used.
 """
 
 import argparse
@@ -48,16 +49,23 @@ def main() -> int:
 
 
 def ratios(log: Path, aircraft: Aircraft) -> Iterator[list[float]]:
-    """Yield stated over expected errors of every accepted 3-2-1-1 of a log."""
+    """Yield stated over expected errors of each accepted 3-2-1-1 in the second half of a log."""
     campaign, examiner = Campaign(aircraft), Examiner(aircraft)
+    flown_by = []
     for columns in read_whole_log(log):
         campaign.feed(columns)
-        examiner.feed(columns)
+        flown_by.append(len(campaign.state.maneuvers))
     campaign.finish()
+    maneuvers = campaign.state.maneuvers
+    half = len(maneuvers) // 2
+    for columns, count in zip(read_whole_log(log), flown_by, strict=True):
+        examiner.feed(columns)
+        if count >= half > 0:
+            break
     expected = examiner.findings().expectation
     if expected is None:
         return
-    for one in campaign.state.maneuvers:
+    for one in maneuvers[half:]:
         if not one.verdict.accepted or "3-2-1-1" not in one.maneuver.span.kind:
             continue
         estimate = estimate_one(one.maneuver, aircraft)

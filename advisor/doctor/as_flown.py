@@ -1,7 +1,8 @@
-"""Conditions of the expected errors from the flown manoeuvres: amplitude, noise, colour and lag.
+"""Conditions of the expected errors from the flown manoeuvres: amplitude, noise, lag and stated errors.
 
-A joint estimate's errors also contain the scatter between the manoeuvres and the model's error. Noise and
-colour therefore come from the manoeuvres' own estimates.
+A joint estimate's errors also contain the scatter between the manoeuvres. Noise and errors therefore come
+from the manoeuvres' own estimates. These errors contain the colour of the noise, the uncertain instruments
+and moving air, because the estimator computes them.
 """
 
 from collections.abc import Sequence
@@ -18,7 +19,7 @@ from advisor.oem.estimator import estimate
 
 
 def as_flown(assumed: Assumed, maneuvers: Sequence[Maneuver], joint: Estimate) -> Assumed:
-    """Return the assumptions with amplitude, noise, colour and lag of the flown manoeuvres.
+    """Return the assumptions with amplitude, noise, lag and errors of the flown manoeuvres.
 
     Parameters
     ----------
@@ -28,19 +29,20 @@ def as_flown(assumed: Assumed, maneuvers: Sequence[Maneuver], joint: Estimate) -
         Joint estimate of the manoeuvres, which determines the servo's lag best.
     """
     newest = maneuvers[-NEWEST:]
-    singles = [one for m in newest if isinstance(one := estimate(m, assumed.aircraft), Estimate)] or [joint]
-    noise = {name: _median([single.fits[0][name].noise for single in singles if name in single.fits[0]])
-             for name in singles[-1].fits[0]}  # fmt: skip
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratios = np.array([single.std / single.std_cr for single in singles])
-    colour = np.maximum(1.0, np.median(np.where(np.isfinite(ratios), ratios, 1.0), axis=0))
-    amplitudes = [0.5 * float(np.degrees(np.ptp(flown_values(m, "elevator")))) for m in newest]
+    singles = [(m, one) for m in newest if isinstance(one := estimate(m, assumed.aircraft), Estimate)]
+    singles = singles or [(newest[-1], joint)]
+    fits = [single.fits[0] for _, single in singles]
+    noise = {name: _median([fit[name].noise for fit in fits if name in fit]) for name in fits[-1]}
+    amplitudes = [0.5 * float(np.degrees(np.ptp(flown_values(m, "elevator")))) for m, _ in singles]
+    amplitude = _median(amplitudes)
+    # Errors fall with the amplitude.
+    shares = np.array(amplitudes)[:, None] / amplitude
     return replace(
         assumed,
         noise=NOISE | noise,
-        colour=colour,
-        amplitude_deg=_median(amplitudes),
+        amplitude_deg=amplitude,
         lag_s=joint.servo_lag_s,
+        flown_std=np.median(shares * np.array([single.std for _, single in singles]), axis=0),
     )
 
 

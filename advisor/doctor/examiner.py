@@ -12,7 +12,7 @@ from advisor.campaign.instruments import together
 from advisor.decision.first_unit import frequency
 from advisor.doctor.as_flown import as_flown
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit, in_order
-from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, expect
+from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, at_log_rates, expect
 from advisor.doctor.instruments import (
     alpha_limits,
     clock_limits,
@@ -123,6 +123,8 @@ class Examiner:
         complete = {"elevator", "q"} <= paced.keys() and (
             "alpha" in paced or ("a_z" in paced and speed is not None)
         )
+        rates = {name: channel.renewed_hz for name, channel in paced.items()}
+        assumed = at_log_rates(assumed, rates, speed) if complete else assumed
         # Rates are compared with the aircraft's own pace where it is known; else with the least for any
         # aircraft.
         limits = [_stopping(problem, vehicle) for problem in found if problem.code != "rate" or not complete]
@@ -149,7 +151,6 @@ class Examiner:
         limits += company_limits(self._stream.other_systems) if not self._chosen else []
         limits += loss_limits(lost_percent)
         limits += path_limits(repeated_percent, repeated_after_s)
-        rates = {name: channel.renewed_hz for name, channel in paced.items()}
         return Examination(
             vehicle=vehicle,
             messages=tuple(arrivals.values()),
@@ -180,16 +181,14 @@ class Examiner:
         values.
         """
         flown = estimate_jointly(self._maneuvers, self._aircraft) if self._maneuvers else None
-        if not isinstance(flown, Estimate) or not is_believable(flown):
-            flown = None
         seen = Assumed(TYPICAL, NOISE, "a typical aircraft of 10 kg (yours: model in the aircraft file)")
         seen = replace(seen, aircraft=self._aircraft)
-        if flown is not None:
+        if isinstance(flown, Estimate):
             seen = as_flown(seen, self._maneuvers, flown)
         if {"Z_alpha", "M_alpha", "M_q", "M_delta_e"} <= self._aircraft.model.keys():
             model = ShortPeriod.from_mapping(self._aircraft.model)
             return replace(seen, model=model, source="the model in the aircraft file")
-        if flown is not None:
+        if isinstance(flown, Estimate) and is_believable(flown):
             number = len(self._maneuvers)
             source = f"an estimate from {number} manoeuvre{'s' if number > 1 else ''} flown"
             return replace(seen, model=ShortPeriod(flown.theta), source=source)

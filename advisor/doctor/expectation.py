@@ -3,7 +3,8 @@
 Nothing is simulated with noise. A measurement's information follows from its sensitivity to each parameter
 (Cramér-Rao). A sampled command adds an uncertainty, because the edges of the input lie between two samples.
 The delays and places of instruments and the servo's lag are estimated with the derivatives, as in flight. The
-flown manoeuvres give the amplitude, the noise and its colour, each manoeuvre by its own estimate.
+flown manoeuvres give the amplitude and the noise. Their own errors, as the estimator computes them, are the
+expected errors at the log's rates. The sensitivities tell how other rates change these errors.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -57,6 +58,9 @@ class Assumed:
     """Standard deviation of each output's measurement noise, SI, keys as in ``NOISE``."""
     source: str
     """Source of the model and the noise, in words."""
+    flown_std: FloatArray | None = None
+    """Standard deviations of a single manoeuvre of ``amplitude_deg``, shape (8,), from the flown manoeuvres'
+    own estimates. None before the first one."""
     colour: FloatArray = field(default_factory=lambda: np.ones(len(PARAMETERS)))
     """Ratio of a single manoeuvre's errors to its Cramér-Rao bounds, shape (8,); 1 for white residuals."""
     amplitude_deg: float | None = None
@@ -109,6 +113,15 @@ def expect(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float 
     return ExpectedErrors(
         dict(zip(PARAMETERS, std.tolist(), strict=True)), unit_s, float(np.degrees(amplitude))
     )
+
+
+def at_log_rates(assumed: Assumed, rates_hz: Mapping[str, float], airspeed_m_s: float | None) -> Assumed:
+    """Return the assumptions with the ratio of the flown errors to the Cramér-Rao bounds at a log's rates."""
+    if assumed.flown_std is None:
+        return assumed
+    bounds = expect(assumed, rates_hz, airspeed_m_s).std
+    ratio = assumed.flown_std / np.array([bounds[name] for name in PARAMETERS])
+    return replace(assumed, colour=np.where(np.isfinite(ratio), ratio, 1.0))
 
 
 def _about_trim(model: ShortPeriod) -> FloatArray:
