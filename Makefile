@@ -141,6 +141,10 @@ FLIGHTS ?= ../shared/flights
 real: .venv/.developed ## records of real aircraft against what is known of them (FLIGHTS=folder)
 	$(BIN)/python -m benchmarks.real $(FLIGHTS) --write docs/data/real.json
 
+.PHONY: flight
+flight: .venv/.developed ## ArduPlane flies the written script, and `advisor expect` decides (two minutes)
+	$(BIN)/python -m benchmarks.scripted.expected --junit build/flight/report.xml
+
 .PHONY: cases
 cases: .venv/.developed ## the logs of ../shared/cases against tests/shared_cases.yaml (five minutes)
 	$(BIN)/python -m benchmarks.shared_cases

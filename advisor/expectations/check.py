@@ -3,13 +3,15 @@ whether the expectation holds.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import SPEED_EXPONENTS
 from advisor.expectations.expected import MODES, Expectations, Near
 from advisor.expectations.flown import Flown, Measured
 from advisor.expectations.modes import mode_of
+from advisor.words.axes import AxisName
 from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import PARAMETERS, SIDE_PARAMETERS
@@ -81,15 +83,37 @@ def _expected_value(
     section: str, name: str, near: Near, flown: Flown, aircraft: Aircraft, other: Flown | None
 ) -> Measured:
     if near.origin == "log":
+        assert other is not None
         shown: Mapping[str, Measured] = getattr(other, section)
-        return shown.get(name, Measured(reason="roll and yaw were not flown"))
+        measured = shown.get(name, Measured(reason="roll and yaw were not flown"))
+        if section == "modes":
+            return measured
+        return replace(measured, value=measured.value * _faster(name, flown, other.airspeeds_m_s))
     value = near.value
     if near.origin == "model":
-        of_mode = section == "modes"
-        value = mode_of(aircraft.model, name, flown.trim) if of_mode else aircraft.model[name]
+        model = _model_as_flown(aircraft, flown)
+        value = mode_of(model, name, flown.trim) if section == "modes" else model[name]
         if value is None:
             return Measured(reason="the file's model does not have this mode")
     return Measured() if value is None else Measured(value)
+
+
+def _model_as_flown(aircraft: Aircraft, flown: Flown) -> dict[str, float]:
+    """Return the aircraft file's model at the air speed of the flight. Without a ``reference_airspeed_m_s``
+    the model is returned as stated."""
+    read = aircraft.reference_airspeed_m_s
+    stated = {} if read is None else dict.fromkeys(flown.airspeeds_m_s, read * flown.true_over_read)
+    return {name: value * _faster(name, flown, stated) for name, value in aircraft.model.items()}
+
+
+def _faster(name: str, flown: Flown, stated_m_s: Mapping[AxisName, float]) -> float:
+    """Return the factor on a derivative from a stated true air speed to that of the flight; 1 if either
+    is unknown."""
+    axis: AxisName = "pitch" if name in PARAMETERS else "lateral"
+    speeds = flown.airspeeds_m_s
+    if axis not in stated_m_s or axis not in speeds:
+        return 1.0
+    return float((speeds[axis] / stated_m_s[axis]) ** SPEED_EXPONENTS[name])
 
 
 def _near(path: str, near: Near, against: Measured, measured: Measured, unit: str) -> Outcome:

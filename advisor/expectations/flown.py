@@ -13,6 +13,7 @@ from advisor.campaign.state import CampaignState, LateralState
 from advisor.decision.axes.lateral_requirements import GROUPS
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.expectations.expected import MODES
+from advisor.flight.signals.true_airspeed import true_over_read
 from advisor.model.axes.lateral import Trim
 from advisor.model.mil_f_8785c import LevelFound
 from advisor.oem.estimate import Estimate
@@ -56,6 +57,10 @@ class Flown:
     """Gap of the simulator as given. Empty unless the gap was diagnosed."""
     trim: Trim | None = None
     """Steady flight of the lateral manoeuvres; None without an estimate."""
+    airspeeds_m_s: Mapping[AxisName, float] = field(default_factory=dict)
+    """True air speed of the joint estimate, m/s, by axis; an axis without a measured air speed is absent."""
+    true_over_read: float = 1.0
+    """Ratio of the true air speed to the air speed that the aircraft reads."""
 
 
 def flown_of(flights: WholeFlights, aircraft: Aircraft, gap: Mapping[AxisName, Measured]) -> Flown:
@@ -68,7 +73,9 @@ def flown_of(flights: WholeFlights, aircraft: Aircraft, gap: Mapping[AxisName, M
     derivatives = _derivatives(state.model, PARAMETERS, "no manoeuvre of the elevator is accepted")
     modes = dict(_modes(state, aircraft))
     trim = None
+    models: dict[AxisName, Estimate | None] = {"pitch": state.model}
     if side is not None:
+        models["lateral"] = side.model
         tests["lateral"], accepted["lateral"] = side.flight_test, _accepted(side)
         light = next(iter(GROUPS))
         levels["lateral"] = tuple(one.governing for one in levels_of(side) if one.group == light)
@@ -78,6 +85,7 @@ def flown_of(flights: WholeFlights, aircraft: Aircraft, gap: Mapping[AxisName, M
             joined = [one.maneuver for one in side.maneuvers if one.maneuver.number in side.estimate_from]
             trim = trim_of(joined, side.model.airspeed_m_s or nan)
     heard = {name: one for flight in state.flights for name, one in flight.channels.items()}
+    judged = (*state.maneuvers, *(side.maneuvers if side is not None else ()))
     return Flown(
         accepted=accepted,
         tests=tests,
@@ -88,6 +96,10 @@ def flown_of(flights: WholeFlights, aircraft: Aircraft, gap: Mapping[AxisName, M
         alarms=tuple(_alarms(state)),
         gap=gap,
         trim=trim,
+        airspeeds_m_s={
+            axis: model.airspeed_m_s for axis, model in models.items() if model and model.airspeed_m_s
+        },
+        true_over_read=true_over_read(one.maneuver.channels for one in judged),
     )
 
 

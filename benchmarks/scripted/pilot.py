@@ -7,7 +7,7 @@ import struct
 import subprocess
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -143,36 +143,35 @@ def airborne(
     os.environ["MAVLINK20"] = "1"
     from pymavlink import mavutil
 
-    _install(script, folder, airframe)
-    port = _free_port()
-    words = [
-        "./arduplane",
-        "--model",
-        airframe.model,
-        "--speedup",
-        SPEEDUP,
-        "--home",
-        "-35.36,149.16,584,353",
-    ]
+    install(script, folder, airframe)
+    port = free_port()
+    with (
+        simulator(folder, airframe.model, port, SPEEDUP),
+        (folder / "flight.tlog").open("wb") as tlog,
+        closing(_connected(mavutil, port)) as link,
+    ):
+        pilot = Pilot(link, tlog, longest_s=longest_s, second_port=port + _SECOND)
+        _take_off(pilot)
+        yield pilot
+
+
+@contextmanager
+def simulator(folder: Path, model: str, port: int, speedup: str) -> Iterator[None]:
+    """Run ArduPlane in its folder, and end the process afterwards."""
+    words = ["./arduplane", "--model", model, "--speedup", speedup, "--home", "-35.36,149.16,584,353"]
     words += ["--defaults", "plane.parm", "--wipe", "--base-port", str(port)]
-    with (folder / "sitl.out").open("wb") as said, (folder / "flight.tlog").open("wb") as tlog:
+    with (folder / "sitl.out").open("wb") as said:
         process = subprocess.Popen(
             words, cwd=folder, stdin=subprocess.DEVNULL, stdout=said, stderr=said,
             env=os.environ | {"PLANE_COEFFICIENTS": "plane.json"},
         )  # fmt: skip
-        link = None
         try:
-            link = _connected(mavutil, port)
-            pilot = Pilot(link, tlog, longest_s=longest_s, second_port=port + _SECOND)
-            _take_off(pilot)
-            yield pilot
+            yield
         finally:
-            if link is not None:
-                link.close()
             _end(process)
 
 
-def _free_port() -> int:
+def free_port() -> int:
     """Return a TCP port that is free, as is that of the second link, without which ArduPlane ends."""
     while True:
         with socket.socket() as first, socket.socket() as second, suppress(OSError, OverflowError):
@@ -192,7 +191,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
         process.wait(10)
 
 
-def _install(script: str, folder: Path, airframe: Airframe) -> None:
+def install(script: str, folder: Path, airframe: Airframe) -> None:
     """Write all that ArduPlane reads in its folder."""
     (folder / "scripts").mkdir()
     (folder / "scripts" / "inflight.lua").write_text(script, encoding="utf-8")

@@ -1,5 +1,6 @@
 """Outcomes of expectations, from a hand-made flight."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
@@ -104,6 +105,24 @@ def test_gap_pause_and_alarms_hold_up_to_their_limits():
 def test_an_alarm_too_many_is_told():
     (told,) = check(Expectations(alarms=0), FLOWN, Aircraft())
     assert (told.holds, told.found) == (False, "1: the clock jumped")
+
+
+def test_a_model_is_compared_at_the_air_speed_of_the_flight():
+    flown = replace(FLOWN, airspeeds_m_s={"pitch": 22.0}, true_over_read=1.1)
+    near = {"M_alpha": Near(origin="model", within=1.0), "M_q": Near(origin="model", within=0.1)}
+    model = {"M_alpha": -50.0 * 4.0, "M_q": -4.0 * 2.0}
+    for reference, holds in ((40.0, True), (20.0, False), (None, False)):
+        aircraft = Aircraft(model=model, reference_airspeed_m_s=reference)
+        outcomes = check(Expectations(derivatives=near), flown, aircraft)
+        assert [one.holds for one in outcomes] == [holds, holds]
+
+
+def test_another_log_is_compared_at_the_air_speed_of_the_flight():
+    flown = replace(FLOWN, airspeeds_m_s={"pitch": 22.0})
+    other = replace(FLOWN, airspeeds_m_s={"pitch": 44.0}, derivatives={"M_alpha": Measured(-200.0, 2.0)})
+    near = {"M_alpha": Near(origin="log", within=1.0)}
+    (outcome,) = check(Expectations(derivatives=near), flown, Aircraft(), other)
+    assert outcome.holds
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,6 @@ from advisor.scripts.table import Source, script_table
 from benchmarks.scripted.flight import ScriptFlight, fly_table, level
 from benchmarks.scripted.measured import TELEMETRY_MS, deflections, flown_of
 from benchmarks.scripted.pilot import SITL, SlowMachineError, airborne
-from tests.conftest import Advisor
 
 pytestmark = [
     pytest.mark.skipif(
@@ -118,18 +117,6 @@ def test_a_found_input_begins_where_it_was_announced(
     _on_time(flight, number)
     begin_s = flight.pilot.at(f"ADVISOR BEGIN {number} ")
     assert maneuvers[number - 1].span.start_s == pytest.approx(begin_s, abs=0.15)
-
-
-@pytest.mark.study
-def test_expectations_of_the_flight_hold_for_it_and_more_fail(
-    flight: ScriptFlight, advisor: Advisor, tmp_path: Path
-) -> None:
-    file = tmp_path / "expectations.yaml"
-    assert advisor("expect", flight.tlog, file, "--write").returncode == 0
-    told = advisor("expect", flight.tlog, file)
-    assert (told.returncode, "accepted." in told.stdout) == (0, True), told.stdout
-    file.write_text("accepted: {pitch: 2}\n")
-    assert advisor("expect", flight.tlog, file).returncode == 1
 
 
 @pytest.mark.study
