@@ -53,7 +53,7 @@ LIMITS = {
     "constants that decide": 25,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 16631,
+    "lines of estimation": 16629,
     "files naming an axis": 114,
 }
 """Upper bound of each count."""

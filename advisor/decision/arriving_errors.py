@@ -51,9 +51,9 @@ def arriving(flying: Maneuver, until_s: float, pitch: Known, side: Known) -> Arr
 def up_to(until_s: float, flying: Maneuver, since_s: float = -inf) -> Maneuver:
     """Return an input with its samples between two vehicle times, s since boot."""
     from_s = max(flying.span.record_from_s, since_s)
-    cut = {name: c.cut(from_s, until_s) for name, c in flying.channels.items()}
+    cut = flying.between(from_s, until_s)
     span = replace(flying.span, end_s=until_s, last_step_s=min(flying.span.last_step_s, until_s))
-    return replace(flying, span=span, channels={name: c for name, c in cut.items() if len(c) > 2})
+    return replace(cut, span=span, channels={name: c for name, c in cut.channels.items() if len(c) > 2})
 
 
 def _added(

@@ -14,7 +14,7 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.maneuver import BEFORE_S, Maneuver
 from advisor.flight.signals.motion import channel_at
 from advisor.model.outputs import LOCAL, N_PARAMETERS, N_SHARED, OUTPUTS
 from advisor.model.response import Grid, respond
@@ -31,9 +31,6 @@ LONGEST_PROMISE = 2.0
 """Largest change of -2 log likelihood that a Gauss-Newton step may promise. Beyond this change the model is
 solved again over all samples. Nine of ten updated estimates then lie within 0.17 standard deviations of the
 complete ones (the first manoeuvre of ``logs/arduplane-calm.tlog``)."""
-REST_S = 2.0
-"""Length in s of the command before the new samples that is kept for the servo. Earlier commands no longer
-move the servo."""
 NEARLY_SINGULAR = 1e12
 """Largest sum of relative variances for a well-conditioned matrix. Above this sum rounding errors
 dominate."""
@@ -137,8 +134,8 @@ class UpdatableSolution:
     def _grid(self, maneuver: Maneuver, new: Mapping[str, Signal]) -> tuple[Measurements, Grid]:
         """Return the new samples laid out for the kernel, starting at the end of the solution."""
         problem, last = self._solution.problem, self._solution.assembly.grid
-        command = maneuver.channels["elevator"]
-        begin = int(np.searchsorted(command.t, self._end_s - REST_S))
+        command = maneuver.command("elevator")
+        begin = int(np.searchsorted(command.t, self._end_s - BEFORE_S))
         flown = command.t[begin:], command.y[begin:]
         known = {"end": Signal(np.array([self._end_s]), np.empty(0)), **new}
         t = events_of(known, [problem.servo.grid(flown[0])])

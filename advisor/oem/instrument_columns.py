@@ -50,7 +50,7 @@ def instrument_columns(
     """
 
     def of_command(m: int, record: Record, t: FloatArray) -> InputChange:
-        servo = problem.servo.changes(record.elevator.t, record.elevator.y, t, record.held)
+        servo = problem.servo.changes(*record.command, t, record.held)
         return stacked([servo, _steady(problem, assembly, m)], axis=1)
 
     columns = input_columns(problem, assembly, shared, local, of_command)

@@ -11,7 +11,7 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.atmosphere import AirData
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.sines import command_of
-from advisor.flight.signals.motion import channel_at, gravity_in_plane, integrated
+from advisor.flight.signals.motion import channel_at, gravity_in_plane
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
 from advisor.flight.signals.true_airspeed import SEA_LEVEL_DENSITY_KG_M3, true_over_read
@@ -52,7 +52,7 @@ class Prepared:
     alpha_left_out: str
     """Reason why no measured angle of attack is used, in words; empty if one is used."""
     missing: tuple[str, ...]
-    """Outputs that no manoeuvre has, of a_z and theta."""
+    """Outputs that not every manoeuvre has: a_z, or none."""
     airspeed_lag_s: float
     """Mean delay of the air speed sensor over the manoeuvres, s."""
     airspeed_m_s: float | None
@@ -62,14 +62,12 @@ class Prepared:
 def prepare(
     maneuvers: Sequence[Maneuver],
     aircraft: Aircraft,
-    outputs: Sequence[str] = OUTPUTS,
     alpha_left_out: str | None = None,
 ) -> Prepared | NoEstimate:
     """Return the estimation problem, or the reason why there is none.
 
     Parameters
     ----------
-    outputs : outputs that are used where measured; q always is, and alpha unless the motion contradicts it.
     alpha_left_out : result of ``why_left_out``, where it is known already.
     """
     for maneuver in maneuvers:
@@ -84,7 +82,7 @@ def prepare(
         alpha_left_out = ""
     if alpha_left_out:
         return _without_alpha(maneuvers, aircraft, alpha_left_out)
-    usable = [name for name in outputs if name != "alpha" and all(_has(m.channels, name) for m in maneuvers)]
+    usable = [name for name in OUTPUTS if name != "alpha" and all(_has(m.channels, name) for m in maneuvers)]
     speeds = [airspeed(m.channels) for m in maneuvers]
     if any(speed is None for speed in speeds) and aircraft.airspeed_m_s is None:
         usable = [name for name in usable if name != "a_z"]
@@ -97,7 +95,7 @@ def prepare(
         ["alpha", *usable],
         renewed_hz=min((len(alpha.t) - 1) / float(alpha.t[-1] - alpha.t[0]) for alpha, _ in alphas),
         alpha_held=any(held for _, held in alphas),
-        missing=tuple(name for name in outputs if name not in ("alpha", *usable)),
+        missing=tuple(name for name in OUTPUTS if name not in ("alpha", *usable)),
     )
 
 
@@ -234,8 +232,6 @@ def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Seq
     normal = gravity = None
     if "a_z" in usable:
         outputs["a_z"] = signal_of(channels["a_z"])
-    if "theta" in usable:
-        outputs["theta"] = _level(channels)
     if _has(channels, "theta"):
         theta = signal_of(channels["theta"])
         bank = channel_at("bank", theta.t, channels)
@@ -244,6 +240,7 @@ def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Seq
         gravity = Signal(theta.t, GRAVITY_M_S2 * np.cos(theta.y) * np.cos(bank))
     return Record(
         elevator=signal_of(command_of(maneuver, "elevator")),
+        before=signal_of(before) if (before := maneuver.before.get("elevator")) else None,
         outputs=outputs,
         airspeed=speed,
         normal_gravity=normal,
@@ -264,18 +261,6 @@ def _sideslip_turn(channels: Mapping[str, Channel], alpha: Signal) -> Signal | N
     beta, angle = signal_of(channels["beta"]), alpha.at(t)
     slip = beta.at(t) - (float(np.mean(beta.y)) if _is_computed(channels["beta"]) else 0.0)
     return Signal(t, -np.tan(slip) * (p * np.cos(angle) + channel_at("r", t, channels) * np.sin(angle)))
-
-
-def _level(channels: Mapping[str, Channel]) -> Signal:
-    """Return the pitch angle at level wings: θ minus the integral of (cos φ - 1)·q - r·sin φ."""
-    theta = signal_of(channels["theta"])
-    if not _has(channels, "bank"):
-        return theta
-    bank = signal_of(channels["bank"]).at(theta.t)
-    rate = (np.cos(bank) - 1.0) * signal_of(channels["q"]).at(theta.t)
-    if _has(channels, "r"):
-        rate = rate - np.sin(bank) * signal_of(channels["r"]).at(theta.t)
-    return Signal(theta.t, theta.y - integrated(theta.t, rate))
 
 
 def _no_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> NoEstimate:

@@ -50,11 +50,18 @@ class Record:
     an unknown sideslip."""
     held: bool = False
     """Whether the input is held between its stamps instead of linear."""
+    before: Signal | None = None
+    """Elevator command before the record, which still moves the servo at its begin."""
     signals: Mapping[str, Signal] = field(default_factory=dict)
     """Further signals that added terms need, by their names in expressions."""
     inferred_alpha: Signal | None = None
     """Angle of attack from the motion, rad, if α is not measured. The search starts from the inferred α, but
     no residual uses it."""
+
+    @property
+    def command(self) -> Signal:
+        """Elevator command in rad, with its samples before the record."""
+        return self.elevator.after(self.before)
 
     @property
     def alpha(self) -> Signal:
@@ -187,7 +194,7 @@ def _piece(record: Record, problem: OutputErrorProblem) -> Piece:
     t = events_of(outputs, [problem.servo.grid(record.elevator.t)])
     step = np.diff(t)
     middle = t[:-1] + step / 2.0
-    at_event, start, arrival = problem.servo.move(record.elevator.t, record.elevator.y, t, record.held)
+    at_event, start, arrival = problem.servo.move(*record.command, t, record.held)
     added = _added(record, problem, middle, (start[:-1] + arrival) / 2.0) if problem.terms else None
     ratio, airspeed, acceleration = np.ones(len(step)), np.ones(len(t)), np.zeros(len(t))
     known = np.zeros(len(step))

@@ -26,6 +26,10 @@ class Signal(NamedTuple):
         """Return the values at ``t``; beyond the ends, the first or the last value."""
         return np.interp(t, self.t, self.y)
 
+    def after(self, before: "Signal | None") -> "Signal":
+        """Return the signal after its samples before a record, if there are any."""
+        return self if before is None else Signal(*map(np.append, before, self))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Laid:

@@ -78,7 +78,7 @@ def _from_force(problem: OutputErrorProblem) -> tuple[FloatArray, FloatArray]:
     moments, slopes, forces, levels = [], [], [], []
     for record in problem.records:
         q, force = finite(record.outputs["q"]), finite(record.outputs["a_z"])
-        surface, ratio = problem.servo.signal(record.elevator), _ratio(record, problem, q.t)
+        surface, ratio = problem.servo.signal(record.command), _ratio(record, problem, q.t)
         begin = float(q.t[0])
         n = Signal(force.t, force.y / _speed(record, force.t))
         columns = [
@@ -122,7 +122,7 @@ def _regressors(
     """Return the integrals of α, q, δe from the record's first stamp to ``t``, shape (n, 3), and of 1 and s,
     shape (n, 2)."""
     alpha, q = finite(record.alpha), finite(record.outputs["q"])
-    surface = problem.servo.signal(record.elevator)
+    surface = problem.servo.signal(record.command)
     begin = min(signal.t[0] for signal in record.outputs.values())
     ratio = _ratio(record, problem, t)
     powers = (2, 1, 2, 2) if moment else (1, 0, 1, 1)

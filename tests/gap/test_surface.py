@@ -150,3 +150,16 @@ def test_a_servo_at_its_limit_is_no_later_for_steps_that_lie_anywhere_between_tw
     found = diagnose(maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers, Aircraft())
     (cause,) = [c for c in found.causes if c.present]
     assert cause.effect == "actuator_rate_limit"
+
+
+@pytest.mark.parametrize("play", [0.0, 0.01])
+@pytest.mark.parametrize("held", [True, False])
+def test_a_command_before_the_record_moves_the_surface_until_it_begins(held: bool, play: float) -> None:
+    rng = np.random.default_rng(10)
+    t_u = np.arange(-1.0, DURATION, 0.02)
+    u = rng.uniform(-0.1, 0.1, len(t_u)).cumsum() * 0.2
+    p = np.zeros(len(ENTRIES))
+    p[INDEX["lag_s"]], p[INDEX["half_play_rad"]] = 0.14, play
+    whole = surface(H, round((1.0 + DURATION) / H), t_u + 1.0, u, held, 0.0, p)
+    found = surface(H, round(DURATION / H), t_u, u, held, 0.0, p)
+    assert found == pytest.approx(whole[round(1.0 / H) :], abs=1e-9)

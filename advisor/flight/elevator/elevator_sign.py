@@ -49,7 +49,7 @@ class ElevatorSign:
 
 def turned(maneuver: Maneuver) -> Maneuver:
     """Return the manoeuvre with the elevator's deflections reversed in sign."""
-    elevator, kind = maneuver.channels["elevator"], maneuver.span.kind
+    kind = maneuver.span.kind
     # A script states the name of its input by the motion of the nose.
     is_named = maneuver.span.closed_by == MARKED["script"]
     span = replace(
@@ -58,12 +58,7 @@ def turned(maneuver: Maneuver) -> Maneuver:
         steps=tuple((onset, -level) for onset, level in maneuver.span.steps),
     )
     scale = maneuver.scale and replace(maneuver.scale, reversed=not maneuver.scale.reversed)
-    return replace(
-        maneuver,
-        span=span,
-        scale=scale,
-        channels={**maneuver.channels, "elevator": replace(elevator, y=-elevator.y)},
-    )
+    return replace(maneuver.deflected(np.negative), span=span, scale=scale)
 
 
 def answers_backwards(maneuver: Maneuver) -> bool | None:

@@ -4,8 +4,8 @@ Two records contain one manoeuvre if both show equal pitch angles at equal vehic
 flights of one schedule differ by more than a log's resolution.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -14,6 +14,13 @@ from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
 from advisor.flight.vehicle.surfaces import Scale
+from advisor.process.arrays import FloatArray
+
+BEFORE_S = 2.0
+"""Length in s of the command before a record that is kept for the servo. Earlier commands no longer move
+it."""
+
+CONTROLS = ("elevator", "aileron", "rudder")
 
 InputKind = Literal[
     "3-2-1-1",
@@ -92,6 +99,9 @@ class Maneuver:
     scale: Scale | None = None
     """Scale of the elevator's pulses, with the direction that was found. None for a calibrated elevator and
     for several outputs."""
+    before: Mapping[str, Channel] = field(default_factory=dict)
+    """Commands in the ``BEFORE_S`` before the record, by control. They still move a servo with a lag when the
+    record begins."""
 
     @property
     def power_on(self) -> tuple[int, int]:
@@ -108,8 +118,35 @@ class Maneuver:
             end_s=self.span.end_s + by_s,
             steps=tuple((onset + by_s, level) for onset, level in self.span.steps),
         )
-        channels = {name: replace(c, t=c.t + by_s) for name, c in self.channels.items()}
-        return replace(self, span=span, channels=channels)
+        channels, before = (
+            {name: replace(c, t=c.t + by_s) for name, c in part.items()}
+            for part in (self.channels, self.before)
+        )
+        return replace(self, span=span, channels=channels, before=before)
+
+    def between(self, from_s: float, to_s: float) -> "Maneuver":
+        """Return the manoeuvre with its samples between two vehicle times, s, which are within its record."""
+        channels = {name: c.cut(from_s, to_s) for name, c in self.channels.items()}
+        commands = {name: self.command(name) for name in CONTROLS if name in channels}
+        before = {
+            name: c.cut(from_s - BEFORE_S, np.nextafter(from_s, -np.inf)) for name, c in commands.items()
+        }
+        return replace(self, channels=channels, before={name: c for name, c in before.items() if len(c)})
+
+    def command(self, control: str) -> Channel:
+        """Return the command of a control, with its samples before the record."""
+        channel, before = self.channels[control], self.before.get(control)
+        if before is None:
+            return channel
+        return replace(channel, t=np.append(before.t, channel.t), y=np.append(before.y, channel.y))
+
+    def deflected(self, by: Callable[[FloatArray], FloatArray]) -> "Maneuver":
+        """Return the manoeuvre with ``by`` applied to all deflections of the elevator."""
+        channels, before = (
+            {name: replace(c, y=by(c.y)) if name == "elevator" else c for name, c in part.items()}
+            for part in (self.channels, self.before)
+        )
+        return replace(self, channels=channels, before=before)
 
     def rescaled(self, scale: Scale) -> "Maneuver":
         """Return the manoeuvre with the elevator's pulses converted by another scale, in the direction found.
@@ -119,18 +156,13 @@ class Maneuver:
         elevator = self.channels.get("elevator")
         if elevator is None or before == after:
             return replace(self, scale=after)
-        y = after.deflection(before.pulses(elevator.y))
         levels = elevator.y[0] + np.array([0.0, *(level for _, level in self.span.steps)])
         trim, *stepped = after.deflection(before.pulses(levels)).tolist()
         steps = tuple(
             (onset, level - trim) for (onset, _), level in zip(self.span.steps, stepped, strict=True)
         )
-        return replace(
-            self,
-            scale=after,
-            span=replace(self.span, steps=steps),
-            channels={**self.channels, "elevator": replace(elevator, y=y)},
-        )
+        whole = self.deflected(lambda y: after.deflection(before.pulses(y)))
+        return replace(whole, scale=after, span=replace(self.span, steps=steps))
 
 
 _AGREE_RAD = 3e-4

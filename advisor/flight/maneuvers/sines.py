@@ -18,8 +18,9 @@ _PARTS = 4
 
 
 def command_of(maneuver: Maneuver, control: str) -> Channel:
-    """Return the command of a control. A command that consists of sines gets further points between its
-    samples.
+    """Return the command of a control, without the samples before the record.
+
+    A command that consists of sines gets further points between its samples.
     """
     command = maneuver.channels[control]
     if maneuver.span.kind != "multisine":

@@ -28,7 +28,7 @@ from advisor.flight.maneuvers.binned import HISTORY_S
 from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
 from advisor.flight.maneuvers.ground import why_on_ground
 from advisor.flight.maneuvers.loop import PITCH, ROLL, YAW, Loop
-from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.maneuvers.maneuver import BEFORE_S, CONTROLS, Maneuver, Span
 from advisor.flight.maneuvers.markers import marked_span
 from advisor.flight.maneuvers.marks import Mark, Marks
 from advisor.flight.maneuvers.purpose import Because, judged
@@ -319,8 +319,9 @@ class Cutting:
         found = {**examined.channels, **self._air(span, up_to_order)}
         mode = self._stay(_middle_s(span))[1]
         maneuver = Maneuver(
-            axis.counted + 1, boot, span, found, mode, findings=examined.findings, data_notes=tuple(notes)
-        )
+            axis.counted + 1, boot, span, found, mode, findings=examined.findings, data_notes=tuple(notes),
+            before=self._before(found, span.record_from_s, up_to_order),
+        )  # fmt: skip
         return maneuver, examined.evidence
 
     def side_counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
@@ -348,6 +349,18 @@ class Cutting:
                 channels[name] = sound.channel
                 notes += sound.said
         return channels, notes
+
+    def _before(
+        self, recorded: Mapping[str, Channel], record_from_s: float, up_to_order: int | None
+    ) -> dict[str, Channel]:
+        """Return the commands before a record, from the same sources as in the record."""
+        found = {}
+        for name in recorded.keys() & set(CONTROLS):
+            until_s = np.nextafter(recorded[name].t[0], -np.inf)
+            before = self._tracks.cut(name, record_from_s - BEFORE_S, until_s, up_to_order)
+            if before is not None and before.source == recorded[name].source:
+                found[name] = repaired(counted_once(before)).channel
+        return found
 
     def _air(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
         """Return the channels of a record for the air density and the wind."""

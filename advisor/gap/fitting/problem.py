@@ -193,9 +193,8 @@ class EffectProblem:
         The disturbance, shape (4, n), enters each simulation multiplied by its factor in ``doses``, shape
         (k,).
         """
-        stamps = flight.t_held if self.held else flight.t_u
-        command = (flight.h, flight.n, stamps, flight.u, self.held, flight.u_trim)
-        moved = surfaces(LAYOUT, *command, p)
+        t, u = flight.command(self.held)
+        moved = surfaces(LAYOUT, flight.h, flight.n, t, u, self.held, flight.u_trim, p)
         doses = np.zeros(len(p)) if doses is None else doses
         return simulate(LAYOUT, flight.h, *moved, LANES, flight.slow, disturbance, doses, flight.trim, p)
 

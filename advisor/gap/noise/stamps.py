@@ -7,6 +7,7 @@ than the simulation's grid.
 """
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem, counts
@@ -62,16 +63,10 @@ def _jerks_of(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray]:
         _read(
             problem,
             i,
-            [_largest_near(np.abs(np.diff(y, 2, prepend=y[0], append=y[-1])), reach) for y in grid],
+            [maximum_filter1d(abs(np.diff(y, 2, prepend=y[0], append=y[-1])), 2 * reach + 1) for y in grid],
         )
         for i, grid in enumerate(_flown(problem, fitted))
     ]
-
-
-def _largest_near(y: FloatArray, reach: int) -> FloatArray:
-    """Return the running maximum over ``reach`` steps to either side."""
-    padded = np.pad(y, reach)
-    return np.asarray(np.max([padded[k : k + len(y)] for k in range(2 * reach + 1)], axis=0))
 
 
 def _flown(problem: EffectProblem, fitted: EffectFit) -> list[FloatArray]:

@@ -33,6 +33,8 @@ class PreparedManeuver:
     """Time after which each command value was held: its stamp, or the middle of the lost stamps before it."""
     u: FloatArray
     """Elevator command at its stamps, rad."""
+    before: Signal
+    """Elevator command before the record, which still moves the servo at its begin, rad."""
     u_trim: float
     slow: FloatArray
     """Shape (7, n) on the grid: speed, a_x, bank, throttle, height, (thrust − drag)/weight, r sin φ."""
@@ -50,6 +52,10 @@ class PreparedManeuver:
     speed_error_factor: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     """Factor of the covariance of the air speed's error, m/s: shape (3, 3) from
     ``airspeed.speed_error_factors``, (1, 1) for the level alone, (0, 0) where unknown."""
+
+    def command(self, held: bool) -> Signal:
+        """Return the elevator command with its samples before the record; ``held`` between its stamps?"""
+        return Signal(self.t_held if held else self.t_u, self.u).after(self.before)
 
     @property
     def alpha_trim(self) -> float:

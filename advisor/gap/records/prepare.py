@@ -178,6 +178,7 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
                                    throttle=throttle - float(np.mean(throttle[:20]))))  # fmt: skip
     outputs = outputs_of(m)
     t_u, u = m.channels["elevator"].t - start, m.channels["elevator"].y
+    before = m.before.get("elevator") or m.channels["elevator"].cut(-np.inf, -np.inf)
     lead = (t_u >= 0.0) & (t_u < max(first - 0.02, 0.1))
     u_trim = float(np.median(u[lead])) if np.any(lead) else float(u[0])
 
@@ -188,7 +189,8 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
     elif "theta" in m.channels:
         trim[THETA_FROM] = float(theta_at[0])
     return PreparedManeuver(
-        m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, held_from(t_u), u, u_trim,
+        m.number, start, first, m.span.last_step_s - start, STEP_S, n, t_u, held_from(t_u), u,
+        Signal(before.t - start, before.y), u_trim,
         slow, trim, outputs, edges_of(t_u, u),
     )  # fmt: skip
 

@@ -47,8 +47,8 @@ def held_from(t: FloatArray) -> FloatArray:
     return np.asarray(t - np.append(0.0, 0.5 * _lost(t)))
 
 
-def step_unseen(maneuver: Maneuver) -> bool:
-    """Return whether a step of the command may lie in a gap of the log, so that its time is unknown.
+def _steps_seen(maneuver: Maneuver) -> bool:
+    """Return whether no step of the command may lie in a gap of the log, where its time is unknown.
 
     A whole pulse may lie in a gap if the command is equal on both sides.
     """
@@ -58,7 +58,7 @@ def step_unseen(maneuver: Maneuver) -> bool:
     hole = max(_HOLE_S, _HOLE * float(np.median(interval)))
     active = interval[(t[1:] > span.start_s) & (t[:-1] < span.last_step_s)]
     changed, longest = np.max(edges[:, 2], initial=0.0), np.max(active, initial=0.0)
-    return bool(changed > hole or longest > max(hole, _PULSE_S))
+    return not (changed > hole or longest > max(hole, _PULSE_S))
 
 
 def _lost(t: FloatArray) -> FloatArray:
@@ -158,10 +158,6 @@ def _is_recorded(m: Maneuver) -> bool:
 def _departed(m: Maneuver) -> bool:
     alpha = m.channels.get("alpha")
     return alpha is not None and len(alpha) > 0 and float(np.ptp(alpha.y)) >= DEPARTED_RAD
-
-
-def _steps_seen(m: Maneuver) -> bool:
-    return not step_unseen(m)
 
 
 def _has_alpha(m: Maneuver) -> bool:

@@ -88,7 +88,7 @@ def surface(
 
     The command consists of pieces that end at its stamps. Nonlinear parts take every piece separately, so
     that an edge inside a step keeps its area. Linear parts use the mean of the command over the step. The
-    mean deflection is smooth in the delay.
+    mean deflection is smooth in the delay. A command before the first step moves the servo until then.
     """
     out = np.empty(n)
     k = 0
@@ -109,7 +109,7 @@ def surface(
     servo = np.nan
     link = way = 0.0
     last = len(u) - 1
-    for i in range(n):
+    for i in range(min(0, int(np.floor(t_u[0] / h))), n):
         at, b = i * h - late, (i + 1) * h - late
         while k > 0 and t_u[k] > at:
             k -= 1
@@ -133,7 +133,7 @@ def surface(
             total += mean * (upto - at)
             at = upto
         if by_pieces:
-            out[i] = area / h
+            out[max(i, 0)] = area / h
             continue
         want = total / h
         if omega > 0.0:
@@ -151,7 +151,7 @@ def surface(
             before = link
             link = min(max(link, servo - play), servo + play)
             mean = 0.5 * (before + link)
-        out[i] = mean
+        out[max(i, 0)] = mean
     return out
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import hypot
 
 import numpy as np
 
@@ -169,15 +170,11 @@ def with_model_errors(cause: Cause, problem: EffectProblem) -> Cause:
     """Return the cause with errors that no fit shows: those of the low-order description and of the time
     grid."""
     widened = {
-        name: Value(v.value, float(np.hypot(v.std, _model_error(name, v.value))))
+        name: Value(v.value, hypot(v.std, _SHAPE_ERROR * v.value, _TIME_ERROR_S * (name in _TIMES)))
         for name, v in cause.parameters.items()
         if v.std > 0.0
     }
     return _with_edge_error(replace(cause, parameters={**cause.parameters, **widened}), problem)
-
-
-def _model_error(name: str, value: float) -> float:
-    return float(np.hypot(_SHAPE_ERROR * value, _TIME_ERROR_S if name in _TIMES else 0.0))
 
 
 def _with_edge_error(cause: Cause, problem: EffectProblem) -> Cause:

@@ -69,7 +69,6 @@ def laid_out(flown: Flown, setting: Setting) -> LateralAssembly:
         return float(setting[place][0]) if place in setting else 0.0
 
     base = flown.problem
-    outputs = LATERAL.outputs
     problem = replace(
         base,
         airspeed_excess=whole(AIR_SPEED),
@@ -77,19 +76,20 @@ def laid_out(flown: Flown, setting: Setting) -> LateralAssembly:
         records=tuple(_driven(flown, m, setting) for m in range(len(flown))),
         servos={name: Servo() for name in LATERAL.inputs},
         command_delay_s=whole(COMMAND),
-        delays_s={name: whole((name, "skew_s")) for name in outputs},
+        delays_s={name: whole((name, "skew_s")) for name in LATERAL.outputs},
         beta_arm_m=base.beta_arm_m + whole(("beta", "arm_m")),
         accelerometer_arm_m=base.accelerometer_arm_m + whole(("a_y", "arm_m")),
     )
     assembly = assemble_lateral(problem, causes=())
-    scale = np.array([1.0 + whole((name, "scale")) for name in outputs])
+    scale = np.array([1.0 + whole((name, "scale")) for name in LATERAL.outputs])
     return replace(assembly, grid=assembly.grid._replace(scale=scale))
 
 
 def _driven(flown: Flown, m: int, setting: Setting) -> LateralRecord:
     """Return record ``m`` with the deflections of its surfaces as inputs instead of the commands."""
     record = flown.problem.records[m]
-    return replace(record, inputs={name: deflection(flown, m, name, setting) for name in record.inputs})
+    moved = {name: deflection(flown, m, name, setting) for name in record.inputs}
+    return replace(record, inputs=moved, before={})
 
 
 def deflection(flown: Flown, m: int, control: str, setting: Setting) -> Signal:
@@ -98,7 +98,8 @@ def deflection(flown: Flown, m: int, control: str, setting: Setting) -> Signal:
     for (of, entry), values in setting.items():
         if of == control:
             p[INDEX[entry]] = values[m]
-    moved = _deflected(flown.problem.records[m].inputs[control], p)
+    record = flown.problem.records[m]
+    moved = _deflected(record.command(control), float(record.inputs[control].y[0]), p)
     throttle, share = flown.throttle[m], setting.get(PROPELLER)
     if throttle is None or share is None or control != "aileron" or share[m] == 0.0:
         return moved
@@ -106,14 +107,14 @@ def deflection(flown: Flown, m: int, control: str, setting: Setting) -> Signal:
     return Signal(t, moved.at(t) + share[m] * (throttle.at(t) - throttle.y[0]))
 
 
-def _deflected(command: Signal, p: FloatArray) -> Signal:
+def _deflected(command: Signal, trim: float, p: FloatArray) -> Signal:
     """Return the deflection that follows from a command; ``p`` (entries,) holds the servo's parameters."""
     late = float(p[INDEX["delay_s"]])
     if np.ptp(command.y) == 0.0:
         return Signal(command.t[[0, -1]], command.y[[0, -1]])
     if np.count_nonzero(p) == (late != 0.0):
         return Signal(command.t + late, command.y)
-    begin, trim = float(command.t[0]), float(command.y[0])
+    begin = float(command.t[0])
     n = int(np.ceil((command.t[-1] - begin) / LONGEST_STEP_S)) + 1
     mean = surface(LONGEST_STEP_S, n, command.t - begin, command.y, False, trim, p)
     t = begin + LONGEST_STEP_S * (np.arange(n, dtype=np.float64) + 0.5)

@@ -57,6 +57,7 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
                 inputs={
                     name: signal_of(command_of(m, name)) for name in LATERAL.inputs if has(m.channels, name)
                 },
+                before={name: signal_of(channel) for name, channel in m.before.items()},
                 outputs={name: signal_of(m.channels[name]) for name in outputs},
                 airspeed=speed,
                 alpha=_alpha(m, aircraft, left_out),

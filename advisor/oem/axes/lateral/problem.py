@@ -85,6 +85,12 @@ class LateralRecord:
     """Pitch rate, rad/s."""
     signals: Mapping[str, Signal] = field(default_factory=dict)
     """Further signals that added terms need, by their names in expressions."""
+    before: Mapping[str, Signal] = field(default_factory=dict)
+    """Commands before the record, which still move the servos at its begin."""
+
+    def command(self, name: str) -> Signal:
+        """Return the command of an input, rad, with its samples before the record."""
+        return self.inputs[name].after(self.before.get(name))
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,7 +266,7 @@ def _moved(
     changed = np.zeros((3, len(t), len(causes), len(LATERAL.inputs)))
     for j, name in enumerate(LATERAL.inputs):
         if name in record.inputs:
-            servo, command = problem.servo(name), record.inputs[name]
+            servo, command = problem.servo(name), record.command(name)
             inputs[:, :, j] = servo.course(*command, t)
             if causes:
                 its = [causes.index("command"), causes.index(name)]

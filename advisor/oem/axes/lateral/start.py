@@ -84,7 +84,7 @@ class _Motion:
         for name in LATERAL.inputs:
             still = name not in record.inputs
             self.signals[name] = (
-                np.zeros(len(t)) if still else problem.servo(name).signal(record.inputs[name]).at(t)
+                np.zeros(len(t)) if still else problem.servo(name).signal(record.command(name)).at(t)
             )
         self.has_force = "a_y" in record.outputs
         alpha, theta = record.alpha.at(t), record.theta.at(t)

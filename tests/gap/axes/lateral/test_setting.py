@@ -8,7 +8,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.axes.lateral.effects import block_of, side_effects, unseen
 from advisor.gap.axes.lateral.fit import Flying, Free, Point, outputs
-from advisor.gap.axes.lateral.setting import COMMAND, PROPELLER, Flown, laid_out
+from advisor.gap.axes.lateral.setting import COMMAND, PROPELLER, Flown, deflection, laid_out
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.effects.thrust_moment import EFFECT as THRUST
 from advisor.gap.inference.sizes import with_sizes
@@ -161,3 +161,16 @@ def test_servos_and_streams_have_equal_prior_widths_on_both_axes():
     shared = {key for key in pitch.keys() & side.keys() if key[0] != "accelerometer_offset"}
     assert {"actuator_lag", "attitude_skew", "pitch_rate_scale"} <= {effect for effect, _ in shared}
     assert all(pitch[key] == side[key] for key in shared)
+
+
+def test_a_lag_follows_the_command_before_the_record() -> None:
+    late = {("aileron", "lag_s"): np.array([0.14])}
+    cut = AILERON.inputs["aileron"].t > 1.02
+    early, record = (Signal(*(part[at] for part in AILERON.inputs["aileron"])) for at in (~cut, cut))
+    begun = replace(AILERON, inputs={**AILERON.inputs, "aileron": record}, before={"aileron": early})
+    moved, whole = (
+        deflection(Flown(LateralProblem((r,)), (THROTTLE,)), 0, "aileron", late).at(record.t)
+        for r in (begun, AILERON)
+    )
+    assert moved == pytest.approx(whole, abs=1e-4)
+    assert abs(moved[0] - record.y[0]) > 0.01
