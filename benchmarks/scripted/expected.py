@@ -24,7 +24,7 @@ FILES = Path(__file__).parent
 FLY = FILES.parents[1] / "docs" / "data" / "fly_script.py"
 INPUTS = 6
 """Number of inputs of the script's table."""
-SPEEDUPS = ("4", "1")
+SPEEDUPS = ("4", "2")
 """Simulated seconds in a second, one flight after the other until a flight's script was called in time."""
 LATE_MS = 120
 """Longest time between two calls of a script that flies steps of 200 ms, ms."""
