@@ -195,7 +195,6 @@ def _stop(so_far: Knowledge) -> str:
 
 def _held_back(so_far: Knowledge) -> str:
     name, share = so_far.holding_back, 0.01 * so_far.percent
-    times, _ = distinct_texts(share, 1.0, 1)
     if name in SPOKEN:
         if np.isinf(share):
             return f"the response in {SPOKEN[name]} cannot be predicted from these manoeuvres"
@@ -204,7 +203,13 @@ def _held_back(so_far: Knowledge) -> str:
     if np.isinf(share):
         reason = so_far.not_identifiable.get(name, "cannot be estimated from these manoeuvres")
         return f"{symbol(name)} {reason.removesuffix('.')}"
-    return f"the error of {symbol(name)} is {times} times its tolerance"
+    return f"the error of {symbol(name)} is {times_its_tolerance(share)}"
+
+
+def times_its_tolerance(share: float) -> str:
+    """Return an error over its tolerance in words: ``1.6 times its tolerance``."""
+    times, _ = distinct_texts(share, 1.0, 1)
+    return f"{times} times its tolerance"
 
 
 def evidence(so_far: Knowledge) -> tuple[str, ...]:

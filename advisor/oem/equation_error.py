@@ -22,7 +22,7 @@ from advisor.process.arrays import FloatArray
 
 CAVEAT = (
     "Equation error regresses the measured motion, with the servo lag and the delays of output error. Noise "
-    "in α and q biases it, and its intervals do not say so: decide by output error."
+    "in α and q biases these values, and their intervals leave the bias out: decide by output error."
 )
 _OF_PITCH = {"alpha": ("Z_alpha", "Z_q", "Z_delta_e"), "q": ("M_alpha", "M_q", "M_delta_e")}
 """Derivatives of each equation, by the output on its left side."""

@@ -65,7 +65,7 @@ class FlyingQualities:
     """Levels of MIL-F-8785C by category; empty if a required parameter is missing."""
     air: AirData
     airspeed_m_s: float | None
-    """Logged air speed of the derivatives, m/s."""
+    """Air speed of the derivatives as the aircraft reads it, m/s."""
     true_airspeed_m_s: float | None
     """True air speed in n/α, CAP and the coefficients, m/s."""
     left_out: Mapping[str, str] = field(default_factory=dict)
@@ -86,8 +86,8 @@ def flying_qualities(estimate: Estimate, air: AirData, reference: Reference) -> 
     reference
         Mass, chord, pitching inertia and centre of gravity, for static margin and neutral point.
     """
-    logged = estimate.airspeed_m_s
-    speed = air.true_speed(logged) if logged is not None else None
+    flown = estimate.airspeed_m_s
+    read, speed = (None, None) if flown is None else (air.read_speed(flown), air.true_speed(flown))
     found: dict[str, Quality] = {}
     left_out: dict[str, str] = {}
     functions = _functions(speed, reference)
@@ -99,7 +99,7 @@ def flying_qualities(estimate: Estimate, air: AirData, reference: Reference) -> 
             left_out[name] = quality
     together = [functions[name] for name in _OF_THE_CHART if name in found]
     correlation = _correlation(together, estimate)
-    return FlyingQualities(found, _levels(found), air, logged, speed, left_out, correlation)
+    return FlyingQualities(found, _levels(found), air, read, speed, left_out, correlation)
 
 
 def _correlation(functions: Sequence[_Function | str], estimate: Estimate) -> float | None:

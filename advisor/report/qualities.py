@@ -125,7 +125,7 @@ def _speeds(flown: FlyingQualities) -> str:
         return "an unknown air speed"
     if flown.air.speed_kind == "true":
         return f"{flown.true_airspeed_m_s:.1f} m/s true"
-    return f"{flown.airspeed_m_s:.1f} m/s as logged"
+    return f"{flown.airspeed_m_s:.1f} m/s as read"
 
 
 MODES: Mapping[str, tuple[str, str]] = {

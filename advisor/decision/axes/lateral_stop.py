@@ -19,6 +19,7 @@ from advisor.decision.conclusion import Criterion, concluded
 from advisor.decision.conditions import ALPHA_MARGIN, BOLDER, FULL_TRAVEL_RAD
 from advisor.decision.first_unit import shown_unit_s, side_unit_s
 from advisor.decision.heard import Heard, first_stop
+from advisor.decision.information import times_its_tolerance
 from advisor.decision.inputs import StepInput
 from advisor.decision.remaining import Share, until_usable, variance_scale
 from advisor.decision.tolerance import SHARE
@@ -240,7 +241,7 @@ class _SideTest:
             which = " and of the ".join(self.flown_fewer_than(CHECKED))
             return f"CONTINUE: one input of the {which} cannot show its own error; one more will."
         share = self.shares[worst]
-        said = f"{share:.0f} % of its tolerance" if isfinite(share) else "unknown"
+        said = times_its_tolerance(0.01 * share) if isfinite(share) else "unknown"
         return f"CONTINUE: the error of {symbol(worst)} is {said}."
 
     def next(self) -> NextInput:

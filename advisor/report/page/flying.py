@@ -53,7 +53,7 @@ def flying(content: Content) -> Iterator[Block]:
         )  # fmt: skip
     air = document["air"]
     logged, true = air["airspeed_m_s"], air["true_airspeed_m_s"]
-    speeds = "" if logged is None else f" Logged air speed {logged:.1f} m/s, true air speed {true:.1f} m/s."
+    speeds = "" if logged is None else f" Air speed {logged:.1f} m/s as read, {true:.1f} m/s true."
     yield Paragraph(
         f"{air['text'][0].upper()}{air['text'][1:]}.{speeds} The intervals hold the errors of the estimate, "
         "not those of air speed, density, mass and geometry.",

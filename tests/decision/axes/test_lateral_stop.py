@@ -41,7 +41,7 @@ def test_the_share_that_is_said_is_that_of_the_joint_interval():
     verdict = lateral_flight_test([estimate("aileron"), estimate("rudder")] * 2, joint, AIRCRAFT)
     share = 100.0 * 1.96 * 0.09 / 0.10  # two times the tolerance of 5 %
     assert np.isclose(verdict.by_rule["information"].parameter_percent["L_p"], share, rtol=1e-3)
-    assert "is 176 % of its tolerance" in verdict.sentence
+    assert "is 1.8 times its tolerance" in verdict.sentence
 
 
 def test_a_stop_that_the_crew_has_heard_stays():
