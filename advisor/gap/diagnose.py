@@ -10,7 +10,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.alpha_offset import least_offset_rad
 from advisor.gap.candidates.known import AIR, left_aside
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.inference.diagnose import infer
+from advisor.gap.inference.diagnose import Mirror, infer
 from advisor.gap.inference.engine import Progress
 from advisor.gap.inference.findings import Circumstances, Findings
 from advisor.gap.inference.prior import FIELD, FieldPrior
@@ -59,14 +59,15 @@ class Examined:
         return tuple(added.effect for added in self.findings.added)
 
 
-def diagnose(
+def examine(
     maneuvers: Sequence[Maneuver],
     aircraft: Aircraft,
     holdout: int | None = None,
     progress: Progress = lambda *_: None,
     prior: FieldPrior = FIELD,
-) -> Diagnosis:
-    """Diagnose the sim-to-real gap from flown manoeuvres.
+    mirror: Mirror = lambda *_: None,
+) -> Examined:
+    """Diagnose the sim-to-real gap from flown manoeuvres, with the findings behind the diagnosis.
 
     Parameters
     ----------
@@ -79,23 +80,8 @@ def diagnose(
         manoeuvre is held out in turn.
     progress
         Function that receives a sentence and the share of the work that is done, 0 to 1.
-
-    Raises
-    ------
-    UnusableInputError
-        No usable manoeuvre, or no angle of attack.
-    """
-    return examine(maneuvers, aircraft, holdout, progress, prior).diagnosis
-
-
-def examine(
-    maneuvers: Sequence[Maneuver],
-    aircraft: Aircraft,
-    holdout: int | None = None,
-    progress: Progress = lambda *_: None,
-    prior: FieldPrior = FIELD,
-) -> Examined:
-    """Return the diagnosis of ``diagnose`` together with its findings, for flights in a user's simulator.
+    mirror
+        Search for effects that only the user's simulator has.
 
     Raises
     ------
@@ -107,24 +93,13 @@ def examine(
     aircraft = _with_speed(usable_of(maneuvers), aircraft)
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
     maneuvers = alpha_by_motion([_without_offset(m, offset) for m in maneuvers], aircraft)
-    return _explained(maneuvers, aircraft, holdout, prior, progress)
-
-
-def _explained(
-    maneuvers: Sequence[Maneuver],
-    aircraft: Aircraft,
-    holdout: int | None,
-    prior: FieldPrior,
-    progress: Progress,
-) -> Examined:
     flights = prepare(maneuvers, aircraft)
     _refuse(flights, maneuvers)
     arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
     numbers = {flight.number for flight in flights.flights}
-    flown = [_without_dead_pitot(m) for m in maneuvers if m.number in numbers]
-    measured = "alpha" in flights.channels
-    checks = [check_alpha(m, aircraft.stated_airspeed_m_s, *arms) for m in flown if measured]
-    kinematics = combine(checks)
+    measured = maneuvers if "alpha" in flights.channels else ()
+    flown = [_without_dead_pitot(m) for m in measured if m.number in numbers]
+    kinematics = combine([check_alpha(m, aircraft.stated_airspeed_m_s, *arms) for m in flown])
     progress("fitting the simulator's model", 0.01)
     if kinematics.offset.stays and abs(kinematics.offset.rad) > least_offset_rad(kinematics.offset.std_rad):
         # The offset that the climb rate shows is removed first: the trim would carry it into the lift.
@@ -137,13 +112,12 @@ def _explained(
         aircraft = replace(aircraft, reference_airspeed_m_s=speed)
         flights = prepare(maneuvers, aircraft)
         problem, baseline = at_another_speed(problem, baseline, flights)
-    weight = weight_reading(flown) if measured else None
+    weight = weight_reading(flown)
     over_read = true_over_read(airspeed_scale_of(problem, baseline), weight)
     if over_read > 1.0:
         # An indicated air speed changes by less than the integral of the accelerations.
         flights = prepare(maneuvers, aircraft, over_read)
         problem, baseline = at_another_speed(problem, baseline, flights)
-    shear = wind_shear(flown, over_read) if measured else None
     notes = left_out([m for m in maneuvers if m.number not in numbers])
 
     def noted(diagnosis: Diagnosis, findings: Findings) -> Examined:
@@ -151,10 +125,10 @@ def _explained(
 
     if len(flights) == 1:
         return noted(*answer_of_one(problem, baseline, aircraft, kinematics))
-    found = infer(problem, baseline, aircraft, kinematics, prior, progress)
+    found = infer(problem, baseline, aircraft, kinematics, prior, progress, mirror)
     progress("measuring the gap", 0.97)
     aside = left_aside(given, aircraft.effects, () if found.sought_air.found is None else AIR)
-    circumstances = Circumstances(shear, weight, aside, speed is None)
+    circumstances = Circumstances(wind_shear(flown, over_read), weight, aside, speed is None)
     answer = partial(answer_of, found, aircraft, kinematics, holdout, circumstances)
     whole = noted(*answer())
     return replace(whole, fewer=lambda most: noted(*answer(most)), seen_in=lambda x: noted(*answer(seen=x)))

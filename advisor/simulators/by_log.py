@@ -8,7 +8,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.diagnose import diagnose
+from advisor.gap.diagnose import examine
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.mavlink.logs.formats import ENDINGS
@@ -70,7 +70,7 @@ def from_log(
         fault = interface_fault(replay) if replay is not None else None
         if fault is not None:
             raise fault.refuse(said)
-    diagnosis = diagnose(maneuvers, unknown)
+    diagnosis = examine(maneuvers, unknown).diagnosis
     effects = {effect: dict(sizes) for effect, sizes in diagnosis.effects.items()}
     lag = effects.pop("actuator_lag", None) if set(effects.get("actuator_lag", ())) == {"lag_s"} else None
     delay = effects.pop("transport_delay", None)

@@ -41,7 +41,7 @@ from advisor.simulators.flying import (
 from advisor.simulators.improved import EQUATIONS, in_simulator, where_it_acts
 from advisor.simulators.inputs import other_controls
 from advisor.simulators.linear import LinearSimulator
-from advisor.simulators.mirror import mirrored
+from advisor.simulators.mirror import Mirror, said_of_the_simulator
 from advisor.simulators.protocol import Condition, Inputs, Replay, Simulator
 from advisor.simulators.static_errors import trim_differences, with_static_errors
 from advisor.simulators.surrogate import Surrogate, surrogate_of
@@ -78,7 +78,7 @@ def compare(
     Parameters
     ----------
     maneuvers, holdout, progress, prior
-        Arguments as in ``advisor.gap.diagnose.diagnose``.
+        Arguments as in ``advisor.gap.diagnose.examine``.
     simulator
         User's own simulator.
     aircraft
@@ -124,24 +124,25 @@ def compare(
         holdout,
         lambda what, share: progress(what, _FLIES + (_DIAGNOSED - _FLIES) * share),
         prior,
+        Mirror(maneuvers, flying, replays, aircraft, as_flown),
     )
+    # Nothing can be added to a simulator that has an effect too much.
+    lacks = examined.findings.without is not None
     again = replace(flying, progress=lambda w, s: progress(w, _DIAGNOSED + (_FOUND - _DIAGNOSED) * s))
     if isinstance(simulator, LinearSimulator):
         reference = examined.findings.problem.flights.reference_m_s
         surrogate = replace(surrogate, reference_m_s=reference)
         again = replace(again, simulator=replace(simulator, reference_m_s=reference))
-    else:
+    elif not lacks:
         examined = where_it_acts(examined, again, surrogate, as_flown)
-    unseen = unseen_of(examined, holdout) if changes_something(examined.diagnosis) else None
+    corrects = changes_something(examined.diagnosis) and not lacks
+    unseen = unseen_of(examined, holdout) if corrects else None
     fly = partial(in_simulator, examined, flying=again, surrogate=surrogate, as_flown=as_flown)
     stays, flown = (examined, fly(None)) if unseen is None else without_worse(examined, unseen, fly)
     if unseen is not None and not changes_something(stays.diagnosis):
         unseen, flown = None, fly(None)
     diagnosis = _measured(stays, unseen, as_file, flown, as_flown)
-    if replays:
-        progress("searching for effects that only the simulator has", _FOUND)
-        mirror = mirrored(examined, maneuvers, flying, replays, aircraft, as_flown)
-        diagnosis = diagnosis if mirror is None else mirror.said(diagnosis)
+    diagnosis = said_of_the_simulator(examined, diagnosis)
     diagnosis = with_static_errors(diagnosis, examined, trims)
     notes = (*getattr(simulator, "notes", ()), *still_air_said(simulator, blown))
     return Compared(replace(diagnosis, notes=(*notes, *diagnosis.notes)), as_file, stays.findings)

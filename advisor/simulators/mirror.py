@@ -2,11 +2,10 @@
 
 A fit to the flight cannot remove such an effect from a simulator, because its size would be negative.
 Aircraft and simulator therefore exchange their roles. A quick fit to the simulator's own replays finds their
-likeliest effect, which is added to the surrogate. If the aircraft flies like that surrogate without the
-effect, the replays are diagnosed in full.
+likeliest effect. If the flight is likelier next to the simulator without that effect, the replays are
+diagnosed in full. The simulator without its effects is then one more explanation of the flight.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -15,15 +14,17 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
-from advisor.gap.alternative import Alternative, AlternativeEvidence, Contribution, together
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import with_known
-from advisor.gap.decision import Decision
+from advisor.gap.candidates.known import Effects, with_known
 from advisor.gap.diagnose import Examined, examine
+from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.measure import whole_gap
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
+from advisor.gap.inference.evidence import FlightProblem
+from advisor.gap.inference.pitch import PitchFlight, PitchModel
+from advisor.gap.inference.posterior import stated_as
 from advisor.gap.records.prepare import prepare
-from advisor.gap.result import VISIBLE, Cause, Diagnosis, GapVerdict, Value
+from advisor.gap.result import Cause, Diagnosis, Value
 from advisor.gap.search.baseline import base_entries, fit_baseline
 from advisor.gap.search.screen import Screen
 from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES
@@ -38,108 +39,145 @@ from advisor.simulators.protocol import Replay
 from advisor.simulators.rate_filter import cause_of, lateness, unfiltered
 from advisor.simulators.surrogate import trimmed_at
 from advisor.simulators.unseen import floor_of, predicted, unknown_offset
-from advisor.words.certainty import DECIDED, as_sure
+from advisor.words.certainty import as_sure
 from advisor.words.problems import UnusableInputError
 
 _BLOCKS = frozenset({"input", "alpha_sensor", "pitch_rate_sensor", "accelerometer", "timing"})
 """Blocks outside the physics: the actuator and the instruments."""
-_CLEARLY = 0.5
-"""Largest gap without the simulator's effect, relative to the gap of the simulator as given. A smaller
-difference between two fits of one flight is no evidence."""
+_ROUNDS = 8
+"""Numerical: number of Gauss-Newton steps next to another simulator."""
+_Sizes = tuple[Mapping[str, float], Effects]
+"""Derivatives of a simulator, and the effects that it has."""
 _MOTION = ("alpha", "q", "theta", "a_z")
-_IMPOSSIBLE = 1e-300
-"""Probability that replaces zero in log odds, so that the logarithm exists."""
 
 
 @dataclass(frozen=True)
-class Mirrored:
-    """A simulator with an effect that the aircraft lacks."""
+class Mirror:
+    """A simulator with its replays of the flight, searched for effects that the aircraft lacks."""
 
-    causes: tuple[Cause, ...]
-    """Effects of the simulator that the aircraft lacks, with negative sizes."""
-    before: float
-    after: float
-    """Gap of the simulator without these effects, with no parameter fitted to the flight."""
+    maneuvers: Sequence[Maneuver]
+    flying: Flying
+    replays: Sequence[Replay]
+    """Replays of the simulator without added effects; empty where the simulator is linear."""
+    aircraft: Aircraft
+    as_flown: Mapping[int, AsGiven]
+    """Difference of simulator and surrogate that the diagnosis removed, by manoeuvre number."""
 
-    def said(self, diagnosis: Diagnosis) -> Diagnosis:
-        """Return the diagnosis with the simulator's effects as its causes."""
-        removed = 100.0 * (1.0 - self.after / self.before)
-        first = self.causes[0]
-        sentence = f"{_said(first)}; without it the gap is {removed:.0f} % less."
-        where = replace(diagnosis.where, block=first.block, share=float(np.clip(removed / 100.0, 0.0, 1.0)))
-        simulated = diagnosis.in_simulator
-        if simulated is not None:
-            names = tuple(cause.effect for cause in self.causes)
-            simulated = replace(
-                simulated, after=simulated.before, percent=0.0, on_paper=simulated.on_paper or names
-            )
-        mine = Alternative("effect", first.effect, first.block)
-        known = diagnosis.evidence
-        evidence = _with_share(known, mine, first.probability) if known else ()
+    def __call__(self, flight: PitchFlight, plain: PitchModel, heat: float) -> PitchModel | None:
+        """Return the simulator without effects that the aircraft lacks; None without such effects.
+
+        ``plain`` is the flight's model next to the simulator as given, ``heat`` its temperature.
+        """
+
+        def beside(replays: Sequence[Replay], sizes: _Sizes) -> PitchModel:
+            problem = self._beside(flight.problem, replays, *sizes)
+            point = replace(plain.fitted.point, derivatives=problem.mean)
+            made = fit(problem, point, plain.fitted.noise, _ROUNDS)
+            return flight.model_of(problem, None, made, plain.fitted, heat)
+
+        replays = self.replays
+        if not replays:
+            return None
+        try:
+            looks = _quick_look(self._as_flights(replays), self._unknown)
+            if looks is None or beside(replays, looks).evidence.either < plain.evidence.either:
+                return None
+            own = examine(self._as_flights(replays), self._unknown).diagnosis
+            late = None
+            if own.verdict == "unknown" and own.where.block == "pitch_rate_sensor":
+                late, replays = lateness(replays), [unfiltered(replay) for replay in replays]
+                own = examine(self._as_flights(replays), self._unknown).diagnosis
+        except UnusableInputError:
+            return None
+        causes = tuple(c for c in own.causes if c.present and c.block in _BLOCKS)
+        if not causes and late is None:
+            return None
+        effects = {c.effect: own.effects[c.effect] for c in causes if c.effect in own.effects}
+        model = {name: own.model[name].value for name in DERIVATIVES}
+        filtered = [] if late is None else [cause_of(late, own)]
+        first, *rest = [*filtered, *map(_negative, causes)]
         return replace(
-            _answered_by(diagnosis, evidence, mine), sentence=as_sure(sentence, answers_of(evidence)),
-            where=where, causes=self.causes, effects={}, waterfall=((first.effect, self.after),), shrink=None,
-            in_simulator=simulated,
+            beside(replays, (model, effects)),
+            alternative=stated_as(first.effect), taken_out=(first, *rest), chance=first.probability,
         )  # fmt: skip
 
+    @property
+    def _unknown(self) -> Aircraft:
+        """Aircraft of which neither model nor servo is stated."""
+        unknown = replace(self.aircraft, model={}, effects={}, simulator=None)
+        return replace(unknown, elevator=replace(self.aircraft.elevator, lag_s=None, delay_s=None))
 
-def mirrored(
-    whole: Examined,
-    maneuvers: Sequence[Maneuver],
-    flying: Flying,
-    replays: Sequence[Replay],
-    aircraft: Aircraft,
-    as_flown: Mapping[int, AsGiven],
-) -> Mirrored | None:
-    """Return the effects that only the simulator has; None without such effects.
+    def _beside(
+        self,
+        problem: FlightProblem,
+        replays: Sequence[Replay],
+        model: Mapping[str, float],
+        effects: Effects,
+    ) -> FlightProblem:
+        """Return the flight next to the simulator without its effects."""
+        reference = self.flying.flights.reference_m_s
+        as_file = replace(self._unknown, model=dict(model), reference_airspeed_m_s=reference)
+        grids = _beyond(self.flying, replays, as_file, effects)
+        differs = [grids[f.number].beyond - self.as_flown[f.number].beyond for f in problem.flights.flights]
+        derivatives = np.array([model[name] for name in DERIVATIVES])
+        changed = replace(problem, base=base_entries(as_file), changes=(), prior_derivatives=derivatives)
+        return replace(changed, flights=with_series(changed, differs, -1.0).flights)
 
-    Parameters
-    ----------
-    flying, replays
-        Simulator, and its replays without added effects.
-    as_flown
-        Difference of simulator and surrogate that the diagnosis removed, by manoeuvre number.
-    """
-    if whole.diagnosis.verdict not in ("effect", "parameters", "unknown"):
-        return None
-    unknown = replace(aircraft, model={}, effects={}, simulator=None)
-    unknown = replace(unknown, elevator=replace(aircraft.elevator, lag_s=None, delay_s=None))
-    gap = whole.diagnosis.gap
-    # What is unknown explains nothing, whatever of it the likeliest course of the air removes. Fitted numbers
-    # of the aircraft imitate a dead band of the simulator, whose own size no flight has fitted.
-    is_effect = whole.diagnosis.verdict == "effect"
-    most = gap.after + VISIBLE if is_effect else _CLEARLY * gap.before
-
-    def without(model: Mapping[str, float], effects: Mapping[str, Mapping[str, float]]) -> float:
-        as_file = replace(unknown, model=dict(model), reference_airspeed_m_s=flying.flights.reference_m_s)
-        return _gap_without(whole, flying, as_flown, _beyond(flying, replays, as_file, effects), as_file)
-
-    try:
-        as_flights = _as_flights(maneuvers, flying, replays)
-        looks = _quick_look(as_flights, unknown)
-        if looks is None or without(*looks) > _CLEARLY * gap.before:
-            return None
-        own = examine(as_flights, unknown).diagnosis
-    except UnusableInputError:
-        return None
-    late = None
-    if own.verdict == "unknown" and own.where.block == "pitch_rate_sensor":
-        late, replays = lateness(replays), [unfiltered(replay) for replay in replays]
-        own = examine(_as_flights(maneuvers, flying, replays), unknown).diagnosis
-    causes = tuple(c for c in own.causes if c.present and c.block in _BLOCKS)
-    if not causes and late is None:
-        return None
-    effects = {c.effect: own.effects[c.effect] for c in causes if c.effect in own.effects}
-    after = without({name: own.model[name].value for name in DERIVATIVES}, effects)
-    if after > most:
-        return None
-    filtered = () if late is None else (cause_of(late, after, own),)
-    return Mirrored((*filtered, *map(_negative, causes)), gap.before, after)
+    def _as_flights(self, replays: Sequence[Replay]) -> list[Maneuver]:
+        """Return the simulator's replays as manoeuvres, with the noise of the flight's instruments."""
+        by_number = {m.number: m for m in self.maneuvers}
+        flights = self.flying.flights
+        white = dict(zip(flights.channels, flights.white, strict=True))
+        found = []
+        for flight, replay in zip(flights.flights, replays, strict=True):
+            maneuver = by_number[flight.number]
+            rng = np.random.default_rng(flight.number)
+            channels = {"elevator": maneuver.channels["elevator"]}
+            for name in (*_MOTION, "airspeed"):
+                logged = maneuver.channels.get(name)
+                if logged is None:
+                    continue
+                y = replay.airspeed_m_s if name == "airspeed" else getattr(replay, name)
+                read = np.interp(logged.t - flight.started_s, replay.t, y)
+                noise = white.get(name, 0.0) * rng.standard_normal(len(read))
+                # A simulator's own angle of attack is exact: its lateness is no habit of an autopilot.
+                channels[name] = Channel(name, logged.t, read + noise, "simulator", "vane")
+            found.append(replace(maneuver, channels=channels))
+        return found
 
 
-def _quick_look(
-    as_flights: Sequence[Maneuver], unknown: Aircraft
-) -> tuple[Mapping[str, float], Mapping[str, Mapping[str, float]]] | None:
+def said_of_the_simulator(whole: Examined, diagnosis: Diagnosis) -> Diagnosis:
+    """Return the diagnosis with the words and the gap of a simulator that has an effect too much."""
+    without = whole.findings.without
+    if without is None:
+        return diagnosis
+    first, before, after = diagnosis.causes[0], diagnosis.gap.before, _gap_without(whole, without)
+    removed = 100.0 * (1.0 - after / before)
+    sentence = f"{_said(first)}; without it the gap is {removed:.0f} % less."
+    where = replace(diagnosis.where, block=first.block, share=float(np.clip(removed / 100.0, 0.0, 1.0)))
+    simulated = diagnosis.in_simulator
+    if simulated is not None:
+        names = tuple(cause.effect for cause in diagnosis.causes if cause.present)
+        simulated = replace(
+            simulated, after=simulated.before, percent=0.0, on_paper=simulated.on_paper or names
+        )
+    return replace(
+        diagnosis, sentence=as_sure(sentence, answers_of(diagnosis.evidence)),
+        where=where, effects={}, waterfall=((first.effect, after),), shrink=None, in_simulator=simulated,
+    )  # fmt: skip
+
+
+def _gap_without(whole: Examined, problem: EffectProblem) -> float:
+    """Return the flight's gap to the simulator without its effects, with no parameter fitted."""
+    floor = floor_of(whole)
+    assert problem.prior_derivatives is not None
+    given = SearchPoint(problem.prior_derivatives, whole.findings.last.fitted.point.own)
+    plain, offset = whole.findings.models[0].fitted, unknown_offset(whole.diagnosis, None)
+    every = range(len(problem.flights))
+    return whole_gap(predicted(problem, given, plain, floor, every, offset).mean_square, floor)
+
+
+def _quick_look(as_flights: Sequence[Maneuver], unknown: Aircraft) -> _Sizes | None:
     """Return the replays' derivatives and likeliest actuator or instrument effect, or None."""
     problem, plain = fit_baseline(prepare(as_flights, unknown), unknown)
     around = [variant for variant in variants_for(problem.flights) if variant.block in _BLOCKS]
@@ -152,49 +190,8 @@ def _quick_look(
     return model, {found.name: {name: size.value for name, size in sizes.items()}}
 
 
-def _gap_without(
-    whole: Examined,
-    flying: Flying,
-    as_flown: Mapping[int, AsGiven],
-    grids: Mapping[int, AsGiven],
-    as_file: Aircraft,
-) -> float:
-    """Return the flight's gap to the simulator without its effects, with no parameter fitted."""
-    problem, floor = whole.findings.problem, floor_of(whole)
-    flights = problem.flights.flights
-    differs = [grids[f.number].beyond - as_flown[f.number].beyond for f in flights]
-    now = replace(with_series(problem, differs, -1.0), base=base_entries(as_file), changes=())
-    derivatives = np.array([as_file.model[name] for name in DERIVATIVES])
-    given = SearchPoint(derivatives, whole.findings.last.fitted.point.own)
-    offset = unknown_offset(whole.diagnosis, None)
-    plain = whole.findings.models[0].fitted
-    return whole_gap(predicted(now, given, plain, floor, range(len(flights)), offset).mean_square, floor)
-
-
-def _as_flights(maneuvers: Sequence[Maneuver], flying: Flying, replays: Sequence[Replay]) -> list[Maneuver]:
-    """Return the simulator's replays as manoeuvres, with the noise of the flight's instruments."""
-    by_number = {m.number: m for m in maneuvers}
-    white = dict(zip(flying.flights.channels, flying.flights.white, strict=True))
-    found = []
-    for flight, replay in zip(flying.flights.flights, replays, strict=True):
-        maneuver = by_number[flight.number]
-        rng = np.random.default_rng(flight.number)
-        channels = {"elevator": maneuver.channels["elevator"]}
-        for name in (*_MOTION, "airspeed"):
-            logged = maneuver.channels.get(name)
-            if logged is None:
-                continue
-            y = replay.airspeed_m_s if name == "airspeed" else getattr(replay, name)
-            read = np.interp(logged.t - flight.started_s, replay.t, y)
-            noise = white.get(name, 0.0) * rng.standard_normal(len(read))
-            # A simulator's own angle of attack is exact: its lateness is no habit of an autopilot.
-            channels[name] = Channel(name, logged.t, read + noise, "simulator", "vane")
-        found.append(replace(maneuver, channels=channels))
-    return found
-
-
 def _beyond(
-    flying: Flying, replays: Sequence[Replay], as_file: Aircraft, effects: Mapping[str, Mapping[str, float]]
+    flying: Flying, replays: Sequence[Replay], as_file: Aircraft, effects: Effects
 ) -> dict[int, AsGiven]:
     """Return the difference between the simulator and a surrogate with its effects."""
     flights = flying.flights
@@ -226,41 +223,3 @@ def _negative(cause: Cause) -> Cause:
     first, *rest = cause.parameters.items()
     name, size = first
     return replace(cause, parameters={name: Value(-size.value, size.std), **dict(rest)})
-
-
-def _with_share(
-    evidence: Sequence[AlternativeEvidence], alternative: Alternative, share: float
-) -> tuple[AlternativeEvidence, ...]:
-    """Return the evidence with more probability for one alternative, and proportionally less for the others.
-
-    The likeliest alternative is first.
-    """
-    scale = (1.0 - share) / max(sum(one.probability for one in evidence), _IMPOSSIBLE)
-    others = [replace(one, probability=scale * one.probability) for one in evidence]
-    mine = next((other for other in others if other.alternative == alternative), None)
-    mine = mine or AlternativeEvidence(alternative, (), 0.0)
-    more = replace(mine, probability=mine.probability + share)
-    rest = [other for other in others if other.alternative != alternative]
-    return tuple(sorted([more, *rest], key=lambda one: -one.probability))
-
-
-def _answered_by(
-    diagnosis: Diagnosis, evidence: tuple[AlternativeEvidence, ...], answer: Alternative
-) -> Diagnosis:
-    """Return the diagnosis with an answer from flights of the simulator, and its odds."""
-    verdict: GapVerdict = "effect" if answer.is_effect else answer.kind  # type: ignore[assignment]
-    d = replace(diagnosis, verdict=verdict, evidence=evidence, answer=answer, why=(), rival="", decisions=())
-    ranked = together((one.alternative, one.probability) for one in evidence)
-    if len(ranked) < 2:
-        return d
-    (_, p), (rival, q) = ranked[:2]
-    odds = math.log(p / max(q, _IMPOSSIBLE))
-    about = answer.block if answer.kind == "unknown" else answer.name
-    return replace(
-        d, rival=rival.label,
-        why=(Contribution("flown", odds, "flights of the simulator with the correction"),),
-        decisions=(
-            Decision(about, "against its rival", odds, 0.0, "nats"),
-            Decision(about, "decided", p, DECIDED, "probability"),
-        ),
-    )  # fmt: skip

@@ -38,15 +38,13 @@ def lateness(replays: Sequence[Replay]) -> Value:
     return Value(lag_s, float(np.sqrt(np.mean(rest**2) / information)))
 
 
-def cause_of(late: Value, after: float, own: Diagnosis) -> Cause:
+def cause_of(late: Value, own: Diagnosis) -> Cause:
     """Return the filter as a cause, with the size that the aircraft lacks.
 
     Parameters
     ----------
     late
         Lag of the simulator's pitch rate, s.
-    after
-        Gap of the flight to the simulator without the lag.
     own
         Diagnosis of the replays without the lag. The probability of the cause is that of the answer "nothing"
         for these replays.
@@ -56,7 +54,7 @@ def cause_of(late: Value, after: float, own: Diagnosis) -> Cause:
     assert EFFECT.imitated_by is not None
     looks, way = EFFECT.imitated_by
     size = {"skew_s": Value(-late.value, late.std)}
-    return Cause(EFFECT.name, EFFECT.block, likeliness, size, (looks,), way, after, present=True)
+    return Cause(EFFECT.name, EFFECT.block, likeliness, size, (looks,), way, float("nan"), present=True)
 
 
 def _departure(replay: Replay) -> tuple[FloatArray, FloatArray]:

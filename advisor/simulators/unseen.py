@@ -66,7 +66,7 @@ def changes_something(diagnosis: Diagnosis) -> bool:
 def unseen_of(whole: Examined, holdout: int | None) -> UnseenManeuvers | None:
     """Return a diagnosis with sizes fitted without the held-out manoeuvres; None if too few remain.
 
-    ``holdout`` has the meaning of ``advisor.gap.diagnose.diagnose``.
+    ``holdout`` has the meaning of ``advisor.gap.diagnose.examine``.
     """
     numbers = [flight.number for flight in whole.findings.problem.flights.flights]
     kept = kept_apart(len(numbers), holdout)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.diagnose import diagnose
 from advisor.gap.effects import EFFECTS
 from advisor.gap.records.floor import prefiltered
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_alpha import is_estimate
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 # One diagnosis serves two tests.

@@ -5,9 +5,9 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES, INDEX
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import UAV, Setup, fly
 
 pytestmark = pytest.mark.study

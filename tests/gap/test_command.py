@@ -8,7 +8,6 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import maneuvers_of
-from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import usable_of
 from advisor.gap.search.baseline import fit_baseline
@@ -17,6 +16,7 @@ from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import read_scenario
 from tests.flights import FOLDER
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 UAV = """

@@ -10,11 +10,11 @@ import yaml
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Limits
 from advisor.aircraft.reference import PARAMETERS, FmuTrim, FmuVariables
 from advisor.aircraft_file.read import parse_aircraft
-from advisor.gap.diagnose import diagnose
 from advisor.gap.foresight.plan import foresee_plan
 from advisor.report.gap_document import gap_document
 from advisor.report.improved import improved_file, text_of
 from advisor.words.problems import ConfigurationError
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
 from tests.schemas import breaches
 

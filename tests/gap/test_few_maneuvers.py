@@ -4,11 +4,11 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
-from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.whitening import Filters
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.words.problems import UnusableInputError
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 # One diagnosis serves two tests.

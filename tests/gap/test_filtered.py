@@ -7,8 +7,8 @@ import pytest
 from scipy.signal import lsim
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.diagnose import diagnose
 from advisor.gap.simulator.reading import filtered, lane, packed
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 

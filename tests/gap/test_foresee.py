@@ -13,7 +13,6 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.cli.group import advisor
 from advisor.gap.candidates.distinguish import need_of
-from advisor.gap.diagnose import diagnose
 from advisor.gap.effects import EFFECTS
 from advisor.gap.foresight.plan import foresee_flights, foresee_plan
 from advisor.gap.records.prepare import prepare
@@ -21,6 +20,7 @@ from advisor.gap.search.baseline import prior_derivatives
 from advisor.report.gap_plan import ForesightScreen, size_of
 from advisor.words.problems import ConfigurationError
 from advisor.words.quantities import symbol
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import UAV, Setup, fly
 from tests.schemas import breaches
 

@@ -5,11 +5,11 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import folds_for, folds_of, hold_out
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import rms_of
 from advisor.gap.fitting.holdout import hold_out, measured_in
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.verdict.holdout_numbers import over_maneuvers
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 

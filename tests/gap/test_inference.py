@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.alternative import Alternative
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.diagnose import diagnose
 from advisor.gap.inference.diagnose import _named_air
 from advisor.gap.inference.engine import _lead, decided, first_stage
 from advisor.gap.inference.explanation import Evidence, Explanation, Row
@@ -35,6 +34,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.verdict.reasons import capped, weighed
 from advisor.process.parts import Parts
 from advisor.report.gap_causes import decision_in_words
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 MOMENT = Alternative("unknown", "unknown", "moment_equation")
@@ -297,6 +297,39 @@ def test_without_an_effect_as_the_answer_no_second_one_is_sought():
     flight = Flight({"transport_delay": -60.0})
     found = decided(flight, first_stage(flight), SPREAD, lambda rows: rows)
     assert len(flight.asked) == len(found.posteriors) == 1
+
+
+class SlowerSimulator(Flight):
+    """A flight next to a user's simulator whose servo is slower than the aircraft's."""
+
+    def __init__(self, nats, without, chance=1.0):
+        super().__init__(nats)
+        self.without = replace(explanation(LAG, without), name="", chance=chance)
+
+    def explained(self, base, most):
+        heat, told = super().explained(base, most)
+        return heat, [*told, self.without]
+
+
+@pytest.mark.parametrize("chance", [1.0, 0.4])
+def test_a_simulator_without_its_own_effect_is_as_likely_before_the_flight_as_any_effect(
+    chance,
+):
+    flight = SlowerSimulator({}, 7.0, chance)
+    ways = [r for r in rows_of(flight, stage_of(flight, None, 6), SPREAD) if r.alternative == LAG]
+    assert ways[0].terms["prior"] == pytest.approx(np.log(chance * 0.3 / 3))
+    assert ways[0].terms["fit"] == 7.0
+
+
+@pytest.mark.parametrize(("without", "answer"), [(60.0, LAG), (-60.0, NONE)])
+def test_a_simulator_without_its_own_effect_is_the_answer_by_its_likelihood_and_nothing_is_added(
+    without, answer
+):
+    flight = SlowerSimulator({"transport_delay": -9.0}, without)
+    found = decided(flight, first_stage(flight), SPREAD, lambda rows: rows)
+    assert found.posteriors[0].answer == answer
+    assert [one.name for one in found.chosen] == [""]
+    assert flight.asked == [(None, 6)]
 
 
 def test_the_effect_that_explains_most_with_a_second_one_leads():

@@ -11,7 +11,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.analysis.gap import maneuvers_of
 from advisor.flight.instruments.kinematics import check_alpha, combine
-from advisor.gap.diagnose import diagnose
+from tests.gap.diagnosed import diagnose
 
 LOGS = Path(__file__).parents[2] / "logs"
 LOG = LOGS / "arduplane-calm.tlog"

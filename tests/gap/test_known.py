@@ -11,7 +11,6 @@ from advisor.aircraft_file.effects import mistakes_in
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, changes_in, together, with_known
-from advisor.gap.diagnose import diagnose
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.prepare import prepare
@@ -20,6 +19,7 @@ from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.verdict.causes import parameters_of
 from advisor.report.improved import improved_file
 from sim.effects.terms import problems_with
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 

@@ -8,7 +8,6 @@ from scipy.signal import lfilter
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.whitening import Filters
 from advisor.gap.noise.stamps import rates_of, stamp_jitter
@@ -16,6 +15,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.search.air import moving_air
 from advisor.gap.search.baseline import fit_baseline
 from advisor.oem.innovations import AirModel, cost_of, gains_of
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study

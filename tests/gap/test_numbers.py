@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.diagnose import diagnose
 from advisor.oem.arrow import solved_within
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study

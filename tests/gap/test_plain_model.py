@@ -12,7 +12,6 @@ from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.nuisances import latency
-from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.inference import pitch
 from advisor.gap.inference.evidence import FlightProblem
@@ -25,6 +24,7 @@ from advisor.gap.search.baseline import base_entries, fit_baseline, fit_unfilter
 from advisor.gap.simulator.layout import SPEED
 from advisor.oem.instruments import COMMAND_DELAY
 from advisor.oem.prepare import prepare as prepare_estimate
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 FLOWN = fly(Setup(maneuvers=3, seed=71))

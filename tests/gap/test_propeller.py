@@ -4,10 +4,10 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import compare_logs
-from advisor.gap.diagnose import diagnose
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import read_scenario
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.regression import regressions
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search import baseline
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 UNSTABLE = np.array([0.04, 0.0, -0.28, 17.0, 0.14, 79.0])

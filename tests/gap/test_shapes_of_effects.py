@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.diagnose import diagnose, examine
+from advisor.gap.diagnose import examine
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import LIGHT_AIRCRAFT, Airframe, Setup, fly
 
 pytestmark = pytest.mark.study

@@ -9,12 +9,12 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.diagnose import diagnose
 from advisor.gap.records.airspeed import airspeed_on, measures_speed
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.simulator.layout import HEIGHT, SPEED
 from advisor.oem.airspeed import airspeed
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import UAV, Setup, fly
 
 HEIGHTS = (80.0, 90.0, 85.0)

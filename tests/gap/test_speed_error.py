@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.airspeed import speed_error_factors
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, SPEED
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import UAV, Setup, fly
 
 pytestmark = pytest.mark.study

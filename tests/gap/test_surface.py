@@ -7,12 +7,12 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import maneuvers_of
-from advisor.gap.diagnose import diagnose
 from advisor.gap.simulator.layout import EFFECT_ENTRIES, ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
 from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import read_scenario
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study

@@ -7,7 +7,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.derived_alpha import derived_alpha
 from advisor.flight.signals.motion import gravity_in_plane
-from advisor.gap.diagnose import diagnose
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study

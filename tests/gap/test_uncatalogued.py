@@ -8,13 +8,13 @@ from scipy.signal import butter, lfilter, sosfiltfilt
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
-from advisor.gap.diagnose import diagnose
 from advisor.gap.fitting.prior import ERROR_IF_WRONG, prior_precision
 from advisor.gap.kit.changes_between import shift_moments
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.smoothness import is_filtered, is_smoothed
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study

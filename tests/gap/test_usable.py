@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import condensed, usable_of
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 FLOWN = fly(Setup(maneuvers=6, seed=71))

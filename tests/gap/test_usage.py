@@ -12,10 +12,10 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.analysis import gap as reading
 from advisor.cli import group as cli
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.diagnose import diagnose
 from advisor.gap.result import Diagnosis
 from advisor.simulators.compare import Compared
 from tests.flights import TWO, recorded
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 from tests.gap.test_report_screen import diagnosis
 from tests.printed import taken

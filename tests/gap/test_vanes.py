@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.diagnose import diagnose
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import INDEX
+from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 pytestmark = pytest.mark.study

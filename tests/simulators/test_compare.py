@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.diagnose import diagnose, examine
+from advisor.gap.diagnose import examine
 from advisor.process.arrays import FloatArray
 from advisor.simulators.compare import Compared, compare
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.taken_back import with_unseen_shrink
 from advisor.simulators.unseen import unseen_of
 from advisor.words.problems import UnusableInputError
+from tests.gap.diagnosed import diagnose
 from tests.simulators.nonlinear import TRIM_RAD, Nonlinear, flown
 
 PLAIN = Nonlinear()

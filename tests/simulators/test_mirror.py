@@ -104,5 +104,10 @@ def test_an_effect_that_only_the_simulator_has_is_named_first_and_with_its_size(
     assert found.causes[0].effect == effect
     assert next(iter(found.causes[0].parameters.values())).value < 0.0
     assert found.in_simulator.percent == 0.0
+    # The answer is a row of the posterior like every other, and nothing has moved it since.
+    (row,) = (one for one in found.evidence if one.alternative == found.answer)
+    assert {"prior", "fit", "residual"} <= {column.name for column in row.columns}
+    assert found.causes[0].probability == pytest.approx(row.probability)
+    assert sum(one.probability for one in found.evidence) == pytest.approx(1.0)
     # The simulator cannot be made quicker or sharper than it is.
     assert {effect, "its own servo"} & set(found.in_simulator.on_paper)

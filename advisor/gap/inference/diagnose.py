@@ -1,6 +1,6 @@
 """Posterior of all explanations of a flight in pitch, including an offset of α and moving air."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,6 +35,9 @@ _OFF_BY_RAD = 0.03
 """Prior: standard deviation of a faulty α offset, rad."""
 
 
+Mirror = Callable[[PitchFlight, PitchModel, float], PitchModel | None]
+
+
 @dataclass(frozen=True)
 class Inference(Decided[PitchModel]):
     """Data and posterior from which the answer of a diagnosis is made."""
@@ -52,6 +55,7 @@ def infer(
     kinematics: KinematicCheck,
     prior: FieldPrior,
     progress: Progress,
+    mirror: Mirror,
 ) -> Inference:
     """Return the posterior of all explanations of a flight.
 
@@ -62,7 +66,7 @@ def infer(
     """
     begun = FlightProblem.of(problem, baseline)
     table, laws = _table(problem, begun, aircraft)
-    flight = PitchFlight(begun, baseline, table, laws)
+    flight = PitchFlight(begun, baseline, table, laws, mirror=mirror)
     progress(f"trying {len(table) + len(laws)} ways to explain the residual", 0.12)
     stage = first_stage(flight)
     progress("looking at the air", 0.5)

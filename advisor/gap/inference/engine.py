@@ -51,8 +51,8 @@ def decided(
     pair = None if lead is None else (lead, stage_of(flight, lead, _SECOND))
     posteriors = [posterior_of(beyond(rows_of(flight, stage, prior, pair)))]
     answer, chosen = posteriors[0].answer, [stage.plain]
-    if any(one.alternative == answer for one in stage.effects):
-        first = posteriors[0].explanation_of(answer)
+    first = posteriors[0].explanation_of(answer)
+    if first.name and any(one.alternative == answer for one in stage.effects):
         chosen.append(first)
         second = pair[1] if pair is not None and first is lead else stage_of(flight, first, _SECOND)
         posteriors.append(posterior_of(rows_of(flight, second, prior)))

@@ -47,6 +47,8 @@ class Explanation:
     """Loss of evidence, at most 0, because the effect gains less on held-out manoeuvres than in the fit."""
     change: float = 0.0
     """Change of the outputs by the effect after a refit of all other parameters, as a share of the peaks."""
+    chance: float = 1.0
+    """Prior: probability that the simulator as given has the effect that the model takes out of it."""
     model_error: float = 0.0
     """Part of the evidence that allows for the error of every simulator, nats."""
 

@@ -80,6 +80,8 @@ class Findings:
     airspeed_scale: AirspeedScale | None
     """Relative excess of the true over the used air speed; None if insignificant."""
     circumstances: Circumstances = field(default_factory=Circumstances)
+    without: EffectProblem | None = None
+    """Flight next to a user's simulator without effects that the aircraft lacks, if that is the answer."""
 
     @property
     def last(self) -> Model:

@@ -1,6 +1,6 @@
 """Pitch flight for the diagnosis: fits with an effect, their evidence and their residuals."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -17,6 +17,7 @@ from advisor.gap.inference.residual import Residual, residual_of
 from advisor.gap.inference.sizes import natural_nats, natural_shares
 from advisor.gap.inference.stage import AT_THE_FILE, LAWS, REFINED, SAME_OPTIMUM, Pairs, Stage, likeliest
 from advisor.gap.kit.variant import Variant
+from advisor.gap.result import Cause
 from advisor.gap.search.screen import Screen, Screened
 from advisor.process.arrays import FloatArray
 from advisor.process.parts import Parts
@@ -35,6 +36,8 @@ class PitchModel(Explanation):
     """Flight, with the tolerance of the derivatives under which the model was fitted."""
     fitted: EffectFit
     held_out: HeldOut
+    taken_out: tuple[Cause, ...] = ()
+    """Effects of a user's simulator, with negative sizes, that aircraft and model lack."""
 
     @property
     def values(self) -> FloatArray:
@@ -64,6 +67,9 @@ class PitchFlight:
     parts: Parts = field(default_factory=Parts)
     is_optimum: bool = False
     """Whether the search of the plain model ended at ``plain``; a second search may end elsewhere."""
+    mirror: "Callable[[PitchFlight, PitchModel, float], PitchModel | None]" = lambda *_: None
+    """Function that returns a user's simulator without effects that the aircraft lacks, from the flight, the
+    plain model and the temperature."""
 
     @property
     def tried(self) -> tuple[int, int]:
@@ -100,15 +106,21 @@ class PitchFlight:
             # The plain model had ended in a local minimum, and so had all that began there.
             return replace(self, plain=without, looked={}, is_optimum=True).explained(base, most)
         heat = temperature(problem, min((plain, *(made for _, made in fits)), key=lambda made: made.cost))
-        model = partial(self._model, loose, plain=plain, heat=heat)
+        model = partial(self.model_of, loose, plain=plain, heat=heat)
         models = [kept(part(v.effect), partial(model, v, made)) for v, made in fits]
-        return heat, [model(None, plain), *filter(None, models)]
+        first = model(None, plain)
+        search = partial(self.mirror, self, first, heat)
+        mirrored = kept("effects of the simulator", search) if base is None else None
+        return heat, [first, *filter(None, (*models, mirrored))]
 
     def at_the_files(self, one: PitchModel, plain: PitchModel, heat: float) -> PitchModel | None:
         """Return an explanation refitted about the file's derivatives; None without such a fit."""
         near = one.problem.within(ERROR_IF_RIGHT)
         made = fit(near, one.fitted.point, one.fitted.noise, iterations=5)
-        return self._model(near, one.variant, made, plain.fitted, heat) if np.isfinite(made.cost) else None
+        if not np.isfinite(made.cost):
+            return None
+        told = self.model_of(near, one.variant, made, plain.fitted, heat)
+        return replace(told, alternative=one.alternative, taken_out=one.taken_out, chance=one.chance)
 
     def apart(self, one: PitchModel, other: PitchModel) -> float:
         """Return the largest difference between two models' outputs, as a share of the outputs' peaks."""
@@ -116,7 +128,7 @@ class PitchFlight:
 
     def residual(self, one: PitchModel, heat: float) -> Residual:
         """Return the disturbance that explains the residual of a model best."""
-        return residual_of(self.problem, one.fitted, heat)
+        return residual_of(one.problem, one.fitted, heat)
 
     def natural_nats(self, lead: PitchModel, pair: PitchModel) -> float:
         """Return the log prior gain of the lead's size in a pair, if that size is natural to every
@@ -149,28 +161,24 @@ class PitchFlight:
         """Return the effects that may act in addition to that of a model."""
         return [variant for variant in self.table if base is None or variant.effect != base.name]
 
-    def _model(
+    def model_of(
         self, problem: FlightProblem, variant: Variant | None, made: EffectFit, plain: EffectFit, heat: float
     ) -> PitchModel:
         """Return a model with its evidence, which a loss on held-out manoeuvres may reduce."""
         held, told = hold_out(problem, made), evidence_of(problem, made, heat)
-        likelihood = log_likelihood(problem, made) / heat
+        model = partial(
+            PitchModel, variant=variant, problem=problem, fitted=made, held_out=held,
+            likelihood=log_likelihood(problem, made) / heat, change=change_of(problem, plain, made),
+        )  # fmt: skip
         if variant is None:
-            return PitchModel(
-                alternative=None, variant=None, problem=problem, fitted=made, held_out=held,
-                evidence=told, natural=told, likelihood=likelihood, change=change_of(problem, plain, made),
-            )  # fmt: skip
+            return model(alternative=None, evidence=told, natural=told)
         unseen = 0.0 if variant.needs else _lost_unseen(problem, plain, made, held) / heat
         extra = _extra(variant, len(problem.flights)) + unseen
-        return PitchModel(
-            alternative=replace(UNKNOWN, block=variant.block)
-            if any(variant.effect == law.effect for law in self.laws)
-            else stated_as(variant.effect),
-            name=variant.effect, numbers=variant.names,
-            variant=variant, problem=problem, fitted=made, held_out=held,
-            evidence=told.more(extra),
+        is_law = any(variant.effect == law.effect for law in self.laws)
+        return model(
+            alternative=replace(UNKNOWN, block=variant.block) if is_law else stated_as(variant.effect),
+            name=variant.effect, numbers=variant.names, evidence=told.more(extra), unseen=unseen,
             natural=evidence_of(problem, made, heat, natural_shares(variant)).more(extra),
-            likelihood=likelihood, unseen=unseen, change=change_of(problem, plain, made),
         )  # fmt: skip
 
 

@@ -113,10 +113,10 @@ def _ways(flight: Flight[E], stage: Stage[E], prior: FieldPrior) -> Iterator[Row
         # As little of an effect as every aircraft has is no finding.
         for one in stage.effects:
             yield _row(answer, one, getattr(one.natural, side), natural * chance)
-    for one in stage.effects:
+    for one in (*stage.effects, *stage.mirrored):
         assert one.alternative is not None
-        forms = sum(other.name == one.name for other in stage.effects)
-        yield _row(one.alternative, one, one.evidence.either, each / forms)
+        forms = max(sum(other.name == one.name for other in stage.effects), 1)
+        yield _row(one.alternative, one, one.evidence.either, each * one.chance / forms)
     for one in stage.laws:
         assert one.alternative is not None
         yield _row(one.alternative, one, one.evidence.either, 0.5 * prior.unknown / laws)

@@ -34,10 +34,12 @@ class Stage(Generic[E]):
     """Models with a law outside the catalogue."""
     heat: float
     """Number of white-noise nats that count as one nat."""
+    mirrored: tuple[E, ...] = ()
+    """Models of a user's simulator without effects that the aircraft lacks."""
 
     @property
     def best(self) -> E:
-        """The explanation with the largest evidence."""
+        """The explanation with the largest evidence next to the simulator as given."""
         return max((self.plain, *self.effects, *self.laws), key=lambda one: one.evidence.either)
 
 
@@ -120,9 +122,12 @@ def stage_of(flight: Flight[E], base: E | None, most: int) -> Stage[E]:
     best = max(one.evidence.either for one in everyone)
     everyone = [_at_the_files(flight, one, everyone[0], heat, best) for one in everyone]
     plain, *added = within_model_error(flight, everyone, 0.0 if base is None else base.form_error)
+    # A simulator that loses an effect has no added effect, and so no name.
+    mirrored = tuple(one for one in added if not one.name)
+    added = [one for one in added if one.name]
     effects = tuple(one for one in added if one.alternative is not None and one.alternative.is_effect)
     laws = tuple(one for one in added if one.alternative is None or not one.alternative.is_effect)
-    return Stage(plain, effects, laws, heat)
+    return Stage(plain, effects, laws, heat, mirrored)
 
 
 def _at_the_files(flight: Flight[E], one: E, plain: E, heat: float, best: float) -> E:

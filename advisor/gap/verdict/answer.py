@@ -88,13 +88,14 @@ def answer_of(
         *before, own = found.chosen[: len(named) + 1]
         found = replace(found, chosen=(*before, own.seen_in(seen)))
         named = found.chosen[1:]
-    law = posterior.explanation_of(answer) if answer.kind == "unknown" else None
+    told = posterior.explanation_of(answer)
+    law = told if answer.kind == "unknown" else None
     last = named[-1].fitted if named else plain.fitted
     e = Findings(
         problem, _models(found, named), _unexplained(posterior, answer, law),
         found.sought_air.found if answer.kind == "air" else None,
         floor, file_model, at_constant_speed(problem, last), airspeed_scale_of(problem, last),
-        circumstances,
+        circumstances, told.problem if told.taken_out and answer.kind == "effect" else None,
     )  # fmt: skip
     return _diagnosed(found, posterior, e, aircraft, kinematics, holdout, named), e
 

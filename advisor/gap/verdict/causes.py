@@ -43,6 +43,9 @@ def causes_of(
         told = posterior if stage is inference.posteriors[0] else stage
         together *= told.of(stated_as(one.name))
         present.append(_cause(inference, e, one, named[-1], told, together, True))
+    if e.without is not None:
+        first, *rest = posterior.explanation_of(answer).taken_out
+        present += [replace(first, probability=posterior.of(answer)), *rest]
     if answer.kind == "air" and (air := moving_air_of(e)) is not None:
         present.append(replace(air, probability=posterior.of(answer)))
     if answer.name == "alpha_bias":
