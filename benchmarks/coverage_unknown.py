@@ -58,11 +58,11 @@ def with_hole(log: bytes, rng: np.random.Generator) -> bytes:
 
 
 def truth(case: SealedCase) -> tuple[Mapping[str, float], float]:
-    """Return the true derivatives, and their true air speed, m/s."""
+    """Return the true derivatives, and their true air speed, m/s. An aircraft file has the read speed."""
     told = case.truth
     if "linear_model" in told:
         return told["linear_model"], float(told["aircraft"]["airspeed_m_s"])
-    return case.aircraft["model"], float(case.aircraft["reference_airspeed_m_s"])
+    return case.aircraft["model"], float(told["true_airspeed_m_s"])
 
 
 def unknown(file: Mapping[str, Any]) -> dict[str, Any]:

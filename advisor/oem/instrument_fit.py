@@ -30,9 +30,9 @@ from advisor.oem.driven_motion.linear import Linear
 from advisor.oem.estimate import InstrumentEstimate, NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.extra import Prior, penalty
-from advisor.oem.gauss_newton import CONVERGED
+from advisor.oem.gauss_newton import CONVERGED, MOST_ITERATIONS
 from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, Instrument, extra_of
-from advisor.oem.prior import Priors, about_zero, precision, usual_moments
+from advisor.oem.prior import about_zero, precision, usual_moments
 from advisor.oem.problem import ASSUMED_M_S, Assembly, OutputErrorProblem, assemble
 from advisor.oem.profile import Posterior, profiled
 from advisor.oem.solution import Solution, evaluate, spread_of
@@ -57,6 +57,10 @@ so the delay is not estimated."""
 CONTRADICTS = 3.0
 """Distance of a stated value from the data's value, in combined standard deviations, that is a
 contradiction."""
+
+
+Near = Fit | Solution
+"""Place from which a search starts, with the problem to search."""
 
 
 class Identified(NamedTuple):
@@ -84,14 +88,6 @@ class InstrumentFit:
         found = self.solution
         prior = penalty(found.problem, [x.instrument for x in self.identified])
         return weighing.misfit(found.residual, found.sensitivities) + prior
-
-
-class Begin(NamedTuple):
-    """Start of a search."""
-
-    problem: OutputErrorProblem
-    place: tuple[FloatArray, FloatArray]
-    """Derivatives (7,) and local parameters (m, 7)."""
 
 
 class _Pitch:
@@ -174,18 +170,13 @@ def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> Instrumen
     if found is not None:
         share = colour_share(found)
         names = tuple(weighed(x, share) for x in unknown)
-        found = _fitted(_begin(found), names, share)
+        found = _fitted(found, names, share)
     if found is None:
         return InstrumentFit(plain)
     return _with_statements(names, _whole_posterior(found, names, others), plain, others)
 
 
-def _begin(solution: Solution) -> Begin:
-    """Return a solution as the start of another search."""
-    return Begin(solution.problem, (solution.optimum.shared, solution.optimum.local))
-
-
-def _hills(plain: Solution, names: Sequence[Instrument], share: float) -> list[Begin]:
+def _hills(plain: Solution, names: Sequence[Instrument], share: float) -> list[Near]:
     """Return a start on each hill of the posterior along a servo's lag, the highest hill first.
 
     A lag delays the response as a pole of the aircraft does. If both are exchanged, the pitch rate after an
@@ -195,21 +186,22 @@ def _hills(plain: Solution, names: Sequence[Instrument], share: float) -> list[B
     """
     lag = next((x for x in names if x.starts and x.stated != 0.0), None)
     if lag is None:
-        return [_begin(plain)]
+        return [plain]
     others = [x for x in names if x is not lag]
-    near, costs, begins = _begin(plain), [np.inf], []
+    near: Near = plain
+    costs, fits = [np.inf], list[Fit]()
     for value in lag.starts:
-        there = near._replace(problem=lag.write(near.problem, value))
-        fit = descended(PITCH, there.problem, others, _prior(there, share), there.place, LOOK)
+        there = replace(near, problem=lag.write(near.problem, value))
+        fit = _descended(there, others, share, LOOK)
         if not isinstance(fit, NoEstimate):
             costs.append(fit.cost + penalty(fit.problem, [lag]))
-            begins.append(near := Begin(fit.problem, fit.place))
+            fits.append(near := fit)
     heights = np.array([*costs, np.inf])
     higher = np.flatnonzero((heights[1:-1] <= heights[:-2]) & (heights[1:-1] < heights[2:]))
-    return [begins[k] for k in sorted(higher, key=lambda k: float(heights[k + 1]))] or [_begin(plain)]
+    return [fits[k] for k in sorted(higher, key=lambda k: float(heights[k + 1]))] or [plain]
 
 
-def _whole_posterior(best: Solution, names: Sequence[Instrument], others: Sequence[Begin]) -> Solution:
+def _whole_posterior(best: Solution, names: Sequence[Instrument], others: Sequence[Near]) -> Solution:
     """Return the solution with the posterior over every hill along a servo's lag, if none is stated.
 
     ``others`` are starts on the other hills.
@@ -218,17 +210,16 @@ def _whole_posterior(best: Solution, names: Sequence[Instrument], others: Sequen
     if lag is None:
         return best
     posterior = Posterior(names, colour_share(best), usual_moments)
-    free = [x for x in names if x is not lag]
 
-    def refit(problem: OutputErrorProblem, near: Solution) -> Solution | None:
-        return _fitted(_begin(near)._replace(problem=problem), free, posterior.share)
+    def refit(free: Sequence[Instrument], there: OutputErrorProblem, near: Solution) -> Solution | None:
+        return _fitted(replace(near, problem=there), free, posterior.share)
 
     return profiled(_of_two_hills(best, others, posterior), lag, posterior, refit)
 
 
-def _of_two_hills(best: Solution, others: Sequence[Begin], posterior: Posterior) -> Solution:
+def _of_two_hills(best: Solution, others: Sequence[Near], posterior: Posterior) -> Solution:
     """Return the likelier of two solutions, with the other one's second moment times its probability."""
-    fits = [_searched(begin, posterior.parameters, posterior.share) for begin in others]
+    fits = [_searched(at, posterior.parameters, posterior.share) for at in others]
     rival = min((fit for fit in fits if fit is not None), key=lambda fit: fit.cost, default=None)
     if rival is None:
         return best
@@ -237,21 +228,26 @@ def _of_two_hills(best: Solution, others: Sequence[Begin], posterior: Posterior)
     return best if likelier is None else replace(likelier, modes=moment)
 
 
-def _fitted(begin: Begin, names: Sequence[Instrument], share: float, final: bool = True) -> Solution | None:
-    """Return the solution with instruments from a start; None if the search fails."""
-    fit = _searched(begin, names, share)
+def _fitted(near: Near, names: Sequence[Instrument], share: float, final: bool = True) -> Solution | None:
+    """Return the solution with instruments near another one; None if the search fails."""
+    fit = _searched(near, names, share)
     return None if fit is None else _evaluated(fit, final)
 
 
-def _prior(begin: Begin, share: float) -> Priors:
-    """Return the derivatives' priors, with ``share`` as the factor on their widths in a white-noise fit."""
-    return replace(about_zero(precision(begin.problem, begin.place[0])), share=share)
-
-
-def _searched(begin: Begin, names: Sequence[Instrument], share: float) -> Fit | None:
-    """Return the fit with instruments from a start; None if the search fails."""
-    fit = descended(PITCH, begin.problem, names, _prior(begin, share), begin.place)
+def _searched(near: Near, names: Sequence[Instrument], share: float) -> Fit | None:
+    """Return the fit with instruments near another one; None if the search fails."""
+    fit = _descended(near, names, share, MOST_ITERATIONS)
     return None if isinstance(fit, NoEstimate) or fit.optimum.status != CONVERGED else fit
+
+
+def _descended(near: Near, names: Sequence[Instrument], share: float, most: int) -> Fit | NoEstimate:
+    """Return the fit with instruments near another one, after at most ``most`` iterations.
+
+    ``share`` is the factor on the derivative priors' standard deviations in a white-noise fit.
+    """
+    problem, place = near.problem, (near.optimum.shared, near.optimum.local)
+    prior = replace(about_zero(precision(problem, place[0])), share=share)
+    return descended(PITCH, problem, names, prior, place, most)
 
 
 def _evaluated(fit: Fit, final: bool = True) -> Solution | None:
@@ -271,7 +267,7 @@ def weighed(x: Instrument, share: float) -> Instrument:
 
 
 def _with_statements(
-    names: tuple[Instrument, ...], solution: Solution, plain: Solution, others: Sequence[Begin]
+    names: tuple[Instrument, ...], solution: Solution, plain: Solution, others: Sequence[Near]
 ) -> InstrumentFit:
     """Return the fit in which a stated value is a prior unless the data exclude it.
 
@@ -299,7 +295,7 @@ def _with_statements(
         else:
             problem = x.write(problem, x.stated)
     left = tuple(one.instrument for one in kept)
-    final = _fitted(_begin(solution)._replace(problem=problem), left, colour_share(solution))
+    final = _fitted(replace(solution, problem=problem), left, colour_share(solution))
     if final is None:
         return InstrumentFit(plain)
     final = _whole_posterior(final, left, others)

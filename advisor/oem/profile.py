@@ -32,10 +32,10 @@ ALIKE_NATS = 0.5 * NORMAL_95**2
 """Fall of the log posterior density up to which two optima explain the record alike. The value is the 95 %
 limit of a likelihood ratio with one degree of freedom, 1.9."""
 
-Refit = Callable[[Any, Solution], Solution | None]
+Refit = Callable[[Sequence[Any], Any, Solution], Solution | None]
 """Function that searches all parameters but the profiled one again; None if the search fails.
 
-Its arguments are the problem with the new value, and the nearest solution."""
+Its arguments are these parameters, the problem with the new value, and the nearest solution."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,14 +110,11 @@ class Posterior(NamedTuple):
         less likely optimum. ``best`` and ``rival`` are fits or solutions.
         """
         pair = (best, rival)
-        theta = [reported(at.optimum.shared, at.optimum.local, at.assembly.names) for at in pair]
-        costs = [
-            self.share**2 * at.optimum.log_likelihood_cost + self.usual(at.problem, there)
-            for at, there in zip(pair, theta, strict=True)
-        ]
-        nats = 0.5 * (costs[1] - costs[0])
+        theta, other = (reported(at.optimum.shared, at.optimum.local, at.assembly.names) for at in pair)
+        lower = self.share**2 * (rival.optimum.log_likelihood_cost - best.optimum.log_likelihood_cost)
+        nats = 0.5 * (lower + self.usual(rival.problem, other) - self.usual(best.problem, theta))
         moved = [x.read(rival.problem) - x.read(best.problem) for x in self.parameters]
-        step = np.array([*(theta[1] - theta[0]), *moved])
+        step = np.array([*(other - theta), *moved])
         return nats, float(expit(-abs(nats))) * np.outer(step, step)
 
     def density(self, solution: Solution, searched: Sequence[Any]) -> float:
@@ -135,22 +132,16 @@ class Posterior(NamedTuple):
         return np.array([*solution.theta, *(p.read(solution.problem) for p in self.parameters)])
 
 
-def needs_profile(value: float, std: float) -> bool:
-    """Return whether the linear interval of a positive parameter reaches zero, so that the posterior is not
-    Gaussian within it.
-    """
-    return NORMAL_95 * std >= value
-
-
 def profiled(solution: Solution, x: Any, posterior: Posterior, refit: Refit) -> Solution:
-    """Return the solution with the second moment of the posterior along ``x``, where it needs one.
+    """Return the solution with the second moment of the posterior along a positive parameter ``x``.
 
-    ``x`` is one of the posterior's parameters. The moment of another optimum remains.
+    ``x`` is one of the posterior's parameters. The posterior is Gaussian where the linear interval of ``x``
+    does not reach zero. The moment of another optimum remains.
     """
     place = len(solution.theta) + list(posterior.parameters).index(x)
     column = replace(solution, modes=None).widened[:, place]
     std = float(np.sqrt(column[place]))
-    if not std > 0.0 or not needs_profile(x.read(solution.problem), std):
+    if not std > 0.0 or NORMAL_95 * std < x.read(solution.problem):
         return solution
     nodes = sorted(_walk(solution, x, posterior, refit, std), key=lambda node: node[0])
     if len(nodes) < 2:
@@ -171,24 +162,21 @@ def _walk(
     """Yield value, fall of the log posterior density and parameters, outwards from the optimum."""
     others = [p for p in posterior.parameters if p is not x]
     begun = posterior.density(solution, posterior.parameters)
-    here = x.read(solution.problem)
-    yield here, 0.0, posterior.at(solution)
+    yield x.read(solution.problem), 0.0, posterior.at(solution)
     for way in (1.0, -1.0):
-        near = solution
-        for k in range(1, MOST_STEPS + 1):
-            value = float(np.clip(here + way * k * std, x.lowest, x.highest))
-            found = refit(x.write(near.problem, value), near)
+        near, fall = solution, 0.0
+        for _ in range(MOST_STEPS):
+            there = x.moved(near.problem, way * std)
+            ends = fall > FARTHEST_NATS or x.read(there) == x.read(near.problem)
+            found = None if ends else refit(others, there, near)
             if found is None:
                 break
-            near = found
-            fall = posterior.density(found, others) - begun
-            yield value, fall, posterior.at(found)
-            if fall > FARTHEST_NATS or value in (x.lowest, x.highest):
-                break
+            near, fall = found, posterior.density(found, others) - begun
+            yield x.read(there), fall, posterior.at(found)
 
 
 def _positive(matrix: FloatArray, scale: FloatArray) -> FloatArray:
     """Return the part of a symmetric matrix with positive eigenvalues, in the units of ``scale`` (n,)."""
-    scale = np.where(scale > 0.0, scale, 1.0)
-    powers, vectors = np.linalg.eigh(matrix / np.outer(scale, scale))
+    unit = np.where(scale > 0.0, scale, 1.0)
+    powers, vectors = np.linalg.eigh(matrix / np.outer(unit, unit))
     return np.asarray((vectors * np.maximum(powers, 0.0)) @ vectors.T * np.outer(scale, scale))

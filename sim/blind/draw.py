@@ -69,6 +69,7 @@ class Case:
             "gap": self.gap,
             "background": self.background,
             "aircraft": self.scenario.aircraft,
+            "true_airspeed_m_s": self.scenario.airspeed_m_s,
         }
 
 

@@ -9,7 +9,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.oem import estimator
-from advisor.oem.profile import Posterior, Profile, needs_profile, profiled
+from advisor.oem.profile import Posterior, Profile, profiled
 from benchmarks.accuracy import clean, flown
 
 STD = 0.04
@@ -53,27 +53,22 @@ def test_the_ends_of_the_interval_lie_between_the_nodes():
     assert np.isclose(np.max(alike[:, 0]), LAG + 1.959964 * STD, rtol=1e-6)
 
 
-@pytest.mark.parametrize(("std", "needed"), [(0.01, False), (0.03, False), (0.031, True), (0.1, True)])
-def test_a_profile_is_needed_where_the_interval_of_the_lag_reaches_zero(std, needed):
-    assert needs_profile(LAG, std) is needed
-
-
 class Lag:
     """A lag between 0 and 0.4 s without a prior, whose problem is its value."""
 
-    name, prior, lowest, highest = "servo_lag_s", None, 0.0, 0.4
+    name, prior = "servo_lag_s", None
 
     def read(self, problem):
         return problem
 
-    def write(self, problem, value):
-        return value
+    def moved(self, problem, change):
+        return min(max(problem + change, 0.0), 0.4)
 
 
-def at(lag, theta, cost):
+def at(lag, theta, cost, std=STD):
     from advisor.oem.solution import Solution
 
-    covariance = np.diag([1e-4, STD**2])
+    covariance = np.diag([1e-4, std**2])
     return Solution(
         problem=lag, assembly=None, optimum=SimpleNamespace(log_likelihood_cost=cost), influence=None,
         theta=np.array([theta]), covariance_cr=covariance, covariance=covariance, noise=None,
@@ -81,16 +76,16 @@ def at(lag, theta, cost):
     )  # fmt: skip
 
 
-def walked(theta, cost, asked=None):
+def walked(theta, cost, asked=None, std=STD):
     """Return the solution with its posterior along the lag, for optima given by functions of the lag."""
 
-    def refit(problem, near):
+    def refit(_, problem, near):
         if asked is not None:
             asked.append(problem)
         return at(problem, theta(problem), cost(problem))
 
     lag = Lag()
-    return profiled(at(LAG, theta(LAG), cost(LAG)), lag, Posterior((lag,), 1.0), refit)
+    return profiled(at(LAG, theta(LAG), cost(LAG), std), lag, Posterior((lag,), 1.0), refit)
 
 
 def test_a_solution_on_a_ridge_has_the_interval_of_the_ridge():
@@ -105,6 +100,12 @@ def test_the_walk_ends_at_the_end_of_the_range_and_where_the_density_has_fallen(
     assert min(asked) == 0.0
     assert max(asked) <= LAG + 3.1 * STD
     assert len(asked) <= 6
+
+
+@pytest.mark.parametrize(("std", "needed"), [(0.01, False), (0.03, False), (0.031, True), (0.1, True)])
+def test_a_profile_is_needed_where_the_interval_of_the_lag_reaches_zero(std, needed):
+    found = walked(lambda lag: lag, lambda lag: 2.0 * parabola(lag), std=std)
+    assert (found.profile is not None) is needed
 
 
 def test_a_parabola_leaves_the_interval_as_it_is():

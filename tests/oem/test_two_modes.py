@@ -42,7 +42,7 @@ def with_rival(joint, cost, monkeypatch, share=1.0):
     monkeypatch.setattr(instrument_fit, "_searched", lambda *_: searched)
     monkeypatch.setattr(instrument_fit, "_evaluated", lambda *_: rival)
     names = [x.instrument for x in joint.identified]
-    found = instrument_fit._of_two_hills(best, ["another start"], Posterior(names, share))
+    found = instrument_fit._of_two_hills(best, [best], Posterior(names, share))
     return best, rival, found
 
 

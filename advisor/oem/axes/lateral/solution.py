@@ -8,6 +8,7 @@ earlier one has its noise colour, and needs one fit.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +26,7 @@ from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.identifiability import LARGEST_ERROR
 from advisor.oem.prior import SIDE_FORCE_STD, Priors, priors_of
-from advisor.oem.profile import Posterior
+from advisor.oem.profile import Posterior, profiled
 from advisor.oem.solution import RUNS_AWAY, Solution, evaluate, refused
 from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
@@ -112,6 +113,9 @@ def search_lateral(
     if isinstance(solution, NoEstimate):
         return solution
     merged = merged if modes is None else bool(np.all(np.diag(modes - SAME * solution.covariance_cr) <= 0.0))
+    for lag in (x for x in weighed if x.kind == "lag"):
+        found = replace(solution, modes=modes)
+        modes = profiled(found, lag, Posterior(weighed, share), partial(_refitted, prior)).modes
     solution = _with_modes(solution, prior, modes)
     noise = None if near is None else near.searched.noise
     forces = driven(solution, _MOTION, nuisances, lambda *_: replace(prior, share=1.0), near=noise)
@@ -160,6 +164,15 @@ def _of_both_hills(fit: Fit, nuisances: Sequence[Nuisance], prior: Priors) -> tu
         return fit, None
     lower, moment = Posterior(nuisances, lag.prior.share).apart(fit, rival)
     return fit if lower >= 0.0 else rival, moment
+
+
+def _refitted(
+    prior: Priors, nuisances: Sequence[Nuisance], problem: LateralProblem, near: Solution
+) -> Solution | None:
+    """Return the solution near another one; None where the search fails."""
+    fit = descended(_MOTION, problem, nuisances, prior, (near.optimum.shared, near.optimum.local))
+    found = None if isinstance(fit, NoEstimate) or refused(fit.optimum) else _evaluated(fit, prior, False)
+    return found if isinstance(found, Solution) else None
 
 
 def _holding(problem: LateralProblem, place: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:

@@ -216,3 +216,16 @@ def test_a_search_that_goes_on_looks_for_no_other_hill_where_earlier_records_hav
     assert resumed.merged
     search_lateral(whole, (lag,), Near(earlier._replace(merged=False), [0, 1]))
     assert len(fits) == 3
+
+
+def test_a_lag_near_zero_has_the_interval_of_its_posterior(doublets, monkeypatch):
+    """With a delay of the command the lag may be long, by which L_p bends: a linear interval is too short."""
+    clocks = Nuisance("command", "", Prior(0.0, 0.02)), Nuisance("lag", "aileron", Prior(0.05, 0.05))
+    problem = lagged(doublets, 0.0, 0.0)
+    problem = replace(problem, records=problem.records[:1])
+    whole = solve_lateral(problem, clocks)
+    monkeypatch.setattr(lateral_solution, "profiled", lambda solution, *_: solution)
+    linear = solve_lateral(problem, clocks)
+    k = LATERAL.names.reported.index("L_p")
+    assert whole.theta[k] == linear.theta[k]
+    assert whole.widened[k, k] > 1.1 * linear.widened[k, k]
