@@ -35,6 +35,7 @@ from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, Instrument, extra_
 from advisor.oem.prior import about_zero, precision, usual_moments
 from advisor.oem.problem import ASSUMED_M_S, Assembly, OutputErrorProblem, assemble
 from advisor.oem.profile import Posterior, profiled
+from advisor.oem.short_period_motion import short_period_motion
 from advisor.oem.solution import Solution, evaluate, spread_of
 from advisor.oem.weighing import Weighing
 from advisor.process.arrays import FloatArray
@@ -113,14 +114,14 @@ class _Pitch:
         speed = ASSUMED_M_S if airspeed is None else float(np.mean(airspeed.y))
         ratio = speed / (problem.reference_airspeed_m_s or speed)
         of = dict(zip(SHARED, shared.tolist(), strict=True))
-        force = np.array([ratio * of["Z_alpha"], of["Z_q"], 0.0])
-        moment = np.array([ratio**2 * of["M_alpha"], ratio * of["M_q"], 0.0])
-        matrix = np.array([force + np.array([0.0, 1.0, 0.0]), moment, [0.0, 1.0, 0.0]])
-        lift = (1.0 + of["airspeed_scale"]) * speed * force - problem.accelerometer_arm_m * moment
-        vane = [1.0, -problem.vane_arm_m / speed, 0.0]
-        seen = np.array([vane, [0.0, 1.0, 0.0], lift, [0.0, 0.0, 1.0]])
-        air_seen = np.array([0.0 if problem.alpha_is_computed else 1.0, 0.0, lift[0], 0.0])
-        return Linear(matrix, seen, np.array([force[0], moment[0], 0.0]), air_seen, np.array([0, 1]))
+        system = ratio * of["Z_alpha"], of["Z_q"], ratio**2 * of["M_alpha"], ratio * of["M_q"]
+        return short_period_motion(
+            np.array(system),
+            speed,
+            (problem.vane_arm_m, problem.accelerometer_arm_m),
+            seen_by_alpha=not problem.alpha_is_computed,
+            scale=1.0 + of["airspeed_scale"],
+        )
 
     @staticmethod
     def unsure(laid: Assembly, y: FloatArray, /) -> FloatArray:

@@ -153,10 +153,9 @@ def test_innovations_of_a_driven_motion_are_white() -> None:
         rows[i] = x[0] + noise + 0.01 * rng.standard_normal()
     kind, zero = np.ones(n, np.int64), np.zeros(n, np.int64)
     kind[0] = 0
-    white, _ = driven_filter(
-        np.array([0.0, step]), kind, zero, matrix, np.array([[1.0, 0.0]]), np.zeros(2), np.array([0.0, 1.0]),
-        np.array([0.01]), np.array([0.02]), memory_s, rows,
-    )  # fmt: skip
+    driving = matrix, np.zeros(2), np.array([0.0, 1.0])
+    at = (np.array([0.0, step]), kind), zero, np.array([[1.0, 0.0]]), driving
+    white = driven_filter(*at, np.full(n, 1e-4), np.array([0.02]), memory_s).innovations(rows)
     assert np.mean(white**2) == pytest.approx(1.0, abs=0.1)
     assert abs(float(white[1:, 0] @ white[:-1, 0])) / n < 0.05
 

@@ -1,7 +1,7 @@
 """Whitening: a filter of the flight's noise that residuals and sensitivities pass before any fit.
 
 Moving air and coloured instruments correlate successive residuals, so least squares overweights them. The
-Kalman filter of ``advisor.oem.innovations`` turns residuals and sensitivities into white innovations. After
+Kalman filter of ``advisor.oem.driven_motion`` turns residuals and sensitivities into white innovations. After
 the filter, fit, screening and hold-out are ordinary least squares.
 """
 
@@ -13,8 +13,11 @@ import numpy as np
 
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX, SPEED, short_period
-from advisor.oem.innovations import ALPHA, AirModel, gains_of
-from advisor.oem.kalman import Gains
+from advisor.oem.driven_motion.kalman_filter import Gains, driven_filter, steps_of
+from advisor.oem.driven_motion.linear import Linear
+from advisor.oem.driven_motion.noise import Noise
+from advisor.oem.short_period_motion import short_period_motion
+from advisor.oem.turbulence import ALPHA
 from advisor.process.arrays import FloatArray
 
 
@@ -49,7 +52,7 @@ class Filters:
     def is_sound(self) -> bool:
         """Whether all Kalman gains are finite. On a very unstable aircraft rounding errors outgrow all noise
         within a manoeuvre."""
-        return all(np.all(np.isfinite(g.root)) and np.all(np.isfinite(g.gain)) for g in self.gains)
+        return all(np.all(np.isfinite(g.std)) and np.all(np.isfinite(g.gain)) for g in self.gains)
 
     def innovations(self, i: int, columns: FloatArray) -> FloatArray:
         """Return the filtered columns of manoeuvre ``i``, in units of each innovation's standard
@@ -58,7 +61,7 @@ class Filters:
 
 
 def filters_for(
-    flights: PreparedManeuvers, p: FloatArray, airs: Sequence[AirModel], extra: Sequence[FloatArray]
+    flights: PreparedManeuvers, p: FloatArray, noises: Sequence[Noise], extra: Sequence[FloatArray]
 ) -> Filters:
     """Return one Kalman filter for each manoeuvre.
 
@@ -67,20 +70,28 @@ def filters_for(
     p
         Shape (manoeuvres, entries), in the order of ``gap.simulator.layout.ENTRIES``: driving numbers, which
         hold the response to moving air and the positions of the instruments.
-    airs
-        Per manoeuvre: model of the air and of the instruments.
+    noises
+        Per manoeuvre: noise of the air and of the instruments.
     extra
         Per manoeuvre, shape (rows,) in stacked order: variance beyond the channels' noise.
     """
     gains, orders = [], []
-    for i, flight in enumerate(flights.flights):
+    for i, noise in enumerate(noises):
         t, channel, order = rows_in_time(flights, i, p[i])
-        system = np.array([*short_period(p[i]), float(np.mean(flight.slow[SPEED]))])
-        arms = (float(p[i, INDEX["vane_arm_m"]]), float(p[i, INDEX["imu_arm_m"]]))
+        motion = motion_of(flights, i, p[i])
+        white = noise.white[channel] ** 2 + extra[i][order]
         # Every manoeuvre has its own initial states in the fit, so none are left to the filter.
-        gains.append(gains_of(t, channel, system, airs[i], 0.0, extra[i][order], arms))
+        at = steps_of(t), channel, motion.all_seen, noise.driving(motion)
+        gains.append(driven_filter(*at, white, noise.coloured, noise.memory_s))
         orders.append(order)
     return Filters(tuple(gains), tuple(orders))
+
+
+def motion_of(flights: PreparedManeuvers, i: int, p: FloatArray) -> Linear:
+    """Return the linear motion of one manoeuvre by its driving numbers ``p``, shape (entries,)."""
+    arms = float(p[INDEX["vane_arm_m"]]), float(p[INDEX["imu_arm_m"]])
+    speed = float(np.mean(flights.flights[i].slow[SPEED]))
+    return short_period_motion(short_period(p), speed, arms, seen_by_alpha=not flights.alpha_is_derived)
 
 
 def rows_in_time(

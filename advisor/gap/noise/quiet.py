@@ -16,15 +16,15 @@ from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.linear import as_measured
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint, row_weights
 from advisor.gap.fitting.step import solve_blocks
-from advisor.gap.fitting.whitening import Weighting, Whitening, filters_for, rows_in_time
+from advisor.gap.fitting.whitening import Weighting, Whitening, filters_for, motion_of, rows_in_time
 from advisor.gap.noise.probes import probe_blocks
 from advisor.gap.noise.shown_gust import largest_gust
 from advisor.gap.noise.stamps import stamp_variance
 from advisor.gap.records.flights import PreparedManeuver
 from advisor.gap.records.floor import stated_floor
-from advisor.gap.simulator.layout import DERIVATIVES, OUTPUTS, SPEED, short_period
-from advisor.oem.innovations import AirModel
-from advisor.oem.turbulence import Rows, Turbulence, cost_of, find_turbulence, spread_of
+from advisor.gap.simulator.layout import DERIVATIVES, OUTPUTS
+from advisor.oem.driven_motion.noise import Noise
+from advisor.oem.turbulence import Rows, cost_of, find_turbulence, spread_of
 from advisor.process.arrays import FloatArray
 
 _LEAST_SAMPLES = 50
@@ -51,7 +51,7 @@ def whitening_of(problem: EffectProblem, fitted: EffectFit, first_look: bool = F
     """
     extra = stamp_variance(problem, fitted)
     air = noise_in_quiet(problem, fitted)
-    still = air or with_floor(problem, AirModel.still(instrument_noise(problem), _seen(problem)))
+    still = air or with_floor(problem, Noise.still(instrument_noise(problem)))
     gusts = gusts_in(problem, fitted, still, first_look)
     if air is not None or gusts:
         airs = [gusts.get(i, still) for i in range(len(problem.flights))]
@@ -63,15 +63,14 @@ def whitening_of(problem: EffectProblem, fitted: EffectFit, first_look: bool = F
     return Weighting(weights) if min(float(np.min(w)) for w in weights) < _NO_LESS else None
 
 
-def noise_in_quiet(problem: EffectProblem, fitted: EffectFit) -> AirModel | None:
+def noise_in_quiet(problem: EffectProblem, fitted: EffectFit) -> Noise | None:
     """Return coloured instruments or moving air in quiet stretches; None for white noise."""
     rows = quiet_rows(problem, fitted)
     if not rows:
         return None
-    found = air_in_quiet(problem, fitted, rows)
-    plain = cost_of(rows, system_of(problem, fitted), AirModel.still(spread_of(rows)))
-    gain = 0.5 * (plain - cost_of(rows, system_of(problem, fitted), found.air))
-    return with_floor(problem, found.air) if gain > LEAST_GAIN else None
+    found = find_turbulence(rows, instrument_noise(problem))
+    gain = 0.5 * (cost_of(rows, Noise.still(spread_of(rows))) - cost_of(rows, found.noise))
+    return with_floor(problem, found.noise) if gain > LEAST_GAIN else None
 
 
 def quiet_rows(problem: EffectProblem, fitted: EffectFit) -> list[Rows]:
@@ -86,12 +85,6 @@ def quiet_rows(problem: EffectProblem, fitted: EffectFit) -> list[Rows]:
     return [r for r, power in zip(rows, loud, strict=True) if power <= _LONE * np.median(loud)]
 
 
-def air_in_quiet(problem: EffectProblem, fitted: EffectFit, rows: Sequence[Rows]) -> Turbulence:
-    """Return the noise models of quiet stretches, with and without moving air."""
-    white = instrument_noise(problem)
-    return find_turbulence(rows, system_of(problem, fitted), white, bool(_seen(problem)))
-
-
 def loudness(problem: EffectProblem, fitted: EffectFit) -> float:
     """Return the median power of the residual in quiet stretches, relative to the instruments' noise."""
     white = instrument_noise(problem)
@@ -100,9 +93,7 @@ def loudness(problem: EffectProblem, fitted: EffectFit) -> float:
     return float(np.median(powers)) if powers else 0.0
 
 
-def gusts_in(
-    problem: EffectProblem, fitted: EffectFit, still: AirModel, first_look: bool
-) -> dict[int, AirModel]:
+def gusts_in(problem: EffectProblem, fitted: EffectFit, still: Noise, first_look: bool) -> dict[int, Noise]:
     """Return the air model of each manoeuvre with a gust, whose residual far exceeds that of the quietest
     quarter.
 
@@ -161,21 +152,16 @@ def unfiltered(problem: EffectProblem, fitted: EffectFit) -> tuple[EffectProblem
     return replace(problem, whitening=None), replace(fitted, innovations=fitted.residuals, linear=linear)
 
 
-def _seen(problem: EffectProblem) -> float:
-    """Return 1 if a vane measures α, and 0 if α is computed from inertial sensors."""
-    return 0.0 if problem.flights.alpha_is_derived else 1.0
-
-
-def with_floor(problem: EffectProblem, air: AirModel) -> AirModel:
-    """Return the air model with white noise of at least half the stated floor.
+def with_floor(problem: EffectProblem, noise: Noise) -> Noise:
+    """Return the noise with white noise of at least half the stated floor.
 
     A record that was filtered before storage has almost no white noise. With so little noise, the errors of a
     simplified model would be overweighted a thousandfold.
     """
-    white = air.white.copy()
+    white = noise.white.copy()
     for c, least in zip(problem.channels, 0.5 * stated_floor(problem.flights), strict=True):
         white[OUTPUTS.index(c)] = max(white[OUTPUTS.index(c)], least)
-    return replace(air, white=white)
+    return replace(noise, white=white)
 
 
 def quiet_rms(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
@@ -197,17 +183,11 @@ def instrument_noise(problem: EffectProblem) -> FloatArray:
     return np.array([white.get(c, 1.0) for c in OUTPUTS])
 
 
-def system_of(problem: EffectProblem, fitted: EffectFit) -> FloatArray:
-    """Return Z_α, Z_q, M_α, M_q for the response to moving air."""
-    return short_period(problem.driving(fitted.point)[0])
-
-
 def rows_of(problem: EffectProblem, fitted: EffectFit, i: int) -> Rows:
     """Return the residual of manoeuvre ``i`` in order of time."""
-    t, channel, order = rows_in_time(problem.flights, i, problem.driving(fitted.point)[i])
-    return Rows(
-        t, channel, fitted.residuals[i][order], float(np.mean(problem.flights.flights[i].slow[SPEED]))
-    )
+    driving = problem.driving(fitted.point)
+    t, channel, order = rows_in_time(problem.flights, i, driving[i])
+    return Rows(t, channel, fitted.residuals[i][order], motion_of(problem.flights, i, driving[0]))
 
 
 def _quiet_parts(problem: EffectProblem, fitted: EffectFit, i: int) -> list[Rows]:
@@ -217,7 +197,7 @@ def _quiet_parts(problem: EffectProblem, fitted: EffectFit, i: int) -> list[Rows
     quiet = flight.is_quiet(whole.t)
     before = whole.t < flight.first_step_s
     return [
-        Rows(whole.t[inside], whole.channel[inside], whole.residual[inside], whole.speed)
+        Rows(whole.t[inside], whole.channel[inside], whole.residual[inside], whole.motion)
         for inside in (quiet & before, quiet & ~before)
         if np.count_nonzero(inside) > 10 * len(problem.channels)
     ]

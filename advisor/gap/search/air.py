@@ -15,7 +15,7 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.noise.probes import DisturbanceCourse, disturbance_courses
-from advisor.gap.noise.quiet import air_in_quiet, instrument_noise, quiet_rows, rows_of, system_of, with_floor
+from advisor.gap.noise.quiet import instrument_noise, quiet_rows, rows_of, with_floor
 from advisor.gap.noise.shown_gust import largest_gust
 from advisor.model.outputs import OUTPUTS
 from advisor.oem.turbulence import KNOTS_S, Turbulence, find_turbulence
@@ -95,7 +95,7 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
     nothing = SoughtAir(found.gain)
     if found.gain < CERTAIN or found.gust_angle <= 0.0:
         return nothing
-    model = with_floor(problem, found.air)
+    model = with_floor(problem, found.noise)
     instruments = np.hypot(model.white, model.coloured)[[OUTPUTS.index(c) for c in problem.channels]]
     course = disturbance_courses(problem, fitted, instruments, "air", [found.gust_angle])[0]
     joined = np.concatenate(course.knots)
@@ -133,12 +133,12 @@ def _steady(problem: EffectProblem, fitted: EffectFit, found: Turbulence) -> flo
     rows = quiet_rows(problem, fitted)
     if not rows:
         return 0.0
-    quiet = air_in_quiet(problem, fitted, rows)
+    quiet = find_turbulence(rows, instrument_noise(problem))
     lengths = (
         sum(float(row.t[-1] - row.t[0]) for row in rows),
         sum(flight.duration_s for flight in problem.flights.flights[:AIR_MANEUVERS]),
     )
-    variance = sum(found.air.gust_memory_s / (2.0 * max(length, 1e-9)) for length in lengths)
+    variance = sum(found.noise.gust_memory_s / (2.0 * max(length, 1e-9)) for length in lengths)
     excess = np.log(found.gust_angle / max(quiet.gust_angle, LEAST_GUST_ANGLE))
     return float(-0.5 * max(excess, 0.0) ** 2 / variance)
 
@@ -146,8 +146,7 @@ def _steady(problem: EffectProblem, fitted: EffectFit, found: Turbulence) -> flo
 def _moving_in(problem: EffectProblem, fitted: EffectFit, maneuvers: Iterable[int]) -> Turbulence:
     """Return the likelihood of moving air in the residuals of the given manoeuvres."""
     rows = [rows_of(problem, fitted, i) for i in maneuvers]
-    derived = problem.flights.alpha_is_derived
-    return find_turbulence(rows, system_of(problem, fitted), instrument_noise(problem), not derived)
+    return find_turbulence(rows, instrument_noise(problem))
 
 
 def _of_a_gust(

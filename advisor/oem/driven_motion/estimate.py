@@ -14,13 +14,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from advisor.oem.driven_motion.errors import solution_at
-from advisor.oem.driven_motion.likeliest_noise import first_noise, likeliest
+from advisor.oem.driven_motion.likeliest_noise import first_noise, noise_of
 from advisor.oem.driven_motion.linear import DrivenMotion
 from advisor.oem.driven_motion.noise import LEAST_GUST_RAD, Noise
 from advisor.oem.driven_motion.normal_equations import System
 from advisor.oem.driven_motion.setting import Model, Setting
 from advisor.oem.driven_motion.step import Step
-from advisor.oem.driven_motion.without_alpha import moving_air, noise_of
+from advisor.oem.driven_motion.without_alpha import moving_air
 from advisor.oem.extra import Parameter
 from advisor.oem.prior import Priors
 from advisor.oem.solution import Solution
@@ -112,7 +112,7 @@ def driven_without_alpha(
     air = None if here is None else moving_air(here)
     if here is None or air is None or not air.is_air:
         return None
-    return _descended(model, start, here, noise_of(air, here.records[0]), air.gain, searched=None)
+    return _descended(model, start, here, air.noise, air.gain, searched=None)
 
 
 def _descended(
@@ -125,7 +125,7 @@ def _descended(
     step = Step.of(model, here, noise)
     for _ in range(ROUNDS):
         if searched is False and step.pending < FAR:
-            noise, searched = likeliest(here, noise), True
+            noise, searched = noise_of(here, noise), True
             step = Step.of(model, here, noise)
         better = None if step.pending < SETTLED else step.taken(model, here, noise)
         if better is None:

@@ -4,11 +4,17 @@ The states of the motion come first, then one state for the coloured noise of ea
 of time, so that every update is scalar.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from advisor.process.arrays import FloatArray
+from advisor.process.arrays import FloatArray, IntArray
 from advisor.process.compiled import kernel
 
+_GRID_S = 1e-4
+"""Numerical: grid of the time steps, s, so that equal steps share their matrices. Residuals hardly change
+within half of this time.
+"""
 _LONGEST = 0.25
 """Numerical: largest product of a rate of the motion and a time step for a series of third order."""
 
@@ -94,68 +100,146 @@ def _seen(P: FloatArray, gain: FloatArray, seen: FloatArray, own: int) -> float:
     return float(variance)
 
 
-@kernel(error_model="numpy", fastmath={"contract"})
+class Gains(NamedTuple):
+    """Kalman gains of n rows in order of time, for s states and o outputs."""
+
+    steps: FloatArray
+    """Shape (u, s, s): transition of the states over each distinct time step."""
+    keep: FloatArray
+    """Shape (u,): factor by which the coloured noise decays within each distinct time step."""
+    kind: IntArray
+    """Shape (n,): index of the time step before each row."""
+    channel: IntArray
+    """Shape (n,): output of each row."""
+    seen: FloatArray
+    """Shape (o, s): outputs by the states."""
+    gain: FloatArray
+    """Shape (n, s + o): Kalman gain of each row."""
+    std: FloatArray
+    """Shape (n,): standard deviation of each row's innovation."""
+
+    def innovations(self, columns: FloatArray, order: IntArray | None = None) -> FloatArray:
+        """Return the innovations (n, k) of ``columns`` (n, k) over their standard deviations, row by row.
+
+        ``order`` gives the rows in order of time; None for rows that are in this order.
+        """
+        rows = np.arange(len(columns)) if order is None else order
+        return np.asarray(_passed(*self, columns, rows))
+
+
+def steps_of(t: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return the distinct lengths (u,) of the steps between times, and the index (n,) of the step before each
+    time."""
+    lengths, kind = np.unique(np.rint(np.diff(t, prepend=t[0]) / _GRID_S), return_inverse=True)
+    return lengths * _GRID_S, kind.astype(np.int64)
+
+
 def driven_filter(
-    lengths: FloatArray,
-    kind: np.ndarray,
-    channel: np.ndarray,
-    matrix: FloatArray,
+    steps: tuple[FloatArray, IntArray],
+    channel: IntArray,
     seen: FloatArray,
-    begun: FloatArray,
-    drive: FloatArray,
+    driving: tuple[FloatArray, FloatArray, FloatArray],
     white: FloatArray,
     coloured: FloatArray,
     memory_s: float,
-    columns: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
-    """Return the innovations of ``columns`` (n, k) over their standard deviations, and these deviations (n,).
+) -> Gains:
+    """Return the Kalman gains of rows in order of time.
 
     Parameters
     ----------
-    lengths, kind
-        Distinct lengths of time steps, s, and the index of the step before each row, shape (n,).
+    steps
+        Distinct lengths of time steps, s, and the index of the step before each row, as ``steps_of`` returns
+        them.
     channel
         Shape (n,): output of each row.
-    matrix, seen
-        Shape (s, s) and (o, s): rates of the states, and outputs, by the states.
-    begun, drive
-        Shape (s,): variance of each state at the start, and intensity of the white noise that drives its
-        rate.
-    white, coloured
-        Shape (o,): standard deviations of each output's white and coloured noise, SI.
+    seen
+        Shape (o, s): outputs by the states.
+    driving
+        Rates of the states by the states (s, s), variance of each state at the start (s,), and intensity of
+        the white noise that drives each rate (s,).
+    white
+        Shape (n,): variance of each row's white noise, SI.
+    coloured
+        Shape (o,): standard deviation of each output's coloured noise, SI.
     memory_s
         Correlation time of the coloured noise, s.
     """
-    s, o, k = len(drive), len(seen), columns.shape[1]
-    n = s + o
-    P, X, out, std = np.zeros((n, n)), np.zeros((n, k)), np.empty(columns.shape), np.empty(len(columns))
-    moved, gain, turned = np.empty((s, n)), np.empty(n), np.empty((s, k))
-    steps, fresh = np.empty((len(lengths), s, s)), np.empty((len(lengths), s, s))
+    lengths, kind = steps
     keep = np.exp(-lengths / memory_s)
+    moves, gain, std = _gains(lengths, keep, kind, channel, *driving, seen, white, coloured)
+    return Gains(moves, keep, kind, channel, seen, gain, std)
+
+
+@kernel(error_model="numpy", fastmath={"contract"})
+def _gains(
+    lengths: FloatArray,
+    keep: FloatArray,
+    kind: IntArray,
+    channel: IntArray,
+    matrix: FloatArray,
+    begun: FloatArray,
+    drive: FloatArray,
+    seen: FloatArray,
+    white: FloatArray,
+    coloured: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the transitions (u, s, s), the gains (n, s + o) and the innovations' standard deviations (n,).
+
+    The arguments are those of ``driven_filter``.
+    """
+    s, o, rows = len(drive), len(seen), len(channel)
+    n = s + o
+    P, moved, gains, std = np.zeros((n, n)), np.empty((s, n)), np.empty((rows, n)), np.empty(rows)
+    steps, fresh = np.empty((len(lengths), s, s)), np.empty((len(lengths), s, s))
     for u in range(len(lengths)):
         steps[u], fresh[u] = _over(lengths[u], matrix, drive)
     for a in range(s):
         P[a, a] = begun[a]
     for c in range(o):
         P[s + c, s + c] = coloured[c] ** 2
-    for i in range(len(channel)):
-        u = kind[i]
+    for i in range(rows):
+        u, c, gain = kind[i], channel[i], gains[i]
         if lengths[u] > 0.0:
             _propagate(P, moved, steps[u], fresh[u], keep[u], coloured)
-            _advance(X, turned, steps[u], keep[u])
-        c = channel[i]
-        variance = white[c] ** 2 + _seen(P, gain, seen[c], s + c)
+        variance = white[i] + _seen(P, gain, seen[c], s + c)
         std[i] = np.sqrt(variance)
-        for j in range(k):
-            innovation = columns[i, j] - X[s + c, j]
-            for b in range(s):
-                innovation -= seen[c, b] * X[b, j]
-            share = innovation / variance
-            for a in range(n):
-                X[a, j] += gain[a] * share
-            out[i, j] = innovation / std[i]
         for a in range(n):
             share = gain[a] / variance
             for b in range(n):
                 P[a, b] -= share * gain[b]
-    return out, std
+        for a in range(n):
+            gain[a] /= variance
+    return steps, gains, std
+
+
+@kernel(error_model="numpy", fastmath={"contract"})
+def _passed(
+    steps: FloatArray,
+    keep: FloatArray,
+    kind: IntArray,
+    channel: IntArray,
+    seen: FloatArray,
+    gain: FloatArray,
+    std: FloatArray,
+    columns: FloatArray,
+    order: IntArray,
+) -> FloatArray:
+    """Return the innovations (n, k) of ``columns`` (n, k); the other arguments are those of ``Gains``."""
+    s, n, k = seen.shape[1], gain.shape[1], columns.shape[1]
+    X, out, turned, innovation = np.zeros((n, k)), np.empty(columns.shape), np.empty((s, k)), np.empty(k)
+    for i in range(len(channel)):
+        u, row, c = kind[i], order[i], channel[i]
+        if keep[u] < 1.0:
+            _advance(X, turned, steps[u], keep[u])
+        for j in range(k):
+            innovation[j] = columns[row, j] - X[s + c, j]
+        for b in range(s):
+            if seen[c, b] != 0.0:
+                for j in range(k):
+                    innovation[j] -= seen[c, b] * X[b, j]
+        for a in range(n):
+            for j in range(k):
+                X[a, j] += gain[i, a] * innovation[j]
+        for j in range(k):
+            out[row, j] = innovation[j] / std[i]
+    return out

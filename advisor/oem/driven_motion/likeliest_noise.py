@@ -1,6 +1,6 @@
 """Search for the likeliest noise at one setting of all parameters."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -8,13 +8,16 @@ from advisor.flight.signals.robust import robust_std
 from advisor.oem.arrow import solved_within
 from advisor.oem.driven_motion.noise import Noise
 from advisor.oem.driven_motion.setting import Setting
+from advisor.process.arrays import FloatArray
 
+Terms = Callable[[Noise], tuple[FloatArray, FloatArray]]
+"""Whitened residual and log variance of its innovations, both of shape (n,), by the noise."""
 MOST_MANEUVERS = 4
 """Number of the newest manoeuvres for the noise estimate. More manoeuvres would change the noise estimate
 little."""
 _FEW_MANEUVERS = 2
 """Numerical: number of the newest manoeuvres with which a noise search begins."""
-_COARSE, _FINE = 20.0, 2.0
+COARSE, FINE = 20.0, 2.0
 """Numerical: decrease of -2 log likelihood by a step below which a search from one start, and the last one,
 ends."""
 _ROUNDS = 20
@@ -35,8 +38,15 @@ value.
 
 def first_noise(setting: Setting) -> Noise:
     """Return the likeliest noise, from the better of two starts."""
-    few = [likeliest(setting, noise, _FEW_MANEUVERS, _COARSE) for noise in _starts(setting)]
-    return likeliest(setting, min(few, key=setting.cost))
+    few = [noise_of(setting, noise, _FEW_MANEUVERS, COARSE) for noise in _starts(setting)]
+    return noise_of(setting, min(few, key=setting.cost))
+
+
+def noise_of(setting: Setting, noise: Noise, newest: int = MOST_MANEUVERS, settled: float = FINE) -> Noise:
+    """Return the likeliest noise near another one, by the residuals of the ``newest`` manoeuvres."""
+    outputs, count = len(noise.white), len(noise.logarithms)
+    free = [*setting.measured, *(outputs + setting.measured), *range(2 * outputs, count)]
+    return likeliest(lambda trial: setting.terms(trial, newest), noise, free, settled)
 
 
 def _starts(setting: Setting) -> Iterator[Noise]:
@@ -61,7 +71,7 @@ def _starts(setting: Setting) -> Iterator[Noise]:
         yield Noise(white, 0.5 * size, 0.3, jolts * moved, gusts * float(moved[0]), 1.0)
 
 
-def likeliest(setting: Setting, noise: Noise, newest: int = MOST_MANEUVERS, settled: float = _FINE) -> Noise:
+def likeliest(terms: Terms, noise: Noise, free: Sequence[int], settled: float = FINE) -> Noise:
     """Return the likeliest noise, by Fisher scoring in the logarithms from another one.
 
     Innovations e with variances F have the information Σ (∂F ∂F/(2·F²) + ∂e ∂e/F). Source: Harvey,
@@ -69,17 +79,18 @@ def likeliest(setting: Setting, noise: Noise, newest: int = MOST_MANEUVERS, sett
 
     Parameters
     ----------
-    newest
-        Number of the newest manoeuvres whose residuals decide.
+    terms
+        Function that returns the whitened residual and the log variance of its innovations.
+    free
+        Indices of the logarithms that move.
     settled
         Decrease of -2 log likelihood by a step below which the search ends.
     """
-    outputs, x = len(noise.white), noise.logarithms
-    free = np.array([*setting.measured, *(outputs + setting.measured), *range(2 * outputs, len(x))])
-    white, volume = setting.terms(noise, newest)
+    x = noise.logarithms
+    white, volume = terms(noise)
     cost = float(np.sum(volume) + white @ white)
     for _ in range(_ROUNDS):
-        moved = [setting.terms(noise.at(x + move), newest) for move in _DIFFERENCE * np.eye(len(x))[free]]
+        moved = [terms(noise.at(x + move)) for move in _DIFFERENCE * np.eye(len(x))[free]]
         by_white, by_volume = np.array(moved).transpose(1, 2, 0)
         by_white = (by_white - white[:, None]) / _DIFFERENCE
         by_volume = (by_volume - volume[:, None]) / _DIFFERENCE
@@ -94,7 +105,7 @@ def likeliest(setting: Setting, noise: Noise, newest: int = MOST_MANEUVERS, sett
                 return noise
             trial = x.copy()
             trial[free] += step
-            white, volume = setting.terms(noise.at(trial), newest)
+            white, volume = terms(noise.at(trial))
             reached = float(np.sum(volume) + white @ white)
             if reached < cost:
                 break

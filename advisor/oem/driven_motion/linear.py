@@ -2,6 +2,8 @@
 
 from typing import Any, NamedTuple, Protocol
 
+import numpy as np
+
 from advisor.model.response import Index
 from advisor.oem.descent import Motion
 from advisor.process.arrays import FloatArray
@@ -20,6 +22,11 @@ class Linear(NamedTuple):
     """Shape (o,): outputs by the gust's angle of incidence."""
     forced: Index
     """Indices of the states whose rates contain a force."""
+
+    @property
+    def all_seen(self) -> FloatArray:
+        """Shape (o, s + 1): outputs by the states and by the gust's angle."""
+        return np.column_stack([self.seen, self.air_seen])
 
 
 class DrivenMotion(Motion, Protocol):

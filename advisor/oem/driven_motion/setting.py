@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from advisor.model.response import Index
-from advisor.oem.driven_motion.kalman_filter import driven_filter
+from advisor.oem.driven_motion.kalman_filter import driven_filter, steps_of
 from advisor.oem.driven_motion.linear import DrivenMotion, Linear
 from advisor.oem.driven_motion.noise import RANGE, Noise
 from advisor.oem.extra import Extra, Parameter
@@ -18,10 +18,6 @@ from advisor.process.arrays import FloatArray
 
 STAMP_S = 1e-3 / 12.0**0.5
 """Standard deviation of a stamp in whole milliseconds, s."""
-_GRID_S = 1e-4
-"""Numerical: grid of the time steps, s, so that equal steps share their matrices. Residuals hardly change
-within half of this time.
-"""
 
 
 class Record(NamedTuple):
@@ -32,10 +28,10 @@ class Record(NamedTuple):
     """Shape (c, s + 1): measured outputs by the states and by the gust's angle."""
     order: Index
     """Indices of the rows among the rows of all manoeuvres."""
-    steps: tuple[FloatArray, Index, Index]
-    """Distinct lengths of the time steps, s, the index of the step before each row, and the index of its
-    output in ``measured``.
-    """
+    steps: tuple[FloatArray, Index]
+    """Distinct lengths of the time steps, s, and the index of the step before each row."""
+    channel: Index
+    """Index of each row's output in ``measured``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,15 +79,12 @@ class Setting:
         The innovations (n, k) are those of ``columns`` (N, k). Only the ``newest`` manoeuvres count; 0 means
         all.
         """
-        white = np.maximum(noise.white, self.floor)[self.measured]
-        instruments = white, noise.coloured[self.measured], noise.memory_s
+        white = np.maximum(noise.white, self.floor)[self.measured] ** 2
+        coloured = noise.coloured[self.measured]
         for record in self.records[-newest:]:
-            matrix, begun, drive = noise.driving(record.motion)
-            rows = np.ascontiguousarray(columns[record.order])
-            yield (
-                record.order,
-                *driven_filter(*record.steps, matrix, record.seen, begun, drive, *instruments, rows),
-            )
+            at = record.steps, record.channel, record.seen, noise.driving(record.motion)
+            gains = driven_filter(*at, white[record.channel], coloured, noise.memory_s)
+            yield record.order, gains.innovations(columns[record.order]), gains.std
 
     def whitened(self, columns: FloatArray, noise: Noise) -> tuple[FloatArray, float]:
         """Return the whitened ``columns`` (N, k) and the log determinant."""
@@ -137,9 +130,8 @@ class Model:
         for m, rows in enumerate(laid.blocks):
             motion = self.motion.linear(problem, shared, m)
             order = rows.start + np.argsort(laid.t[rows], kind="stable")
-            steps = *_distinct(laid.t[order]), np.searchsorted(measured, laid.channel[order])
-            seen = np.column_stack([motion.seen, motion.air_seen])[measured]
-            records.append(Record(motion, seen, order, steps))
+            channel = np.searchsorted(measured, laid.channel[order])
+            records.append(Record(motion, motion.all_seen[measured], order, steps_of(laid.t[order]), channel))
         return Setting(
             problem,
             laid,
@@ -167,10 +159,3 @@ def _floor(laid: Laid, y: FloatArray) -> FloatArray:
         )
         floor[c] = max(floor[c], STAMP_S * float(np.sqrt(np.mean(pace**2))) if len(pace) else 0.0)
     return floor
-
-
-def _distinct(t: FloatArray) -> tuple[FloatArray, Index]:
-    """Return the distinct lengths (u,) of the steps between times, and the index (n,) of the step before each
-    time."""
-    lengths, kind = np.unique(np.rint(np.diff(t, prepend=t[0]) / _GRID_S), return_inverse=True)
-    return lengths * _GRID_S, kind.astype(np.int64)

@@ -3,10 +3,7 @@
 import numpy as np
 
 from advisor.flight.signals.robust import robust_std
-from advisor.model.outputs import OUTPUTS
-from advisor.oem.driven_motion.noise import Noise
-from advisor.oem.driven_motion.setting import Record, Setting
-from advisor.oem.problem import ASSUMED_M_S
+from advisor.oem.driven_motion.setting import Setting
 from advisor.oem.turbulence import Rows, Turbulence, find_turbulence
 
 MOST_MANEUVERS = 7
@@ -17,17 +14,9 @@ little."""
 def moving_air(setting: Setting) -> Turbulence:
     """Return the moving air and the noise that fit the residuals of a setting best."""
     rows = [_rows(setting, m) for m in range(len(setting.records))][-MOST_MANEUVERS:]
-    white = np.array([_white([r.residual[r.channel == c] for r in rows]) for c in range(len(OUTPUTS))])
-    matrix = setting.records[0].motion.matrix
-    system = np.array([matrix[0, 0], matrix[0, 1] - 1.0, matrix[1, 0], matrix[1, 1]])
-    return find_turbulence(rows, system, white, seen_by_alpha=False, start_variance=0.0)
-
-
-def noise_of(air: Turbulence, record: Record) -> Noise:
-    """Return moving air as noise without jolts."""
-    model = air.air
-    still = np.zeros(len(record.motion.forced))
-    return Noise(model.white, model.coloured, model.memory_s, still, model.gust, model.gust_memory_s)
+    outputs = range(len(setting.assembly.names.outputs))
+    white = np.array([_white([r.residual[r.channel == c] for r in rows]) for c in outputs])
+    return find_turbulence(rows, white, start_variance=0.0)
 
 
 def _white(parts: list[np.ndarray]) -> float:
@@ -38,9 +27,8 @@ def _white(parts: list[np.ndarray]) -> float:
 
 def _rows(setting: Setting, m: int) -> Rows:
     """Return the residuals of a manoeuvre in order of time, without each output's mean."""
-    order, airspeed = setting.records[m].order, setting.problem.records[m].airspeed
+    order = setting.records[m].order
     channel, residual = setting.assembly.channel[order], setting.residual[order]
     for c in np.unique(channel):
         residual[channel == c] -= residual[channel == c].mean()
-    speed = ASSUMED_M_S if airspeed is None else float(np.mean(airspeed.y))
-    return Rows(setting.assembly.t[order], channel, residual, speed)
+    return Rows(setting.assembly.t[order], channel, residual, setting.records[m].motion)
