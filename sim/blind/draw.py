@@ -69,7 +69,6 @@ class Case:
             "gap": self.gap,
             "background": self.background,
             "aircraft": self.scenario.aircraft,
-            "true_airspeed_m_s": self.scenario.airspeed_m_s,
         }
 
 
