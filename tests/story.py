@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import inf
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
@@ -124,7 +125,7 @@ def _not_there(story: Story) -> Iterator[str]:
 
 def _forecasts(story: Story) -> Iterator[str]:
     """Yield forecasts that vanish, or that rise without a reason, for each axis."""
-    axis, before = "", {}
+    axis, before = "", dict[str, float]()
     for one in story.said:
         if one.face != "text":
             continue
@@ -139,7 +140,8 @@ def _forecasts(story: Story) -> Iterator[str]:
             yield f"{one.at_s:.0f} s: the forecast of {axis} vanishes: {one.text}"
         if told is None:
             continue
-        most = int(told[2] or told[1])
+        # A forecast without a largest number has an open band.
+        most = int(told[2]) if told[2] else inf
         if axis in before and most > max(before[axis] - 1, 1) and not one.text.endswith(")"):
             yield f"{one.at_s:.0f} s: the forecast of {axis} rises without a reason: {one.text}"
         before[axis] = most

@@ -7,9 +7,11 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
+from benchmarks.lateral_gap import scenario_of
 from sim.lateral import lateral_flight
 from sim.record import record
 from sim.scenario import Scenario
+from tests.conftest import Advisor
 from tests.flights import FOUR, SHIPPED, TWO, recorded
 from tests.story import Said, Story, faults, story_of
 from tests.tui import flights
@@ -82,6 +84,23 @@ def sideways(tmp_path: Path) -> Path:
     """Return a log of the bundled aircraft's five inputs of aileron and rudder."""
     record(lateral_flight(Scenario()), tmp_path / "sideways.tlog")
     return tmp_path / "sideways.tlog"
+
+
+@pytest.mark.study
+def test_roll_and_yaw_in_side_gusts_tell_a_story_without_a_fault(tmp_path: Path) -> None:
+    gusts = scenario_of(301199, {"side_turbulence": {"sigma_v_m_s": 0.3}})
+    record(lateral_flight(gusts), tmp_path / "gusts.tlog")
+    assert list(faults(story_of(Aircraft(), tmp_path / "gusts.tlog"))) == []
+
+
+@pytest.mark.study
+def test_a_table_of_the_samples_tells_a_story_without_a_fault(advisor: Advisor, tmp_path: Path) -> None:
+    log = SHIPPED / "arduplane-calm.tlog"
+    advisor("export", log, "-o", tmp_path / "calm", "--format", "csv")
+    table = tmp_path / "calm" / "record_1" / "grid.csv"
+    story = story_of(load_aircraft(log.with_suffix(".yaml")), table)
+    assert len(story.state.maneuvers) > 0
+    assert list(faults(story)) == []
 
 
 @pytest.mark.study

@@ -21,7 +21,8 @@ class FieldSum:
     t: FloatArray
     """Shape (n,), stamps of the first field, s since power-on."""
     y: FloatArray
-    """Shape (n,); further fields are interpolated at the stamps. NaN where a field has no samples."""
+    """Shape (n,), sum of the fields. All fields but the first are interpolated at ``t``. NaN where
+    a field has no samples."""
 
 
 def field_sums(log: Path, asked: Sequence[str]) -> tuple[FieldSum, ...]:

@@ -84,7 +84,7 @@ class LogSeries:
                     "fault",
                     f"Its messages cause an error in the analysis ({type(error).__name__}: "
                     f"{printable(str(error))}).",
-                    "Leave this log out, and please report it.",
+                    "Leave this log out, and please report this error.",
                 )
             else:
                 return consumer

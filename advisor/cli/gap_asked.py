@@ -91,8 +91,8 @@ class GapAsked:
         return max(answer.code for answer in answers)
 
     def improved(self, improves: bool, make: Callable[[], FlownModel]) -> Path | None:
-        """Write the improved aircraft file if the user asked for one, or print why not. Return the written
-        file.
+        """Write the improved aircraft file if the user asked for one, or print why not. Return the path of
+        the file, or None if no file was written.
         """
         if self.out is None:
             return None

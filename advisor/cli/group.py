@@ -210,7 +210,7 @@ def _ended_by(run: Callable[[], int]) -> int:
             raise
         _tell(
             f"A fault of the advisor, not yours: {type(error).__name__}: {printable(str(error))}. "
-            "Set ADVISOR_TRACEBACK=1 to see where, and please report it."
+            "Set ADVISOR_TRACEBACK=1 to see where, and please report this error."
         )
         return INTERNAL
 

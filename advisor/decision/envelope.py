@@ -119,7 +119,7 @@ def too_slow(channels: Sequence[Channel], period_s: float) -> list[Reason]:
             rate, needed = distinct_texts(c.rate_hz, least_hz, 1)
             text = (
                 f"{c.name} arrived at {rate} Hz (this aircraft needs {needed}); "
-                "let it come faster, advisor doctor says how"
+                f"raise the rate of {c.name}; advisor doctor names the setting"
             )
             reasons.append(Reason("rate", text, c.rate_hz, least_hz))
     return reasons

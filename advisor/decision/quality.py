@@ -36,7 +36,7 @@ from advisor.words.quantiles import NORMAL_95
 
 WIDEST_PREDICTION_PERCENT = 25.0
 """Largest half-width of the predicted rate's 95 % band, % of its peak. A standard deviation of 12 % in M_δe
-alone gives 24 %. Real records that agree between two halves of a campaign have 9 to 21 %."""
+alone gives 24 %. On real records whose two halves agree, this half-width is 9 to 21 %."""
 
 _STEADY = "steady flight before"
 

@@ -20,7 +20,7 @@ CONSTANT = "1"
 
 @dataclass(frozen=True)
 class Names:
-    """Names of a model's outputs and parameters, each in the order of its vectors."""
+    """Names of a model's outputs and parameters, in the order in which the model's vectors hold them."""
 
     outputs: tuple[str, ...]
     shared: tuple[str, ...]

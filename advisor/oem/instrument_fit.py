@@ -48,8 +48,8 @@ MODEL_ERROR = 1e-3
 """Numerical: error of the model's outputs, relative to their spread. A surface with a lag is taken as linear
 between the grid's stamps (``surface``)."""
 MEASURED_LAG_S = 0.005
-"""Standard deviation of a stated lag of zero, s, if only a command before its stamps contradicts the zero. A
-measured surface is late by its sensor's filter, at most one period of 200 Hz."""
+"""Standard deviation of a stated lag of zero, s, if only a command before its stamps contradicts the zero.
+The filter of a surface's sensor delays the measured surface by at most 5 ms, one period of 200 Hz."""
 SAME_SENSOR_S = 0.002
 """Standard deviation of the delay between specific force and pitch rate, s, which one sensor measures. The
 stamps of two messages are rounded to 1 ms. The messages leave the autopilot's loop up to some milliseconds

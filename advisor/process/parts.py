@@ -37,7 +37,7 @@ class FailedPart:
     def problem(self) -> Problem:
         """Sentence on the missing part, with the user's next step."""
         text = f"A fault of the advisor, not yours, ended this part: {self.part} ({self.reason})."
-        fix = "The rest of the answer is valid. Set ADVISOR_TRACEBACK=1 to see where, and please report it."
+        fix = "The rest of the answer is valid. Set ADVISOR_TRACEBACK=1 to see where, and report this error."
         return Problem(INTERNAL, text, fix)
 
     @property

@@ -44,7 +44,7 @@ class _Air:
     gains: FloatArray
     """Eigenvalue λ of every axis, in units of the noise's variance per rad²."""
     gust: FloatArray
-    """Response g of every axis to a gust of 1 rad."""
+    """Coordinate g of the response to a gust of 1 rad along each principal axis."""
     inside: float
     """Cosine between the gust's response and the nearest response to turbulence."""
 

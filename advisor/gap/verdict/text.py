@@ -110,7 +110,7 @@ def _of_effects(causes: Sequence[Cause], shrink: Shrink | None, in_simulator: fr
         also_wrong = ""
         if beyond_air is not None:
             also_wrong = f"; its parameters are wrong too, and cause {beyond_air:.0f} % of the gap"
-        return f"{named}: that is the air, not the simulator{also_wrong}."
+        return f"{named}: the air causes this, not the simulator{also_wrong}."
     removed = (
         _removed(shrink) if beyond_air is None else f"{beyond_air:.0f} % of the gap that is not the air's"
     )

@@ -44,7 +44,8 @@ def flown(
     """Return the records of the sensor in use at each time; none while no sensor was healthy.
 
     If the primary sensor is not healthy or not in use, the lowest-numbered usable sensor is taken. Without a
-    stated primary sensor, the healthy sensor with the lowest number is taken. The rules are ArduPilot's.
+    stated primary sensor, the healthy sensor with the lowest number is taken. ArduPilot selects
+    its sensors by these rules.
 
     Parameters
     ----------

@@ -65,7 +65,7 @@ def _read(
             "damaged",
             f"{path.name} cannot be read, because the reader failed on its bytes ({type(error).__name__}: "
             f"{error}).",
-            "Copy the log from the vehicle once more, or leave it out; and please report it.",
+            "Copy the log from the vehicle once more, or leave it out. Please report this error.",
         ) from error
 
 

@@ -69,7 +69,7 @@ def topics_of(log: Any, needed: Mapping[str, set[str]] = TOPICS) -> dict[str, li
 
 
 def _wide(values: NDArray[Any]) -> NDArray[Any]:
-    """Return floating-point values in double precision. Damaged values cause no warning here."""
+    """Return floating-point values in double precision. NumPy gives no warning for a damaged value."""
     return values.astype(np.float64) if values.dtype.kind == "f" else values
 
 
