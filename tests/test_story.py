@@ -7,6 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
+from advisor.analysis.table_log import as_in_tables
 from benchmarks.lateral_gap import scenario_of
 from sim.lateral import lateral_flight
 from sim.record import record
@@ -98,7 +99,8 @@ def test_a_table_of_the_samples_tells_a_story_without_a_fault(advisor: Advisor, 
     log = SHIPPED / "arduplane-calm.tlog"
     advisor("export", log, "-o", tmp_path / "calm", "--format", "csv")
     table = tmp_path / "calm" / "record_1" / "grid.csv"
-    story = story_of(load_aircraft(log.with_suffix(".yaml")), table)
+    aircraft = as_in_tables(load_aircraft(log.with_suffix(".yaml")), [table])
+    story = story_of(aircraft, table)
     assert len(story.state.maneuvers) > 0
     assert list(faults(story)) == []
 

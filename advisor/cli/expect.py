@@ -46,8 +46,8 @@ def command(asked: LogsAsked, log: Path, file: Path, junit: Path | None, write: 
       advisor expect flight.tlog expectations.yaml --junit report.xml --json
     """
     _refuse(asked, log, file, junit, write, as_json)
-    aircraft = asked.read_aircraft()
     asked = replace(asked, logs=(log,))
+    aircraft = asked.read_aircraft()
     if write:
         return _write(asked, aircraft, file)
     from advisor.expectations.document import expect_document

@@ -38,6 +38,15 @@ def test_what_does_not_hold_ends_with_1_and_stands_in_both_reports(advisor, flig
     assert ElementTree.parse(report).getroot().get("failures") == "1"
 
 
+def test_the_surfaces_of_a_table_are_its_columns(advisor, flight, tmp_path: Path) -> None:
+    aircraft, file = tmp_path / "aircraft.yaml", tmp_path / "expectations.yaml"
+    aircraft.write_text("elevator: {output: 2}\n")
+    file.write_text("accepted: {pitch: 2}\n")
+    assert advisor("export", flight, "-o", tmp_path / "flight", "--format", "csv").returncode == 0
+    table = tmp_path / "flight" / "record_1" / "grid.csv"
+    assert advisor("expect", table, file, "--aircraft", aircraft).returncode == 0
+
+
 def test_an_unusable_log_ends_with_3_and_an_error_in_the_report(advisor, tmp_path: Path) -> None:
     file, report = tmp_path / "expectations.yaml", tmp_path / "report.xml"
     file.write_text("alarms: 0\n")
