@@ -189,17 +189,16 @@ def _hills(plain: Solution, names: Sequence[Instrument], share: float) -> list[N
     if lag is None:
         return [plain]
     others = [x for x in names if x is not lag]
-    near: Near = plain
-    costs, fits = [np.inf], list[Fit]()
+    costs, fits = [np.inf], list[Near]([plain])
     for value in lag.starts:
-        there = replace(near, problem=lag.write(near.problem, value))
+        there = replace(fits[-1], problem=lag.write(fits[-1].problem, value))
         fit = _descended(there, others, share, LOOK)
         if not isinstance(fit, NoEstimate):
             costs.append(fit.cost + penalty(fit.problem, [lag]))
-            fits.append(near := fit)
+            fits.append(fit)
     heights = np.array([*costs, np.inf])
-    higher = np.flatnonzero((heights[1:-1] <= heights[:-2]) & (heights[1:-1] < heights[2:]))
-    return [fits[k] for k in sorted(higher, key=lambda k: float(heights[k + 1]))] or [plain]
+    higher = 1 + np.flatnonzero((heights[1:-1] <= heights[:-2]) & (heights[1:-1] < heights[2:]))
+    return [fits[k] for k in sorted(higher, key=lambda k: float(heights[k]))] or [plain]
 
 
 def _whole_posterior(best: Solution, names: Sequence[Instrument], others: Sequence[Near]) -> Solution:
@@ -295,6 +294,7 @@ def _with_statements(
             kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, width, share))))
         else:
             problem = x.write(problem, x.stated)
+            others = [replace(at, problem=x.write(at.problem, x.stated)) for at in others]
     left = tuple(one.instrument for one in kept)
     final = _fitted(replace(solution, problem=problem), left, colour_share(solution))
     if final is None:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.sensors import Accelerometer, Alpha
 from advisor.model.outputs import SHARED
 from advisor.oem import instrument_fit
 from advisor.oem.estimator import fit_jointly
@@ -88,3 +89,22 @@ def test_the_pole_of_an_overdamped_aircraft_is_not_the_servos():
     ]
     found = fit_jointly(flights, Aircraft(airspeed_m_s=SPEED)).estimate()
     assert abs(found.theta[6] - OVERDAMPED[6]) < 1.0
+
+
+def test_another_hill_keeps_a_statement_that_the_data_confirm(monkeypatch):
+    """A stated place of the vane is the same on every hill."""
+    starts = []
+    inside = instrument_fit._of_two_hills
+
+    def seen(best, others, posterior):
+        starts.extend(others)
+        return inside(best, others, posterior)
+
+    monkeypatch.setattr(instrument_fit, "_of_two_hills", seen)
+    flights = [
+        equipped(number=i, sign=(-1.0) ** i, delay_s=0.017, noise=0.02, seed=i, of=OVERDAMPED)
+        for i in range(2)
+    ]
+    stated = Aircraft(airspeed_m_s=SPEED, alpha=Alpha(vane_arm_m=0.0), accelerometer=Accelerometer(arm_m=0.0))
+    fit_jointly(flights, stated)
+    assert [at.problem.vane_arm_m for at in starts][-1] == 0.0
