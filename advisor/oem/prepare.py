@@ -245,12 +245,12 @@ def _record(maneuver: Maneuver, speed: Signal | None, alpha: Signal, usable: Seq
         airspeed=speed,
         normal_gravity=normal,
         gravity_z=gravity,
-        sideslip_turn=_sideslip_turn(channels, alpha),
+        sideslip_turn=sideslip_turn(channels, alpha),
         inferred_alpha=None if "alpha" in usable else alpha,
     )
 
 
-def _sideslip_turn(channels: Mapping[str, Channel], alpha: Signal) -> Signal | None:
+def sideslip_turn(channels: Mapping[str, Channel], alpha: Signal) -> Signal | None:
     """Return the rate of α by rolling in sideslip, rad/s; None without a sideslip or a roll rate.
 
     The level of a computed sideslip depends on the estimated wind, so only its changes are used.

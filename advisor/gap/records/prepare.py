@@ -24,6 +24,7 @@ from advisor.gap.records.unmeasured_alpha import is_estimate
 from advisor.gap.records.unmeasured_speed import speed_without_instrument, speeds_about
 from advisor.gap.records.usable import edges_of, held_from, outputs_of, recorded, usable_of
 from advisor.gap.simulator.layout import OUTPUTS, SLOW, SPEED, THETA_FROM, THRUST
+from advisor.oem.prepare import sideslip_turn, signal_of
 from advisor.oem.problem import ASSUMED_M_S
 from advisor.oem.rows import Signal
 from advisor.process.arrays import FloatArray
@@ -169,12 +170,13 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
     a_x = smooth(on_grid("a_x", GRAVITY_M_S2 * float(np.sin(theta_at[0]))), 0.05)
     bank = smooth(on_grid("bank", 0.0), 0.1)
     throttle = on_grid("throttle", 0.0)
-    height = on_grid("height", 1e3)
-    along = along_the_path(grid, m, start) / GRAVITY_M_S2
     # Without a yaw rate in the log, a bank is taken as a coordinated turn.
     yaw_rate = smooth(on_grid("r", 0.0), 0.1) if "r" in m.channels else GRAVITY_M_S2 / speed * np.sin(bank)
-    turn = yaw_rate * np.sin(bank)
-    slow = np.vstack(SLOW._replace(speed=speed, a_x=a_x, bank=bank, height=height, thrust=along, turn=turn,
+    slipping = sideslip_turn(m.channels, signal_of(a)) if (a := m.channels.get("alpha")) else None
+    slow = np.vstack(SLOW._replace(speed=speed, a_x=a_x, bank=bank, height=on_grid("height", 1e3),
+                                   thrust=along_the_path(grid, m, start) / GRAVITY_M_S2,
+                                   turn=yaw_rate * np.sin(bank),
+                                   slip=np.zeros(n) if slipping is None else slipping.at(grid + start),
                                    throttle=throttle - float(np.mean(throttle[:20]))))  # fmt: skip
     outputs = outputs_of(m)
     t_u, u = m.channels["elevator"].t - start, m.channels["elevator"].y
@@ -182,8 +184,8 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
     lead = (t_u >= 0.0) & (t_u < max(first - 0.02, 0.1))
     u_trim = float(np.median(u[lead])) if np.any(lead) else float(u[0])
 
-    alpha = _trimmed_alpha(m, outputs, start, first)
-    trim = np.array([alpha, alpha, reference, 1.0])
+    angle = _trimmed_alpha(m, outputs, start, first)
+    trim = np.array([angle, angle, reference, 1.0])
     if "theta" in outputs:
         trim[THETA_FROM] = float(np.mean(outputs["theta"].y[:3]))
     elif "theta" in m.channels:
@@ -199,8 +201,7 @@ def _trimmed_alpha(m: Maneuver, outputs: Mapping[str, Signal], start: float, fir
     """Return the angle of attack before the first step, rad: measured, or from the motion; else 0."""
     if "alpha" in outputs:
         return _at_start(outputs["alpha"], first)
-    alpha = m.channels.get("alpha")
-    if alpha is None or len(alpha) == 0:
+    if not (alpha := m.channels.get("alpha")):
         return 0.0
     return _at_start(Signal(alpha.t - start, alpha.y), first)
 

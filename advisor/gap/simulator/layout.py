@@ -71,8 +71,8 @@ def places(names: Sequence[str]) -> Any:
 
 
 AT, READ, FILTERED = places(ENTRIES), places(OUTPUTS), places(FILTER)
-SLOW = places(("speed", "a_x", "bank", "throttle", "height", "thrust", "turn"))
-SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST, TURN = SLOW
+SLOW = places(("speed", "a_x", "bank", "throttle", "height", "thrust", "turn", "slip"))
+SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST, TURN, SLIP = SLOW
 """Row numbers of the slow inputs, which have one value per time step."""
 DISTURBED = places(("input", "force", "moment", "air"))
 DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = DISTURBED

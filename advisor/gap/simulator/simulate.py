@@ -62,8 +62,9 @@ def simulate(
     lanes
         ``LANES``, as in ``advisor.gap.simulator.step``.
     slow
-        Shape (7, n). Speed (m/s), a_x (m/s²), bank (rad), throttle relative to its start, height (m), thrust
-        minus drag over weight relative to its mean, and r sin φ (rad/s), which a turn subtracts from θ̇.
+        Shape (8, n). Speed (m/s), a_x (m/s²), bank (rad), throttle relative to its start, height (m), thrust
+        minus drag over weight relative to its mean, r sin φ (rad/s), which a turn subtracts from θ̇, and the
+        rate of α by rolling in sideslip (rad/s).
     disturbance
         Shape (4, n), or (4, 0) for none: added to δ, α̇, q̇ and the angle of the air.
     doses

@@ -92,7 +92,7 @@ def hold_over_step(
     delta, above
         Shape (LANES,): mean deflection over the step relative to trim, and that minus the one at its start.
     slow
-        Shape (7,): the slow inputs of the step.
+        Shape (8,): the slow inputs of the step.
     level
         Cosine of the bank.
     disturbed
@@ -112,7 +112,7 @@ def hold_over_step(
         ca, sa = cos_sin(x[row.ALPHA, m])
         ct, st = cos_sin(x[row.THETA, m])
         x[row.COS_ALPHA, m], x[row.SIN_ALPHA, m] = ca, sa
-        x[row.GRAVITY, m] = GRAVITY_M_S2 / x[row.AIRSPEED, m] * (ca * ct * level + sa * st)
+        x[row.GRAVITY, m] = GRAVITY_M_S2 / x[row.AIRSPEED, m] * (ca * ct * level + sa * st) + slow[SLOW.slip]
         x[row.LIFTING, m] = lifting
         x[row.ENGINE, m] = throttle + x[row.ENGINE_DECAY, m] * (x[row.ENGINE, m] - throttle)
         x[row.MOMENT_SLOPE, m] = pressure * x[AT.M_alpha, m]

@@ -84,9 +84,8 @@ def _of_a_constant_speed(e: Findings, verdict: GapVerdict) -> Iterator[str]:
         return
     constant, given = (whole_gap(h.mean_square, e.floor) for h in (e.constant_speed, e.last.held_out))
     if constant - given > _MATTERS:
-        percent = 100.0 * e.problem.flights.speed_moves
         yield (
-            f"The simulator was given the air speed of the log, which varied by up to {percent:.0f} %. "
+            f"The air speed of the log varied by up to {100.0 * e.problem.flights.speed_moves:.0f} %. "
             f"At constant speed the simulator would leave a gap of {constant:.1f}."
         )
 
