@@ -126,6 +126,9 @@ def marked_span(mark: Mark, elevator: Channel | None) -> Span:
     if found is None:
         return Span(record_from_s, mark.start_s, mark.start_s, end_s, "other", (), by)
     last_step_s = min(found.last_step_s, mark.end_s)
+    if mark.end_s - last_step_s >= mark.free_s:
+        # A script that rests before its END gives the control back there: the free response is within.
+        end_s = mark.end_s
     return Span(record_from_s, found.start_s, last_step_s, end_s, found.kind, found.steps, by)
 
 
@@ -137,7 +140,9 @@ def _input(mark: Mark, elevator: Channel) -> Movement | None:
     before = elevator.cut(mark.start_s - _BEFORE_S, mark.start_s).y
     level = median(before) if len(before) else float(within.y[0])
     moved, rest = _moved(within, level), _last(within)
-    has_returned = is_still(rest, moved) and abs(median(rest) - level) <= RETURNED * moved
+    has_returned = is_still(rest, moved) and (
+        mark.by == "script" or abs(median(rest) - level) <= RETURNED * moved
+    )
     if not has_returned and not is_still(within.y, moved):
         # The return to trim may follow the mark. After a return within the mark, and after a mark in which
         # the control was held, an autopilot's loop follows.

@@ -37,8 +37,8 @@ class PreparedManeuver:
     """Elevator command before the record, which still moves the servo at its begin, rad."""
     u_trim: float
     slow: FloatArray
-    """Shape (8, n) on the grid: speed, a_x, bank, throttle, height, (thrust − drag)/weight, r sin φ, and the
-    rate of α by rolling in sideslip."""
+    """Shape (8, n) on the grid: speed, a_x, bank, throttle, height, (thrust − drag)/weight and r sin φ. The
+    last row is the rate of α by rolling in sideslip."""
     trim: FloatArray
     """Shape (4,): initial α and θ, reference speed, and 1 where derivatives scale with the air speed."""
     outputs: Mapping[str, Signal]

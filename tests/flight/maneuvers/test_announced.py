@@ -47,6 +47,12 @@ def test_begin_and_end_mark_a_manoeuvre_and_its_free_response():
     assert maneuver.span.end_s == pytest.approx(60.0, abs=0.05)
 
 
+def test_a_script_that_rests_before_its_end_ends_the_record_there():
+    _, events = flown(announced((53.0, BEGIN), (60.5, END)))
+    (maneuver,) = maneuvers(events)
+    assert maneuver.span.end_s == pytest.approx(60.5, abs=0.05)
+
+
 def test_the_announced_name_is_that_of_the_input():
     _, events = flown(announced((53.0, BEGIN), (57.0, END)))
     assert [m.span.kind for m in maneuvers(events)] == ["reverse 3-2-1-1"]
