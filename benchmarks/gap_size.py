@@ -48,12 +48,12 @@ OF_AN_AXIS = frozenset(
 letter."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
-    "lines of code": 7050,
+    "lines of code": 7048,
     "constants": 207,
     "constants that decide": 25,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 16422,
+    "lines of estimation": 16420,
     "files naming an axis": 110,
 }
 """Upper bound of each count."""

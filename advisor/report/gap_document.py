@@ -55,7 +55,6 @@ NOTHING: Mapping[str, Any] = {
 def gap_document(
     diagnosis: Diagnosis | None,
     problems: Sequence[Problem] = (),
-    improved_model: str | None = None,
     failed: Sequence[FailedPart] = (),
 ) -> dict[str, Any]:
     """Return the document of ``advisor gap --json``; without a diagnosis it contains only problems.
@@ -74,7 +73,7 @@ def gap_document(
     document["problems"] += [part.entry for part in diagnosis.failed]
     if diagnosis.axis == "lateral":
         return {**document, **NOTHING, "lateral": axis_document(diagnosis)}
-    return document | axis_document(diagnosis) | {"improved_model": improved_model}
+    return document | axis_document(diagnosis) | {"improved_model": None}
 
 
 def axis_document(d: Diagnosis) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from math import degrees, inf, isfinite, log, pi
 from typing import Literal
 
 import numpy as np
+from scipy.linalg import expm
 
 from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.model.mil_f_8785c import CATEGORIES, Category, LevelFound, Measured, Range, assess
@@ -211,12 +212,7 @@ def peak_roll_rate(theta: FloatArray, a: FloatArray, aileron_rad: float, step_s:
     # The input as a fifth state that stands still: one matrix gives state and response.
     held = np.zeros((5, 5))
     held[:4, :4], held[:4, 4] = a, b
-    dt = step_s / _STEPS
-    # Taylor's series of four terms has an error of (|A|·dt)⁵, far below the tolerance.
-    power, turned = np.eye(5), np.eye(5)
-    for k in range(1, 5):
-        power = power @ held * (dt / k)
-        turned = turned + power
+    turned = expm(held * (step_s / _STEPS))
     x, largest = np.array([0.0, 0.0, 0.0, 0.0, 1.0]), 0.0
     for _ in range(_STEPS):
         x = turned @ x

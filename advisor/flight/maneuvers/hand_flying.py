@@ -36,9 +36,9 @@ def flown_elsewhere(maneuver: Maneuver, limits: Limits) -> str | None:
     return None if _is_abrupt(maneuver) else next(_outside(maneuver, limits), None)
 
 
-def motion_of(maneuver: Maneuver, from_s: float, to_s: float, control: str = "elevator") -> FloatArray:
-    """Return the control's motion over ``EDGE_S``, rad, at each of its stamps between two times."""
-    elevator = maneuver.channels[control]
+def motion_of(maneuver: Maneuver, from_s: float, to_s: float) -> FloatArray:
+    """Return the elevator's motion over ``EDGE_S``, rad, at each of its stamps between two times."""
+    elevator = maneuver.channels["elevator"]
     moved = np.abs(elevator.y - np.interp(elevator.t - EDGE_S, elevator.t, elevator.y))
     return moved[(elevator.t >= from_s) & (elevator.t <= to_s)]
 

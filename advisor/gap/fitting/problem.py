@@ -198,14 +198,9 @@ class EffectProblem:
         doses = np.zeros(len(p)) if doses is None else doses
         return simulate(LAYOUT, flight.h, *moved, LANES, flight.slow, disturbance, doses, flight.trim, p)
 
-    def read_all(
-        self, flight: PreparedManeuver, packs: FloatArray, p: FloatArray, flown: np.ndarray | None = None
-    ) -> FloatArray:
-        """Return all channels at their own stamps, stacked, shape (rows, k), with the instruments in ``p``.
-
-        ``flown``, shape (k,), holds the index of the simulation for each column.
-        """
-        return self._read(flight, packs, np.arange(len(p)) if flown is None else flown, p)
+    def read_all(self, flight: PreparedManeuver, packs: FloatArray, p: FloatArray) -> FloatArray:
+        """Return all channels at their stamps, stacked, shape (rows, k), with the instruments in ``p``."""
+        return self._read(flight, packs, np.arange(len(p)), p)
 
     def fly_and_read(self, flight: PreparedManeuver, p: FloatArray) -> FloatArray:
         """Return the readings of one manoeuvre in simulations with every row of ``p`` (k, entries), shape
