@@ -68,6 +68,6 @@ def refuse_lacking(lacking: Sequence[Sequence[str]], name: str) -> None:
         where = "under reference: " if reference else ""
         what = "non-dimensional coefficients" if reference else "coefficients per full travel of the servo"
         raise ConfigurationError(
-            f"--export {name}: {what} need {', '.join(listed)}; "
+            f"The format {name} cannot be written: {what} need {', '.join(listed)}; "
             f"give {'them' if len(listed) > 1 else 'it'} {where}in the aircraft file."
         )
