@@ -89,7 +89,7 @@ def _paint(drawing: Drawing, power_on: PowerOn, judged: Sequence[Sequence[Judged
     rows[-1].set_xlabel(f"time ({CLOCK})")
     rows[-1].set_xlim(begin_s, end_s)
     rows[-1].xaxis.set_major_locator(MaxNLocator(8, steps=[1, 1.5, 2, 3, 6, 10]))
-    rows[-1].xaxis.set_major_formatter(FuncFormatter(lambda t, _: clock(t)))
+    rows[-1].xaxis.set_major_formatter(FuncFormatter(lambda t, _: clock(t).removesuffix(".0")))
     _number(list(rows), shown, judged)
     _lay_out(drawing)
     box = Bbox.union([axes.get_position() for axes in rows[: len(shown)]])
