@@ -56,7 +56,7 @@ class Profile:
     @property
     def weights(self) -> FloatArray:
         """Shape (n,): posterior probability of each value, by the trapezoidal rule."""
-        density = np.exp(-self.nats)
+        density = np.exp(-np.minimum(self.nats, 10.0 * FARTHEST_NATS))  # no weight rounds to zero
         width = np.zeros(len(self.values))
         steps = np.diff(self.values)
         width[:-1] += steps

@@ -48,6 +48,13 @@ def test_a_flat_ridge_to_one_side_reaches_to_its_end():
     assert 1.959964 * np.sqrt(found.moment[0, 0]) >= 0.999 * 200.0 * 4.0 * STD
 
 
+def test_neighbours_far_below_the_optimum_leave_the_interval_of_the_optimum():
+    found = profile(lambda lag: 100.0 * lag, lambda lag: 1e4 * parabola(lag))
+    assert np.all(np.isfinite(found.moment))
+    steep = 1.959964 * STD / 100.0
+    assert 1.959964 * np.sqrt(found.moment[0, 0]) == pytest.approx(100.0 * steep, rel=0.01)
+
+
 def test_the_ends_of_the_interval_lie_between_the_nodes():
     alike = profile(lambda lag: lag, parabola).alike
     assert np.isclose(np.max(alike[:, 0]), LAG + 1.959964 * STD, rtol=1e-6)
