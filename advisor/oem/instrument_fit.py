@@ -211,8 +211,8 @@ def _whole_posterior(best: Solution, names: Sequence[Instrument], others: Sequen
         return best
     posterior = Posterior(names, colour_share(best), usual_moments)
 
-    def refit(free: Sequence[Instrument], there: OutputErrorProblem, near: Solution) -> Solution | None:
-        return _fitted(replace(near, problem=there), free, posterior.share)
+    def refit(free: Sequence[Instrument], there: OutputErrorProblem, near: Near) -> Fit | None:
+        return _searched(replace(near, problem=there), free, posterior.share)
 
     return profiled(_of_two_hills(best, others, posterior), lag, posterior, refit)
 

@@ -13,12 +13,14 @@ causes. The resulting interval about the best optimum contains the interval of t
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import expit
 
 from advisor.oem.extra import penalty
+from advisor.oem.instruments import KNOWN_TO
 from advisor.oem.solution import Solution, reported
 from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
@@ -28,14 +30,17 @@ FARTHEST_NATS = 4.0
 0.5 % of its probability beyond it."""
 MOST_STEPS = 6
 """Numerical: most steps of one standard deviation to each side."""
+FLAT_NATS = 0.25
+"""Numerical: least fall of the log posterior density one standard deviation from its optimum. A Gaussian
+falls by twice as much. Below it the posterior is wider than its curvature at the optimum says."""
 ALIKE_NATS = 0.5 * NORMAL_95**2
 """Fall of the log posterior density up to which two optima explain the record alike. The value is the 95 %
 limit of a likelihood ratio with one degree of freedom, 1.9."""
 
-Refit = Callable[[Sequence[Any], Any, Solution], Solution | None]
+Refit = Callable[[Sequence[Any], Any, Any], Any]
 """Function that searches all parameters but the profiled one again; None if the search fails.
 
-Its arguments are these parameters, the problem with the new value, and the nearest solution."""
+Its arguments are these parameters, the problem with the new value, and the nearest fit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,11 +62,7 @@ class Profile:
     def weights(self) -> FloatArray:
         """Shape (n,): posterior probability of each value, by the trapezoidal rule."""
         density = np.exp(-np.minimum(self.nats, 10.0 * FARTHEST_NATS))  # no weight rounds to zero
-        width = np.zeros(len(self.values))
-        steps = np.diff(self.values)
-        width[:-1] += steps
-        width[1:] += steps
-        mass = density * width
+        mass = density * np.convolve(np.diff(self.values), [1.0, 1.0])
         return np.asarray(mass / np.sum(mass))
 
     @property
@@ -109,43 +110,50 @@ class Posterior(NamedTuple):
         The moment, shape (p + k, p + k), is the second moment of the distance times the probability of the
         less likely optimum. ``best`` and ``rival`` are fits or solutions.
         """
-        pair = (best, rival)
-        theta, other = (reported(at.optimum.shared, at.optimum.local, at.assembly.names) for at in pair)
+        theta, other = theta_of(best), theta_of(rival)
         lower = self.share**2 * (rival.optimum.log_likelihood_cost - best.optimum.log_likelihood_cost)
         nats = 0.5 * (lower + self.usual(rival.problem, other) - self.usual(best.problem, theta))
         moved = [x.read(rival.problem) - x.read(best.problem) for x in self.parameters]
         step = np.array([*(other - theta), *moved])
         return nats, float(expit(-abs(nats))) * np.outer(step, step)
 
-    def density(self, solution: Solution, searched: Sequence[Any]) -> float:
+    def density(self, solution: Any, searched: Sequence[Any]) -> float:
         """Return -log posterior density, up to a constant, with the residuals' colour in ``share``.
 
         The cost of the fit holds the narrowed priors of the ``searched`` parameters.
         """
         data = solution.optimum.log_likelihood_cost - penalty(solution.problem, searched)
         true = [replace(p, prior=replace(p.prior, share=1.0)) for p in self.parameters if p.prior is not None]
-        known = penalty(solution.problem, true) + self.usual(solution.problem, solution.theta)
-        return 0.5 * (self.share**2 * data + known)
+        known = penalty(solution.problem, true) + self.usual(solution.problem, theta_of(solution))
+        return 0.5 * float(self.share**2 * data + known)
 
-    def at(self, solution: Solution) -> FloatArray:
-        """Return parameters and nuisance parameters of a solution, shape (p + k,)."""
-        return np.array([*solution.theta, *(p.read(solution.problem) for p in self.parameters)])
+    def at(self, solution: Any) -> FloatArray:
+        """Return parameters and nuisance parameters of a fit or solution, shape (p + k,)."""
+        return np.array([*theta_of(solution), *(p.read(solution.problem) for p in self.parameters)])
+
+
+def theta_of(at: Any) -> FloatArray:
+    """Return the reported parameters (p,) of a fit or of a solution."""
+    return reported(at.optimum.shared, at.optimum.local, at.assembly.names)
 
 
 def profiled(solution: Solution, x: Any, posterior: Posterior, refit: Refit) -> Solution:
     """Return the solution with the second moment of the posterior along a positive parameter ``x``.
 
     ``x`` is one of the posterior's parameters. The posterior is Gaussian where the linear interval of ``x``
-    does not reach zero. The moment of another optimum remains.
+    does not reach zero, and its density falls within a standard deviation. An ``x`` that is known to
+    ``KNOWN_TO`` is not examined. The moment of another optimum remains.
     """
     place = len(solution.theta) + list(posterior.parameters).index(x)
     column = replace(solution, modes=None).widened[:, place]
     std = float(np.sqrt(column[place]))
-    if not std > 0.0 or NORMAL_95 * std < x.read(solution.problem):
+    walk, here = partial(_walk, solution, x, posterior, refit, std), x.read(solution.problem)
+    if not std > KNOWN_TO * here:
         return solution
-    nodes = sorted(_walk(solution, x, posterior, refit, std), key=lambda node: node[0])
-    if len(nodes) < 2:
-        return solution  # no neighbouring value has an optimum
+    bends = NORMAL_95 * std >= here or any(fall < FLAT_NATS for _, fall, _ in walk(1))
+    if not (around := list(walk(MOST_STEPS)) if bends else []):
+        return solution
+    nodes = sorted([(here, 0.0, posterior.at(solution)), *around], key=lambda node: node[0])
     values, nats, theta = (np.array(part) for part in zip(*nodes, strict=True))
     nats -= min(float(np.min(nats)), 0.0)
     profile = Profile(place - len(solution.theta), values, nats, theta, posterior.at(solution))
@@ -157,15 +165,14 @@ def profiled(solution: Solution, x: Any, posterior: Posterior, refit: Refit) -> 
 
 
 def _walk(
-    solution: Solution, x: Any, posterior: Posterior, refit: Refit, std: float
+    solution: Solution, x: Any, posterior: Posterior, refit: Refit, std: float, most: int
 ) -> Iterator[tuple[float, float, FloatArray]]:
     """Yield value, fall of the log posterior density and parameters, outwards from the optimum."""
     others = [p for p in posterior.parameters if p is not x]
     begun = posterior.density(solution, posterior.parameters)
-    yield x.read(solution.problem), 0.0, posterior.at(solution)
     for way in (1.0, -1.0):
         near, fall = solution, 0.0
-        for _ in range(MOST_STEPS):
+        for _ in range(most):
             there = x.moved(near.problem, way * std)
             ends = fall > FARTHEST_NATS or x.read(there) == x.read(near.problem)
             found = None if ends else refit(others, there, near)

@@ -77,7 +77,9 @@ def at(lag, theta, cost, std=STD):
 
     covariance = np.diag([1e-4, std**2])
     return Solution(
-        problem=lag, assembly=None, optimum=SimpleNamespace(log_likelihood_cost=cost), influence=None,
+        problem=lag, assembly=SimpleNamespace(names=SimpleNamespace(places=[(True, 0)])),
+        optimum=SimpleNamespace(log_likelihood_cost=cost, shared=[theta], local=np.zeros((1, 1))),
+        influence=None,
         theta=np.array([theta]), covariance_cr=covariance, covariance=covariance, noise=None,
         contributions=np.zeros((1, 2)), systematic=np.zeros((2, 2)),
     )  # fmt: skip
@@ -111,8 +113,23 @@ def test_the_walk_ends_at_the_end_of_the_range_and_where_the_density_has_fallen(
 
 @pytest.mark.parametrize(("std", "needed"), [(0.01, False), (0.03, False), (0.031, True), (0.1, True)])
 def test_a_profile_is_needed_where_the_interval_of_the_lag_reaches_zero(std, needed):
-    found = walked(lambda lag: lag, lambda lag: 2.0 * parabola(lag), std=std)
+    found = walked(lambda lag: lag, lambda lag: ((lag - LAG) / std) ** 2, std=std)
     assert (found.profile is not None) is needed
+
+
+@pytest.mark.parametrize(("wider", "needed"), [(1.2, False), (1.5, True), (4.0, True)])
+def test_a_profile_is_needed_where_the_density_is_wider_than_its_curvature(wider, needed):
+    std = 0.01
+    found = walked(lambda lag: lag, lambda lag: ((lag - LAG) / (wider * std)) ** 2, std=std)
+    assert (found.profile is not None) is needed
+    if needed:
+        reach = np.sqrt(found.widened[0, 0])
+        assert reach == pytest.approx(min(wider, 3.0) * std, rel=0.4)
+
+
+def test_a_density_that_is_flat_to_one_side_is_walked():
+    found = walked(lambda lag: lag, lambda lag: 0.0 if lag > LAG else ((lag - LAG) / 0.01) ** 2, std=0.01)
+    assert 1.959964 * np.sqrt(found.widened[1, 1]) >= 0.05
 
 
 def test_a_parabola_leaves_the_interval_as_it_is():

@@ -167,12 +167,11 @@ def _of_both_hills(fit: Fit, nuisances: Sequence[Nuisance], prior: Priors) -> tu
 
 
 def _refitted(
-    prior: Priors, nuisances: Sequence[Nuisance], problem: LateralProblem, near: Solution
-) -> Solution | None:
-    """Return the solution near another one; None where the search fails."""
+    prior: Priors, nuisances: Sequence[Nuisance], problem: LateralProblem, near: Fit | Solution
+) -> Fit | None:
+    """Return the fit near another one; None where the search fails."""
     fit = descended(_MOTION, problem, nuisances, prior, (near.optimum.shared, near.optimum.local))
-    found = None if isinstance(fit, NoEstimate) or refused(fit.optimum) else _evaluated(fit, prior, False)
-    return found if isinstance(found, Solution) else None
+    return None if isinstance(fit, NoEstimate) or refused(fit.optimum) else fit
 
 
 def _holding(problem: LateralProblem, place: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
