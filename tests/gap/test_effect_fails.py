@@ -63,7 +63,7 @@ def test_an_effect_of_pitch_whose_fit_or_evidence_fails_is_left_out(
     monkeypatch.setattr(pitch, "fit", fit)
     monkeypatch.setattr(pitch, "temperature", lambda *_: 1.0)
     monkeypatch.setattr(pitch, "Screen", lambda *_: SimpleNamespace(quick_fits=lambda table: table))
-    monkeypatch.setattr(PitchFlight, "_model", model)
+    monkeypatch.setattr(PitchFlight, "model_of", model)
     monkeypatch.setattr(PitchFlight, "_beside", lambda self, base: self.table)
     problem = SimpleNamespace(within=lambda _: None, is_stated=False)
     flight = PitchFlight(problem, SimpleNamespace(point="plain", noise=1.0), looks, [])

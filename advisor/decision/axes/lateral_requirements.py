@@ -18,7 +18,6 @@ from math import degrees, inf, isfinite, log, pi
 from typing import Literal
 
 import numpy as np
-from scipy.linalg import expm
 
 from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.model.mil_f_8785c import CATEGORIES, Category, LevelFound, Measured, Range, assess
@@ -207,6 +206,8 @@ def peak_roll_rate(theta: FloatArray, a: FloatArray, aileron_rad: float, step_s:
     a
         Shape (4, 4): state matrix of these derivatives.
     """
+    from scipy.linalg import expm  # not on the start path
+
     value: Mapping[str, float] = dict(zip(LATERAL.names.reported, theta.tolist(), strict=True))
     b = aileron_rad * np.array([value["Y_delta_a"], value["L_delta_a"], value["N_delta_a"], 0.0])
     # The input as a fifth state that stands still: one matrix gives state and response.

@@ -26,8 +26,8 @@ AIR_MANEUVERS = 5
 
 LEAST_GUST_ANGLE = 0.001
 """Least standard deviation of the gust angle, rad, for which the air counts as moving: 0.025 m/s at 25 m/s.
-Five calm logs of ArduPlane's simulator show 0.0002 to 0.0006, with gains of 340 to 400 nats. If a model error
-is mistaken for moving air, an improved simulator looks too good."""
+Calm logs of ArduPlane's simulator show 0.0002 to 0.0012, with gains of 330 to 400 nats. If a model error is
+mistaken for moving air, an improved simulator looks too good."""
 NATURAL_GUST_ANGLE = 0.006
 """Largest standard deviation of the gust angle, rad, that is natural in every flight and no cause. At 25 m/s
 the limit is 0.15 m/s, the lightest turbulence named in flights of three generators."""
