@@ -85,12 +85,12 @@ def _ridge(solution: Solution) -> str:
     alike = profile.alike
     apart = np.abs(alike[:, 1:][:, derivatives] - profile.best[derivatives]) / std
     far, which = np.unravel_index(int(np.argmax(apart)), apart.shape)
-    if apart[far, which] <= NORMAL_95:
+    lag_s, other_s = profile.best[len(PARAMETERS) + profile.place], alike[far, 0]
+    if apart[far, which] <= NORMAL_95 or f"{lag_s:.2f}" == f"{other_s:.2f}":
         return ""
     k = derivatives[which]
-    lag_s = profile.best[len(PARAMETERS) + profile.place]
     return (
-        f"Servo lags of {lag_s:.2f} s and {alike[far, 0]:.2f} s explain the record alike, with "
+        f"Servo lags of {lag_s:.2f} s and {other_s:.2f} s explain the record alike, with "
         f"{symbol(PARAMETERS[k])} of {profile.best[k]:.3g} and {alike[far, 1 + k]:.3g}. "
         "Set elevator.lag_s, or fly steps of another duration."
     )
