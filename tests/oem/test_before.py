@@ -9,11 +9,15 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import turned
 from advisor.flight.maneuvers.maneuver import CONTROLS, Maneuver
 from advisor.flight.vehicle.surfaces import Scale
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axes.lateral.problem import LateralProblem, assemble_lateral
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
 from advisor.oem.prepare import signal_of
+from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 from tests.flights import TWO, recorded
+from tests.gap.axes.lateral.test_setting import AILERON
 from tests.heard import Heard, hear_log
 from tests.oem.builders import UAV
 from tests.oem.test_instruments import SPEED, equipped
@@ -81,3 +85,16 @@ def test_a_servo_follows_the_earlier_command_exactly() -> None:
     t = cut.channels["elevator"].t
     short = servo.move(*signal_of(cut.command("elevator")), t)[0]
     assert short == pytest.approx(servo.move(*whole, whole.t)[0][-len(t) :], abs=1e-12)
+
+
+def test_in_roll_and_yaw_the_aileron_begins_where_its_servo_is() -> None:
+    aileron = AILERON.inputs["aileron"]
+    cut = aileron.t > JUST_AFTER_A_STEP_S
+    early, record = (Signal(*(part[at] for part in aileron)) for at in (~cut, cut))
+    begun = replace(AILERON, inputs={"aileron": record}, before={"aileron": early})
+    first = []
+    for one in (begun, replace(AILERON, inputs={"aileron": aileron})):
+        laid = assemble_lateral(LateralProblem((one,), servos={"aileron": Servo(LAG_S)}))
+        first.append(laid.grid.inputs[:, LATERAL.inputs.index("aileron")])
+    assert first[0][-1] == pytest.approx(first[1][-1], abs=1e-9)
+    assert first[0][0] == pytest.approx(first[1][0], abs=1e-9)

@@ -127,6 +127,12 @@ def test_a_profile_is_needed_where_the_density_is_wider_than_its_curvature(wider
         assert reach == pytest.approx(min(wider, 3.0) * std, rel=0.4)
 
 
+def test_a_lag_that_is_known_to_a_tenth_is_not_examined():
+    asked = []
+    walked(lambda lag: lag, lambda lag: 0.0, asked, std=0.09 * LAG)
+    assert asked == []
+
+
 def test_a_density_that_is_flat_to_one_side_is_walked():
     found = walked(lambda lag: lag, lambda lag: 0.0 if lag > LAG else ((lag - LAG) / 0.01) ** 2, std=0.01)
     assert 1.959964 * np.sqrt(found.widened[1, 1]) >= 0.05

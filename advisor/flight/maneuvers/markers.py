@@ -140,6 +140,7 @@ def _input(mark: Mark, elevator: Channel) -> Movement | None:
     before = elevator.cut(mark.start_s - _BEFORE_S, mark.start_s).y
     level = median(before) if len(before) else float(within.y[0])
     moved, rest = _moved(within, level), _last(within)
+    # A script holds its own trim at the end, whatever the loop held before.
     has_returned = is_still(rest, moved) and (
         mark.by == "script" or abs(median(rest) - level) <= RETURNED * moved
     )

@@ -8,6 +8,8 @@ from advisor.aircraft.controls import Elevator
 from advisor.flight.elevator.elevator_sign import turned
 from advisor.flight.maneuvers.events import Activity, Notice, SideManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.maneuvers.markers import marked_span
+from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.record import Channel
 from advisor.flight.stream.stream import FlightStream
 from advisor.scripts.ardupilot import ardupilot_script
@@ -51,6 +53,15 @@ def test_a_script_that_rests_before_its_end_ends_the_record_there():
     _, events = flown(announced((53.0, BEGIN), (60.5, END)))
     (maneuver,) = maneuvers(events)
     assert maneuver.span.end_s == pytest.approx(60.5, abs=0.05)
+
+
+@pytest.mark.parametrize(("by", "ends_s"), [("script", 20.0), ("text", 23.0)])
+def test_a_scripts_rest_counts_also_at_another_level_than_the_loop_held_before(by: str, ends_s: float):
+    t = np.arange(8.0, 24.0, 0.02)
+    y = np.where(t < 10.0, 0.15, 0.0) + np.where((t > 10.0) & (t < 12.0), 0.1 * np.sign(np.sin(6.0 * t)), 0.0)
+    y = y + np.where(t > 20.0, 0.05 * np.sin(5.0 * t), 0.0)
+    mark = Mark(10.0, 20.0, by=by, free_s=3.0)
+    assert marked_span(mark, Channel("elevator", t, y)).end_s == pytest.approx(ends_s)
 
 
 def test_the_announced_name_is_that_of_the_input():
