@@ -13,14 +13,12 @@ causes. The resulting interval about the best optimum contains the interval of t
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import expit
 
 from advisor.oem.extra import penalty
-from advisor.oem.instruments import KNOWN_TO
 from advisor.oem.solution import Solution, reported
 from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
@@ -30,9 +28,6 @@ FARTHEST_NATS = 4.0
 0.5 % of its probability beyond it."""
 MOST_STEPS = 6
 """Numerical: most steps of one standard deviation to each side."""
-FLAT_NATS = 0.25
-"""Numerical: least fall of the log posterior density one standard deviation from its optimum. A Gaussian
-falls by twice as much. Below it the posterior is wider than its curvature at the optimum says."""
 ALIKE_NATS = 0.5 * NORMAL_95**2
 """Fall of the log posterior density up to which two optima explain the record alike. The value is the 95 %
 limit of a likelihood ratio with one degree of freedom, 1.9."""
@@ -141,18 +136,17 @@ def profiled(solution: Solution, x: Any, posterior: Posterior, refit: Refit) -> 
     """Return the solution with the second moment of the posterior along a positive parameter ``x``.
 
     ``x`` is one of the posterior's parameters. The posterior is Gaussian where the linear interval of ``x``
-    does not reach zero, and its density falls within a standard deviation. An ``x`` that is known to
-    ``KNOWN_TO`` is not examined. The moment of another optimum remains.
+    does not reach zero. The moment of another optimum remains.
     """
     place = len(solution.theta) + list(posterior.parameters).index(x)
     column = replace(solution, modes=None).widened[:, place]
     std = float(np.sqrt(column[place]))
-    walk, here = partial(_walk, solution, x, posterior, refit, std), x.read(solution.problem)
-    if not std > KNOWN_TO * here:
+    here = x.read(solution.problem)
+    if not std > 0.0 or NORMAL_95 * std < here:
         return solution
-    bends = NORMAL_95 * std >= here or any(fall < FLAT_NATS for _, fall, _ in walk(1))
-    if not (around := list(walk(MOST_STEPS)) if bends else []):
-        return solution
+    around = list(_walk(solution, x, posterior, refit, std))
+    if not around:
+        return solution  # no neighbouring value has an optimum
     nodes = sorted([(here, 0.0, posterior.at(solution)), *around], key=lambda node: node[0])
     values, nats, theta = (np.array(part) for part in zip(*nodes, strict=True))
     nats -= min(float(np.min(nats)), 0.0)
@@ -165,14 +159,14 @@ def profiled(solution: Solution, x: Any, posterior: Posterior, refit: Refit) -> 
 
 
 def _walk(
-    solution: Solution, x: Any, posterior: Posterior, refit: Refit, std: float, most: int
+    solution: Solution, x: Any, posterior: Posterior, refit: Refit, std: float
 ) -> Iterator[tuple[float, float, FloatArray]]:
     """Yield value, fall of the log posterior density and parameters, outwards from the optimum."""
     others = [p for p in posterior.parameters if p is not x]
     begun = posterior.density(solution, posterior.parameters)
     for way in (1.0, -1.0):
         near, fall = solution, 0.0
-        for _ in range(most):
+        for _ in range(MOST_STEPS):
             there = x.moved(near.problem, way * std)
             ends = fall > FARTHEST_NATS or x.read(there) == x.read(near.problem)
             found = None if ends else refit(others, there, near)

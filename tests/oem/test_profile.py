@@ -117,27 +117,6 @@ def test_a_profile_is_needed_where_the_interval_of_the_lag_reaches_zero(std, nee
     assert (found.profile is not None) is needed
 
 
-@pytest.mark.parametrize(("wider", "needed"), [(1.2, False), (1.5, True), (4.0, True)])
-def test_a_profile_is_needed_where_the_density_is_wider_than_its_curvature(wider, needed):
-    std = 0.01
-    found = walked(lambda lag: lag, lambda lag: ((lag - LAG) / (wider * std)) ** 2, std=std)
-    assert (found.profile is not None) is needed
-    if needed:
-        reach = np.sqrt(found.widened[0, 0])
-        assert reach == pytest.approx(min(wider, 3.0) * std, rel=0.4)
-
-
-def test_a_lag_that_is_known_to_a_tenth_is_not_examined():
-    asked = []
-    walked(lambda lag: lag, lambda lag: 0.0, asked, std=0.09 * LAG)
-    assert asked == []
-
-
-def test_a_density_that_is_flat_to_one_side_is_walked():
-    found = walked(lambda lag: lag, lambda lag: 0.0 if lag > LAG else ((lag - LAG) / 0.01) ** 2, std=0.01)
-    assert 1.959964 * np.sqrt(found.widened[1, 1]) >= 0.05
-
-
 def test_a_parabola_leaves_the_interval_as_it_is():
     found = walked(lambda lag: 0.0 * lag, lambda lag: 2.0 * parabola(lag))
     assert np.isclose(found.widened[0, 0], 1e-4, rtol=1e-6)
