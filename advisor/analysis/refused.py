@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.judge_pitch import NEEDED, natural_period, outside
+from advisor.decision.axes.requirements import needed, pitch_limits
 from advisor.decision.envelope import changed_speed, incomplete, short_response
+from advisor.decision.first_unit import natural_period
 from advisor.decision.quality import refusals
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
@@ -69,10 +70,10 @@ def _reason(maneuver: Maneuver, aircraft: Aircraft) -> Reason | None:
     most = max(aircraft.limits.airspeed_change_percent, _LARGEST_SPEED_CHANGE_PERCENT)
     allowing = replace(aircraft, limits=replace(aircraft.limits, airspeed_change_percent=most))
     reasons = [
-        *incomplete(maneuver, NEEDED, period_s, ("alpha",)),
+        *incomplete(maneuver, needed("pitch", maneuver), period_s, ("alpha",)),
         # The gap has late streams and the scale of the air speed in its own model.
         *refusals(f for f in maneuver.findings if f.quantity != "delay_s" and f.channel != "airspeed"),
-        *outside(maneuver, aircraft),
+        *pitch_limits(maneuver, aircraft),
         *changed_speed(maneuver, allowing),
         *(r for r in short_response(maneuver, period_s) if r.code == "aborted"),
     ]

@@ -4,8 +4,9 @@ import math
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.air_speed import is_speed_carried
-from advisor.decision.axes.judge_pitch import judge_pitch, natural_period
+from advisor.decision.axes.requirements import judge
 from advisor.decision.envelope import with_gap
+from advisor.decision.first_unit import natural_period
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.verdict import Reason
 from advisor.flight.instruments.kinematics import check_alpha
@@ -23,7 +24,7 @@ def assess(maneuver: Maneuver, aircraft: Aircraft) -> CandidateManeuver:
     estimated = estimate(maneuver, aircraft)
     return CandidateManeuver(
         estimated,
-        judge_pitch(maneuver, estimated, aircraft),
+        judge("pitch", maneuver, estimated, aircraft),
         tuple(cautions_of(maneuver, estimated, aircraft)),
         maneuver=maneuver,
         air_moved=isinstance(estimated, Estimate) and estimated.gust_rad is not None,

@@ -57,10 +57,10 @@ class Examined:
     """Outputs that respond to the moved controls. The rate that the control moves directly comes first."""
     determined: tuple[str, ...]
     """Derivatives that a test of the moved controls determines."""
-    bands: tuple[str, ...]
-    """Outputs whose prediction must be precise if the test determines its axis."""
     outside: tuple[Reason, ...]
     """Reasons for exceeded limits of the model."""
+    bands: tuple[str, ...] = ()
+    """Outputs whose prediction must be precise if the test determines its axis."""
     needless: frozenset[str] = frozenset()
     """Codes of the limits that a precise estimate makes needless. The estimate contains the influence, or
     ``lacks`` examines the bias."""

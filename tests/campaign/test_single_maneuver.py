@@ -22,6 +22,6 @@ from tests.decision.campaigns import estimate
 )
 def test_the_air_moved_where_the_estimate_found_gusts(monkeypatch, found, moved):
     monkeypatch.setattr(single_maneuver, "estimate", lambda *_: found)
-    monkeypatch.setattr(single_maneuver, "judge_pitch", lambda *_: ())
+    monkeypatch.setattr(single_maneuver, "judge", lambda *_: ())
     monkeypatch.setattr(single_maneuver, "cautions_of", lambda *_: [])
     assert assess(None, Aircraft()).air_moved == moved

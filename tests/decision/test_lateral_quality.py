@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.judge_lateral import judge_lateral
+from advisor.decision.axes.requirements import judge
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
@@ -29,13 +29,13 @@ def maneuver(*findings):
 
 
 def test_a_contradiction_of_an_instrument_is_the_one_reason():
-    (reason,) = judge_lateral(maneuver(REVERSED), NONE, Aircraft())
+    (reason,) = judge("lateral", maneuver(REVERSED), NONE, Aircraft())
     assert reason.code == "a_y_sign"
     assert reason.by_instrument
 
 
 def test_a_contradiction_that_the_estimate_allows_for_is_no_reason():
-    codes = [r.code for r in judge_lateral(maneuver(replace(REVERSED, used=True)), NONE, Aircraft())]
+    codes = [r.code for r in judge("lateral", maneuver(replace(REVERSED, used=True)), NONE, Aircraft())]
     assert "a_y_sign" not in codes
 
 
@@ -58,7 +58,7 @@ def told(untold=(), band=0.05, noise=1e-4):
 
 
 def codes(record, found):
-    return [reason.code for reason in judge_lateral(record, found, Aircraft())]
+    return [reason.code for reason in judge("lateral", record, found, Aircraft())]
 
 
 def test_a_rudder_test_that_determines_its_derivatives_needs_no_longer_free_response():
@@ -106,6 +106,6 @@ def test_a_short_record_of_which_the_advisor_missed_a_part_blames_the_advisor():
 
 
 def test_a_poor_record_is_told_how_much_more_of_its_control_to_use():
-    (reason,) = judge_lateral(flown(), told(band=0.5), Aircraft())
+    (reason,) = judge("lateral", flown(), told(band=0.5), Aircraft())
     assert reason.code == "information"
     assert reason.text.endswith("use about 2.2 times the rudder")

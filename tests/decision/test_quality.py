@@ -10,7 +10,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft, Limits
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.axes.judge_pitch import judge_pitch, natural_period, outside
+from advisor.decision.axes.requirements import judge, pitch_limits
+from advisor.decision.first_unit import natural_period
 from advisor.flight.maneuvers.maneuver import Maneuver as Record
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.signals.record import Channel
@@ -43,7 +44,7 @@ def flown(scenario, aircraft=AIRCRAFT):
     write_tlog(flight_of(scenario), log)
     found = hear([FrameScanner().feed(log.getvalue())], aircraft).maneuvers
     estimates = [estimate(maneuver, aircraft) for maneuver in found]
-    return [(m, e, judge_pitch(m, e, aircraft)) for m, e in zip(found, estimates, strict=True)]
+    return [(m, e, judge("pitch", m, e, aircraft)) for m, e in zip(found, estimates, strict=True)]
 
 
 BAD_MANOEUVRES = {
@@ -86,16 +87,16 @@ def test_a_limit_refuses_nothing_where_the_estimate_holds(code):
     maneuver, estimated, reasons = bad_flight()[1 + list(BAD_MANOEUVRES).index(code)]
     assert reasons == ()
     untold = NoEstimate("x", "x")
-    assert code in {reason.code for reason in judge_pitch(maneuver, untold, AIRCRAFT)}
+    assert code in {reason.code for reason in judge("pitch", maneuver, untold, AIRCRAFT)}
     imprecise = replace(estimated, prediction=dict.fromkeys(estimated.prediction, 0.5))
-    assert code in {reason.code for reason in judge_pitch(maneuver, imprecise, AIRCRAFT)}
+    assert code in {reason.code for reason in judge("pitch", maneuver, imprecise, AIRCRAFT)}
 
 
 @pytest.mark.parametrize("name", ["beta", "p", "r"])
 def test_the_bank_has_its_limit_where_the_record_lacks_a_part_of_the_turn(name):
     maneuver, estimated, _ = bad_flight()[1 + list(BAD_MANOEUVRES).index("bank")]
     channels = {key: channel for key, channel in maneuver.channels.items() if key != name}
-    found = judge_pitch(replace(maneuver, channels=channels), estimated, AIRCRAFT)
+    found = judge("pitch", replace(maneuver, channels=channels), estimated, AIRCRAFT)
     assert [reason.code for reason in found] == ["bank"]
 
 
@@ -133,7 +134,7 @@ def test_a_record_that_ends_with_the_last_step_is_good_where_it_tells_enough():
     maneuver, whole, _ = bad_flight()[0]
     cut = cut_short(maneuver, 0.1)
     estimated = estimate(cut, AIRCRAFT)
-    assert judge_pitch(cut, estimated, AIRCRAFT) == ()
+    assert judge("pitch", cut, estimated, AIRCRAFT) == ()
     for name in ("M_alpha", "M_q", "M_delta_e", "Z_alpha"):
         wide = estimated.std[PARAMETERS.index(name)]
         assert abs(estimated.value(name) - whole.value(name)) < 3.0 * wide
@@ -147,15 +148,15 @@ def test_a_record_that_breaks_off_in_its_last_step_is_good_where_it_tells_enough
     span = replace(maneuver.span, last_step_s=steps[-1][0], end_s=end_s, closed_by="end of log", steps=steps)
     cut = replace(maneuver, span=span, channels=channels)
     estimated = estimate(cut, AIRCRAFT)
-    assert judge_pitch(cut, estimated, AIRCRAFT) == ()
-    assert judge_pitch(cut, uncertain(estimated), AIRCRAFT)[0].code == "aborted"
+    assert judge("pitch", cut, estimated, AIRCRAFT) == ()
+    assert judge("pitch", cut, uncertain(estimated), AIRCRAFT)[0].code == "aborted"
 
 
 def test_a_record_that_the_advisor_itself_has_cut_is_not_laid_to_the_pilots_hands():
     maneuver, estimated, _ = bad_flight()[0]
     cut = cut_short(maneuver, 0.3, "gap")
-    assert judge_pitch(cut, uncertain(estimated), AIRCRAFT)[0].code != "advisor_down"
-    (reason,) = judge_pitch(replace(cut, missed_s=5.2), uncertain(estimated), AIRCRAFT)
+    assert judge("pitch", cut, uncertain(estimated), AIRCRAFT)[0].code != "advisor_down"
+    (reason,) = judge("pitch", replace(cut, missed_s=5.2), uncertain(estimated), AIRCRAFT)
     assert reason.code == "advisor_down"
     assert reason.text == "5.2 s are missing: the advisor was down; fly it again"
 
@@ -164,7 +165,7 @@ def test_an_estimate_whose_damping_may_be_zero_needs_a_free_response():
     maneuver, estimated, _ = bad_flight()[0]
     covariance = estimated.covariance.copy()
     covariance[PARAMETERS.index("M_q"), PARAMETERS.index("M_q")] = estimated.value("M_q") ** 2
-    (reason,) = judge_pitch(cut_short(maneuver, 0.1), replace(estimated, covariance=covariance), AIRCRAFT)
+    (reason,) = judge("pitch", cut_short(maneuver, 0.1), replace(estimated, covariance=covariance), AIRCRAFT)
     assert reason.code == "free_response"
 
 
@@ -177,7 +178,7 @@ def test_an_estimate_whose_damping_may_be_zero_needs_a_free_response():
 )  # fmt: skip
 def test_a_free_response_cut_short_is_laid_to_what_ended_it(closed_by, mend):
     maneuver, estimated, _ = bad_flight()[0]
-    reason, *_ = judge_pitch(cut_short(maneuver, 0.3, closed_by), uncertain(estimated), AIRCRAFT)
+    reason, *_ = judge("pitch", cut_short(maneuver, 0.3, closed_by), uncertain(estimated), AIRCRAFT)
     assert reason.code == "free_response"
     assert mend in reason.text
 
@@ -186,7 +187,7 @@ def test_a_free_response_cut_short_is_laid_to_what_ended_it(closed_by, mend):
 def test_a_manoeuvre_that_predicts_its_own_response_badly_is_told_the_cure_for_its_input(kind, cure):
     maneuver, estimated, _ = bad_flight()[0]
     flown_as = replace(maneuver, span=replace(maneuver.span, kind=kind))
-    (reason,) = judge_pitch(flown_as, replace(estimated, prediction={"q": 0.425}), AIRCRAFT)
+    (reason,) = judge("pitch", flown_as, replace(estimated, prediction={"q": 0.425}), AIRCRAFT)
     assert reason.code == "information"
     assert (reason.value, reason.limit) == (pytest.approx(42.5), 25.0)
     assert cure in reason.text
@@ -237,7 +238,7 @@ def test_following_the_advice_on_amplitude_makes_the_manoeuvre_good():
 
 def test_without_an_estimate_the_data_are_judged_all_the_same():
     maneuver, _, _ = bad_flight()[1 + list(BAD_MANOEUVRES).index("bank")]
-    reasons = judge_pitch(maneuver, NoEstimate("not_converged", "the fit did not converge"), AIRCRAFT)
+    reasons = judge("pitch", maneuver, NoEstimate("not_converged", "the fit did not converge"), AIRCRAFT)
     assert reasons[0].code == "bank"
 
 
@@ -257,7 +258,7 @@ def test_an_aircraft_without_an_angle_of_attack_is_lived_with():
 def test_a_manoeuvre_without_pitch_rate_says_so_and_nothing_else():
     maneuver, estimated, _ = bad_flight()[0]
     without = {name: channel for name, channel in maneuver.channels.items() if name != "q"}
-    (reason,) = judge_pitch(replace(maneuver, channels=without), estimated, AIRCRAFT)
+    (reason,) = judge("pitch", replace(maneuver, channels=without), estimated, AIRCRAFT)
     assert reason.code == "missing"
 
 
@@ -265,7 +266,7 @@ def test_a_pitch_rate_that_stands_still_is_a_broken_gyro_and_no_gentle_input():
     maneuver, estimated, _ = bad_flight()[0]
     rate = maneuver.channels["q"]
     frozen = {**maneuver.channels, "q": replace(rate, y=np.zeros_like(rate.y))}
-    (reason,) = judge_pitch(replace(maneuver, channels=frozen), estimated, AIRCRAFT)
+    (reason,) = judge("pitch", replace(maneuver, channels=frozen), estimated, AIRCRAFT)
     assert reason.code == "frozen"
     assert "check the gyro" in reason.text
 
@@ -274,8 +275,11 @@ def test_no_larger_input_is_asked_for_while_the_pitch_rate_is_too_slow():
     maneuver, _, _ = bad_flight()[0]
     rate = maneuver.channels["q"]
     slow = {**maneuver.channels, "q": replace(rate, t=rate.t[::40], y=1e-4 * rate.y[::40])}
-    reasons = judge_pitch(
-        replace(maneuver, channels=slow), NoEstimate("not_converged", "the fit did not converge"), AIRCRAFT
+    reasons = judge(
+        "pitch",
+        replace(maneuver, channels=slow),
+        NoEstimate("not_converged", "the fit did not converge"),
+        AIRCRAFT,
     )
     assert "rate" in {reason.code for reason in reasons}
     assert not any("stick" in reason.text for reason in reasons)
@@ -314,29 +318,29 @@ def without_late_airspeed(maneuver, after_s, *missing):
 
 def test_an_air_speed_that_ends_is_missed_where_no_accelerometer_carries_it():
     maneuver, estimated, _ = bad_flight()[0]
-    (reason,) = judge_pitch(without_late_airspeed(maneuver, 0.5, "a_x"), estimated, AIRCRAFT)
+    (reason,) = judge("pitch", without_late_airspeed(maneuver, 0.5, "a_x"), estimated, AIRCRAFT)
     assert reason.code == "gap"
     assert "of airspeed are missing" in reason.text
 
 
 def test_an_air_speed_that_ends_is_carried_by_the_accelerometers():
     maneuver, estimated, _ = bad_flight()[0]
-    assert judge_pitch(without_late_airspeed(maneuver, 1.5), estimated, AIRCRAFT) == ()
+    assert judge("pitch", without_late_airspeed(maneuver, 1.5), estimated, AIRCRAFT) == ()
 
 
 def test_a_pitch_angle_that_ends_is_missed():
     maneuver, estimated, _ = bad_flight()[0]
     theta = maneuver.channels["theta"].cut(0.0, maneuver.span.start_s + 0.5)
     cut = replace(maneuver, channels={**maneuver.channels, "theta": theta})
-    assert judge_pitch(cut, estimated, AIRCRAFT)[0].code == "gap"
+    assert judge("pitch", cut, estimated, AIRCRAFT)[0].code == "gap"
 
 
 def test_no_amplitude_is_judged_beyond_a_limit_of_the_model():
     maneuver, estimated, _ = bad_flight()[1]
-    assert judge_pitch(maneuver, estimated, AIRCRAFT)[0].code == "amplitude"
+    assert judge("pitch", maneuver, estimated, AIRCRAFT)[0].code == "amplitude"
     rolled = replace(maneuver.channels["bank"], y=np.full(len(maneuver.channels["bank"].t), 3.0))
     banked = replace(maneuver, channels={**maneuver.channels, "bank": rolled})
-    codes = [reason.code for reason in judge_pitch(banked, estimated, AIRCRAFT)]
+    codes = [reason.code for reason in judge("pitch", banked, estimated, AIRCRAFT)]
     assert codes[0] == "bank"
     assert "amplitude" not in codes
 
@@ -360,9 +364,9 @@ def test_no_larger_input_is_asked_for_while_a_channel_stands_still():
     dead = Distrust(
         "frozen", "a_z", "normal acceleration stands still at 0 m/s^2", "check the accelerometer", 0.0
     )
-    told = judge_pitch(maneuver, estimated, AIRCRAFT)
+    told = judge("pitch", maneuver, estimated, AIRCRAFT)
     assert any("times the stick" in reason.text for reason in told)
-    mended = judge_pitch(replace(maneuver, distrusts=(dead,)), estimated, AIRCRAFT)
+    mended = judge("pitch", replace(maneuver, distrusts=(dead,)), estimated, AIRCRAFT)
     assert [reason.code for reason in mended] == [reason.code for reason in told]
     assert not any("times the stick" in reason.text for reason in mended)
     assert any("check the accelerometer" in reason.text for reason in mended)
@@ -370,7 +374,9 @@ def test_no_larger_input_is_asked_for_while_a_channel_stands_still():
 
 def test_the_limits_of_the_flight_come_before_the_hands_of_the_pilot():
     maneuver, estimated, _ = bad_flight()[1 + list(BAD_MANOEUVRES).index("airspeed")]
-    codes = [reason.code for reason in judge_pitch(cut_short(maneuver, 0.1), uncertain(estimated), AIRCRAFT)]
+    codes = [
+        reason.code for reason in judge("pitch", cut_short(maneuver, 0.1), uncertain(estimated), AIRCRAFT)
+    ]
     assert codes.index("airspeed") < codes.index("free_response")
 
 
@@ -381,7 +387,7 @@ def test_two_steps_of_one_onset_give_no_period_of_zero():
     untold = NoEstimate("x", "x")
     assert natural_period(twice, untold) == natural_period(maneuver, untold)
     assert natural_period(replace(twice, span=replace(twice.span, steps=(first, first))), untold) == 1.0
-    assert "steps" in {reason.code for reason in judge_pitch(twice, untold, AIRCRAFT)}
+    assert "steps" in {reason.code for reason in judge("pitch", twice, untold, AIRCRAFT)}
 
 
 @pytest.mark.parametrize(("elevator_deg", "codes"), [(1.9, ["follows"]), (2.1, [])])
@@ -393,5 +399,5 @@ def test_an_elevator_that_moves_less_than_a_fifth_of_the_aileron_follows_the_mot
         for name, deg in moved.items()
     }
     span = Span(0.0, 1.0, 4.0, 10.0, "other", (), "quiet")
-    found = outside(Record(1, 0, span, channels), Aircraft())
+    found = pitch_limits(Record(1, 0, span, channels), Aircraft())
     assert [reason.code for reason in found if reason.code != "aileron"] == codes

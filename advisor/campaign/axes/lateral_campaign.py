@@ -8,8 +8,8 @@ from advisor.campaign.axis_campaign import AxisCampaign, Flown
 from advisor.campaign.joint_estimate import NEWEST
 from advisor.campaign.single_maneuver import untold
 from advisor.campaign.state import LateralState
-from advisor.decision.axes.judge_lateral import RESPONSES, judge_lateral
 from advisor.decision.axes.lateral_stop import JUDGED, FlownInput, lateral_flight_test
+from advisor.decision.axes.requirements import judge, responses_of
 from advisor.decision.change import find_change
 from advisor.decision.heard import Heard
 from advisor.decision.history import CandidateManeuver
@@ -49,13 +49,12 @@ class LateralCampaign(AxisCampaign):
 
     def _examined(self, maneuver: Maneuver) -> CandidateManeuver:
         estimate = estimate_lateral([maneuver], self._aircraft)
-        controls = estimate.flown if isinstance(estimate, LateralEstimate) else ()
         return CandidateManeuver(
             estimate,
-            judge_lateral(maneuver, estimate, self._aircraft),
+            judge("lateral", maneuver, estimate, self._aircraft),
             maneuver.data_notes,
             maneuver=maneuver,
-            responses=tuple(RESPONSES[control].output for control in controls),
+            responses=tuple(response.output for response in responses_of("lateral", estimate)),
         )
 
     def _examine(self, flown: Flown) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, Rule
 from advisor.decision.advice import GENTLE
-from advisor.decision.axes.judge_lateral import BANK_DEG
+from advisor.decision.axes.requirements import BANK_DEG
 from advisor.decision.change import Change
 from advisor.decision.conclusion import Criterion, concluded
 from advisor.decision.conditions import ALPHA_MARGIN, BOLDER, FULL_TRAVEL_RAD

@@ -25,7 +25,7 @@ def joint(monkeypatch: pytest.MonkeyPatch) -> list[int]:
         return estimate("aileron", "rudder", percent=30.0)
 
     monkeypatch.setattr(lateral_campaign, "estimate_lateral", estimated)
-    monkeypatch.setattr(lateral_campaign, "judge_lateral", lambda maneuver, found, aircraft: ())
+    monkeypatch.setattr(lateral_campaign, "judge", lambda *_: ())
     return made
 
 
@@ -99,7 +99,7 @@ def test_a_stop_ends_where_a_manoeuvre_on_which_it_rests_is_excluded(monkeypatch
     monkeypatch.setattr(
         lateral_campaign, "estimate_lateral", lambda *_: estimate("aileron", "rudder", percent=2.0)
     )
-    monkeypatch.setattr(lateral_campaign, "judge_lateral", lambda maneuver, found, aircraft: ())
+    monkeypatch.setattr(lateral_campaign, "judge", lambda *_: ())
     campaign = flown("rudder", "aileron")
     assert campaign.flight_test.decision == "stop"
     campaign.exclude(1, "gust")
@@ -115,7 +115,7 @@ def test_a_manoeuvre_that_contradicts_all_the_others_is_left_out_and_said(
     theta[3] = theta[3] * 1.4
     estimates = iter([replace(sound, theta=one) for one in theta])
     monkeypatch.setattr(lateral_campaign, "estimate_lateral", lambda *_: next(estimates, sound))
-    monkeypatch.setattr(lateral_campaign, "judge_lateral", lambda maneuver, found, aircraft: ())
+    monkeypatch.setattr(lateral_campaign, "judge", lambda *_: ())
     monkeypatch.setattr(LateralCampaign, "_may_stop", False)
     campaign = flown(*["rudder", "aileron"] * 3)
     assert [one.maneuver.number for one in campaign.judged if not one.verdict.accepted] == [4]

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.judge_lateral import judge_lateral
 from advisor.decision.axes.lateral_requirements import lateral_levels, lateral_qualification
 from advisor.decision.axes.lateral_stop import FlownInput, lateral_flight_test
+from advisor.decision.axes.requirements import judge
 from advisor.decision.heard import Heard
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
@@ -37,7 +37,7 @@ def rolling(without: str = "", **moved: np.ndarray) -> Maneuver:
 
 
 def codes(record: Maneuver) -> list[str]:
-    return [reason.code for reason in judge_lateral(record, NONE, Aircraft())]
+    return [reason.code for reason in judge("lateral", record, NONE, Aircraft())]
 
 
 @pytest.mark.parametrize(("share", "refused"), [(0.18, False), (0.22, True)])

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.judge_pitch import judge_pitch
+from advisor.decision.axes.requirements import judge
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.markers import SWEPT
 from advisor.flight.maneuvers.purpose import Because, judged
@@ -60,7 +60,7 @@ def swept(size_deg, mode="FBWA", gust=0.0, closed_by=SWEPT):
 
 def right(maneuver):
     fitted = estimate(maneuver, Aircraft())
-    assert judge_pitch(maneuver, fitted, Aircraft()) == ()
+    assert judge("pitch", maneuver, fitted, Aircraft()) == ()
     return all(fitted.value(name) == pytest.approx(true, rel=0.08) for name, true in TRUE.items())
 
 

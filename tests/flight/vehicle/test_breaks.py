@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.judge_pitch import judge_pitch
+from advisor.decision.axes.requirements import judge
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.messages import Columns
@@ -104,5 +104,5 @@ def test_stamps_that_leap_by_hours_inside_a_manoeuvre_reject_both_parts() -> Non
     found = [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
     assert [round(maneuver.leapt_s / 3600.0, 2) for maneuver in found] == [3.0, 3.0, 0.0]
     for maneuver in found[:2]:
-        (reason,) = judge_pitch(maneuver, NoEstimate("singular", "no fit"), Aircraft())
+        (reason,) = judge("pitch", maneuver, NoEstimate("singular", "no fit"), Aircraft())
         assert reason.text == "the stamps leap by 3.0 h; check the vehicle's clock, fly it again"
