@@ -16,7 +16,6 @@ from advisor.mavlink.ardupilot.former_records import RENAMED, SENSORS_APART, Clo
 from advisor.mavlink.ardupilot.log_health import HEALTH_RECORDS, SYSTEM_ID_RECORDS
 from advisor.mavlink.ardupilot.sensors import HEALTH_FIELDS
 from advisor.mavlink.ardupilot.which_flew import SELECTORS
-from advisor.mavlink.px4.sdlog2 import SDLOG2_RECORDS, Sdlog2Messages, is_sdlog2
 from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.stretches import Stretch, read_stretches
 from advisor.words.problems import UnusableInputError
@@ -51,7 +50,9 @@ _RECORDS: dict[str, set[str]] = {
 }
 """Necessary fields of each record, by the record's name. A record without its necessary fields (another
 vehicle, an older version) counts as missing."""
-_FIELDS = frozenset[str]().union(*_RECORDS.values(), *SDLOG2_RECORDS.values()) | {
+_OF_PX4 = "TIME", "StartTime"
+"""Record and field that only PX4's log before 2017 has, in the same container with other units."""
+_FIELDS = frozenset[str]().union(*_RECORDS.values(), {_OF_PX4[1]}) | {
     *("TimeUS", "TimeMS", "T", "I", "C"),
     *("As", "BU", "CRt", "Press", "Pri", "ThO", "U"),
     *HEALTH_FIELDS,
@@ -70,22 +71,28 @@ _TEXTS = {"Name", "Message"}
 
 
 def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[list[Columns]]:
-    """Yield the messages of a ``.bin``, or of PX4's ``.px4log`` in its container.
+    """Yield the messages of a ``.bin``.
 
     A batch contains a stretch of one of the logs in the file.
 
     Raises
     ------
     UnusableInputError
-        The log contains neither attitude, inertial sensors, nor servo outputs.
+        The log contains neither attitude, inertial sensors, nor servo outputs, or it is PX4's of before 2017.
     """
     apart = (name for names in SENSORS_APART.values() for name in names)
     names = None if wanted is None else set(wanted)
     is_log, newest = False, -1
     known = Known()
-    every = (*_RECORDS, *SDLOG2_RECORDS, *apart)
+    every = (*_RECORDS, _OF_PX4[0], *apart)
     for stretch in read_stretches(path, every, _is_read, _OF_WHOLE_LOG, _UNDIVIDED):
         tables = {name: _believable(stretch.tables.pop(name)) for name in list(stretch.tables)}
+        if _OF_PX4[0] in tables and _OF_PX4[1] in tables[_OF_PX4[0]].fields:
+            raise UnusableInputError(
+                "px4log",
+                f"{path.name} is a log of PX4 before 2017, which is not read.",
+                "Give a .tlog of the flight, or fly with a firmware that writes a .ulg.",
+            )
         messages, known = _messages(tables, Known() if stretch.begins == -math.inf else known)
         if messages is not None:
             is_log = True
@@ -115,8 +122,6 @@ def _messages(stored: Mapping[str, RecordTable], known: Known) -> tuple[Iterator
     """Return the messages of a stretch, and the facts of its log; no messages without attitude, inertial
     sensors and outputs.
     """
-    if is_sdlog2(stored):
-        return Sdlog2Messages(stored).columns(), known
     read = in_todays_names(stored, known.epoch_s)
     tables = {
         name: table

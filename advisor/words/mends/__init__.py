@@ -8,18 +8,15 @@ from typing import Literal
 
 from advisor.words.mends.dataflash import Dataflash
 from advisor.words.mends.mends import GOOD_HZ, Mends, sentence
-from advisor.words.mends.sdlog2 import Sdlog2
 from advisor.words.mends.table import Table
 from advisor.words.mends.telemetry import ArduPilotTelemetry, OtherTelemetry, Px4Telemetry
 from advisor.words.mends.ulog import Ulog
 
 __all__ = ["GOOD_HZ", "Carrier", "Mends", "mends_of", "sentence"]
 
-Carrier = Literal["telemetry", "dataflash", "ulog", "sdlog2", "table"]
-"""Kind of record: a link or its ``.tlog``, an autopilot's own log, or a table with named columns.
-
-ArduPilot's own log is a ``.bin``, PX4's a ``.ulg``, and PX4's before 2017 a ``.px4log``.
-"""
+Carrier = Literal["telemetry", "dataflash", "ulog", "table"]
+"""Kind of record: a link or its ``.tlog``, ArduPilot's ``.bin``, PX4's ``.ulg``, or a table with named
+columns."""
 
 
 def mends_of(autopilot: str, carrier: Carrier, log_profile: int | None = None) -> Mends:
@@ -36,8 +33,6 @@ def mends_of(autopilot: str, carrier: Carrier, log_profile: int | None = None) -
         return Dataflash()
     if carrier == "ulog":
         return Ulog(log_profile)
-    if carrier == "sdlog2":
-        return Sdlog2()
     if carrier == "table":
         return Table()
     telemetry: dict[str, Mends] = {"ardupilot": ArduPilotTelemetry(), "px4": Px4Telemetry()}

@@ -1,4 +1,4 @@
-"""ArduPilot's own log (``.bin``), and PX4's ``.px4log`` in the same container."""
+"""ArduPilot's own log (``.bin``)."""
 
 import re
 
