@@ -18,7 +18,7 @@ from advisor.oem.surface import Servo
 from advisor.process.arrays import FloatArray
 
 FULL_TRAVEL_RAD = float(np.radians(25.0))
-"""Elevator travel on either side of trim without a calibration, rad."""
+"""Travel of a control on either side of trim without a calibration, rad."""
 BOLDER = 1.5
 """Largest ratio of the next input, and of its response, to the largest input so far. The amplitude is built
 up in steps."""
@@ -64,7 +64,7 @@ def find_conditions(
     span, elevator = last.span, last.channels["elevator"]
     theta = course.knowledge(usable_ones(history)).posterior.theta
     trim = trim_of(last)
-    travel = travel_of(aircraft, trim)
+    travel = travel_of(aircraft.elevator.ends_deg, trim)
     largest_seen = max(_excursion(m, e) for m, e, _ in flown)
     alpha = max(largest_seen, min(BOLDER * largest_seen, LINEAR_RAD))
     if aircraft.limits.alpha_deg is not None:
@@ -125,8 +125,13 @@ def _step(t: FloatArray) -> float:
     return float(np.median(np.diff(t)))
 
 
-def travel_of(aircraft: Aircraft, trim_rad: float) -> float:
-    """Return the elevator's travel from trim to the nearer stop, rad: 100 % stick."""
-    ends_deg = aircraft.elevator.ends_deg
-    ends = np.radians(ends_deg) if ends_deg else [-FULL_TRAVEL_RAD, FULL_TRAVEL_RAD]
-    return float(max(min(max(ends) - trim_rad, trim_rad - min(ends)), 0.1 * FULL_TRAVEL_RAD))
+def travel_of(ends_deg: tuple[float, float] | None, trim_rad: float = 0.0) -> float:
+    """Return the travel of a control from trim to the nearer stop, rad: 100 % stick.
+
+    Parameters
+    ----------
+    ends_deg
+        Stops of the calibration, deg; None without a calibration.
+    """
+    low, high = np.radians(ends_deg) if ends_deg else (-FULL_TRAVEL_RAD, FULL_TRAVEL_RAD)
+    return float(max(min(high - trim_rad, trim_rad - low), 0.1 * FULL_TRAVEL_RAD))

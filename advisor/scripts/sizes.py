@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from math import inf, radians
 
 import numpy as np
-from scipy.linalg import expm
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.decision.conditions import ALPHA_MARGIN, FULL_TRAVEL_RAD, LINEAR_RAD
+from advisor.decision.conditions import ALPHA_MARGIN, LINEAR_RAD, travel_of
+from advisor.decision.held_inputs import held_response
 from advisor.model.axes.lateral import Trim, state_matrix
 from advisor.model.short_period import ShortPeriod
 from advisor.process.arrays import FloatArray
@@ -61,7 +61,7 @@ def size_of(
     flown_rad
         Largest deflection from trim in an accepted manoeuvre of this control, rad; None without one.
     """
-    travel = travel_of(aircraft, control)
+    travel = travel_of(getattr(aircraft, control).ends_deg)
     assumed = "" if getattr(aircraft, control).ends_deg else " (assumed)"
     of = f"of {np.degrees(travel):.4g} deg travel{assumed}"
     share = MULTISINE_SHARE if test.sines is not None else FIRST_SHARE[control]
@@ -75,14 +75,6 @@ def size_of(
     largest = max(LARGEST_SHARE * travel, flown_rad or 0.0)
     by_share = Size(largest, f"{100 * largest / travel:.0f} % {of}, the most by a model")
     return min(limited, by_share, most, key=lambda size: size.rad)
-
-
-def travel_of(aircraft: Aircraft, control: Control) -> float:
-    """Return the travel of a control from neutral to the nearer stop, rad; 25 deg without a calibration."""
-    ends = getattr(aircraft, control).ends_deg
-    if ends is None or not min(ends) < 0.0 < max(ends):
-        return FULL_TRAVEL_RAD
-    return float(min(map(abs, map(radians, ends))))
 
 
 def _limited(
@@ -146,12 +138,5 @@ def _side(
 
 def _peaks(a: FloatArray, b: FloatArray, rows: tuple[int, int], command: FloatArray) -> tuple[float, float]:
     """Return the largest absolute values of two states while the command is held over each step."""
-    n = len(b)
-    both = np.zeros((n + 1, n + 1))
-    both[:n, :n], both[:n, n] = a, b
-    step = expm(_STEP_S * both)
-    x, peaks = np.zeros(n), np.zeros(n)
-    for u in command:
-        x = step[:n, :n] @ x + step[:n, n] * u
-        peaks = np.maximum(peaks, np.abs(x))
+    peaks = np.max(np.abs(held_response(a, b, command, _STEP_S)), axis=0)
     return float(peaks[rows[0]]), float(peaks[rows[1]])

@@ -5,11 +5,12 @@ from dataclasses import dataclass, field
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.script_identity import ScriptIdentity
+from advisor.decision.conditions import travel_of
 from advisor.scripts.flight_limits import FlightLimits
 from advisor.scripts.inputs import CONTROLS, NAMES, Control, ScriptInput, input_of
 from advisor.scripts.outputs import StatedOutput, stated_outputs
 from advisor.scripts.pace import Pace, pace_of
-from advisor.scripts.sizes import Size, size_of, travel_of
+from advisor.scripts.sizes import Size, size_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +57,7 @@ class ScriptTable:
 
     def travel_rad(self, control: Control) -> float:
         """Return the travel of a control from neutral to the nearer stop, rad."""
-        return travel_of(self.aircraft, control)
+        return travel_of(getattr(self.aircraft, control).ends_deg)
 
 
 def script_table(

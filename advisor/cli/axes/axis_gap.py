@@ -9,6 +9,7 @@ from typing import Any, Generic, TypeVar
 
 import click
 
+from advisor.analysis.axes.side_comparison import SideCompared
 from advisor.cli.gap_asked import AxisAnswer, GapAsked, Unanswered, write_figure
 from advisor.cli.improvement_export import listed, write_exports
 from advisor.cli.options import USAGE
@@ -16,17 +17,18 @@ from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of
 from advisor.cli.stages import Stages
 from advisor.exports.models.flown import FlownModel
-from advisor.exports.models.proof import Proof
+from advisor.exports.models.proof import Proof, stays_of
 from advisor.exports.models.write import ExportOutcome
 from advisor.gap.result import Diagnosis
 from advisor.report.gap_document import axis_document, gap_document
 from advisor.report.gap_screen import GapScreen
 from advisor.report.gap_steps import GapStep
 from advisor.report.table import PlainConsole
+from advisor.simulators.compare import Compared
 from advisor.words.plain import plain
 from advisor.words.printable import printable
 
-C = TypeVar("C")
+C = TypeVar("C", bound=Compared | SideCompared)
 Tell = Callable[[str, float], None]
 """Function that receives the name of a stage, and the fraction of the stage that is done."""
 
@@ -57,10 +59,6 @@ class AxisGap(ABC, Generic[C]):
         """
 
     @abstractmethod
-    def stays(self, compared: C, proof: Proof | None) -> Diagnosis:
-        """Return the part of a diagnosis that a proof confirms."""
-
-    @abstractmethod
     def improved(self, compared: C, diagnosis: Diagnosis) -> FlownModel:
         """Return the model for the improved aircraft file."""
 
@@ -86,7 +84,8 @@ class AxisGap(ABC, Generic[C]):
     def proved(self, compared: C) -> "Proved[C]":
         """Return the part of a diagnosis that the proof confirms, if a proof was asked for."""
         proof = proof_of(self.asked.proving, partial(self.prove, compared))
-        return Proved(self, compared, self.stays(compared, proof), proof)
+        stays = stays_of(proof, compared.diagnosis, compared.aircraft.model)
+        return Proved(self, compared, stays, proof)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from advisor.campaign.state import CampaignState
 from advisor.cli.axes.axis_gap import AxisGap, Tell
 from advisor.cli.gap_asked import GapAsked
 from advisor.exports.models.axes.handed_over import improved_side
-from advisor.exports.models.axes.prove_side import prove_side, stays_of_side
+from advisor.exports.models.axes.prove_side import prove_side
 from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.proof import Proof
 from advisor.exports.models.write import ExportOutcome
@@ -61,10 +61,6 @@ class SideGap(AxisGap[SideCompared]):
             read = read_whole(named, compared.aircraft, target, no_marks=no_marks, axis="lateral")
             fresh = accepted_of(read.state)
         return prove_side(compared, fresh, self.asked.prior, tell)
-
-    def stays(self, compared: SideCompared, proof: Proof | None) -> Diagnosis:
-        """Return the part of a diagnosis that a proof confirms."""
-        return stays_of_side(compared.diagnosis, proof)
 
     def improved(self, compared: SideCompared, diagnosis: Diagnosis) -> FlownModel:
         """Return the model for the improved aircraft file."""

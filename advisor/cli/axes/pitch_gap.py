@@ -12,7 +12,7 @@ from advisor.cli.gap_asked import GapAsked
 from advisor.cli.options import decided_on
 from advisor.cli.stages import Stages
 from advisor.exports.models.axes.handed_over import side_of_logs
-from advisor.exports.models.axes.prove_pitch import prove, stays_of
+from advisor.exports.models.axes.prove_pitch import prove
 from advisor.exports.models.flown import FlownModel, SideModel, improved_model
 from advisor.exports.models.proof import Proof
 from advisor.exports.models.write import ExportOutcome
@@ -63,11 +63,6 @@ class PitchGap(AxisGap[Compared]):
         decided = [decided_on(log, read.no_marks) for log in named]
         fresh = reading.maneuvers_of(named, aircraft, read.target_system, decided) if named else None
         return prove(flown, fresh, aircraft, read.target_system, tell, asked.prior, compared)
-
-    def stays(self, compared: Compared, proof: Proof | None) -> Diagnosis:
-        """Return the part of a diagnosis that a proof confirms."""
-        given = compared.diagnosis
-        return given if proof is None else stays_of(proof, given, compared.aircraft.model)
 
     def improved(self, compared: Compared, diagnosis: Diagnosis) -> FlownModel:
         """Return the model for the improved aircraft file."""

@@ -19,6 +19,7 @@ from typing import Literal
 
 import numpy as np
 
+from advisor.decision.held_inputs import held_response
 from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.model.mil_f_8785c import CATEGORIES, Category, LevelFound, Measured, Range, assess
 from advisor.oem.axes.lateral.estimate import LateralModes
@@ -206,16 +207,7 @@ def peak_roll_rate(theta: FloatArray, a: FloatArray, aileron_rad: float, step_s:
     a
         Shape (4, 4): state matrix of these derivatives.
     """
-    from scipy.linalg import expm  # not on the start path
-
     value: Mapping[str, float] = dict(zip(LATERAL.names.reported, theta.tolist(), strict=True))
-    b = aileron_rad * np.array([value["Y_delta_a"], value["L_delta_a"], value["N_delta_a"], 0.0])
-    # The input as a fifth state that stands still: one matrix gives state and response.
-    held = np.zeros((5, 5))
-    held[:4, :4], held[:4, 4] = a, b
-    turned = expm(held * (step_s / _STEPS))
-    x, largest = np.array([0.0, 0.0, 0.0, 0.0, 1.0]), 0.0
-    for _ in range(_STEPS):
-        x = turned @ x
-        largest = x[1] if abs(x[1]) > abs(largest) else largest
-    return float(largest)
+    b = np.array([value["Y_delta_a"], value["L_delta_a"], value["N_delta_a"], 0.0])
+    p = held_response(a, b, np.full(_STEPS, aileron_rad), step_s / _STEPS)[:, 1]
+    return float(p[np.argmax(np.abs(p))])

@@ -7,7 +7,7 @@ follow from the last input by linearity, with the amplitude and its square.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import degrees, inf, isfinite, radians
+from math import degrees, inf, isfinite
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from advisor.decision.advice import GENTLE
 from advisor.decision.axes.requirements import BANK_DEG
 from advisor.decision.change import Change
 from advisor.decision.conclusion import Criterion, concluded
-from advisor.decision.conditions import ALPHA_MARGIN, BOLDER, FULL_TRAVEL_RAD
+from advisor.decision.conditions import ALPHA_MARGIN, BOLDER, travel_of
 from advisor.decision.first_unit import shown_unit_s, side_unit_s
 from advisor.decision.heard import Heard, first_stop
 from advisor.decision.information import times_its_tolerance
@@ -99,8 +99,7 @@ def next_lateral(
     percent
         Error of the worst derivative of this control, % of its tolerance; infinite if unknown.
     """
-    ends_deg = getattr(aircraft, control).ends_deg
-    travel = min(map(abs, map(radians, ends_deg))) if ends_deg and 0.0 not in ends_deg else FULL_TRAVEL_RAD
+    travel = travel_of(getattr(aircraft, control).ends_deg)
     before = next((earlier for earlier in reversed(flown) if earlier.control == control), None)
     amplitude = GENTLE * travel if before is None else _larger(before, percent, aircraft)
     unit_s = shown_unit_s(control, [estimate.modes for estimate in accepted])

@@ -6,10 +6,10 @@ improvement are kept. Each axis simulates the held-out manoeuvres (``ImprovedAxi
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.result import spelled
+from advisor.gap.result import Diagnosis, spelled
 from advisor.simulators.taken_back import taken_back_said, unused
 from advisor.words.problems import UnusableInputError
 
@@ -114,6 +114,35 @@ def proved(axis: ImprovedAxis) -> Proof:
         first=axis.first, parts=axis.parts, second=second, sentence=sentence, not_carried=after.not_carried,
         taken_back=taken, gap_with_them=every.gap if taken else None, alone=axis.alone,
     )  # fmt: skip
+
+
+def answer_of(diagnosis: Diagnosis) -> str:
+    """Return the effects of a diagnosis by their names, or its verdict without one."""
+    return " + ".join(cause.name for cause in diagnosis.causes if cause.present) or str(diagnosis.verdict)
+
+
+def without(diagnosis: Diagnosis, part: str, given: Mapping[str, float]) -> Diagnosis:
+    """Return a diagnosis whose improved simulator lacks one effect, or has the derivatives as given."""
+    if part == NUMBERS:
+        own = {name: replace(x, value=given.get(name, x.value)) for name, x in diagnosis.model.items()}
+        return replace(diagnosis, model=own, derivatives=())
+    effects = {effect: size for effect, size in diagnosis.effects.items() if effect != part}
+    causes = tuple(replace(c, present=c.present and c.name != part) for c in diagnosis.causes)
+    return replace(diagnosis, effects=effects, causes=causes)
+
+
+def stays_of(proof: Proof | None, diagnosis: Diagnosis, given: Mapping[str, float]) -> Diagnosis:
+    """Return a diagnosis whose improved simulator lacks the withdrawn parts, which its sentence names.
+
+    The posterior stays unchanged, because a proof moves no probability.
+    """
+    if proof is None or not (said := proof.taken_back_said):
+        return diagnosis
+    for part in proof.taken_back:
+        diagnosis = without(diagnosis, part, given)
+    corrects = diagnosis.corrects and len(proof.taken_back) < len(proof.parts)
+    taken = (*diagnosis.taken_back, said)
+    return replace(diagnosis, taken_back=taken, sentence=f"{diagnosis.sentence} {said}", corrects=corrects)
 
 
 def lines_of(proof: Proof) -> Iterator[str]:

@@ -10,13 +10,11 @@ from math import degrees, pi
 
 import numpy as np
 
-from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.evidence import (
     VANE_WIDTH,
     alpha_against_motion,
     force_against_alpha,
     force_against_climb,
-    force_against_gravity,
     rate_against_attitude,
     rate_moves_alpha,
     speed_against_force,
@@ -35,24 +33,12 @@ from advisor.flight.instruments.examined import (
     with_error,
 )
 from advisor.flight.instruments.measured import ANY, Evidence, Measured, Weighed, weigh
+from advisor.flight.instruments.rate_and_force import hold_force_unit, hold_rate
 from advisor.flight.signals.record import Channel
 
-_GYRO_WIDTH = 0.05
-"""Prior standard deviation of the ratio of an angle to its integrated rate, as a share. In recorded
-manoeuvres the pitch angle is 0.92 to 1.05 times the integrated pitch rate."""
-_FORCE_WIDTH = 0.05
-"""Prior standard deviation of an accelerometer's scale, as a share: calibration of 2 to 3 %, and mounting."""
 _AIRSPEED_WIDTH, _AIRSPEED_MEAN = 0.12, 0.95
 """Prior standard deviation and mean of the ratio of the logged to the true air speed. An indicated air speed
 is 1.00 of the true one at sea level and 0.86 at 3,000 m; position error is about 5 %."""
-FORCE_UNITS_M_S2 = {
-    "m/s^2": 1.0,
-    "g": GRAVITY_M_S2,
-    "mg": GRAVITY_M_S2 / 1000.0,
-    **{f"{n} counts a g": GRAVITY_M_S2 / n for n in (2048, 4096, 8192, 16384)},
-}
-"""Size of each unit in which accelerometers are sent, m/s². Counts are of 16-bit sensors of 16, 8, 4 and 2
-g."""
 _SPEED_UNITS_M_S = {"knots": 0.514444, "km/h": 1.0 / 3.6, "mph": 0.44704, "ft/s": 0.3048}
 
 
@@ -69,89 +55,10 @@ def examine(channels: Mapping[str, Channel], earlier: Evidence | None = None) ->
 
 def _attitude_and_rate(work: Work) -> bool:
     """Compare the pitch rate with the attitude; return whether sign and unit agree."""
-    known = work.learn(rate_against_attitude(work.channels)).get("theta_scale")
-    told = hold_rate(work, known, "q", "theta")
-    if told and known is not None:
-        channel = "theta" if rate_moves_alpha(work.channels) else "q"
-        name = PLAIN[channel]
-        work.contradict(
-            channel, "sign", "nose up", "nose down", known, f"{name} has the wrong sign: {told}",
-            f"check the sign of {name}, positive nose up",
-        )  # fmt: skip
-    return told is None
-
-
-def hold_rate(work: Work, known: Measured | None, rate: str, angle: str) -> str | None:
-    """Compare a rate with its angle by the ratio of their movements, and report a wrong unit or scale.
-
-    Returns
-    -------
-    str or None
-        None if sign and unit agree. Otherwise the ratio in words for a reversed sign, and an empty string for
-        any other error.
-    """
-    if known is None or not work.has(rate, angle):
-        return None
-    units = {f"{rate} in deg/s": pi / 180.0, f"{angle} in deg": 180.0 / pi}
-    weighed = weigh(known, {REVERSED: -1.0, **units}, _GYRO_WIDTH)
-    if not weighed.contradicts:
-        return None
-    told = f"{PLAIN[angle]} moves {with_error(known)} times as far as {PLAIN[rate]} says"
-    if weighed.best == REVERSED:
-        return told
-    if weighed.best == ANY:
-        work.contradict(
-            rate, "scale", 1.0, 1.0 / known.value if known.value else 0.0, known, told,
-            f"check scale and unit of {PLAIN[rate]}",
-        )  # fmt: skip
-    else:
-        channel, _, unit = weighed.best.partition(" in ")
-        stated = "rad/s" if channel == rate else "rad"
-        work.contradict(
-            channel, "unit", stated, unit, known, f"{PLAIN[channel]} is in {unit}: {told}",
-            f"send {PLAIN[channel]} in {stated}",
-        )  # fmt: skip
-    return ""
-
-
-def stated_force_unit(source: str) -> str:
-    """Return the unit that MAVLink defines for the message of an accelerometer channel."""
-    return "m/s^2" if source.startswith("HIGHRES_IMU") else "mg"
-
-
-def hold_force_unit(work: Work) -> bool:
-    """Compare the mean vertical force with gravity, correct a known unit or sign, and return whether the unit
-    is known."""
-    known = work.learn(force_against_gravity(work.channels)).get("a_z_scale")
-    if known is None or not work.has("a_z"):
-        return True
-    source = work.channels["a_z"].source
-    stated = stated_force_unit(source)
-    units = {name: FORCE_UNITS_M_S2[stated] / size for name, size in FORCE_UNITS_M_S2.items()}
-    factors = {name: factor for name, factor in units.items() if name != stated}
-    factors |= {f"{REVERSED}, {name}": -factor for name, factor in units.items()}
-    weighed = weigh(known, factors, _FORCE_WIDTH)
-    if not weighed.contradicts:
-        return True
-    told = f"in the mean it reads {with_error(known)} g where the motion is 1 g"
-    if weighed.best == ANY:
-        work.contradict(
-            "a_z", "scale", 1.0, known.value, known, f"a_z has an unknown unit: {told}",
-            f"check unit and calibration of the accelerometer ({source})",
-        )  # fmt: skip
-        return False
-    reverse, unit = weighed.factor < 0.0, weighed.best.removeprefix(f"{REVERSED}, ")
-    other_unit = unit != stated
-    said = " and ".join([*([f"in {unit}"] if other_unit else []), *(["z up"] if reverse else [])])
-    work.contradict(
-        "a_z", *(("unit", stated, unit) if other_unit else ("sign", "z down", "z up")), known,
-        f"a_z is {said}, not in {stated} with z down: {told}; estimates use the unit and sign found",
-        f"send {source} in {stated}, z down", used=True,
-    )  # fmt: skip
-    work.divide("a_z", weighed.factor)
-    for name in ("a_x", "a_y"):
-        work.divide(name, abs(weighed.factor))
-    return True
+    measured = work.learn(rate_against_attitude(work.channels)).get("theta_scale")
+    return hold_rate(
+        work, measured, "q", "theta", lambda: "theta" if rate_moves_alpha(work.channels) else "q"
+    )
 
 
 def _alpha_and_force(work: Work) -> None:

@@ -9,8 +9,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import GapFlights
 from advisor.exports.models.axes import prove_pitch as proof
-from advisor.exports.models.axes.prove_pitch import as_it_ended, stays_of
-from advisor.exports.models.proof import lines_of
+from advisor.exports.models.axes.prove_pitch import as_it_ended
+from advisor.exports.models.proof import lines_of, stays_of
 from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint

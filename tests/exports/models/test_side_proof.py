@@ -10,8 +10,8 @@ from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.analysis.axes.side_comparison import SideCompared
 from advisor.exports.models.axes import prove_side as side_proof
-from advisor.exports.models.axes.prove_side import _ahead, prove_side, stays_of_side
-from advisor.exports.models.proof import NUMBERS, Proof
+from advisor.exports.models.axes.prove_side import _ahead, prove_side
+from advisor.exports.models.proof import NUMBERS, Proof, stays_of
 from advisor.gap.result import Diagnosis, Gap
 from advisor.oem.estimate import ChannelFit
 from tests.gap.axes.lateral.test_comparison import AIRCRAFT, TRUE, maneuvers
@@ -30,7 +30,7 @@ PROOF = Proof(
 
 
 def stays(*taken: str) -> Diagnosis:
-    return stays_of_side(FOUND, replace(PROOF, taken_back=taken))
+    return stays_of(replace(PROOF, taken_back=taken), FOUND, JET)
 
 
 def test_an_effect_that_raises_the_gap_of_the_proof_leaves_the_file_and_keeps_its_probability():

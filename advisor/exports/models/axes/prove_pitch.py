@@ -1,7 +1,7 @@
 """Proof of ``advisor gap --prove`` in pitch: the improved simulator on manoeuvres that no fit has used."""
 
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +12,17 @@ from advisor.aircraft_file.read import parse_aircraft
 from advisor.analysis.gap import GapFlights, compare_flown, opened_simulator
 from advisor.exports.models.flown import FlownModel, file_of, improved_model
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
-from advisor.exports.models.proof import NUMBERS, ImprovedAxis, Kept, Proof, parted, proved, refuse_unimproved
+from advisor.exports.models.proof import (
+    NUMBERS,
+    ImprovedAxis,
+    Kept,
+    Proof,
+    answer_of,
+    parted,
+    proved,
+    refuse_unimproved,
+    without,
+)
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import changes_in, lasting, less_of_the_servo, together
@@ -87,23 +97,7 @@ def prove(
         return Kept(again.gap.before, gaps, again.gap.floor, lambda: (again.verdict, again.sentence), left)
 
     fewer = [(part,) for part in parts if len(parts) > 1]
-    answer = " + ".join(named(diagnosis)) or str(diagnosis.verdict)
-    return proved(ImprovedAxis(answer, parts, fewer, flown_without, alone))
-
-
-def stays_of(proof: Proof, diagnosis: Diagnosis, given: Mapping[str, float]) -> Diagnosis:
-    """Return a diagnosis whose improved simulator lacks the withdrawn parts, which its sentence names.
-
-    The posterior stays unchanged, because a proof moves no probability.
-    """
-    said = proof.taken_back_said
-    if not said:
-        return diagnosis
-    for part in proof.taken_back:
-        diagnosis = without(diagnosis, part, given)
-    corrects = diagnosis.corrects and len(proof.taken_back) < len(proof.parts)
-    taken = (*diagnosis.taken_back, said)
-    return replace(diagnosis, taken_back=taken, sentence=f"{diagnosis.sentence} {said}", corrects=corrects)
+    return proved(ImprovedAxis(answer_of(diagnosis), parts, fewer, flown_without, alone))
 
 
 def as_it_ended(diagnosis: Diagnosis, maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Diagnosis:
@@ -122,20 +116,6 @@ def as_it_ended(diagnosis: Diagnosis, maneuvers: Sequence[Maneuver], aircraft: A
         del effects[change.effect]
     ended = {name: replace(diagnosis.model[name], value=float(p[-1, INDEX[name]])) for name in DERIVATIVES}
     return replace(diagnosis, model={**diagnosis.model, **ended}, effects=effects)
-
-
-def without(diagnosis: Diagnosis, part: str, given: Mapping[str, float]) -> Diagnosis:
-    """Return a diagnosis whose improved simulator lacks one effect, or has the derivatives as given."""
-    if part == NUMBERS:
-        own = {name: replace(x, value=given.get(name, x.value)) for name, x in diagnosis.model.items()}
-        return replace(diagnosis, model=own, derivatives=())
-    effects = {effect: size for effect, size in diagnosis.effects.items() if effect != part}
-    return replace(diagnosis, effects=effects)
-
-
-def named(diagnosis: Diagnosis) -> list[str]:
-    """Return the names of the effects of an answer."""
-    return [cause.effect for cause in diagnosis.causes if cause.present]
 
 
 def _improved(

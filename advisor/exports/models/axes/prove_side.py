@@ -16,12 +16,20 @@ from advisor.analysis.axes.side_comparison import SideCompared, answered, beside
 from advisor.exports.models.axes.handed_over import behind_found
 from advisor.exports.models.flown import flown_model, side_of
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
-from advisor.exports.models.proof import NUMBERS, ImprovedAxis, Kept, Proof, parted, proved, refuse_unimproved
+from advisor.exports.models.proof import (
+    NUMBERS,
+    ImprovedAxis,
+    Kept,
+    Proof,
+    answer_of,
+    parted,
+    proved,
+    refuse_unimproved,
+)
 from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.axes.lateral.comparison import compare_side
 from advisor.gap.inference.prior import FIELD, FieldPrior
-from advisor.gap.result import Diagnosis
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.axes.lateral.estimator import estimate_lateral
@@ -79,8 +87,7 @@ def prove_side(
 
         return Kept(float(np.mean([*gaps.values()])), gaps, floor, answer, left)
 
-    first = " + ".join(present) or diagnosis.verdict
-    return proved(ImprovedAxis(first, parts, [present] if present else [], flown_without))
+    return proved(ImprovedAxis(answer_of(diagnosis), parts, [present] if present else [], flown_without))
 
 
 def _improved(
@@ -126,20 +133,6 @@ def _ahead(given: SideControl, against: SideControl, side_control: SideControl) 
         return max(first + whole - own, 0.0)
 
     return given if side_control == against else replace(given, lag_s=less("lag_s"), delay_s=less("delay_s"))
-
-
-def stays_of_side(diagnosis: Diagnosis, proof: Proof | None) -> Diagnosis:
-    """Return a diagnosis whose improved simulator lacks the parts that a proof withdrew, which its sentence
-    names.
-
-    The posterior stays unchanged, because a proof moves no probability.
-    """
-    if proof is None or proof.gap_with_them is None or not diagnosis.evidence:
-        return diagnosis
-    causes = tuple(replace(cause, present=False) for cause in diagnosis.causes)
-    sentence = f"{diagnosis.sentence} {proof.taken_back_said}"
-    corrects = NUMBERS not in proof.taken_back
-    return replace(diagnosis, sentence=sentence, causes=causes, corrects=corrects)
 
 
 def _gap(maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: FloatArray) -> float:

@@ -16,12 +16,6 @@ import numpy as np
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.delayed_fit import DRIFT, DelayedFit, Summand, fit_delays
 from advisor.flight.instruments.evidence import MOVED_RAD, Channels, usable
-from advisor.flight.instruments.examination import (
-    FORCE_UNITS_M_S2,
-    hold_force_unit,
-    hold_rate,
-    stated_force_unit,
-)
 from advisor.flight.instruments.examined import (
     PLAIN,
     SIGMAS,
@@ -32,6 +26,13 @@ from advisor.flight.instruments.examined import (
 )
 from advisor.flight.instruments.far_clock import CLOCK_STD_S, SignOrClock, sign_or_clock
 from advisor.flight.instruments.measured import ANY, EXCLUDED, Evidence, Measured, weigh
+from advisor.flight.instruments.rate_and_force import (
+    FORCE_UNITS_M_S2,
+    hold_force_unit,
+    hold_rate,
+    stated_force_unit,
+    turned,
+)
 from advisor.flight.signals.motion import channel_at, integrated
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.renewal import renewed
@@ -131,11 +132,6 @@ a small part of the sideslip's rate, so a vane's scale error is amplified."""
 _USUAL_IN_G, _SPREAD = 2.0, 0.8
 """Prior mean, and standard deviation of the logarithm, of the side force per sideslip over the weight,
 |C_Yβ|/C_L. Four recorded aircraft have values of 0.7 to 4.9."""
-_DIRECTION = {
-    "p": "the right wing goes down", "bank": "the right wing is down", "r": "the nose goes right",
-    "a_y": "the force points right", "beta": "the wind comes from the right",
-}  # fmt: skip
-"""Positive direction of each channel in words."""
 
 
 def examine_side(channels: Mapping[str, Channel], earlier: Evidence | None = None) -> Examined:
@@ -153,11 +149,8 @@ def examine_side(channels: Mapping[str, Channel], earlier: Evidence | None = Non
 
 def _bank_and_rate(work: Work) -> bool:
     """Compare the roll rate with the bank; return whether sign and unit agree."""
-    known = work.learn(rate_against_bank(work.channels)).get("bank_scale")
-    told = hold_rate(work, known, "p", "bank")
-    if told and known is not None:
-        _turned(work, "p", known, told)
-    return told is None
+    measured = work.learn(rate_against_bank(work.channels)).get("bank_scale")
+    return hold_rate(work, measured, "p", "bank", lambda: "p")
 
 
 def _signs(work: Work, name: str, evidence: Evidence, sense: float) -> bool:
@@ -189,7 +182,7 @@ def _signs(work: Work, name: str, evidence: Evidence, sense: float) -> bool:
             return True
         if both is not None and not all(wrong[:2]):
             measured, decided = both, f"with {with_error(both)} of both parts together"
-    _turned(work, culprit, measured, f"{law}, {decided}")
+    turned(work, culprit, measured, f"{law}, {decided}")
     return False
 
 
@@ -220,14 +213,6 @@ def _sign_or_clock(work: Work, name: str, sense: float) -> SignOrClock | None:
 
 def _resolved(measured: Measured) -> bool:
     return abs(measured.value) > SIGMAS * measured.std
-
-
-def _turned(work: Work, channel: str, measured: Measured, told: str) -> None:
-    work.contradict(
-        channel, "sign", "right", "left", measured, f"{PLAIN[channel]} has the wrong sign: {told}",
-        f"check the sign of {PLAIN[channel]} ({work.channels[channel].source}), positive where "
-        f"{_DIRECTION[channel]}",
-    )  # fmt: skip
 
 
 def _side_force_unit(work: Work, evidence: Evidence) -> None:
