@@ -61,7 +61,7 @@ class Requirements:
     determined: Mapping[str, tuple[str, ...]]
     """Derivatives that a test of each control determines."""
     needed: tuple[str, ...]
-    """Channels beside the controls without which no manoeuvre can be judged."""
+    """Channels in addition to the controls without which no manoeuvre can be judged."""
     outside: Callable[[Maneuver, Aircraft], tuple[Reason, ...]]
     """Function that returns reasons for exceeded limits of the model."""
     period_s: Callable[[Maneuver, Estimate | NoEstimate], float]
