@@ -95,7 +95,7 @@ def _held_by(history: Sequence[CandidateManeuver], plan: CampaignPlan, knowledge
 
 def _first_input(aircraft: Aircraft, history: Sequence[CandidateManeuver]) -> NextInput:
     """Return the first input's advice: a small 3-2-1-1, timed by the file's model or by the log."""
-    unit = first_unit_s(aircraft.model, [flown.estimate for flown in history])
+    unit = first_unit_s("elevator", aircraft, others=[flown.estimate for flown in history])
     travel = travel_of(aircraft.elevator.ends_deg)
     gentle = StepInput("3-2-1-1", unit, GENTLE * travel, nose_up_first=True)
     return NextInput(f"next: {gentle.spoken(travel)}, to begin gently", None, None, gentle)

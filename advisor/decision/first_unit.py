@@ -1,27 +1,24 @@
 """Natural periods, and from them the step duration of each control's first input.
 
-The step follows from the aircraft file's model, then from the log. Manoeuvres that no rule uses still show
-the aircraft's motion.
+Manoeuvres that no rule uses still show the aircraft's motion.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from math import inf, pi, sqrt
 
 import numpy as np
 
+from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.decision.inputs import SHORTEST_UNIT_S
 from advisor.decision.response import Response, explained_share
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import Trim, modes_of, state_matrix
 from advisor.model.short_period import ShortPeriod
-from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.words.quantiles import NORMAL_95
 
-DEFAULT_UNIT_S = 0.5
-"""Time unit of the first 3-2-1-1, s, without a model and without an estimate. The unit suits a natural
-frequency of 4 rad/s, which lies between small aircraft and jets."""
 _SHORTEST_S, _LONGEST_S = 0.1, 3.0
 """Shortest and longest time unit, s, that is matched to an aircraft."""
 _LEAST_AILERON_S = 0.5
@@ -46,59 +43,83 @@ def matched_unit_s(model: ShortPeriod) -> float:
     return float(np.clip(2.0 / max(frequency(model), 1e-9), _SHORTEST_S, _LONGEST_S))
 
 
-def first_unit_s(model: Mapping[str, float], estimates: Iterable[Estimate | NoEstimate] = ()) -> float:
-    """Return the time unit of the first 3-2-1-1, s, rounded to tenths as a pilot can count them.
+def first_unit_s(
+    control: str,
+    aircraft: Aircraft,
+    accepted: Iterable[Estimate | NoEstimate] = (),
+    others: Iterable[Estimate | NoEstimate] = (),
+) -> float:
+    """Return the time unit of a control's first input, s, rounded to tenths as a pilot can count them.
+
+    The accepted estimates come first, then the aircraft file, other estimates, and the usual unit.
 
     Parameters
     ----------
-    model
-        Derivatives of the aircraft file by their names.
-    estimates
-        Estimates of manoeuvres that no rule uses, in the order flown.
+    others
+        Estimates of manoeuvres that no rule uses.
     """
-    unit = DEFAULT_UNIT_S
-    shown = [e for e in estimates if isinstance(e, Estimate) and _knows_the_motion(e)]
-    if set(_STIFFNESS) <= set(model):
-        unit = matched_unit_s(ShortPeriod.from_mapping(model))
-    elif shown:
-        unit = matched_unit_s(ShortPeriod(shown[-1].theta))
-    return max(round(unit, 1), SHORTEST_UNIT_S)
+    by_file, by_estimate, usual_s = _UNITS[control]
+
+    def shown(estimates: Iterable[Estimate | NoEstimate]) -> float | None:
+        units = [unit for e in estimates if isinstance(e, Estimate) and (unit := by_estimate(e))]
+        return float(np.median(units)) if units else None
+
+    unit_s = shown(accepted) or by_file(aircraft) or shown(others) or usual_s
+    return max(round(unit_s, 1), SHORTEST_UNIT_S)
 
 
-def side_unit_s(control: str, model: Mapping[str, float], airspeed_m_s: float | None) -> float | None:
-    """Return the step of a doublet by the file's model, s; None if the model does not determine the step.
+def _elevator_by_file(aircraft: Aircraft) -> float | None:
+    known = set(_STIFFNESS) <= set(aircraft.model)
+    return matched_unit_s(ShortPeriod.from_mapping(aircraft.model)) if known else None
 
-    The aileron's step is two time constants of the roll. The rudder's step is half a Dutch roll.
-    """
-    damping, stiffness = model.get("L_p", 0.0), model.get("N_beta", 0.0)
-    if control == "aileron":
-        return aileron_unit_s(-1.0 / damping) if damping < 0.0 else None
+
+def _elevator_shown(estimate: Estimate) -> float | None:
+    return matched_unit_s(ShortPeriod(estimate.theta)) if _knows_the_motion(estimate) else None
+
+
+def _aileron_by_file(aircraft: Aircraft) -> float | None:
+    damping = aircraft.model.get("L_p", 0.0)
+    return _aileron_s(-1.0 / damping) if damping < 0.0 else None
+
+
+def _aileron_shown(estimate: Estimate) -> float | None:
+    roll = estimate.modes.roll_time_constant if isinstance(estimate, LateralEstimate) else None
+    return None if roll is None else _aileron_s(roll.value)
+
+
+def _aileron_s(time_constant_s: float) -> float:
+    """Return the aileron's step, s: two time constants of the roll."""
+    return max(2.0 * time_constant_s, _LEAST_AILERON_S)
+
+
+def _rudder_by_file(aircraft: Aircraft) -> float | None:
+    """Return half a Dutch roll of the file's model, s; None if the model does not determine it."""
+    model, stiffness = aircraft.model, aircraft.model.get("N_beta", 0.0)
     if stiffness <= 0.0:
         return None
     swinging = None
     if {"Y_beta", "L_beta", "L_p", "N_r"} <= set(model):
         theta = np.array([model.get(name, 0.0) for name in SIDE_PARAMETERS])
-        swinging = modes_of(state_matrix(theta, Trim(airspeed_m_s or inf))).dutch_roll
-    return rudder_unit_s(sqrt(stiffness) if swinging is None else abs(swinging))
+        swinging = modes_of(state_matrix(theta, Trim(aircraft.reference_airspeed_m_s or inf))).dutch_roll
+    return pi / (sqrt(stiffness) if swinging is None else abs(swinging))
 
 
-def shown_unit_s(control: str, modes: Iterable[LateralModes]) -> float | None:
-    """Return the median step of a doublet by the modes of estimates, s; None without such a mode."""
-    if control == "aileron":
-        steps = [aileron_unit_s(q.value) for m in modes if (q := m.roll_time_constant) is not None]
-    else:
-        steps = [rudder_unit_s(q.value) for m in modes if (q := m.dutch_roll_omega) is not None]
-    return float(np.median(steps)) if steps else None
+def _rudder_shown(estimate: Estimate) -> float | None:
+    omega = estimate.modes.dutch_roll_omega if isinstance(estimate, LateralEstimate) else None
+    return None if omega is None else pi / omega.value
 
 
-def aileron_unit_s(time_constant_s: float) -> float:
-    """Return the aileron's step, s: two time constants of the roll."""
-    return max(2.0 * time_constant_s, _LEAST_AILERON_S)
+_UNITS: Mapping[str, tuple[Callable[[Aircraft], float | None], Callable[[Estimate], float | None], float]] = {
+    "elevator": (_elevator_by_file, _elevator_shown, 0.5),
+    "aileron": (_aileron_by_file, _aileron_shown, 1.0),
+    "rudder": (_rudder_by_file, _rudder_shown, 1.0),
+}
+"""Unit of each control by the aircraft file, by an estimate, and the usual one, s.
 
-
-def rudder_unit_s(omega: float) -> float:
-    """Return the rudder's step, s: half a Dutch roll of frequency ``omega``, rad/s."""
-    return max(pi / omega, SHORTEST_UNIT_S)
+The elevator's usual unit suits a natural frequency of 4 rad/s, which lies between small aircraft and jets.
+A doublet's usual step lies between half a Dutch roll of a small aircraft (0.9 s) and of a jet (1.7 s). It is
+at least two roll time constants of both (0.1 and 0.5 s).
+"""
 
 
 def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float:

@@ -8,8 +8,9 @@ from advisor.campaign.axis_campaign import AxisCampaign, Flown
 from advisor.campaign.joint_estimate import NEWEST
 from advisor.campaign.single_maneuver import untold
 from advisor.campaign.state import LateralState
-from advisor.decision.axes.lateral_stop import JUDGED, FlownInput, lateral_flight_test
+from advisor.decision.axes.lateral_stop import JUDGED, lateral_flight_test
 from advisor.decision.axes.requirements import judge, responses_of
+from advisor.decision.axes.side_input import FlownInput
 from advisor.decision.change import find_change
 from advisor.decision.heard import Heard
 from advisor.decision.history import CandidateManeuver

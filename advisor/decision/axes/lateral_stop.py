@@ -1,133 +1,34 @@
 """The lateral flight test: knowledge from the joint estimate, stop, and next input.
 
-The joint estimate on all screens and pages also decides on the stop. Bank and information of the next input
-follow from the last input by linearity, with the amplitude and its square.
+The joint estimate on all screens and pages also decides on the stop.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import degrees, inf, isfinite
+from math import inf, isfinite
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, Rule
-from advisor.decision.advice import GENTLE
-from advisor.decision.axes.requirements import BANK_DEG
+from advisor.decision.axes.side_input import FlownInput, next_lateral
 from advisor.decision.change import Change
 from advisor.decision.conclusion import Criterion, concluded
-from advisor.decision.conditions import ALPHA_MARGIN, BOLDER, travel_of
-from advisor.decision.first_unit import shown_unit_s, side_unit_s
 from advisor.decision.heard import Heard, first_stop
 from advisor.decision.information import times_its_tolerance
-from advisor.decision.inputs import StepInput
 from advisor.decision.remaining import Share, until_usable, variance_scale
 from advisor.decision.tolerance import SHARE
 from advisor.decision.verdict import (
     INFORMATION_LIMIT_PERCENT,
     FlightTestVerdict,
     NextInput,
-    Reason,
     Remaining,
     RuleProgress,
 )
-from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import CONTROLS, LATERAL
-from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
-from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
-
-FIRST_UNIT_S = 1.0
-"""Duration of the first doublet's step, s, before any mode is known. The duration lies between half a Dutch
-roll of a small aircraft (0.9 s) and of a jet (1.7 s). The duration is at least two roll time constants of a
-small aircraft (0.1 s) and of a jet (0.5 s)."""
-
-
-@dataclass(frozen=True, slots=True)
-class FlownInput:
-    """A flown input with the aircraft's response."""
-
-    control: str
-    """Control with the largest movement."""
-    amplitude_rad: float
-    bank_rad: float
-    """Largest bank angle during the manoeuvre, rad."""
-    remedy: str = ""
-    """Remedy from the first reason against the manoeuvre; empty for an accepted one."""
-    modes: LateralModes | None = None
-    """Modes of the manoeuvre's estimate, accepted or not; None without an estimate."""
-    too_small: float = 1.0
-    """Factor by which the first reason asks for a larger input; 1 if the reason asks for another change."""
-
-    @classmethod
-    def of(
-        cls, maneuver: Maneuver, reasons: Sequence[Reason], estimate: Estimate | NoEstimate | None = None
-    ) -> "FlownInput":
-        """Return the input of a manoeuvre with these reasons against it, and with its estimate."""
-        moved = {name: _amplitude(maneuver, name) for name in LATERAL.inputs}
-        control = max(moved, key=lambda name: moved[name])
-        bank = maneuver.channels.get("bank")
-        banked = float(np.max(np.abs(bank.y), initial=0.0)) if bank is not None else 0.0
-        remedy = reasons[0].remedy if reasons else ""
-        modes = estimate.modes if isinstance(estimate, LateralEstimate) else None
-        gentle = bool(reasons) and reasons[0].code == "amplitude" and reasons[0].value > 0.0
-        factor = reasons[0].limit / reasons[0].value if gentle else 1.0
-        return cls(control, moved[control], banked, remedy, modes, factor)
-
-
-def _amplitude(maneuver: Maneuver, name: str) -> float:
-    """Return the largest deviation of a control from its level before the input, rad."""
-    channel = maneuver.channels.get(name)
-    if channel is None or not len(channel):
-        return 0.0
-    return float(np.max(np.abs(channel.y - channel.y[0])))
-
-
-def next_lateral(
-    control: str,
-    percent: float,
-    accepted: Sequence[LateralEstimate],
-    flown: Sequence[FlownInput],
-    aircraft: Aircraft,
-    holding_back: str,
-) -> NextInput:
-    """Return the next lateral input.
-
-    Parameters
-    ----------
-    percent
-        Error of the worst derivative of this control, % of its tolerance; infinite if unknown.
-    """
-    travel = travel_of(getattr(aircraft, control).ends_deg)
-    before = next((earlier for earlier in reversed(flown) if earlier.control == control), None)
-    amplitude = GENTLE * travel if before is None else _larger(before, percent, aircraft)
-    unit_s = shown_unit_s(control, [estimate.modes for estimate in accepted])
-    unit_s = unit_s or side_unit_s(control, aircraft.model, aircraft.reference_airspeed_m_s)
-    unit_s = unit_s or shown_unit_s(control, [x.modes for x in flown if x.modes is not None]) or FIRST_UNIT_S
-    wanted = StepInput("doublet", unit_s, min(amplitude, ALPHA_MARGIN * travel), True, control)
-    wanted = wanted.rounded(travel)
-    gently = ", to begin gently" if before is None else ""
-    # A remedy belongs to the refused input, never to another control. A larger amplitude is a remedy.
-    refused = before is not None and before is flown[-1] and before.too_small <= 1.0
-    remedy = f"; {before.remedy}" if before is not None and refused and before.remedy else ""
-    still = f"hands and feet still for {4.0 * unit_s:.0f} s" if control == "rudder" else "stick still"
-    said = f"{wanted.spoken(travel)}{gently}, then {still}{remedy}"
-    return NextInput(f"next: {said}", None, holding_back, wanted)
-
-
-def _larger(before: FlownInput, percent: float, aircraft: Aircraft) -> float:
-    """Return the amplitude that meets the tolerance with one more manoeuvre, within the bank limit.
-
-    A refused input grows only if the refusal asks for a larger one.
-    """
-    wanted = percent / INFORMATION_LIMIT_PERCENT if percent < inf else 1.0
-    factor = min(max(before.too_small if before.remedy else wanted, 1.0), BOLDER)
-    limit = ALPHA_MARGIN * max(BANK_DEG, aircraft.limits.bank_deg)
-    if before.bank_rad > 0.0:
-        factor = min(factor, limit / degrees(before.bank_rad))
-    return factor * before.amplitude_rad
-
 
 JUDGED: Mapping[str, str] = {
     "L_p": "aileron",

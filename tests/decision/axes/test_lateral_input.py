@@ -6,7 +6,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import SideControl
-from advisor.decision.axes.lateral_stop import FlownInput, next_lateral
+from advisor.decision.axes.side_input import FlownInput, next_lateral
 from tests.campaign.side_builders import estimate, judged
 
 AIRCRAFT = Aircraft()
@@ -33,7 +33,7 @@ def test_the_model_of_the_file_times_the_first_input(control, steps):
 
 
 def test_a_refused_manoeuvre_times_the_first_input_without_a_model():
-    refused = FlownInput("rudder", 0.1, 1.0, "less rudder", estimate("rudder").modes)
+    refused = FlownInput("rudder", 0.1, 1.0, "less rudder", estimate("rudder"))
     assert "1.8 s steps" in advised("rudder", flown=[refused]).advice
 
 
