@@ -2,79 +2,73 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
-from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.flight.instruments.axes.side_instruments import examine_side
 from advisor.flight.instruments.evidence import stds_of_delays
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.measured import Measured
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
+from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
+from tests.flight.instruments.flights import (
+    SPEED,
+    Channels,
+    T,
+    doublets,
+    flight,
+    found_in_pitch,
+    found_in_roll_and_yaw,
+    late,
+    times,
+)
 
-T = np.arange(0.0, 8.0, 0.02)
-SPEED = 20.0
-Channels = dict[str, Channel]
-
-
-def flight(source: str = "AOA_SSA.AOA", provenance: str = "derived") -> Channels:
-    """Return an exact flight: an oscillating angle of attack, and the path that its lift bends."""
-    alpha = 0.05 + 0.06 * np.sin(5.0 * T) * np.exp(-0.4 * T) + 0.02 * np.sin(2.0 * T)
-    bending = 4.0 * (alpha - np.mean(alpha))
-    path = np.concatenate(([0.0], np.cumsum(np.diff(T) * (bending[1:] + bending[:-1]) / 2.0)))
-    theta = alpha + path
-    a_x = GRAVITY_M_S2 * np.sin(theta)
-    a_z = (a_x * np.sin(alpha) - SPEED * bending - GRAVITY_M_S2 * np.cos(path)) / np.cos(alpha)
-    values = {
-        "theta": theta,
-        "q": np.gradient(theta, T),
-        "a_x": a_x,
-        "a_z": a_z,
-        "airspeed": np.full(len(T), SPEED),
-        "climb_rate": SPEED * np.sin(path),
-        "alpha": alpha,
-    }
-    sources = {"alpha": (source, provenance), "a_x": ("RAW_IMU.xacc", ""), "a_z": ("RAW_IMU.zacc", "")}
-    return {name: Channel(name, T, y, *sources.get(name, ())) for name, y in values.items()}
-
-
-def times(factor: float, *names: str) -> Callable[[Channels], Channels]:
-    return lambda channels: channels | {n: replace(channels[n], y=factor * channels[n].y) for n in names}
-
-
-def late(by_s: float, *names: str) -> Callable[[Channels], Channels]:
-    return lambda channels: channels | {n: replace(channels[n], t=channels[n].t + by_s) for n in names}
+Found = Callable[..., dict[str, InstrumentFinding]]
 
 
 def codes(channels: Channels) -> list[tuple[str, bool]]:
     return [(found.code, found.used) for found in examine(channels).findings]
 
 
-@pytest.mark.parametrize("provenance", ["derived", "vane"])
-def test_a_sound_flight_contradicts_nothing(provenance: str) -> None:
-    assert codes(flight(provenance=provenance)) == []
+@pytest.mark.parametrize(
+    ("found_in", "instruments"),
+    [
+        *((found_in_pitch, {"provenance": provenance}) for provenance in ("derived", "vane")),
+        *((found_in_roll_and_yaw, {"vane": vane}) for vane in (True, False)),
+    ],
+)
+def test_a_sound_flight_contradicts_nothing(found_in: Found, instruments: dict[str, object]) -> None:
+    assert found_in(dict, **instruments) == {}
 
 
 @pytest.mark.parametrize(
-    ("fault", "code", "found"),
+    ("found_in", "fault", "code", "value"),
     [
-        (times(-1.0, "alpha"), "alpha_sign", "nose down"),
-        (times(np.pi / 180.0, "alpha"), "alpha_unit", "rad"),
-        (times(180.0 / np.pi, "alpha"), "alpha_unit", "deg"),
-        (times(-1.0, "q"), "q_sign", "nose down"),
-        (times(-1.0, "theta"), "theta_sign", "nose down"),
-        (times(180.0 / np.pi, "q"), "q_unit", "deg/s"),
-        (times(180.0 / np.pi, "theta"), "theta_unit", "deg"),
-        (times(1.944, "airspeed"), "airspeed_unit", "knots"),
-        (times(3.6, "airspeed"), "airspeed_unit", "km/h"),
+        (found_in_pitch, times(-1.0, "alpha"), "alpha_sign", "nose down"),
+        (found_in_pitch, times(np.pi / 180.0, "alpha"), "alpha_unit", "rad"),
+        (found_in_pitch, times(180.0 / np.pi, "alpha"), "alpha_unit", "deg"),
+        (found_in_pitch, times(-1.0, "q"), "q_sign", "nose down"),
+        (found_in_pitch, times(-1.0, "theta"), "theta_sign", "nose down"),
+        (found_in_pitch, times(180.0 / np.pi, "q"), "q_unit", "deg/s"),
+        (found_in_pitch, times(180.0 / np.pi, "theta"), "theta_unit", "deg"),
+        (found_in_pitch, times(1.944, "airspeed"), "airspeed_unit", "knots"),
+        (found_in_pitch, times(3.6, "airspeed"), "airspeed_unit", "km/h"),
+        *((found_in_roll_and_yaw, times(-1.0, n), f"{n}_sign", "left") for n in ("a_y", "beta", "r", "p")),
+        (found_in_roll_and_yaw, times(-1.0, "p", "bank"), "bank_sign", "left"),
+        (found_in_roll_and_yaw, times(180.0 / np.pi, "p"), "p_unit", "deg/s"),
+        (found_in_roll_and_yaw, times(1e-3, "a_y"), "a_y_unit", "g"),
+        (partial(found_in_roll_and_yaw, vane=False), times(1e-3, "a_y"), "a_y_unit", "g"),
+        (partial(found_in_roll_and_yaw, vane=False), times(-1.0, "a_y"), "a_y_sign", "left"),
     ],
 )
 def test_a_wrong_sense_or_unit_is_named_and_refused(
-    fault: Callable[[Channels], Channels], code: str, found: str
+    found_in: Found, fault: Callable[[Channels], Channels], code: str, value: str
 ) -> None:
-    (wrong,) = examine(fault(flight())).findings
-    assert (wrong.code, wrong.value, wrong.refuses) == (code, found, True)
+    ((named, wrong),) = found_in(fault).items()
+    assert (named, wrong.value, wrong.refuses) == (code, value, True)
     assert wrong.fix
 
 
@@ -155,9 +149,18 @@ def delayed(by_s: float, name: str, channels: Channels) -> Channels:
     return channels | {name: replace(old, y=np.interp(old.t - by_s, old.t, old.y))}
 
 
-def test_an_attitude_later_than_the_rates_of_its_own_message_is_set_right_at_any_rate() -> None:
-    (wrong,) = examine(delayed(0.1, "theta", slow(flight()))).findings
-    assert (wrong.code, wrong.used) == ("theta_delay_s", True)
+@pytest.mark.parametrize(
+    ("found_in", "fault", "code"),
+    [
+        (found_in_pitch, lambda channels: delayed(0.1, "theta", slow(channels)), "theta_delay_s"),
+        (found_in_roll_and_yaw, late(0.1, "bank"), "bank_delay_s"),
+    ],
+)
+def test_an_attitude_later_than_its_rates_is_set_right(
+    found_in: Found, fault: Callable[[Channels], Channels], code: str
+) -> None:
+    ((named, wrong),) = found_in(fault).items()
+    assert (named, wrong.used) == (code, True)
     assert wrong.value == pytest.approx(0.1, abs=0.01)
 
 
@@ -229,3 +232,31 @@ def test_where_round_off_decides_on_the_variance_of_a_delay_no_delay_is_told():
     assert stds_of_delays(np.array([[1.0, 1.0], [1.0, 1.0]])) is None
     assert stds_of_delays(np.array([[4.0, 0.0], [0.0, -1e-18]])) is None
     assert stds_of_delays(np.array([[9.0, 0.0], [0.0, 16.0]])) == pytest.approx((5.0, 4.0))
+
+
+@pytest.mark.parametrize("by_s", [1.7, -1.5])
+def test_a_sideslip_of_another_clock_is_not_accused_of_its_sign(by_s: float) -> None:
+    (found,) = examine_side(late(by_s, "beta")(doublets()[0])).findings
+    assert found.code == "beta_delay_s"
+    assert found.value == pytest.approx(by_s, abs=0.3)
+    assert ("late" if by_s > 0.0 else "early") in found.text
+
+
+def test_the_sentence_of_a_wrong_sign_holds_the_number_that_excludes_the_right_one() -> None:
+    text = found_in_roll_and_yaw(times(-1.0, "beta"))["beta_sign"].text
+    value, half = (float(x) for x in text.partition("with ")[2].split(" ")[:3:2])
+    assert value + half < 0.0
+
+
+def test_a_late_roll_rate_refuses() -> None:
+    assert found_in_roll_and_yaw(late(0.1, "p"))["p_delay_s"].refuses
+
+
+def test_a_vertical_force_of_an_unknown_unit_is_blamed_before_the_side_force() -> None:
+    def of_another_unit(channels: Channels) -> Channels:
+        bank = channels["bank"]
+        third = np.full(len(bank.t), -9.81 / 3.0)
+        a_z = Channel("a_z", bank.t, third, "RAW_IMU.zacc", "measured")
+        return times(-1.0, "a_y")({**channels, "a_z": a_z})
+
+    assert list(found_in_roll_and_yaw(of_another_unit)) == ["a_z_scale"]

@@ -6,7 +6,7 @@ import pytest
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.examined import ExaminedRecords
 from advisor.flight.instruments.measured import Evidence
-from tests.flight.instruments.test_examination import Channels, T, flight, late, times
+from tests.flight.instruments.flights import Channels, T, flight, late, times
 
 FAULTS = {
     "unit": times(1000.0 / 9.80665, "a_z", "a_x"),
