@@ -53,8 +53,11 @@ def courses(log: Path, aircraft: Aircraft) -> Iterator[tuple[str, Course]]:
     campaign = Campaign(aircraft, lateral=True)
     timeline = Timeline([columns for batch in read_whole_log(log) for columns in batch])
     heard = {"pitch": Course(), "roll and yaw": Course()}
-    for position_s in np.arange(0.0, timeline.duration_s + HEARD_EVERY_S, HEARD_EVERY_S):
-        campaign.feed(timeline.up_to(float(position_s)))
+    for position_s in [*np.arange(0.0, timeline.duration_s + HEARD_EVERY_S, HEARD_EVERY_S), np.inf]:
+        if np.isfinite(position_s):
+            campaign.feed(timeline.up_to(float(position_s)))
+        else:
+            campaign.finish()
         state = campaign.state
         heard["pitch"].hear(state)
         if state.lateral is not None:

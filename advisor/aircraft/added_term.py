@@ -67,7 +67,7 @@ class AddedTerm:
         Parameters
         ----------
         values
-            Value of each name of ``signals``.
+            Value of each signal in the expression, by the signal's name.
         functions
             Functions of ``FUNCTIONS`` for values of this kind.
         """

@@ -28,6 +28,7 @@ from advisor.decision.pooling import (
 )
 from advisor.decision.prediction import Prediction, missed_percent, predict
 from advisor.decision.tolerance import tolerances
+from advisor.oem.known_instruments import FoundInstruments
 from advisor.process.arrays import FloatArray
 from advisor.words.digits import distinct_texts
 from advisor.words.quantiles import NORMAL_95
@@ -67,6 +68,10 @@ class Knowledge:
     not_identifiable: Mapping[str, str]
     """Reason why no manoeuvre identifies a parameter, by the parameter's name. Small errors of such a
     parameter are not knowledge."""
+    usable: int
+    """Number of usable manoeuvres."""
+    given: FoundInstruments | None
+    """Instruments that the manoeuvres determined together; None if no instrument is unknown."""
 
     @property
     def predicted(self) -> bool:
@@ -101,6 +106,11 @@ class Knowledge:
         """Return ``share`` for given output bands and given half-widths over tolerance (8,)."""
         bands = {name: percent / self.tolerance_percent for name, percent in band_percent.items()}
         return bands | {name: float(half[PARAMETERS.index(name)]) for name in self.named}
+
+    def common_after(self, more: int) -> FloatArray:
+        """Return the variances (8,) due to the instruments' errors after ``more`` manoeuvres."""
+        common = np.diag(self.posterior.common)
+        return common if self.given is None else common * self.given.stays(1.0 + more / self.usable)
 
     @property
     def percent(self) -> float:
@@ -145,6 +155,8 @@ def knowledge(usable: Sequence[CandidateManeuver], plan: CampaignPlan) -> Knowle
             for name, reason in used[-1].not_identifiable.items()
             if all(name in e.not_identifiable for e in used)
         },
+        usable=len(usable),
+        given=estimates[-1].given,
     )
 
 

@@ -109,7 +109,8 @@ def _told(flights: FloatArray | IntArray) -> Remaining:
 def share_after(knowledge: Knowledge, next_covariance: FloatArray, more: int) -> float:
     """Return the largest uncertainty over its tolerance after ``more`` manoeuvres of ``next_covariance``.
 
-    Trims and constants belong to each manoeuvre, so only their variances add up.
+    Trims and constants belong to each manoeuvre, so only their variances add up. Further manoeuvres also
+    determine the instruments better.
     """
     inside = np.ix_(DERIVATIVES, DERIVATIVES)
     information = knowledge.posterior.information + more * information_of(next_covariance[inside])
@@ -118,7 +119,7 @@ def share_after(knowledge: Knowledge, next_covariance: FloatArray, more: int) ->
         own = np.diag(knowledge.posterior.covariance)
         variance = 1.0 / (1.0 / own + more / np.diag(next_covariance))
         variance[list(DERIVATIVES)] = np.diag(covariance)
-        variance += np.diag(knowledge.posterior.common)
+        variance += knowledge.common_after(more)
         half = np.nan_to_num(NORMAL_95 * np.sqrt(variance) / knowledge.tolerance, nan=np.inf)
     return max(knowledge.shares_with(knowledge.prediction.percent(covariance), half).values(), default=np.inf)
 

@@ -34,8 +34,8 @@ CHANCE = 0.01
 GAIN = 0.02
 """Least relative decrease of a parameter's variance for which the step is taken."""
 LEAST_SHARE = 0.01
-"""Least variance of the step, as a share of the estimate's variance, for a test of the step. Below this share
-rounding errors dominate."""
+"""Ratio of the step's variance to the estimate's variance, below which rounding errors dominate. Such a step
+is not tested."""
 
 
 @dataclass(frozen=True, slots=True)

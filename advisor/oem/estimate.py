@@ -143,6 +143,8 @@ class Estimate:
     contains no instruments."""
     common: FloatArray = field(default_factory=lambda: np.zeros((len(PARAMETERS), len(PARAMETERS))))
     """Shape (8, 8): part of ``covariance`` that is common to all estimates with these instruments."""
+    given: FoundInstruments | None = None
+    """Instruments that several manoeuvres determined together, with the errors in ``common``."""
     gust_rad: float | None = None
     """Standard deviation of the gust angle w/V, rad; None in still air."""
     filtered: bool = False

@@ -245,10 +245,12 @@ def report(
             np.array([x.found.value for x in identified]),
             source.widened,
             airspeed_m_s,
+            [x.instrument.prior for x in identified],
         )
         if identified
         else None,
         common=common,
+        given=given,
         gust_rad=None if forces is None else forces.gust_rad,
         filtered=filtered is not None,
         servo_lag_s=best.problem.servo.lag_s,

@@ -1,7 +1,7 @@
 """Derivatives of a fit's outputs by instrument parameters and by the times of the command's steps.
 
-Instruments of the outputs act on the motion, and instruments of the command change the surface. One pass over
-the motion of a fit gives all derivatives (``model.input_response``).
+A vane's arm or a delay changes how an output reads the motion. A servo's lag changes the surface. One pass
+over the motion of a fit gives all derivatives (``model.input_response``).
 """
 
 from collections.abc import Callable, Sequence

@@ -4,15 +4,18 @@ One manoeuvre hardly distinguishes a servo's lag from M_q and M_δe. All manoeuv
 instruments and determine them well together. The joint estimate determines the instruments, and each
 manoeuvre's estimate uses these values. The error of such an estimate has two parts. One part is the
 manoeuvre's own error, for given instruments. The other part comes from the instruments' errors and is common
-to all manoeuvres. More manoeuvres average out the first part only.
+to all manoeuvres. More manoeuvres average out the first part. The second part falls as the data determine the
+instruments better, down to the part that only priors determine.
 """
 
-from dataclasses import dataclass, fields
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
+from advisor.oem.extra import Prior
 from advisor.process.arrays import FloatArray
 
 InstrumentName = str
@@ -33,6 +36,10 @@ class FoundInstruments:
     """Shape (8, 8): covariance of the derivatives due to the instruments' errors, at ``airspeed_m_s``."""
     airspeed_m_s: float | None
     """Air speed of the derivatives, m/s. None without a measured air speed."""
+    parts: FloatArray = field(default_factory=lambda: np.zeros((len(PARAMETERS), 0)))
+    """Shape (8, k): parts of the derivatives' variances by independent combinations of the instruments."""
+    by_prior: FloatArray = field(default_factory=lambda: np.zeros(0))
+    """Shape (k,): share of each combination's information that comes from priors, 0 to 1."""
 
     @classmethod
     def of(
@@ -41,6 +48,7 @@ class FoundInstruments:
         values: FloatArray,
         covariance: FloatArray,
         airspeed_m_s: float | None,
+        priors: Sequence[Prior | None],
     ) -> "FoundInstruments":
         """Return the instruments of a fit.
 
@@ -53,17 +61,28 @@ class FoundInstruments:
             parameter errors on instrument errors gives the part that the instruments cause.
         airspeed_m_s
             Air speed of the derivatives, m/s.
+        priors
+            Prior of each instrument; None without a prior.
         """
         n = len(PARAMETERS)
         inside = slice(n, n + len(names))
         own, across = covariance[inside, inside], covariance[:n, inside]
-        return cls(
-            names,
-            values,
-            np.sqrt(np.diag(own)),
-            across @ np.linalg.pinv(own, hermitian=True) @ across.T,
-            airspeed_m_s,
-        )
+        slopes = across @ np.linalg.pinv(own, hermitian=True)
+        sizes, axes = np.linalg.eigh(own)
+        root = axes * np.sqrt(np.maximum(sizes, 0.0))
+        before = np.array([0.0 if prior is None else prior.std**-2.0 for prior in priors])
+        by_prior, turned = np.linalg.eigh(root.T @ (before[:, None] * root))
+        parts = (slopes @ root @ turned) ** 2
+        std = np.sqrt(np.diag(own))
+        return cls(names, values, std, slopes @ across.T, airspeed_m_s, parts, np.clip(by_prior, 0.0, 1.0))
+
+    def stays(self, times: float) -> FloatArray:
+        """Return the share (8,) of each variance in ``covariance`` that stays with ``times`` as many data."""
+        if not self.parts.size:
+            return np.ones(len(self.covariance))
+        now = self.parts.sum(axis=1)
+        later = np.sum(self.parts / (self.by_prior + times * (1.0 - self.by_prior)), axis=1)
+        return np.asarray(np.divide(later, now, out=np.ones_like(now), where=now > 0.0))
 
     def value(self, name: InstrumentName) -> float | None:
         """Return the value of one instrument; None if the fit had no such parameter."""
@@ -73,7 +92,7 @@ class FoundInstruments:
         """Return all instruments but one."""
         kept = [i for i, one in enumerate(self.names) if one != name]
         names = tuple(self.names[i] for i in kept)
-        return FoundInstruments(names, self.values[kept], self.std[kept], self.covariance, self.airspeed_m_s)
+        return replace(self, names=names, values=self.values[kept], std=self.std[kept])
 
     def covariance_at(self, airspeed_m_s: float | None) -> FloatArray:
         """Return the derivatives' covariance (8, 8) due to the instruments' errors, at an air speed."""

@@ -1,5 +1,7 @@
-"""Interface between the screens and the conductor of the campaign, and the differences between its
-reports."""
+"""Interface between the screens and the conductor of the campaign.
+
+Between processes a report holds only the fields that have changed since the last report.
+"""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,9 +22,9 @@ class Score:
     """Forecasts of campaigns against what came."""
 
     checked: int
-    """Number of forecasts with a number whose truth is known."""
+    """Number of forecasts whose truth is known."""
     kept: int
-    """Number among them in which the stop came within the stated 90 %."""
+    """Number among them in which the stop came within the stated 90 %, and not where no end was in sight."""
     followed: int
     """Number of pairs of forecasts, one after another."""
     jumped: int
@@ -45,14 +46,16 @@ def score(campaigns: Sequence[tuple[Sequence[Forecast], int | None, int]]) -> Sc
 
 
 def _kept(forecasts: Sequence[Forecast], stop: int | None, flown: int) -> Iterator[bool]:
-    """Yield whether each forecast held. Without a stop only a forecast that has run out is known to be
-    wrong."""
+    """Yield whether each forecast held.
+
+    A stop denies that no end was in sight. Without a stop only a forecast that has run out is known to be
+    wrong.
+    """
     for one in forecasts:
-        if one.p90 is None:
-            continue
+        most = inf if one.p90 is None else one.p90
         if stop is not None:
-            yield stop - one.flown <= one.p90
-        elif flown - one.flown >= one.p90:
+            yield one.median is not None and stop - one.flown <= most
+        elif flown - one.flown >= most:
             yield False
 
 

@@ -9,6 +9,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.oem import evaluation
 from advisor.oem.estimator import estimate, estimate_jointly, lag_is_unknown
+from advisor.oem.extra import Prior
 from advisor.oem.known_instruments import FoundInstruments, found_of, with_found
 from tests.oem.test_instruments import SPEED, equipped
 
@@ -67,3 +68,22 @@ def test_the_crew_s_own_aircraft_tells_no_instruments():
     assert not lag_is_unknown(told)
     assert replace(told, found=None) == with_found(OPEN, None)
     assert not lag_is_unknown(replace(OPEN, elevator=Elevator(lag_s=0.0)))
+
+
+def of_one_lag(prior: Prior | None) -> FoundInstruments:
+    """Instruments with a servo's lag alone, known to 10 ms, on which Z_0 depends with slope 1."""
+    covariance = np.zeros((9, 9))
+    covariance[8, 8] = covariance[0, 8] = covariance[8, 0] = 1e-4
+    return FoundInstruments.of(("servo_lag_s",), np.array([0.1]), covariance, None, [prior])
+
+
+def test_what_data_know_of_a_lag_narrows_as_data_come():
+    assert of_one_lag(None).stays(4.0)[0] == pytest.approx(0.25)
+
+
+def test_what_only_a_prior_knows_of_a_lag_stays():
+    assert of_one_lag(Prior(0.1, 0.01)).stays(4.0)[0] == pytest.approx(1.0)
+
+
+def test_half_of_the_information_from_a_prior_halves_what_data_add():
+    assert of_one_lag(Prior(0.1, 0.01 * 2.0**0.5)).stays(3.0)[0] == pytest.approx(0.5)

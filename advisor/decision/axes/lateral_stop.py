@@ -161,14 +161,15 @@ class _SideTest:
         """Return the expected number of further manoeuvres; None if no forecast is possible."""
         # The variance of a derivative falls with the number of manoeuvres that move its control.
         controls, accepted = sorted(set(self.judged.values())), len(self.accepted)
-        scale = variance_scale(len(controls) * (accepted - 1))
-        needed = np.zeros(len(scale))
-        for control in controls:
-            times, worst = self.times(control), self.percent_of(control)
-            if not times or not isfinite(worst):
-                return None
-            within = np.ceil(times * (worst / INFORMATION_LIMIT_PERCENT) ** 2 * scale)
-            needed += np.maximum(np.maximum(within, CHECKED), times) - times
+        times = np.array([self.times(control) for control in controls])
+        worst = np.array([self.percent_of(control) for control in controls])
+        if not np.all(times) or not np.all(np.isfinite(worst)):
+            return None
+        scale = variance_scale(len(controls) * (accepted - 1))[:, None]
+        within = np.ceil(times * (worst / INFORMATION_LIMIT_PERCENT) ** 2 * scale)
+        each = np.maximum(np.maximum(within, CHECKED) - times, 0.0)
+        # Manoeuvres that move several controls at once count for each of them.
+        needed = np.maximum(each.max(axis=1), np.ceil(each.sum(axis=1) * accepted / times.sum()))
         return until_usable(np.maximum(needed, 1.0), Share(accepted, len(self.history) - accepted))
 
 

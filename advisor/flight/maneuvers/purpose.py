@@ -32,8 +32,8 @@ LEAST_PITCH_RATE_DEG_S = 1.0
 recorded test input has 1.3 deg/s (a jet), and a correction of another jet has 0.7 deg/s."""
 LARGEST_ERROR = 0.3
 """Largest relative standard error of the elevator's effect on the pitch rate; 0.3 is significant at 2 %.
-Recorded test inputs have an error of 0.01 to 0.12 in calm air, and of 0.16 in gusts of 0.5 m/s. For the
-external input alone they have up to 0.21, and an attitude hold in gusts has 0.3 to 2."""
+Recorded test inputs have an error of 0.01 to 0.12 in calm air, and of 0.16 in gusts of 0.5 m/s. Behind an
+autopilot, recorded test inputs have an error of up to 0.21. An attitude hold in gusts has 0.3 to 2."""
 LEAST_PROBABILITY = 0.95
 """Least probability of an own input, for a test: the level of all intervals. Below this probability a stretch
 is not used. Below one minus this probability, the message says that hands moved the control.

@@ -84,7 +84,7 @@ class Cutting:
         return self._sign is not None and bool(self._sign.backwards)
 
     def begin(self, mode: str) -> None:
-        """Begin a power-on in a flight mode, without manoeuvres so far."""
+        """Forget all manoeuvres, and begin a power-on in a flight mode."""
         self._modes = [(-np.inf, mode)]
         self.side_due.clear()
         self._claimed.clear()

@@ -161,7 +161,7 @@ def _of_what_is_missing(e: Findings, aircraft: Aircraft) -> Iterator[str]:
 
 
 def _command(e: Findings) -> str:
-    """Return a note on the motion of the command between its stamps, and on the alternative."""
+    """Return a note on the assumed motion of the command between its stamps."""
     if not e.problem.held:
         return "The command was taken as linear between its stamps. An edge may lie anywhere between them."
     half = 0.5 * float(np.median(np.diff(e.problem.flights.flights[0].t_u)))

@@ -39,8 +39,8 @@ class Frame(NamedTuple):
 class FrameCutter:
     """Cutter of frames from a stream of bytes that starts anywhere and may contain garbage.
 
-    A frame of a known message must pass its checksum. The MAVLink serialisation guide defines the checksum as
-    CRC-16/MCRF4XX over all after the magic byte, and CRC_EXTRA. For an unknown message, one of 256 random
+    A frame of a known message must pass its checksum. The checksum is CRC-16/MCRF4XX over all bytes
+    after the magic byte and over CRC_EXTRA (MAVLink serialisation guide). For an unknown message, one of 256 random
     checksums fits some CRC_EXTRA. A frame of an unknown message is accepted only right after a good frame,
     and followed by another frame or by nothing.
     """

@@ -19,8 +19,13 @@ def test_a_forecast_is_kept_where_the_stop_comes_within_its_90_percent(stop, flo
     assert (found.checked, found.kept) == expected
 
 
-def test_no_end_in_sight_is_no_number():
-    assert score([([Forecast(2, None, None)], 3, 3)]) == Score(0, 0, 0, 0)
+def test_a_stop_denies_that_no_end_was_in_sight():
+    assert score([([Forecast(2, None, None)], 3, 3)]) == Score(1, 0, 0, 0)
+    assert score([([Forecast(2, None, None)], None, 3)]) == Score(0, 0, 0, 0)
+
+
+def test_a_stop_keeps_a_forecast_without_a_largest_number():
+    assert score([([Forecast(2, 1, None)], 5, 5)]) == Score(1, 1, 0, 0)
 
 
 @pytest.mark.parametrize(("median", "jumped"), [(1, 0), (3, 0), (4, 0), (5, 1)])
