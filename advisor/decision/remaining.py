@@ -92,10 +92,9 @@ def variance_scale(freedom: int) -> FloatArray:
     Parameters
     ----------
     freedom
-        Number of independent comparisons behind the stated variance.
+        Number of independent comparisons behind the stated variance, at least one.
     """
     rng = np.random.default_rng(1)
-    freedom = max(freedom, 1)
     return np.asarray(freedom / rng.chisquare(freedom, _DRAWS))
 
 

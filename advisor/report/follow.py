@@ -49,6 +49,9 @@ def follow(
     for event in campaign.finish():
         _say(event, say)
     state = campaign.state
+    side = state.lateral
+    if side is not None and not side.maneuvers and side.flight_test.next is None:
+        say(f"note: {side.flight_test.sentence}")
     for part in state.failed:
         say(part.sentence)
     return state

@@ -22,10 +22,10 @@ SLOW = NoData((Problem("rate", "ATTITUDE arrives at 4.0 Hz.", "Ask for 50 Hz."),
 class Told:
     """A campaign that gives one list of events for each batch; the data serve after ``DataAgain``."""
 
-    def __init__(self, *events: Sequence[object]) -> None:
+    def __init__(self, *events: Sequence[object], lateral: object = None) -> None:
         self._events = list(events)
         self.serves = False
-        self.state = SimpleNamespace(failed=())
+        self.state = SimpleNamespace(failed=(), lateral=lateral)
 
     def feed(self, columns: object) -> Sequence[object]:
         events = self._events.pop(0)
@@ -54,6 +54,14 @@ def test_data_that_fail_after_they_served_give_an_alarm(of_log: bool) -> None:
 
 def test_a_link_that_begins_with_slow_streams_gives_an_alarm() -> None:
     assert lines([SLOW], of_log=False) == ["NO DATA: ATTITUDE arrives at 4.0 Hz. Ask for 50 Hz."]
+
+
+def test_the_end_says_that_roll_and_yaw_could_not_be_followed() -> None:
+    said: list[str] = []
+    untold = SimpleNamespace(sentence="The output of aileron is not known.", next=None)
+    side = SimpleNamespace(maneuvers=(), flight_test=untold)
+    follow(iter([[]]), cast(Any, Told([], lateral=side)), said.append)
+    assert said == ["note: The output of aileron is not known."]
 
 
 def test_a_complete_axis_is_no_complete_test_while_the_other_is_open(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -165,7 +165,8 @@ class _SideTest:
         worst = np.array([self.percent_of(control) for control in controls])
         if not np.all(times) or not np.all(np.isfinite(worst)):
             return None
-        scale = variance_scale(len(controls) * (accepted - 1))[:, None]
+        # The residuals of a first manoeuvre count as one comparison of each control.
+        scale = variance_scale(len(controls) * max(accepted - 1, 1))[:, None]
         within = np.ceil(times * (worst / INFORMATION_LIMIT_PERCENT) ** 2 * scale)
         each = np.maximum(np.maximum(within, CHECKED) - times, 0.0)
         # Manoeuvres that move several controls at once count for each of them.

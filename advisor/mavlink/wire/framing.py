@@ -40,9 +40,9 @@ class FrameCutter:
     """Cutter of frames from a stream of bytes that starts anywhere and may contain garbage.
 
     A frame of a known message must pass its checksum. The checksum is CRC-16/MCRF4XX over all bytes
-    after the magic byte and over CRC_EXTRA (MAVLink serialisation guide). For an unknown message, one of 256 random
-    checksums fits some CRC_EXTRA. A frame of an unknown message is accepted only right after a good frame,
-    and followed by another frame or by nothing.
+    after the magic byte and over CRC_EXTRA (MAVLink serialisation guide). For an unknown message, one of 256
+    random checksums fits some CRC_EXTRA. A frame of an unknown message is accepted only right after a good
+    frame, and followed by another frame or by nothing.
     """
 
     def __init__(self, crc_extra: Mapping[int, int]) -> None:

@@ -107,6 +107,12 @@ def test_a_control_to_be_checked_lacks_one_manoeuvre():
     assert remaining.median == 1
 
 
+def test_an_input_of_both_controls_counts_for_each():
+    at_once = [estimate("aileron", "rudder")]
+    remaining = lateral_flight_test(at_once, at_once[0], AIRCRAFT).next.remaining
+    assert (remaining.median, remaining.p90) == (1, 2)
+
+
 def test_refused_manoeuvres_lengthen_the_forecast():
     history = [estimate("aileron"), estimate("rudder")] * 2
     poor = estimate("aileron", "rudder", percent=10.0)
