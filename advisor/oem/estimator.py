@@ -220,7 +220,7 @@ def report(
     predicted = within.widened if source.profile is None else replace(within, modes=None).widened
     best = replace(best, covariance=within.widened)
     airspeed_m_s = solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s
-    given = found_of(aircraft)
+    given, rows = found_of(aircraft), [x.row for x in identified]
     common = np.zeros((N, N)) if given is None else given.covariance_at(airspeed_m_s)
     return Estimate(
         theta=best.theta,
@@ -235,20 +235,9 @@ def report(
         airspeed_m_s=airspeed_m_s,
         notes=notes(solution, prepared, aircraft, sound, best=best, priced=not quick),
         theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
-        instruments=(
-            *_given(given),
-            *(x.reported for x in sound if x.reported is not None),
-        ),
+        instruments=(*_given(given), *(x.reported for x in sound if x.reported is not None)),
         fixed=tuple(solution.problem.fixed),
-        found=FoundInstruments.of(
-            tuple(x.instrument.name for x in identified),
-            np.array([x.found.value for x in identified]),
-            source.widened,
-            airspeed_m_s,
-            [x.instrument.prior for x in identified],
-        )
-        if identified
-        else None,
+        found=FoundInstruments.of(rows, source.widened, airspeed_m_s) if rows else None,
         common=common,
         given=given,
         gust_rad=None if forces is None else forces.gust_rad,

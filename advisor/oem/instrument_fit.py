@@ -71,6 +71,11 @@ class Identified(NamedTuple):
     found: InstrumentEstimate
 
     @property
+    def row(self) -> tuple[str, float, Prior | None]:
+        """Name, value and prior of the parameter."""
+        return self.instrument.name, self.found.value, self.instrument.prior
+
+    @property
     def reported(self) -> InstrumentEstimate | None:
         """Instrument parameter as reported; None for a moment of the aircraft."""
         return None if self.instrument.name == "steady_moment_rad" else self.found

@@ -10,6 +10,7 @@ instruments better, down to the part that only priors determine.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
+from typing import Self
 
 import numpy as np
 
@@ -20,6 +21,8 @@ from advisor.process.arrays import FloatArray
 
 InstrumentName = str
 """Name of an instrument parameter, or the text of a term that the user added."""
+_Row = tuple[InstrumentName, float, Prior | None]
+"""Name, value and prior of an instrument."""
 _SPEED_POWER = np.array([SPEED_EXPONENTS[name] for name in PARAMETERS], dtype=float)
 
 
@@ -42,47 +45,34 @@ class FoundInstruments:
     """Shape (k,): share of each combination's information that comes from priors, 0 to 1."""
 
     @classmethod
-    def of(
-        cls,
-        names: tuple[InstrumentName, ...],
-        values: FloatArray,
-        covariance: FloatArray,
-        airspeed_m_s: float | None,
-        priors: Sequence[Prior | None],
-    ) -> "FoundInstruments":
+    def of(cls, rows: Sequence[_Row], covariance: FloatArray, airspeed_m_s: float | None) -> Self:
         """Return the instruments of a fit.
 
         Parameters
         ----------
-        names, values
-            Names of the k instruments.
+        rows
+            Name, value and prior of the k instruments; None without a prior.
         covariance
             Shape (8 + k, 8 + k): covariance of the parameters, then of the instruments. The regression of
             parameter errors on instrument errors gives the part that the instruments cause.
         airspeed_m_s
             Air speed of the derivatives, m/s.
-        priors
-            Prior of each instrument; None without a prior.
         """
         n = len(PARAMETERS)
-        inside = slice(n, n + len(names))
-        own, across = covariance[inside, inside], covariance[:n, inside]
+        own, across = covariance[n : n + len(rows), n : n + len(rows)], covariance[:n, n : n + len(rows)]
         slopes = across @ np.linalg.pinv(own, hermitian=True)
         sizes, axes = np.linalg.eigh(own)
         root = axes * np.sqrt(np.maximum(sizes, 0.0))
-        before = np.array([0.0 if prior is None else prior.std**-2.0 for prior in priors])
-        by_prior, turned = np.linalg.eigh(root.T @ (before[:, None] * root))
-        parts = (slopes @ root @ turned) ** 2
-        std = np.sqrt(np.diag(own))
-        return cls(names, values, std, slopes @ across.T, airspeed_m_s, parts, np.clip(by_prior, 0.0, 1.0))
+        before = np.diag([0.0 if prior is None else prior.std**-2.0 for _, _, prior in rows])
+        by_prior, turned = np.linalg.eigh(root.T @ before @ root)
+        names, values, std = tuple(row[0] for row in rows), [row[1] for row in rows], np.sqrt(np.diag(own))
+        parts, by_prior = (slopes @ root @ turned) ** 2, np.clip(by_prior, 0.0, 1.0)
+        return cls(names, np.array(values), std, slopes @ across.T, airspeed_m_s, parts, by_prior)
 
     def stays(self, times: float) -> FloatArray:
         """Return the share (8,) of each variance in ``covariance`` that stays with ``times`` as many data."""
-        if not self.parts.size:
-            return np.ones(len(self.covariance))
-        now = self.parts.sum(axis=1)
         later = np.sum(self.parts / (self.by_prior + times * (1.0 - self.by_prior)), axis=1)
-        return np.asarray(np.divide(later, now, out=np.ones_like(now), where=now > 0.0))
+        return np.asarray(later / np.maximum(self.parts.sum(axis=1), np.finfo(float).tiny))
 
     def value(self, name: InstrumentName) -> float | None:
         """Return the value of one instrument; None if the fit had no such parameter."""
@@ -96,9 +86,8 @@ class FoundInstruments:
 
     def covariance_at(self, airspeed_m_s: float | None) -> FloatArray:
         """Return the derivatives' covariance (8, 8) due to the instruments' errors, at an air speed."""
-        if not self.airspeed_m_s or not airspeed_m_s:
-            return self.covariance
-        scale = (airspeed_m_s / self.airspeed_m_s) ** _SPEED_POWER
+        ratio = airspeed_m_s / self.airspeed_m_s if airspeed_m_s and self.airspeed_m_s else 1.0
+        scale = ratio**_SPEED_POWER
         return np.asarray(self.covariance * np.outer(scale, scale))
 
 

@@ -74,7 +74,7 @@ def of_one_lag(prior: Prior | None) -> FoundInstruments:
     """Instruments with a servo's lag alone, known to 10 ms, on which Z_0 depends with slope 1."""
     covariance = np.zeros((9, 9))
     covariance[8, 8] = covariance[0, 8] = covariance[8, 0] = 1e-4
-    return FoundInstruments.of(("servo_lag_s",), np.array([0.1]), covariance, None, [prior])
+    return FoundInstruments.of([("servo_lag_s", 0.1, prior)], covariance, None)
 
 
 def test_what_data_know_of_a_lag_narrows_as_data_come():
