@@ -53,7 +53,7 @@ LIMITS = {
     "constants that decide": 25,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 16417,
+    "lines of estimation": 16414,
     "files naming an axis": 110,
 }
 """Upper bound of each count."""
