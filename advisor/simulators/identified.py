@@ -14,6 +14,7 @@ from itertools import product
 import numpy as np
 from scipy.linalg import expm, logm
 from scipy.optimize import least_squares
+from scipy.signal import lfilter
 
 from advisor.gap.result import Value
 from advisor.gap.simulator.layout import DERIVATIVES
@@ -170,9 +171,7 @@ class _PitchFit:
             return np.concatenate([command, command[-1:]]), command
         stays = float(np.exp(-self._h / lag_s))
         held = lag_s / self._h * (1.0 - stays)
-        at_ends = np.zeros(len(command) + 1)
-        for i, wanted in enumerate(command.tolist()):
-            at_ends[i + 1] = stays * at_ends[i] + (1.0 - stays) * wanted
+        at_ends = np.concatenate([[0.0], lfilter([1.0 - stays], [1.0, -stays], command)])
         return at_ends, command + held * (at_ends[:-1] - command)
 
 
@@ -189,13 +188,13 @@ def _flown(a: FloatArray, b: FloatArray, inputs: FloatArray, h: float) -> FloatA
     joined = np.zeros((4, 4))
     joined[:2, :2], joined[:2, 2:] = a * h, b * h
     stepped = expm(np.clip(joined, -30.0, 30.0))
-    (p11, p12), (p21, p22) = stepped[:2, :2].tolist()
-    pushed = (inputs @ stepped[:2, 2:].T).tolist()
-    states, alpha, q = [(0.0, 0.0)], 0.0, 0.0
-    for by_alpha, by_q in pushed:
-        alpha, q = p11 * alpha + p12 * q + by_alpha, p21 * alpha + p22 * q + by_q
-        states.append((alpha, q))
-    flown: FloatArray = np.clip(np.nan_to_num(np.array(states)), -1e6, 1e6)
+    pushed = inputs @ stepped[:2, 2:].T
+    before = np.concatenate([np.zeros((1, 2)), pushed[:-1]])
+    # Each state alone follows the characteristic polynomial of the step (Cayley and Hamilton).
+    (p11, p12), (p21, p22) = stepped[:2, :2]
+    driven = pushed - before @ np.array([[p22, -p21], [-p12, p11]])
+    states = lfilter([1.0], [1.0, -p11 - p22, p11 * p22 - p12 * p21], driven, axis=0)
+    flown: FloatArray = np.clip(np.nan_to_num(np.concatenate([np.zeros((1, 2)), states])), -1e6, 1e6)
     return flown
 
 
