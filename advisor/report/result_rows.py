@@ -16,11 +16,11 @@ from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 from advisor.words.vehicle_time import clock
 
-SIDE_ROOM = 18
-"""Width of the name of an aileron or rudder input, in columns."""
+ROOM, SIDE_ROOM = 15, 18
+"""Width of the name of an input of the elevator, and of aileron or rudder, in columns."""
 
 
-def maneuver_line(judged: JudgedManeuver, room: int = 15) -> str:
+def maneuver_line(judged: JudgedManeuver, room: int = ROOM) -> str:
     """Return one line for a verdict: number, time, input in ``room`` columns, verdict and reason."""
     span, verdict = judged.maneuver.span, judged.verdict
     at, mark = clock(span.start_s), "✓" if verdict.accepted else "✗"

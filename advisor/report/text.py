@@ -3,22 +3,29 @@ sentence.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import groupby
+from itertools import chain, groupby
 
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.text import Text
 
 from advisor.aircraft.aircraft import Aircraft, Rule
-from advisor.campaign.state import CampaignState, JudgedManeuver
+from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.oem.estimate import Estimate
 from advisor.report.axes.lateral_document import side_quality_lines
-from advisor.report.facts.decision import INDENT, decisions
+from advisor.report.facts.decision import INDENT, WARNING, decisions
 from advisor.report.facts.estimates import structure_lines, untold
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
-from advisor.report.result_rows import SIDE_ROOM, channel_table, joint_table, maneuver_line, regression_table
+from advisor.report.result_rows import (
+    ROOM,
+    SIDE_ROOM,
+    channel_table,
+    joint_table,
+    maneuver_line,
+    regression_table,
+)
 from advisor.words.digits import counted
 from advisor.words.vehicle_time import CLOCK, clock
 
@@ -69,7 +76,8 @@ class AnalysisText:
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Yield the decisions on both axes, then the results on which the decisions rest."""
         for line in decisions(self.state, pitch=self.pitch):
-            yield Text(line, style="" if line.startswith(INDENT) else "bold")
+            plain = "yellow" if line.startswith(WARNING) else ""
+            yield Text(line, style=plain if line.startswith(INDENT) else "bold")
         yield Text()
         for flight in self.state.flights:
             vehicle = flight.vehicle if flight.vehicle else "no vehicle"
@@ -83,57 +91,47 @@ class AnalysisText:
         )
         yield from (Text(line, style="yellow") for line in instrument_lines(self.state.instruments))
         if self.pitch:
-            yield from self._short_period()
-        yield from self._lateral()
+            flown = self._movements(self.state.maneuvers, self.state.activity)
+            yield from self._axis(self.state, flown, self._qualities())
+        if (side := self.state.lateral) is not None and side.maneuvers:
+            flown = self._movements(side.maneuvers, (), SIDE_ROOM)
+            lines = chain([Text("Roll and yaw", style="bold")], flown)
+            yield from self._axis(side, lines, map(Text, side_quality_lines(side, self.aircraft)))
 
-    def _short_period(self) -> RenderResult:
-        """Yield manoeuvres, parameters and decision of the elevator's axis."""
-        yield from _apart(self._movements())
-        yield from _apart(Text(line, style="dim") for line in caution_lines(self.state.maneuvers))
-        joint = joint_table(self.state, self.aircraft.model)
-        if self.state.model is not None and joint is not None:
+    def _axis(
+        self, axis: CampaignState | LateralState, movements: Iterable[Text], qualities: Iterable[Text]
+    ) -> RenderResult:
+        """Yield manoeuvres, parameters and rules of one axis."""
+        yield from _apart(movements)
+        yield from _apart(Text(line, style="dim") for line in caution_lines(axis.maneuvers))
+        joint = joint_table(axis, self.aircraft.model)
+        if axis.model is not None and joint is not None:
             yield Text()
             yield joint.on_console(joint.caption)
-            yield from map(Text, (*structure_lines(self.state.model), *untold(self.state.model)))
-            yield from self._regressed(self.state.model)
-            yield from (Text(f"note: {note}") for note in self.state.model.notes)
-            yield from _apart(self._qualities())
-        yield from _apart(self._rules())
-
-    def _lateral(self) -> RenderResult:
-        """Yield roll and yaw, if the user asked for them and they were flown."""
-        side = self.state.lateral
-        if side is None or not side.maneuvers:
-            return
-        yield from (Text(), Text("Roll and yaw", style="bold"))
-        yield from (Text(maneuver_line(maneuver, SIDE_ROOM)) for maneuver in side.maneuvers)
-        joint = joint_table(side, self.aircraft.model)
-        if side.model is not None and joint is not None:
-            yield Text()
-            yield joint.on_console(joint.caption)
-            yield from map(Text, (*structure_lines(side.model), *untold(side.model)))
-            yield from self._regressed(side.model)
-            yield from map(Text, side_quality_lines(side, self.aircraft))
+            yield from map(Text, (*structure_lines(axis.model), *untold(axis.model)))
+            yield from self._regressed(axis.model)
+            yield from (Text(f"note: {note}") for note in axis.model.notes)
+            yield from _apart(qualities)
+        yield from _apart(self._rules(axis.flight_test) if axis.maneuvers else ())
 
     def _regressed(self, model: Estimate) -> RenderResult:
         """Yield the comparison of equation error with output error, on request."""
         if self.every_movement:
             yield from (one.on_console(one.caption) for one in regression_table(model, "equation-error"))
 
-    def _movements(self) -> Iterator[Text]:
-        """Yield the manoeuvres and, on request, all other elevator movements, in order of time."""
+    def _movements(
+        self, maneuvers: Sequence[JudgedManeuver], activity: Sequence[Activity], room: int = ROOM
+    ) -> Iterator[Text]:
+        """Yield the manoeuvres and, on request, all other movements, in order of time."""
         lines = []
-        for judged in self.state.maneuvers:
+        for judged in maneuvers:
             maneuver = judged.maneuver
             at = (maneuver.flight, maneuver.boot, maneuver.span.start_s)
             style = "green" if judged.verdict.accepted else "red"
-            lines.append((at, Text(maneuver_line(judged), style=style)))
+            lines.append((at, Text(maneuver_line(judged, room), style=style)))
             lines += [(at, Text(f"    note: {note}")) for note in judged.notes]
         if self.every_movement:
-            lines += [
-                ((a.flight, a.boot, a.start_s), Text(activity_line(a), style="dim"))
-                for a in self.state.activity
-            ]
+            lines += [((a.flight, a.boot, a.start_s), Text(activity_line(a), style="dim")) for a in activity]
         in_order = sorted(lines, key=lambda entry: entry[0])
         if in_order:
             yield Text(f"no.  start  times are {CLOCK}", style="dim")
@@ -149,11 +147,11 @@ class AnalysisText:
             lines = quality_lines(qualities, coefficients_of(self.state, reference))
             yield from (Text(line, style="bold" if line[0] in "FC" else "") for line in lines)
 
-    def _rules(self) -> Iterator[Text]:
-        """Yield the history of every rule, the information, and the warnings."""
-        verdict = self.state.flight_test
-        others = [] if self.every_movement or verdict.rule != "information" else list(_PAPERS)
-        for name, progress in verdict.by_rule.items() if self.state.maneuvers else ():
+    def _rules(self, verdict: FlightTestVerdict) -> Iterator[Text]:
+        """Yield the history of every rule, and the information."""
+        is_short = not self.every_movement and verdict.rule == "information"
+        others = [rule for rule in _PAPERS if rule in verdict.by_rule] if is_short else []
+        for name, progress in verdict.by_rule.items():
             if name in others:
                 continue
             history = " ".join("–" if v is None else f"{v:.1f}" for v in progress.history_percent)
@@ -161,10 +159,9 @@ class AnalysisText:
             yield Text(f"rule {name:<12} stop: {stopped:<20} criterion %: {history}")
             if progress.hindsight:
                 yield Text(f"{'':<18}{progress.hindsight}", style="dim")
-        if others and self.state.maneuvers:
+        if others:
             yield Text(_papers_rules(verdict), style="dim")
         yield from (Text(f"information: {line}", style="dim") for line in verdict.evidence)
-        yield from (Text(f"warning: {warning}", style="yellow") for warning in verdict.warnings)
 
 
 _PAPERS: tuple[Rule, ...] = ("continuous", "separate")

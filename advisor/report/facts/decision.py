@@ -6,7 +6,9 @@ from advisor.campaign.state import CampaignState, LateralState
 from advisor.decision.verdict import FlightTestVerdict
 
 INDENT = "  "
-"""Indentation of the lines about the next input."""
+"""Indentation of the lines below a decision."""
+WARNING = f"{INDENT}warning: "
+"""Beginning of a line with a warning."""
 
 
 def stop_line(verdict: FlightTestVerdict) -> str:
@@ -29,22 +31,24 @@ def decisions(state: CampaignState, *, pitch: bool = True) -> Iterator[str]:
     side = state.lateral
     # An axis that nobody flew is not judged next to an axis that was flown.
     if pitch and state.tested_sideways is None:
-        yield stop_line(state.flight_test)
-        if plan is None:
-            yield f"{INDENT}{next_line(state.flight_test)}"
+        yield from _decision(stop_line(state.flight_test), state.flight_test, advises=plan is None)
     # Roll and yaw that nobody flew are said only where nothing else was flown, or an output is not known.
     if side is not None and (side.maneuvers or side.flight_test.next is None or not state.maneuvers):
-        lead, *advice = lateral_decision(side)
-        yield lead
-        yield from advice if plan is None else ()
+        yield from lateral_decision(side, advises=plan is None)
     if plan is not None:
         yield f"Both axes: {plan.sentence}"
         yield f"{INDENT}{plan.advice}"
 
 
-def lateral_decision(state: LateralState) -> Iterator[str]:
-    """Yield stop or continue of roll and yaw, the next input, and warnings."""
-    yield f"Roll and yaw: {state.flight_test.sentence}"
-    yield from (f"{INDENT}warning: {warning}" for warning in state.flight_test.warnings)
-    if state.maneuvers and state.flight_test.next is not None:
-        yield f"{INDENT}{next_line(state.flight_test)}"
+def lateral_decision(state: LateralState, *, advises: bool = True) -> Iterator[str]:
+    """Yield stop or continue of roll and yaw, warnings, and the next input."""
+    verdict = state.flight_test
+    advises = advises and bool(state.maneuvers) and verdict.next is not None
+    yield from _decision(f"Roll and yaw: {verdict.sentence}", verdict, advises=advises)
+
+
+def _decision(lead: str, verdict: FlightTestVerdict, *, advises: bool) -> Iterator[str]:
+    yield lead
+    yield from (f"{WARNING}{warning}" for warning in verdict.warnings)
+    if advises:
+        yield f"{INDENT}{next_line(verdict)}"
