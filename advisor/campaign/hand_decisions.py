@@ -124,6 +124,5 @@ class HandDecision:
 
     def due(self, state: CampaignState) -> bool:
         """Return whether the flight has reached the manoeuvre or moment of the decision."""
-        side = state.lateral.maneuvers if state.lateral is not None else ()
-        flown = side if self.axis == "lateral" else state.maneuvers
+        flown = state.axes[self.axis].maneuvers if self.axis in state.axes else ()
         return self.number == 0 or any(judged.maneuver.number == self.number for judged in flown)

@@ -9,7 +9,7 @@ from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
 from advisor.analysis.axes.side_comparison import compare_side_flown
 from advisor.analysis.gap import compare_logs
 from advisor.analysis.whole_flights import WholeFlights
-from advisor.campaign.state import CampaignState, LateralState
+from advisor.campaign.state import CampaignState
 from advisor.decision.axes.lateral_requirements import GROUPS
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.expectations.expected import MODES
@@ -66,17 +66,12 @@ class Flown:
 def flown_of(flights: WholeFlights, aircraft: Aircraft, gap: Mapping[AxisName, Measured]) -> Flown:
     """Return the results of the flight of one log."""
     state, side = flights.state, flights.state.lateral
-    tests: dict[AxisName, FlightTestVerdict] = {"pitch": state.flight_test}
-    accepted: dict[AxisName, int] = {"pitch": _accepted(state)}
     qualities = qualities_of(state, aircraft.reference)
     levels: dict[AxisName, tuple[LevelFound, ...]] = {"pitch": qualities.levels if qualities else ()}
     derivatives = _derivatives(state.model, PARAMETERS, "no manoeuvre of the elevator is accepted")
     modes = dict(_modes(state, aircraft))
     trim = None
-    models: dict[AxisName, Estimate | None] = {"pitch": state.model}
     if side is not None:
-        models["lateral"] = side.model
-        tests["lateral"], accepted["lateral"] = side.flight_test, _accepted(side)
         light = next(iter(GROUPS))
         levels["lateral"] = tuple(one.governing for one in levels_of(side) if one.group == light)
         none = "no manoeuvre of the aileron or the rudder is accepted"
@@ -85,10 +80,10 @@ def flown_of(flights: WholeFlights, aircraft: Aircraft, gap: Mapping[AxisName, M
             joined = [one.maneuver for one in side.maneuvers if one.maneuver.number in side.estimate_from]
             trim = trim_of(joined, side.model.airspeed_m_s or nan)
     heard = {name: one for flight in state.flights for name, one in flight.channels.items()}
-    judged = (*state.maneuvers, *(side.maneuvers if side is not None else ()))
+    judged = [one for axis in state.axes.values() for one in axis.maneuvers]
     return Flown(
-        accepted=accepted,
-        tests=tests,
+        accepted={name: sum(j.verdict.accepted for j in axis.maneuvers) for name, axis in state.axes.items()},
+        tests={name: axis.flight_test for name, axis in state.axes.items()},
         derivatives=derivatives,
         modes=modes,
         levels=levels,
@@ -97,14 +92,12 @@ def flown_of(flights: WholeFlights, aircraft: Aircraft, gap: Mapping[AxisName, M
         gap=gap,
         trim=trim,
         airspeeds_m_s={
-            axis: model.airspeed_m_s for axis, model in models.items() if model and model.airspeed_m_s
+            name: axis.model.airspeed_m_s
+            for name, axis in state.axes.items()
+            if axis.model and axis.model.airspeed_m_s
         },
         true_over_read=true_over_read(one.maneuver.channels for one in judged),
     )
-
-
-def _accepted(state: CampaignState | LateralState) -> int:
-    return sum(one.verdict.accepted for one in state.maneuvers)
 
 
 def _derivatives(model: Estimate | None, names: tuple[str, ...], none: str) -> dict[str, Measured]:
@@ -121,9 +114,7 @@ def _derivatives(model: Estimate | None, names: tuple[str, ...], none: str) -> d
 
 def _modes(state: CampaignState, aircraft: Aircraft) -> Iterator[tuple[str, Measured]]:
     pitch = qualities_of(state, aircraft.reference)
-    side = (
-        state.lateral.model.modes if state.lateral is not None and state.lateral.model is not None else None
-    )
+    side = state.lateral.model.modes if state.lateral is not None and state.lateral.model else None
     for key in MODES:
         if key in _SHORT_PERIOD:
             name = _SHORT_PERIOD[key]
@@ -142,8 +133,7 @@ def _measured(quality: Quality | None, reason: str) -> Measured:
 
 
 def _alarms(state: CampaignState) -> Iterator[str]:
-    tests = [state.flight_test, *([state.lateral.flight_test] if state.lateral else [])]
-    yield from (warning for test in tests for warning in test.warnings)
+    yield from (warning for axis in state.axes.values() for warning in axis.flight_test.warnings)
     yield from (one.text for one in state.instruments if one.contradicts)
     yield from (one.sentence for one in state.failed)
 

@@ -140,8 +140,7 @@ class ReplayActions(_Actions):
         state, playback = self.view.state, self.view.playback
         if playback is None:
             return
-        side = state.lateral.maneuvers if state.lateral is not None else ()
-        flown = [j.maneuver for j in (*state.maneuvers, *side)]
+        flown = [j.maneuver for axis in state.axes.values() for j in axis.maneuvers]
         spans = [one.span for one in flown if one.power_on == (state.flight, state.boot)]
         to_s = next((span.start_s for span in spans if span.start_s <= at_s <= span.end_s), at_s)
         self.seek(playback.position_s + to_s - state.now_s)

@@ -30,7 +30,6 @@ def headline(content: Content) -> Iterator[Block]:
             f"{len(accepted)} of {len(maneuvers)} manoeuvres are accepted. The rule {verdict['rule']} "
             f"decides: {_criterion(verdict['criterion_percent'], verdict['limit_percent'])}."
         )
-    yield from listing([f"Warning: {warning}" for warning in verdict["warnings"]])
     joint = joint_table(state, content.aircraft.model)
     if joint is not None and state.model is not None:
         yield joint

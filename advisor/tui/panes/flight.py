@@ -169,9 +169,8 @@ def _maneuvers(view: View, low: float, high: float, width: int) -> str:
     """
     line = [" "] * width
     here = (view.state.flight, view.state.boot)
-    side = view.state.lateral
-    flown = [("", j) for j in (view.elevator or view).state.maneuvers]
-    flown += [("R", j) for j in (side.maneuvers if side is not None else ())]
+    axes = view.state.axes.items()
+    flown = [("R" if name == "lateral" else "", j) for name, axis in axes for j in axis.maneuvers]
     for axis, judged in sorted(flown, key=lambda one: one[1].maneuver.span.start_s):
         if judged.maneuver.power_on != here:
             continue
