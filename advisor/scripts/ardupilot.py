@@ -61,7 +61,7 @@ def _head(table: ScriptTable) -> list[str]:
         "",
         "-- Degrees of an output for one degree of each control, by SERVOn_FUNCTION: the mixer.",
         f"local FACTORS = {{{', '.join(f'[{n}] = {_table(m)}' for n, m in factors_by_function().items())}}}",
-        "-- Outputs that the aircraft file states; a control without one takes those of its functions.",
+        "-- Outputs in the aircraft file; a control without an entry moves those with its SERVOn_FUNCTION.",
         f"local STATED = {{{', '.join(f'{c} = {{{_stated(table.outputs[c])}}}' for c in CONTROLS)}}}",
         "-- Pulse in us and deflection in deg of each control's first output, from the aircraft file.",
         f"local CALIBRATION = {{{_calibrations(table)}}}",

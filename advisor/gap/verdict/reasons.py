@@ -33,8 +33,10 @@ _WORDS = {
 
 
 def weighed(posterior: Posterior[Any]) -> Weighed:
-    """Return all alternatives with the evidence of their likeliest model, and the answer's rival."""
-    # The rival is the likeliest alternative whose name is not the answer's.
+    """Return the evidence of every alternative's likeliest model, and the rival.
+
+    The rival is the likeliest alternative with another name than the answer.
+    """
     answer, rival = posterior.answer, together(posterior.by_alternative.items())[1][0]
     label = answer.block if answer.kind == "unknown" else answer.name
     (_, probability), *_ = together(posterior.by_alternative.items())

@@ -157,7 +157,7 @@ def _surrogate(records: tuple[LateralRecord, ...], flown: LateralProblem, said: 
     if isinstance(solution, NoEstimate):
         raise UnusableInputError(
             "simulator_lateral",
-            f"{said} flies no roll and yaw that a linear model describes: {solution.text}",
+            f"No linear model describes the roll and yaw of {said}: {solution.text}",
             "Check its signs and units in roll and yaw, and that it flies at this speed.",
         )
     return solution

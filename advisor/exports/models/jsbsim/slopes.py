@@ -66,8 +66,8 @@ class Slopes:
     """Measured slopes of a JSBSim aircraft in one condition."""
 
     derivatives: dict[str, float]
-    """Six short-period derivatives, SI. Derivatives by the elevator are per unit of the elevator's
-    property."""
+    """Six short-period derivatives, SI. Derivatives by the elevator are per unit of the JSBSim property that
+    moves the elevator."""
     shares: dict[str, list[float]]
     """Slopes of each model function by α, q and elevator, lbs or lbs·ft."""
     trim: dict[str, float]

@@ -208,7 +208,7 @@ _MOTION = _Motion()
 
 
 def _added(problem: Flying, free: Sequence[Free]) -> FloatArray:
-    """Return the outputs' change (N,) by parameters whose column is known; zero without one."""
+    """Return the outputs' change (N,) by parameters with a known column; zero without such a parameter."""
     return np.asarray(
         sum(one.read(problem) * one.column for one in free if one.adds and one.column is not None)
     )
