@@ -149,9 +149,9 @@ def short_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
     if free >= least:
         return []
     shown, limit = distinct_texts(free, least, 1)
-    ended = _CUT_SHORT_BY.get(maneuver.span.closed_by)
-    mend = "stick still after the last step" if ended is None else f"{ended[0]} there; {ended[1]}"
-    text = f"free response too short, {shown} s (at least {limit}); {mend}"
+    what, mend = _CUT_SHORT_BY.get(maneuver.span.closed_by, ("", "stick still after the last step"))
+    cause = f": {what} there" if what else ""
+    text = f"free response too short, {shown} s (at least {limit}){cause}; {mend}"
     return [Reason("free_response", text, free, least)]
 
 
@@ -259,5 +259,5 @@ def throttled(maneuver: Maneuver) -> list[Reason]:
     """Return a reason if the throttle moved too much."""
     throttle = flown(maneuver, "throttle")
     change = 100.0 * float(np.ptp(throttle)) if len(throttle) else 0.0
-    text = "throttle moved by {} % (limit {}); leave it where it is"
+    text = "throttle moved by {} % (limit {}); leave the throttle where it is"
     return above("throttle", change, THROTTLE_PERCENT, text)

@@ -90,7 +90,8 @@ class AnalysisText:
             for note in (*self.state.elevator_notes, *self.state.reader_notes, *self.state.mark_notes)
         )
         yield from (Text(line, style="yellow") for line in instrument_lines(self.state.instruments))
-        if self.pitch:
+        # Movements of the elevator in a flight that tests another axis are no manoeuvres.
+        if self.pitch and (self.every_movement or self.state.tested_sideways is None):
             flown = self._movements(self.state.maneuvers, self.state.activity)
             yield from self._axis(self.state, flown, self._qualities())
         if (side := self.state.lateral) is not None and side.maneuvers:
@@ -110,7 +111,8 @@ class AnalysisText:
             yield joint.on_console(joint.caption)
             yield from map(Text, (*structure_lines(axis.model), *untold(axis.model)))
             yield from self._regressed(axis.model)
-            yield from (Text(f"note: {note}") for note in axis.model.notes)
+            said = {caution for judged in axis.maneuvers for caution in judged.verdict.cautions}
+            yield from (Text(f"note: {note}") for note in axis.model.notes if note not in said)
             yield from _apart(qualities)
         yield from _apart(self._rules(axis.flight_test) if axis.maneuvers else ())
 
@@ -134,7 +136,7 @@ class AnalysisText:
             lines += [((a.flight, a.boot, a.start_s), Text(activity_line(a), style="dim")) for a in activity]
         in_order = sorted(lines, key=lambda entry: entry[0])
         if in_order:
-            yield Text(f"no.  start  times are {CLOCK}", style="dim")
+            yield Text(_TIMES, style="dim")
         for flight, here in groupby(in_order, key=lambda entry: entry[0][0]):
             if len(self.files) > 1:
                 yield Text(f"{self.files[flight]}:", style="bold")
@@ -164,6 +166,8 @@ class AnalysisText:
         yield from (Text(f"information: {line}", style="dim") for line in verdict.evidence)
 
 
+_TIMES = f"no.  start  times are {CLOCK}"
+"""Head of a list of manoeuvres."""
 _PAPERS: tuple[Rule, ...] = ("continuous", "separate")
 """Rules of the paper."""
 

@@ -79,7 +79,7 @@ EXAMPLES: Sequence[Example] = (
     Example(
         "gap logs/arduplane-calm.tlog --aircraft logs/arduplane-calm.yaml",
         {
-            "gap": [Part(until="● part of")],
+            "gap": [Part(until="● in the improved")],
             "gap-next": [Part("Next:")],
         },
     ),
@@ -97,7 +97,7 @@ EXAMPLES: Sequence[Example] = (
     ),
     Example(
         "gap logs/arduplane-calm.tlog --aircraft arduplane-calm-with-actuator-lag.yaml",
-        {"gap-again": [Part(until="Below 1 %")]},
+        {"gap-again": [Part(until="--all adds")]},
     ),
     Example("foresee --aircraft uav.yaml", {"foresee": [Part()]}),
 )
@@ -140,8 +140,12 @@ def _cut(lines: Sequence[str], part: Part) -> Sequence[str]:
         raise ValueError(
             f"no line begins with {part.begins!r}: name another one in benchmarks/pages/example.py"
         )
-    ends = [n for n, line in enumerate(lines) if n > places[0] and part.until and line.startswith(part.until)]
-    return lines[places[0] : ends[0] if ends else len(lines)]
+    ends = [n for n, line in enumerate(lines) if n > places[0] and line.startswith(part.until)]
+    if part.until and not ends:
+        raise ValueError(
+            f"no line begins with {part.until!r}: name another end in benchmarks/pages/example.py"
+        )
+    return lines[places[0] : ends[0] if part.until else len(lines)]
 
 
 def _printed(words: str, room: Path) -> Sequence[str]:

@@ -66,7 +66,7 @@ def test_a_throttle_whose_moment_moves_an_estimate_is_named_even_where_it_moved_
     throttle = 0.5 + 0.1 * np.clip((T - 2.0) / 2.0, 0.0, 1.0)
     reason, *_ = coupled(*flown(0.3, 0.3 * (throttle - 0.5), throttle=throttle))
     assert reason.code == "throttle"
-    assert "leave it where it is" in reason.text
+    assert "leave the throttle where it is" in reason.text
 
 
 def test_a_throttle_without_a_pitching_moment_is_lived_with():

@@ -5,6 +5,8 @@ from dataclasses import replace
 import pytest
 
 from advisor.report.text import AnalysisText
+from tests.campaign.side_builders import judged
+from tests.campaign.side_builders import state as side_state
 from tests.campaign.states import changed
 from tests.printed import printed_lines
 from tests.tui import flights
@@ -27,3 +29,19 @@ def test_where_information_decides_the_papers_rules_are_one_line():
 @pytest.mark.parametrize(("rule", "everything"), [("continuous", False), ("information", True)])
 def test_a_chosen_rule_of_the_paper_or_all_shows_every_rule_whole(rule, everything):
     assert [line.split()[1] for line in rules(rule, everything)] == ["continuous", "separate", "information"]
+
+
+@pytest.mark.parametrize("everything", [False, True])
+def test_movements_of_the_elevator_beside_a_test_of_roll_and_yaw_are_shown_on_request(everything):
+    whole = flights.state(2)
+    moved = [
+        replace(one, maneuver=replace(one.maneuver, span=replace(one.maneuver.span, kind="other")))
+        for one in whole.maneuvers
+    ]
+    refused = [replace(one, verdict=replace(one.verdict, accepted=False)) for one in moved]
+    side = side_state(judged(1, "aileron"))
+    beside = changed(whole, lateral=side, maneuvers=tuple(refused))
+    assert beside.tested_sideways is not None
+    lines = printed_lines(AnalysisText(beside, ["a.tlog"], flights.AIRCRAFT, everything))
+    assert sum(line.startswith("rule information") for line in lines) == 1 + everything
+    assert sum(line.startswith("no.  start") for line in lines) == 1 + everything

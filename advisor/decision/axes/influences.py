@@ -66,7 +66,7 @@ def _on_pitch(linear: LinearMotion) -> Iterator[Influence]:
         cure = "let roll and yaw die down before the first step"
         yield Influence("coupling", "rolling and yawing", cure, "q", p * r, True)
     yield from _by_speed(linear, "q")
-    cures = {"throttle": "leave it where it is"}
+    cures = {"throttle": "leave the throttle where it is"}
     for control in ("throttle", "aileron", "rudder"):
         moved = linear.measured(control)
         if moved is not None:

@@ -120,6 +120,13 @@ class _SideTest:
         shares = (share for name, share in self.shares.items() if self.judged[name] == control)
         return max(shares, default=0.0)
 
+    @property
+    def hidden(self) -> str:
+        """Reason why no input shows any judged derivative, with its remedy; empty if an input can."""
+        untold = {} if self.joint is None else self.joint.not_identifiable
+        reasons = {untold.get(name, "") for name in self.judged}
+        return reasons.pop() if len(reasons) == 1 else ""
+
     def sentence(self, stop: bool) -> str:
         """Return the sentence about the criterion; an aircraft without a control is named as such."""
         if not self.history:
@@ -140,12 +147,16 @@ class _SideTest:
         if self.shares[worst] < INFORMATION_LIMIT_PERCENT:
             which = " and of the ".join(self.flown_fewer_than(CHECKED))
             return f"CONTINUE: one input of the {which} cannot show its own error; one more will."
+        if self.hidden:
+            return f"CONTINUE: {self.hidden}."
         share = self.shares[worst]
         said = times_its_tolerance(0.01 * share) if isfinite(share) else "unknown"
         return f"CONTINUE: the error of {symbol(worst)} is {said}."
 
     def next(self) -> NextInput:
-        """Return the next input, with the number of further manoeuvres."""
+        """Return the next input with the number of further manoeuvres, or the remedy that comes before."""
+        if remedy := self.hidden.partition("; ")[2]:
+            return NextInput(f"next: {remedy}", None, self.worst)
         missing = self.flown_fewer_than(1) or self.flown_fewer_than(CHECKED)
         newest = self.flown[-1] if self.flown else None
         control = missing[0] if missing else self.judged[self.worst]
@@ -165,8 +176,8 @@ class _SideTest:
         worst = np.array([self.percent_of(control) for control in controls])
         if not np.all(times) or not np.all(np.isfinite(worst)):
             return None
-        # The residuals of a first manoeuvre count as one comparison of each control.
-        scale = variance_scale(len(controls) * max(accepted - 1, 1))[:, None]
+        # The residuals of the first manoeuvres count as one comparison of each judged derivative.
+        scale = variance_scale(max(len(controls) * (accepted - 1), len(self.judged)))[:, None]
         within = np.ceil(times * (worst / INFORMATION_LIMIT_PERCENT) ** 2 * scale)
         each = np.maximum(np.maximum(within, CHECKED) - times, 0.0)
         # Manoeuvres that move several controls at once count for each of them.

@@ -126,7 +126,8 @@ def estimated_parameter(
 
 def joint_source(state: CampaignState | LateralState) -> str:
     """Return the name of an axis' joint estimate, for the head of a table."""
-    return f"Joint estimate from manoeuvres {counted(state.estimate_from)}"
+    several = "s" if len(state.estimate_from) > 1 else ""
+    return f"Joint estimate from manoeuvre{several} {counted(state.estimate_from)}"
 
 
 def of_all(name: str, state: CampaignState | LateralState, prior: Mapping[str, float]) -> EstimatedParameter:

@@ -32,11 +32,11 @@ def shrink_said(shrink: Shrink, gap: Gap) -> str:
     """Return the sentence about the gap's reduction, with the 95 % interval and the held-out manoeuvres.
 
     The gap after the corrections includes the flight's nuisance parameters. An export cannot contain them,
-    and its gap can be larger. The sentence states the larger gap if the two differ in two digits.
+    and its gap can be larger. The sentence states a larger gap if the two differ in two digits.
     """
     low, high = shrink.ci95_percent
-    differ = f"{shrink.after:.2g}" != f"{gap.after:.2g}"
-    left = f"; the corrections alone leave {short(shrink.after)}" if differ else ""
+    larger = float(f"{shrink.after:.2g}") > float(f"{gap.after:.2g}")
+    left = f"; the corrections alone leave {short(shrink.after)}" if larger else ""
     return (
         f"{shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out "
         f"manoeuvres {counted(shrink.holdout)}{left}"

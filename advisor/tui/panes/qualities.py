@@ -6,6 +6,7 @@ from advisor.report.axes.lateral_document import side_quality_lines
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
 from advisor.session.view import View
 from advisor.tui.panes.pane import TextPane
+from advisor.words.digits import counted
 
 
 class Qualities(TextPane):
@@ -35,8 +36,9 @@ Roll and yaw: Dutch roll, roll and spiral. Where the aircraft file states the de
             return
         lines = [(" " * (len(line) - len(line.lstrip())), line.strip()) for line in _lines(view)]
         self.write(lines or [("", self.EMPTY)])
-        listed = ", ".join(map(str, view.state.estimate_from))
-        self.subtitle(f"from manoeuvres {listed}" if listed else "")
+        estimated = view.state.estimate_from
+        several = "s" if len(estimated) > 1 else ""
+        self.subtitle(f"from manoeuvre{several} {counted(estimated)}" if estimated else "")
 
 
 def _lines(view: View) -> Iterable[str]:

@@ -107,10 +107,20 @@ def test_a_control_to_be_checked_lacks_one_manoeuvre():
     assert remaining.median == 1
 
 
+def test_a_record_that_no_input_makes_whole_asks_for_its_remedy():
+    why = "no lateral acceleration was recorded; record a_y"
+    joint = estimate(
+        "aileron", "rudder", untold=dict.fromkeys(("L_p", "L_delta_a", "N_beta", "N_delta_r"), why)
+    )
+    verdict = lateral_flight_test([estimate("aileron"), estimate("rudder")] * 2, joint, AIRCRAFT)
+    assert verdict.sentence == f"CONTINUE: {why}."
+    assert verdict.next.advice == "next: record a_y"
+
+
 def test_an_input_of_both_controls_counts_for_each():
     at_once = [estimate("aileron", "rudder")]
     remaining = lateral_flight_test(at_once, at_once[0], AIRCRAFT).next.remaining
-    assert (remaining.median, remaining.p90) == (1, 2)
+    assert (remaining.median, remaining.p90) == (1, 1)
 
 
 def test_refused_manoeuvres_lengthen_the_forecast():
