@@ -1,9 +1,8 @@
 """Format ``jsbsim``: a copy of the user's own JSBSim aircraft, corrected in both axes.
 
 A derivative is corrected if its 95 % interval excludes the prior value. The prior value comes from the
-aircraft file's ``model``, else from the JSBSim aircraft. The JSBSim aircraft's own terms for a derivative are
-multiplied by a factor. A function is added if there is no term, or if scaled terms do not reach the value. A
-function also replaces a factor that would change a sign.
+aircraft file's ``model``, else from the JSBSim aircraft. A function of the dynamic pressure
+and of α, q or elevator about the trim is added. The aircraft's own tables and its trim stay.
 
 The nonlinear functions of effects are those of the aircraft file. Their squares and cubes are of α or of the
 elevator, and one moment depends on α̇. These terms are relative to ``about_rad``, or else to the trim. All
@@ -13,6 +12,7 @@ terms are proportional to the dynamic pressure.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
@@ -21,8 +21,8 @@ from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.formats import AxisAsked, ModelFormat
 from advisor.exports.models.improvement import SLOPES, ExportedServo, Improvement, is_told, zero_said
 from advisor.exports.models.jsbsim.axes.side_text import side_text
-from advisor.exports.models.jsbsim.knobs import Knob, knob_for, missed, settled
 from advisor.exports.models.jsbsim.run import Model, measure, model_of
+from advisor.exports.models.jsbsim.search import settled
 from advisor.exports.models.jsbsim.slopes import Request, Slopes
 from advisor.exports.models.jsbsim.source import (
     AXES,
@@ -32,7 +32,6 @@ from advisor.exports.models.jsbsim.source import (
     corrected,
     parse,
     surface_of,
-    terms_of,
 )
 from advisor.gap.effects import EFFECTS
 from advisor.words.problems import ConfigurationError
@@ -47,39 +46,26 @@ def aircraft_text(improvement: Improvement, model: Model) -> Exported:
         The aircraft does not load or trim at the flown speed, or cannot be corrected.
     """
     content, name = model.file.read_bytes(), model.file.name
-    root = parse(content, name)
-    terms, surface = terms_of(root), surface_of(root)
-    names = [n for parameter in SLOPES for n in terms.get(parameter, ())]
-    height_m = improvement.air.height_m or 0.0
-    asked = Request(improvement.true_airspeed_m_s, height_m, names=names, surface=surface)
+    surface = surface_of(parse(content, name))
+    asked = Request(improvement.true_airspeed_m_s, improvement.air.height_m or 0.0, surface=surface)
 
-    def measured(knobs: Sequence[Knob]) -> Slopes:
+    def measured(added: Sequence[AddedFunction]) -> Slopes:
         # Measured without the servo, because backlash and dead band would hide a small deflection.
-        changed = corrected(content, name, [knob.change for knob in knobs], ExportedServo(), "")
-        return measure(changed.encode(), model, asked)
+        return measure(corrected(content, name, added, ExportedServo(), "").encode(), model, asked)
 
     first = measure(content, model, asked)
     if not first.powered:
         # A failed trim leaves the engines in any state, and costs time.
         asked = replace(asked, powered=False)
         first = measure(content, model, asked)
-    targets = _targets(improvement, first, terms, SURFACES.get(surface))
-    knobs = [knob_for(parameter, terms.get(parameter, ()), first, surface) for parameter in targets]
-    knobs, now = settled(knobs, first, targets, surface, measured)
-    if off := missed(now, targets):
-        # Curves count from the trim, so that an added function about the trim leaves the trim alone.
-        knobs = [knob_for(p, () if p in off else terms.get(p, ()), first, surface) for p in targets]
-        knobs, now = settled(knobs, first, targets, surface, measured)
-    if off := missed(now, targets):
-        raise ConfigurationError(
-            f"--export jsbsim: {name} cannot be given {off[0]} = {targets[off[0]]:.4g}; "
-            "use --export matlab or aircraft."
-        )
+    targets = _targets(improvement, first, SURFACES.get(surface))
+    changes, now = settled(
+        first, targets, partial(_loads, own=first), partial(_functions, own=first, surface=surface), measured
+    )
     # Effects come last, because their contributions at the trim were found in addition to these.
     added, carried = functions_of(improvement.effects, now, surface)
     servo = replace(improvement.servo, lag_s=max(improvement.servo.lag_s, 0.0))
-    changes = [*(knob.change for knob in knobs), *added]
-    text = corrected(content, name, changes, servo, _note(improvement, first, targets))
+    text = corrected(content, name, [*changes, *added], servo, _note(improvement, first, targets))
     zeros = [zero_said(p) for p in targets if not is_told(improvement.model[p]) and targets[p] == 0.0]
     left = (*_left_out(improvement, surface), *zeros, *effects_beside(improvement, *carried))
     return Exported(text, left)
@@ -98,9 +84,7 @@ def _left_out(improvement: Improvement, surface: str) -> list[str]:
     return left
 
 
-def _targets(
-    improvement: Improvement, first: Slopes, terms: Mapping[str, Sequence[str]], per_rad: float | None
-) -> dict[str, float]:
+def _targets(improvement: Improvement, first: Slopes, per_rad: float | None) -> dict[str, float]:
     """Return the target of each contradicted derivative; None if the elevator's property is no angle."""
     targets = {}
     for parameter in SLOPES:
@@ -109,13 +93,34 @@ def _targets(
         prior = improvement.prior.get(parameter, own * unit)
         value = improvement.number(parameter)
         if improvement.differs(parameter, prior) and not math.isnan(prior):
-            # A term is changed by the ratio, because the file's numbers may belong to another air density.
-            by_ratio = value == 0.0 or (prior and parameter in terms)
+            # By an elevator without an angle, only the ratio is known.
+            by_ratio = value == 0.0 or (prior != 0.0 and math.isnan(unit))
             targets[parameter] = value and own * value / prior if by_ratio else own + (value - prior) / unit
     moved = ["M" + parameter[1:] for parameter in targets if parameter[0] == "Z"]
     return targets | {
         parameter: first.derivatives[parameter] for parameter in moved if parameter not in targets
     }
+
+
+def _loads(missing: Mapping[str, float], own: Slopes) -> dict[str, float]:
+    """Return the value of each derivative's additional function, lbs or lbs·ft."""
+    time_s = {"q": own.chord_time_s}
+    return {
+        name: size / (own.per_force(name[0]) * own.pressure_psf * time_s.get(name[2:], 1.0))
+        for name, size in missing.items()
+    }
+
+
+def _functions(sizes: Mapping[str, float], own: Slopes, surface: str) -> list[AddedFunction]:
+    """Return functions about the trim, which they leave as it is."""
+    return [
+        AddedFunction(
+            name, AXES[name[0]], size, surface if name.endswith("delta_e") else PLAIN[name[2:]],
+            own.trim[name[2:]], further="aero/ci2vel" if name[2:] == "q" else "",
+        )
+        for name, size in sizes.items()
+        if size
+    ]  # fmt: skip
 
 
 def _note(improvement: Improvement, first: Slopes, targets: Mapping[str, float]) -> str:

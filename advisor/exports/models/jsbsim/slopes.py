@@ -1,4 +1,4 @@
-"""Derivatives of a JSBSim aircraft, and each term's share of them, from small perturbations.
+"""Derivatives of a JSBSim aircraft, from small perturbations.
 
 The module runs in a separate process (``python -m``), because JSBSim writes on stdout and may abort. The
 states are fixed while the forces settle, so that motion does not affect a derivative. α̇ and q̇ respond to α,
@@ -31,8 +31,6 @@ _FLAT = 1e-6
 """Z_alpha of an aircraft without lift, 1/s, which is only rounding."""
 
 
-COLUMNS = ("alpha", "q", "delta_e")
-"""Variables of the short period, in the order of ``SIZES`` and of every share."""
 SIDE_VARIABLES = {
     "beta": "aero/beta-rad",
     "p": "velocities/p-aero-rad_sec",
@@ -53,8 +51,6 @@ class Request:
     height_m: float
     powered: bool = True
     """Whether JSBSim's trim finds the throttle. False for a closed throttle."""
-    names: Sequence[str] = ()
-    """Functions whose shares are requested."""
     surface: str = "fcs/elevator-pos-rad"
     """Property of the elevator's position."""
     sideways: bool = False
@@ -68,8 +64,6 @@ class Slopes:
     derivatives: dict[str, float]
     """Six short-period derivatives, SI. Derivatives by the elevator are per unit of the JSBSim property that
     moves the elevator."""
-    shares: dict[str, list[float]]
-    """Slopes of each model function by α, q and elevator, lbs or lbs·ft."""
     trim: dict[str, float]
     """Values of ``alpha``, ``q`` and ``delta_e`` in the trim."""
     pressure_psf: float
@@ -125,24 +119,24 @@ def measured(fdm: Any, asked: Request) -> Slopes:
     fdm.suspend_integration()
 
     def respond(alpha: float, q: float, command: float) -> tuple[Any, Any]:
-        """Return the resulting variables, with α̇, q̇ and every term."""
+        """Return the resulting variables, with α̇ and q̇."""
         fdm["ic/alpha-rad"], fdm["ic/q-rad_sec"] = alpha, q
         fdm["fcs/elevator-cmd-norm"] = command
         _settle(fdm)
         variables = [fdm["aero/alpha-rad"], fdm["velocities/q-rad_sec"], fdm[asked.surface]]
         rates = [fdm["aero/alphadot-rad_sec"], fdm["accelerations/qdot-rad_sec2"]]
-        return np.array(variables), np.array(rates + [fdm[name] for name in asked.names])
+        return np.array(variables), np.array(rates)
 
     trim = np.array([0.05, 0.0])
     for _ in range(_ROUNDS):
         _, here = respond(trim[0], 0.0, trim[1])
-        if np.max(np.abs(here[:2])) < _AT_REST:
+        if np.max(np.abs(here)) < _AT_REST:
             break
         columns = [
-            (respond(trim[0] + a, 0.0, trim[1] + c)[1][:2] - here[:2]) / (a + c)
+            (respond(trim[0] + a, 0.0, trim[1] + c)[1] - here) / (a + c)
             for a, c in ((SIZES[0], 0.0), (0.0, SIZES[2]))
         ]
-        step = np.linalg.solve(np.column_stack(columns), here[:2])
+        step = np.linalg.solve(np.column_stack(columns), here)
         trim = trim - np.clip(step, -0.1, 0.1)
     else:
         raise ArithmeticError("no trim")
@@ -158,7 +152,6 @@ def measured(fdm: Any, asked: Request) -> Slopes:
         raise ArithmeticError("the lift does not grow at the trim: the wing is stalled, or its tables end")
     return Slopes(
         {name: float(value) for name, value in derivatives.items()},
-        {name: slopes[:, 2 + i].tolist() for i, name in enumerate(asked.names)},
         {"alpha": float(at_trim[0]), "q": 0.0, "delta_e": float(at_trim[2])},
         float(fdm["aero/qbar-psf"]),
         float(fdm["inertia/mass-slugs"] * fdm["velocities/vt-fps"]),

@@ -1,25 +1,15 @@
-"""Text of a JSBSim aircraft: parsed, and written with corrected coefficients and a servo.
-
-The terms of the axes LIFT and PITCH are classified by the properties that they depend on. The first property
-in the order of pitch rate, rate of α, elevator and α decides.
-"""
+"""Text of a JSBSim aircraft: parsed, and written with added functions and a servo."""
 
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from advisor.exports.models.exported import xml_comment
 from advisor.exports.models.improvement import ExportedServo
 from advisor.words.problems import ConfigurationError
 
-VARIABLES = {
-    "q": re.compile(r"velocities/q(-aero)?-rad_sec"),
-    "alpha_dot": re.compile(r"aero/alphadot-(rad|deg)_sec"),
-    "delta_e": re.compile(r"fcs/elevator-pos-(rad|deg|norm)"),
-    "alpha": re.compile(r"aero/alpha-(rad|deg)"),
-}
-"""Pattern of the properties for each variable of the short period, in the order of testing."""
+_ELEVATOR = re.compile(r"fcs/elevator-pos-(rad|deg|norm)")
 AXES = {"Z": "LIFT", "M": "PITCH"}
 SURFACES = {"fcs/elevator-pos-rad": 1.0, "fcs/elevator-pos-deg": 57.29577951308232}
 """Number of units per radian of each surface property. The normalised position from -1 to 1 has no such
@@ -41,16 +31,6 @@ class AddedFunction:
     power: int = 1
     further: str = ""
     """Further property of JSBSim that multiplies the function of a force or moment."""
-
-
-@dataclass(frozen=True)
-class Factor:
-    """A factor on some terms of an axis."""
-
-    parameter: str
-    axis: str
-    terms: tuple[str, ...]
-    value: float
 
 
 def parse(content: bytes, name: str) -> ET.Element:
@@ -76,32 +56,20 @@ def parse(content: bytes, name: str) -> ET.Element:
     return root
 
 
-def terms_of(root: ET.Element) -> Mapping[str, tuple[str, ...]]:
-    """Return the names of the model's functions for each derivative, in the file's order."""
-    terms: dict[str, tuple[str, ...]] = {}
-    for letter, axis in AXES.items():
-        for function in _functions(root, axis):
-            variable = _variable(function)
-            name = function.get("name")
-            if variable is not None and name is not None:
-                parameter = f"{letter}_{variable}"
-                terms[parameter] = (*terms.get(parameter, ()), name)
-    return terms
-
-
 def surface_of(root: ET.Element) -> str:
     """Return the elevator's position property on which the pitching moment depends."""
-    for function in _functions(root, "PITCH"):
-        for text in _properties(function):
-            if VARIABLES["delta_e"].fullmatch(text):
+    for axis in root.iterfind("aerodynamics/axis[@name='PITCH']"):
+        for element in axis.iter():
+            text = (element.text or "").strip().removeprefix("-")
+            if element.tag in ("property", "p", "independentVar") and _ELEVATOR.fullmatch(text):
                 return text
     return "fcs/elevator-pos-rad"
 
 
 def corrected(
-    content: bytes, name: str, changes: Sequence[Factor | AddedFunction], servo: ExportedServo, note: str
+    content: bytes, name: str, added: Sequence[AddedFunction], servo: ExportedServo, note: str
 ) -> str:
-    """Return the aircraft's text with all changes, and with the servo after the elevator's command.
+    """Return the aircraft's text with added functions, and with the servo after the elevator's command.
 
     Raises
     ------
@@ -109,51 +77,15 @@ def corrected(
         The content is no aircraft (see ``parse``), or the model's elevator position is no angle.
     """
     root = parse(content, name)
-    for change in changes:
-        axis = next(a for a in root.iterfind("aerodynamics/axis") if a.get("name") == change.axis)
-        if isinstance(change, AddedFunction):
-            axis.append(_function(change))
-            continue
-        for function in axis.iterfind("function"):
-            if function.get("name") in change.terms:
-                _multiply(function, change)
+    for one in added:
+        axis = next(a for a in root.iterfind("aerodynamics/axis") if a.get("name") == one.axis)
+        axis.append(_function(one))
     if not servo.is_quick:
         _insert(servo, root)
     prolog = content.split(b"<fdm_config")[0].decode("utf-8", "replace")
     comments = re.findall(r"<!--.*?-->", prolog, re.DOTALL)
     head = ['<?xml version="1.0" encoding="utf-8"?>', *comments, xml_comment(note)]
     return "\n".join([*head, ET.tostring(root, encoding="unicode")]) + "\n"
-
-
-def _functions(root: ET.Element, axis: str) -> Iterator[ET.Element]:
-    for one in root.iterfind("aerodynamics/axis"):
-        if one.get("name") == axis:
-            yield from one.iterfind("function")
-
-
-def _properties(function: ET.Element) -> list[str]:
-    tags = ("property", "p", "independentVar")
-    return [(e.text or "").strip().removeprefix("-") for e in function.iter() if e.tag in tags]
-
-
-def _variable(function: ET.Element) -> str | None:
-    properties = _properties(function)
-    for variable, pattern in VARIABLES.items():
-        if any(pattern.fullmatch(text) for text in properties):
-            return variable
-    return None
-
-
-def _multiply(function: ET.Element, factor: Factor) -> None:
-    said = ("description", "documentation", "notes")
-    computed = [e for e in function if e.tag not in said and isinstance(e.tag, str)]
-    product = ET.Element("product")
-    product.append(ET.Comment(f" advisor gap: {factor.parameter} as flown "))
-    product.append(_element("value", f"{factor.value:.8g}"))
-    for element in computed:
-        function.remove(element)
-        product.append(element)
-    function.append(product)
 
 
 def _function(added: AddedFunction) -> ET.Element:

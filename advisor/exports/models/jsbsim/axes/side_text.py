@@ -2,12 +2,12 @@
 
 A derivative is corrected if the 95 % interval of the estimate excludes the aircraft's value. The difference
 is added as a function of β, p, r, aileron or rudder. Each function is proportional to the dynamic pressure,
-and for p or r also to b/(2·V). With neutral controls such a function changes no trim. A side force also acts
-on roll and yaw by its arm, so correction and measurement are repeated.
+and for p or r also to b/(2·V). With neutral controls such a function changes no trim.
 """
 
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import partial
 from math import isfinite
 
 import numpy as np
@@ -16,8 +16,8 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.exports.models.exported import Exported
 from advisor.exports.models.flown import SideModel
 from advisor.exports.models.improvement import ExportedServo, zero_said
-from advisor.exports.models.jsbsim.knobs import ROUNDS, WITHIN
 from advisor.exports.models.jsbsim.run import Model, measure_side
+from advisor.exports.models.jsbsim.search import settled
 from advisor.exports.models.jsbsim.slopes import SIDE_VARIABLES as VARIABLES
 from advisor.exports.models.jsbsim.slopes import Request, SideSlopes
 from advisor.exports.models.jsbsim.source import AddedFunction, corrected, parse
@@ -46,17 +46,12 @@ def side_text(name: str, side: SideModel, model: Model, content: bytes) -> Expor
     asked = Request(speed, side.air.height_m or 0.0, powered=False, sideways=True)
     first = measure_side(content, model, asked)
     wanted = _targets(side, first)
-    sizes = dict.fromkeys(wanted, 0.0)
-    now = first
-    for _ in range(ROUNDS):
-        missing = {name: target - now.derivatives[name] for name, target in wanted.items()}
-        if all(abs(size) <= WITHIN * max(abs(wanted[name]), 1.0) for name, size in missing.items()):
-            break
-        added = _loads(missing, first)
-        sizes = {name: size + added[name] for name, size in sizes.items()}
-        made = corrected(content, model.file.name, _functions(sizes), ExportedServo(), "")
-        now = measure_side(made.encode(), model, asked)
-    changes = _functions(sizes)
+
+    def measured(added: Sequence[AddedFunction]) -> SideSlopes:
+        made = corrected(content, model.file.name, added, ExportedServo(), "")
+        return measure_side(made.encode(), model, asked)
+
+    changes, _ = settled(first, wanted, partial(_loads, own=first), _functions, measured)
     changed = [name for name in SIDE_PARAMETERS if wanted[name] != first.derivatives[name]]
     note = (
         f"Corrected by the inflight advisor for {name} at {speed:.4g} m/s: {', '.join(changed) or 'nothing'}."
