@@ -216,6 +216,7 @@ class Segmenter:
         self._cut_off("no rest", onset_s)
         self._base = median(steady)
         self._set_out(onset_s, edge)
+        self._fastest = edge
 
     def _watch_rest(self, i: int, t: float) -> None:
         """Follow the slow drift of the rest level, and the elevator's movements at rest."""

@@ -454,3 +454,13 @@ def test_the_onset_of_an_input_in_a_slow_movement_is_known_within_its_first_step
     for at_s, moved in zip(t[t < 15.3].tolist(), u.tolist(), strict=False):
         segmenter.push(at_s, moved)
     assert segmenter.onset_s == pytest.approx(15.0, abs=0.1)
+
+
+@pytest.mark.parametrize("seed", [66, 196, 279, 306, 349])
+def test_a_3211_that_restless_hands_precede_is_not_parted_after_its_first_level(seed):
+    rng = np.random.default_rng(seed)
+    t = stamps(rng, 22.0, 50.0, jitter=0.3)
+    hands = (0.35 * coloured(rng, t, 1.5) - 0.8 * (t < rng.uniform(13.7, 14.3))) * ((t > 4.0) & (t < 15.0))
+    test = found(Stream(t, DEG * (hands + 4.5 * steps(t, 15.0, 0.37, PATTERNS["3-2-1-1"]))))[-1]
+    assert test.kind == "3-2-1-1"
+    assert test.start_s == pytest.approx(15.0, abs=0.5)
