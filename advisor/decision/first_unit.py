@@ -129,10 +129,9 @@ def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float
     period is 2.5 times the shortest step, or twice the median lobe of a multisine.
     """
     if isinstance(estimate, Estimate) and _knows_the_motion(estimate):
-        square = estimate.value("Z_alpha") * estimate.value("M_q")
-        square -= (1.0 + estimate.value("Z_q")) * estimate.value("M_alpha")
-        if square > 0.0:
-            return 2.0 * pi / sqrt(square)
+        natural = ShortPeriod(estimate.theta).natural_frequency
+        if natural > 0.0:
+            return 2.0 * pi / natural
     held_s = np.diff([onset for onset, _ in maneuver.span.steps])
     held_s = held_s[held_s > 0.0]  # two steps between two samples have one onset
     if len(held_s) == 0:

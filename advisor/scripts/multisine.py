@@ -45,11 +45,6 @@ class Multisine:
         turns = 2.0 * np.pi * np.outer(share, self.harmonics) + np.array(self.phases_rad)
         return np.asarray(self.amplitude * np.sin(turns).sum(axis=1))
 
-    @property
-    def relative_peak_factor(self) -> float:
-        """Range over 2√2 times the root mean square. A single sine has 1."""
-        return _relative_peak_factor(self.values(_grid(self.harmonics)))
-
 
 def disjoint_harmonics(lowest: int, highest: int, controls: int) -> tuple[tuple[int, ...], ...]:
     """Return the harmonics of each control, which alternate from ``lowest`` to about

@@ -47,8 +47,6 @@ class KinematicCheck:
 
     finding: Finding
     sentence: str
-    missing: tuple[str, ...] = ()
-    """Missing channels that prevent the check."""
     lag_s: float = float("nan")
     """Lag of the α channel, s; negative if early."""
     lag_std_s: float = float("nan")
@@ -98,7 +96,7 @@ def check_alpha(
         said = f"alpha cannot be checked against the motion: no {listed} in this log."
         # The mean offset of alpha needs the attitude and the climb rate only.
         offset = offset_of(maneuver, airspeed_m_s) if missing == ["a_z"] else UNKNOWN
-        return KinematicCheck("not possible", said, tuple(missing), offset=offset)
+        return KinematicCheck("not possible", said, offset=offset)
     t_alpha, alpha = renewed(found["alpha"].t, found["alpha"].y)
     t = found["q"].t
     speed = speed_at(t, maneuver, airspeed_m_s)
@@ -173,7 +171,7 @@ def _compare(
     explained = 1.0 - cost / float(np.sum((y - slow @ np.linalg.lstsq(slow, y, rcond=None)[0]) ** 2))
     finding, sentence = _judge(fitted[0], std[0], fitted[1] - 1.0, std[1], explained)
     return KinematicCheck(
-        finding, sentence, (), float(fitted[0]), float(std[0]), float(fitted[1] - 1.0), float(std[1]), offset,
+        finding, sentence, float(fitted[0]), float(std[0]), float(fitted[1] - 1.0), float(std[1]), offset,
         float(fitted[3] / max(np.ptp(tm), 1e-9)), float(np.sqrt(cost / len(y))), explained,
     )  # fmt: skip
 
@@ -240,5 +238,5 @@ def combine(checks: Sequence[KinematicCheck]) -> KinematicCheck:
     drift = float(np.mean([c.drift_rad_s for c in usable]))
     rms = float(np.sqrt(np.mean([c.rms_rad**2 for c in usable])))
     return KinematicCheck(
-        finding, sentence, (), lag, lag_std, scale, scale_std, offset, drift, rms, explained
+        finding, sentence, lag, lag_std, scale, scale_std, offset, drift, rms, explained
     )  # fmt: skip
