@@ -1,7 +1,7 @@
 """Frozen state of a campaign at one moment, for screens, texts and documents, with both axes and the whole
 flight."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 from statistics import median
@@ -56,7 +56,7 @@ class AxisState(Generic[E]):
 
     @property
     def has_begun(self) -> bool:
-        """Whether the test has begun: by a named or marked input, or an accepted movement."""
+        """Whether the crew tests this axis (:func:`has_begun`)."""
         return has_begun(self.maneuvers)
 
     @property
@@ -78,9 +78,13 @@ _EVERY_S = 1.0
 sooner."""
 
 
-def has_begun(judged: Iterable[JudgedManeuver]) -> bool:
-    """Return whether the test of an axis has begun: by a named or marked input, or an accepted movement."""
-    return any(one.maneuver.span.is_test_input or one.verdict.accepted for one in judged)
+def has_begun(judged: Sequence[JudgedManeuver]) -> bool:
+    """Return whether the test of an axis has begun: by a named or marked input, or an accepted movement.
+
+    A refused pulse does not count, because hands that trim an axis also move its control away and back.
+    """
+    spans = [one.maneuver.span for one in judged if not one.verdict.accepted]
+    return len(spans) < len(judged) or any(x.is_marked or x.kind not in ("other", "pulse") for x in spans)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

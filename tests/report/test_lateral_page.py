@@ -136,7 +136,7 @@ def test_beside_refused_tests_of_the_elevator_the_first_page_has_roll_and_yaw_an
         "sentence": "No input can be used.", "decision": "continue", "rule": "information", "warnings": [],
         "criterion_percent": None, "limit_percent": 100.0,
     }  # fmt: skip
-    trimming = SimpleNamespace(span=SimpleNamespace(is_test_input=False))
+    trimming = SimpleNamespace(span=SimpleNamespace(kind="other", is_marked=False))
     refused = SimpleNamespace(verdict=SimpleNamespace(accepted=False), maneuver=trimming)
     content = SimpleNamespace(
         state=changed(flights_of_pitch.state(1), maneuvers=(refused,), lateral=FLOWN, model=None),

@@ -31,11 +31,12 @@ def test_a_chosen_rule_of_the_paper_or_all_shows_every_rule_whole(rule, everythi
     assert [line.split()[1] for line in rules(rule, everything)] == ["continuous", "separate", "information"]
 
 
+@pytest.mark.parametrize("kind", ["other", "pulse"])
 @pytest.mark.parametrize("everything", [False, True])
-def test_movements_of_the_elevator_beside_a_test_of_roll_and_yaw_are_shown_on_request(everything):
+def test_movements_of_the_elevator_beside_a_test_of_roll_and_yaw_are_shown_on_request(everything, kind):
     whole = flights.state(2)
     moved = [
-        replace(one, maneuver=replace(one.maneuver, span=replace(one.maneuver.span, kind="other")))
+        replace(one, maneuver=replace(one.maneuver, span=replace(one.maneuver.span, kind=kind)))
         for one in whole.maneuvers
     ]
     refused = [replace(one, verdict=replace(one.verdict, accepted=False)) for one in moved]

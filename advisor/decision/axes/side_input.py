@@ -36,8 +36,8 @@ class FlownInput:
     """Remedy from the first reason against the manoeuvre; empty for an accepted one."""
     estimate: Estimate | NoEstimate | None = None
     """Estimate of the manoeuvre, accepted or not."""
-    too_small: float = 1.0
-    """Factor by which the first reason asks for a larger input; 1 if the reason asks for another change."""
+    asked: float = 1.0
+    """Factor on the amplitude that the first reason asks for; 1 if the reason asks for another change."""
 
     @classmethod
     def of(
@@ -49,9 +49,10 @@ class FlownInput:
         bank = maneuver.channels.get("bank")
         banked = float(np.max(np.abs(bank.y), initial=0.0)) if bank is not None else 0.0
         remedy = reasons[0].remedy if reasons else ""
-        gentle = bool(reasons) and reasons[0].code == "amplitude" and reasons[0].value > 0.0
-        factor = reasons[0].limit / reasons[0].value if gentle else 1.0
-        return cls(control, moved[control], banked, remedy, estimate, factor)
+        asked = 1.0 / BOLDER if reasons and reasons[0].code == "saturation" else 1.0
+        if reasons and reasons[0].code == "amplitude" and reasons[0].value > 0.0:
+            asked = reasons[0].limit / reasons[0].value
+        return cls(control, moved[control], banked, remedy, estimate, asked)
 
 
 def _amplitude(maneuver: Maneuver, name: str) -> float:
@@ -85,8 +86,8 @@ def next_lateral(
     wanted = StepInput("doublet", unit_s, min(amplitude, ALPHA_MARGIN * travel), True, control)
     wanted = wanted.rounded(travel)
     gently = ", to begin gently" if before is None else ""
-    # A remedy belongs to the refused input, never to another control. A larger amplitude is a remedy.
-    repeated = before is not None and before is flown[-1] and before.too_small <= 1.0
+    # A remedy belongs to the refused input, never to another control. Another amplitude is a remedy.
+    repeated = before is not None and before is flown[-1] and before.asked == 1.0
     remedy = f"; {before.remedy}" if before is not None and repeated and before.remedy else ""
     still = f"hands and feet still for {4.0 * unit_s:.0f} s" if control == "rudder" else "stick still"
     said = f"{wanted.spoken(travel)}{gently}, then {still}{remedy}"
@@ -96,10 +97,10 @@ def next_lateral(
 def _larger(before: FlownInput, percent: float, aircraft: Aircraft) -> float:
     """Return the amplitude that meets the tolerance with one more manoeuvre, within the bank limit.
 
-    A refused input grows only if the refusal asks for a larger one.
+    A refused input changes only as the refusal asks.
     """
-    wanted = percent / INFORMATION_LIMIT_PERCENT if percent < inf else 1.0
-    factor = min(max(before.too_small if before.remedy else wanted, 1.0), BOLDER)
+    wanted = max(percent / INFORMATION_LIMIT_PERCENT, 1.0) if percent < inf else 1.0
+    factor = min(before.asked if before.remedy else wanted, BOLDER)
     limit = ALPHA_MARGIN * max(BANK_DEG, aircraft.limits.bank_deg)
     if before.bank_rad > 0.0:
         factor = min(factor, limit / degrees(before.bank_rad))

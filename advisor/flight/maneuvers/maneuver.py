@@ -68,7 +68,12 @@ class Span:
     @property
     def is_test_input(self) -> bool:
         """Whether the movement is a test input: by the shape of a named input, or by a mark."""
-        return self.kind != "other" or self.closed_by.startswith("marked")
+        return self.kind != "other" or self.is_marked
+
+    @property
+    def is_marked(self) -> bool:
+        """Whether a person or a message marked the movement as a manoeuvre."""
+        return self.closed_by.startswith("marked")
 
 
 @dataclass(frozen=True, slots=True)

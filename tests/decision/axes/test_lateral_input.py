@@ -1,12 +1,16 @@
 """The size of the next aileron or rudder input, on hand-made numbers."""
 
 from math import inf, radians
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import SideControl
 from advisor.decision.axes.side_input import FlownInput, next_lateral
+from advisor.decision.verdict import Reason
+from advisor.flight.signals.record import Channel
 from tests.campaign.side_builders import estimate, judged
 
 AIRCRAFT = Aircraft()
@@ -56,11 +60,18 @@ def test_a_bank_beyond_its_limit_asks_for_less_and_repeats_the_remedy():
 def test_a_refused_input_grows_only_where_it_was_too_gentle():
     refused = advised(percent=300.0, flown=[aileron(5.0, 10.0, "leave the throttle where it is")])
     assert refused.input.amplitude_rad == pytest.approx(radians(5.0))
-    gentle = FlownInput(
-        "aileron", radians(5.0), radians(10.0), "use about 1.4 times the aileron", too_small=1.3
-    )
+    gentle = FlownInput("aileron", radians(5.0), radians(10.0), "use about 1.4 times the aileron", asked=1.3)
     assert advised(flown=[gentle]).input.amplitude_rad == pytest.approx(radians(6.5), rel=0.05)
     assert "times" not in advised(flown=[gentle]).advice
+
+
+def test_a_control_at_the_end_of_its_travel_is_asked_for_less_by_a_number():
+    end = Reason("saturation", "aileron at the end of its travel; use less stick", 69.0, 0.0)
+    moved = Channel("aileron", np.arange(3.0), np.radians([0.0, 25.0, 0.0]), "SERVO_OUTPUT_RAW.servo1_raw")
+    maneuver = SimpleNamespace(channels={"aileron": moved})
+    found = advised(flown=[FlownInput.of(maneuver, [end])])
+    assert found.input.amplitude_rad == pytest.approx(radians(25.0 / 1.5), rel=0.05)
+    assert "use less stick" not in found.advice
 
 
 def test_the_travel_of_the_file_is_100_percent_of_the_stick():
