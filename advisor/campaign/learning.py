@@ -56,11 +56,8 @@ def learnt(
     if aircraft.elevator.lag_s is None and not knows_the_lag(model.instrument("servo_lag_s")):
         return aircraft
     used = found_of(aircraft)
-    return (
-        aircraft
-        if used is not None and not exactly and _is_no_news(used, found)
-        else with_found(aircraft, found)
-    )
+    is_old = used is not None and (used.equals(found) if exactly else _is_no_news(used, found))
+    return aircraft if is_old else with_found(aircraft, found)
 
 
 def _is_no_news(used: FoundInstruments, found_instruments: FoundInstruments) -> bool:
