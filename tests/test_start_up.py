@@ -45,6 +45,15 @@ def test_numbers_wait_for_no_library_that_takes_longer_to_import_than_its_use(mo
     assert not imported.intersection({"scipy.signal", "scipy.stats", "scipy.interpolate", "scipy.optimize"})
 
 
+def test_an_aircraft_file_without_effects_imports_no_catalogue_of_effects() -> None:
+    imported = modules_after(
+        "from pathlib import Path; from advisor.aircraft_file.read import load_aircraft; "
+        "load_aircraft(Path('logs/arduplane-calm.yaml'))"
+    )
+    assert "advisor.aircraft_file.effects" in imported
+    assert not {name for name in imported if name.startswith("advisor.gap")}
+
+
 def test_every_command_has_help_with_an_example() -> None:
     from click.testing import CliRunner
 

@@ -4,12 +4,13 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from advisor.gap.effects import EFFECTS
-from advisor.gap.kit.effect import without_sizes
-
 
 def mistakes_in(effects: Mapping[str, Mapping[str, float]]) -> Iterator[str]:
     """Yield every mistake in an aircraft file's ``effects``, as ``path: description``."""
+    if not effects:
+        return
+    from advisor.gap.effects import EFFECTS  # not on the start path
+
     for name, sizes in effects.items():
         if name not in EFFECTS:
             yield f"effects.{name}: unknown effect, the effects are {' '.join(EFFECTS)}"
@@ -24,6 +25,9 @@ def mistakes_in(effects: Mapping[str, Mapping[str, float]]) -> Iterator[str]:
 
 def effects_schema() -> dict[str, Any]:
     """Return the JSON schema of the section: every effect with its sentence and its parameters."""
+    from advisor.gap.effects import EFFECTS
+    from advisor.gap.kit.effect import without_sizes
+
     return {
         "type": "object",
         "additionalProperties": False,

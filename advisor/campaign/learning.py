@@ -56,14 +56,19 @@ def learnt(
     if aircraft.elevator.lag_s is None and not knows_the_lag(model.instrument("servo_lag_s")):
         return aircraft
     used = found_of(aircraft)
-    is_old = used is not None and (used.equals(found) if exactly else _is_no_news(used, found))
-    return aircraft if is_old else with_found(aircraft, found)
+    return aircraft if used is not None and _is_no_news(used, found, exactly) else with_found(aircraft, found)
 
 
-def _is_no_news(used: FoundInstruments, found_instruments: FoundInstruments) -> bool:
-    """Return whether the values in use lie within the new standard deviations, and are similarly certain."""
+def _is_no_news(used: FoundInstruments, found_instruments: FoundInstruments, exactly: bool) -> bool:
+    """Return whether the values in use lie within the new standard deviations, and are similarly certain.
+
+    ``exactly`` asks for the same values and errors.
+    """
     if used.names != found_instruments.names:
         return False
+    if exactly:
+        names = ("values", "std", "covariance")
+        return all(np.array_equal(getattr(used, x), getattr(found_instruments, x)) for x in names)
     near = np.abs(found_instruments.values - used.values) <= found_instruments.std
     return bool(np.all(near & (used.std <= MUCH_SURER * found_instruments.std)))
 

@@ -136,8 +136,7 @@ def product(rows: FloatArray, colour: Colour) -> FloatArray:
     if colour.memory == 0.0:
         return colour.variance * square
     forward = rows.T @ accumulated(rows, colour.memory)
-    total: FloatArray = colour.variance * (forward + forward.T - square + colour.white_share * square)
-    return total
+    return np.asarray(colour.variance * (forward + forward.T - square + colour.white_share * square))
 
 
 def powers(rows: FloatArray, colour: Colour) -> FloatArray:
@@ -181,5 +180,4 @@ def _uncertainty(cost: Callable[[FloatArray], float], centre: FloatArray) -> Flo
             mixed = cost(centre + a + b) - cost(centre + a - b) - cost(centre - a + b) + cost(centre - a - b)
             hessian[i, j] = hessian[j, i] = mixed / (8.0 * steps[i] * steps[j])
     values, vectors = np.linalg.eigh(hessian)
-    covariance: FloatArray = (vectors / np.maximum(values, 0.05)) @ vectors.T
-    return covariance
+    return np.asarray((vectors / np.maximum(values, 0.05)) @ vectors.T)

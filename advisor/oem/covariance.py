@@ -175,8 +175,7 @@ def coloured(assembly: Laid, rows: FloatArray, noise: Coloured) -> FloatArray:
     for output, stretches in _stretches(assembly).items():
         for s in stretches:
             total += product(rows[s], noise.colours[output])
-    widened: FloatArray = total * np.outer(noise.widening, noise.widening)
-    return widened
+    return np.asarray(total * np.outer(noise.widening, noise.widening))
 
 
 def widening(assembly: Laid, rows: FloatArray, colours: Mapping[str, Colour]) -> FloatArray:
@@ -205,8 +204,7 @@ def widening(assembly: Laid, rows: FloatArray, colours: Mapping[str, Colour]) ->
     freedom = np.full(len(variance), 1e9)
     uncertain = spread > 0.0
     freedom[uncertain] = np.maximum(2.0 * variance[uncertain] ** 2 / spread[uncertain], LEAST_FREEDOM)
-    factor: FloatArray = np.asarray(stdtrit(freedom, 0.975) / NORMAL_95, np.float64)
-    return factor
+    return np.asarray(stdtrit(freedom, 0.975) / NORMAL_95, np.float64)
 
 
 def _stretches(assembly: Laid) -> dict[str, list[slice]]:

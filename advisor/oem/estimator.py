@@ -107,11 +107,8 @@ class Fit:
             return None
         estimate = driven_without_alpha if self.prepared.alpha_left_out else driven
         # Gusts can draw output error's instruments so far that the search from there diverges.
-        for start in (solution, self.plain):
-            forces = estimate(start, PITCH, instruments, _priors)
-            if forces is not None:
-                return forces
-        return None
+        starts = (solution, self.plain)
+        return next(filter(None, (estimate(start, PITCH, instruments, _priors) for start in starts)), None)
 
     @staticmethod
     def _shows_forces(solution: Solution) -> bool:

@@ -78,10 +78,6 @@ class FoundInstruments:
         """Return the value of one instrument; None if the fit had no such parameter."""
         return float(self.values[self.names.index(name)]) if name in self.names else None
 
-    def equals(self, other: "FoundInstruments") -> bool:
-        """Return whether every value, error and name is the same."""
-        return all(np.array_equal(getattr(self, x.name), getattr(other, x.name)) for x in fields(self))
-
     def without(self, name: InstrumentName) -> "FoundInstruments":
         """Return all instruments but one."""
         kept = [i for i, one in enumerate(self.names) if one != name]

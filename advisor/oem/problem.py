@@ -244,13 +244,11 @@ def _slope(y: FloatArray, t: FloatArray) -> FloatArray:
     step = np.diff(t)
     rate = np.diff(y) / step
     inside = (step[1:] * rate[:-1] + step[:-1] * rate[1:]) / (step[:-1] + step[1:])
-    slope: FloatArray = np.concatenate([rate[:1], inside, rate[-1:]])
-    return slope
+    return np.concatenate([rate[:1], inside, rate[-1:]])
 
 
 def steady_share(problem: OutputErrorProblem, airspeed: FloatArray) -> FloatArray:
     """Return the deflections equivalent to a steady moment, shape (n,), over the one at the reference
     speed."""
     reference = problem.reference_airspeed_m_s
-    share: FloatArray = np.zeros(len(airspeed)) if reference is None else (reference / airspeed) ** 2 - 1.0
-    return share
+    return np.zeros(len(airspeed)) if reference is None else (reference / airspeed) ** 2 - 1.0

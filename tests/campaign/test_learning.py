@@ -88,6 +88,12 @@ def test_a_lag_within_its_own_error_of_the_one_used_changes_nothing_but_at_the_e
     assert lag_of(learnt(used, with_lag(0.145, 0.01), exactly=True)) == 0.145
 
 
+def test_the_same_values_with_the_same_errors_change_nothing_at_the_end_either():
+    used = learnt(Aircraft(), with_lag(0.14, 0.01))
+    assert learnt(used, with_lag(0.14, 0.01), exactly=True) is used
+    assert learnt(used, with_lag(0.14, 0.009), exactly=True) is not used
+
+
 def test_a_lag_that_reads_as_before_is_not_said_again(monkeypatch):
     said = []
     campaign = ElevatorCampaign(Aircraft(), said.append, Parts())

@@ -160,6 +160,17 @@ def test_innovations_of_a_driven_motion_are_white() -> None:
     assert abs(float(white[1:, 0] @ white[:-1, 0])) / n < 0.05
 
 
+def test_one_column_has_the_innovations_that_it_has_among_several() -> None:
+    rng, n = np.random.default_rng(2), 300
+    kind, channel = np.tile([1, 0, 2], n // 3), np.tile([0, 1, 0], n // 3)
+    driving = np.array([[-1.0, 1.0], [-9.0, -2.0]]), np.array([0.1, 0.2]), np.array([0.0, 1.0])
+    at = (np.array([0.0, 0.02, 0.05]), kind), channel, np.array([[1.0, 0.0], [0.3, 1.0]]), driving
+    gains = driven_filter(*at, np.full(n, 1e-4), np.array([0.02, 0.03]), 0.5)
+    columns, order = rng.standard_normal((n, 3)), rng.permutation(n)
+    among = gains.innovations(columns, order)
+    assert np.allclose(gains.innovations(columns[:, 1:2], order), among[:, 1:2], rtol=1e-9, atol=1e-9)
+
+
 def test_in_moving_air_the_estimate_has_unknown_forces_and_in_still_air_none() -> None:
     rough, calm = estimate(flown(0.01, 4), KNOWN_SERVO), estimate(flown(0.0, 4), KNOWN_SERVO)
     assert isinstance(rough, Estimate)
