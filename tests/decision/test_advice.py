@@ -99,25 +99,6 @@ def test_while_a_channel_stands_still_the_next_thing_is_its_mend() -> None:
     assert next_input([flown(), newest], AIRCRAFT).advice == "next: check the air speed sensor"
 
 
-def test_a_prior_model_times_the_first_input() -> None:
-    prior = replace(AIRCRAFT, model=dict(zip(PARAMETERS, THETA.tolist(), strict=True)))
-    assert ", 0.8 s steps, " in next_input([], prior).advice
-
-
-def test_a_prior_model_without_its_constants_times_the_first_input() -> None:
-    prior = replace(AIRCRAFT, model={"Z_alpha": -8.0, "M_alpha": -48.3, "M_q": -4.2})
-    assert ", 0.2 s steps, " in next_input([], prior).advice
-
-
-def test_a_movement_without_a_name_times_the_first_input_without_a_prior_model() -> None:
-    short = Reason("aborted", "free response too short; let the recording run on", 0.0, 0.7)
-    moved = flown()
-    unnamed = replace(moved.maneuver, span=replace(moved.maneuver.span, kind="other"))
-    quick = replace(moved.estimate, theta=4.0 * moved.estimate.theta)
-    heard = [replace(moved, maneuver=unnamed, estimate=quick, reasons=(short,))]
-    assert ", 0.3 s steps, " in next_input(heard, AIRCRAFT).advice
-
-
 def test_the_advised_input_is_better_than_the_one_flown() -> None:
     strict = replace(AIRCRAFT, campaign=CampaignPlan(rule="information", tolerance={"M_q": 0.01}))
     advice = next_input([flown()], strict)

@@ -31,16 +31,6 @@ def test_the_first_input_is_gentle_and_says_so():
     )
 
 
-@pytest.mark.parametrize(("control", "steps"), [("aileron", "0.5 s steps"), ("rudder", "1.6 s steps")])
-def test_the_model_of_the_file_times_the_first_input(control, steps):
-    assert steps in advised(control, aircraft=Aircraft(model={"L_p": -9.0, "N_beta": 4.0})).advice
-
-
-def test_a_refused_manoeuvre_times_the_first_input_without_a_model():
-    refused = FlownInput("rudder", 0.1, 1.0, "less rudder", estimate("rudder"))
-    assert "1.8 s steps" in advised("rudder", flown=[refused]).advice
-
-
 def test_a_poor_estimate_asks_for_more_stick_by_a_build_up_of_one_half():
     found = advised(percent=300.0, flown=[aileron(5.0, 10.0)], accepted=[estimate("aileron")])
     assert found.input.amplitude_rad == pytest.approx(radians(7.5))
