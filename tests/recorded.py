@@ -95,15 +95,19 @@ def record_estimates(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(joint_estimate, "fit_jointly", partial(_fitted_once, joint_estimate.fit_jointly))
 
 
-def _fitted_once(fit_jointly: Callable[..., Any], maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Any:
-    """What a campaign asks of a joint fit: whether it tells the lag, and its estimate."""
+def _fitted_once(
+    fit_jointly: Callable[..., Any], maneuvers: Sequence[Maneuver], aircraft: Aircraft, _near: object = None
+) -> Any:
+    """What a campaign asks of a joint fit from the data alone: whether it tells the lag, and its estimate."""
     asked = (tuple(maneuvers), aircraft)
     fit = cache(lambda: fit_jointly(*asked))
     told = _made_once(("lag", asked), lambda: getattr(fit(), "tells_lag", fit()))
     if isinstance(told, NoEstimate):
         return told
     return SimpleNamespace(
-        tells_lag=told, estimate=lambda: _made_once(("estimate", asked), lambda: fit().estimate())
+        tells_lag=told,
+        estimate=lambda: _made_once(("estimate", asked), lambda: fit().estimate()),
+        fitted=SimpleNamespace(one_hill=False),
     )
 
 

@@ -7,13 +7,14 @@ all accepted manoeuvres are estimated together, from the data alone.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.course import same
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import Fit, fit_jointly
+from advisor.oem.solution import Solution
 
 NEWEST = 7
 """Number of newest accepted manoeuvres in the joint estimate during the flight: a whole campaign of the
@@ -29,22 +30,45 @@ class _Joint:
     tells_lag: bool
     """Whether the servo's lag is a parameter of the fit."""
     _fit: Fit | None
-    """The joint fit until its estimate is requested."""
+    """The joint fit; None if it failed."""
     _found: Estimate | None = None
 
     @classmethod
-    def of(cls, maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> "_Joint":
-        """Fit several manoeuvres jointly."""
-        fit = fit_jointly(maneuvers, aircraft)
+    def of(cls, maneuvers: Sequence[Maneuver], aircraft: Aircraft, earlier: "_Joint | None") -> "_Joint":
+        """Fit several manoeuvres jointly. The search starts from the fit of earlier ones."""
+
+        def near(plain: Solution) -> Solution | None:
+            return None if earlier is None else earlier._near(maneuvers, plain)
+
+        fit = fit_jointly(maneuvers, aircraft, near)
         if isinstance(fit, NoEstimate):
             return cls(tuple(maneuvers), False, None)
         return cls(tuple(maneuvers), fit.tells_lag, fit)
 
     def estimate(self) -> Estimate | None:
         """Return the estimate from the fit; None without a fit."""
-        if self._fit is not None:
-            self._found, self._fit = self._fit.estimate(), None
+        if self._found is None and self._fit is not None:
+            self._found = self._fit.estimate()
         return self._found
+
+    def _near(self, maneuvers: Sequence[Maneuver], plain: Solution) -> Solution | None:
+        """Return the solution ``plain`` of manoeuvres, moved to the parameters of this fit.
+
+        None where this fit has several hills, or commands that are held between their stamps.
+        """
+        if self._fit is None or not self._fit.fitted.one_hill:
+            return None
+        fitted, problem, local = self._fit.fitted, plain.problem, plain.optimum.local.copy()
+        if any(record.held for record in fitted.solution.problem.records):
+            return None
+        for x, _ in fitted.identified:
+            problem = x.write(problem, x.read(fitted.solution.problem))
+        place = {id(maneuver): k for k, maneuver in enumerate(self.maneuvers)}
+        for own, maneuver in zip(local, maneuvers, strict=True):
+            if id(maneuver) in place:
+                own[:] = fitted.solution.optimum.local[place[id(maneuver)]]
+        optimum = plain.optimum._replace(shared=fitted.solution.optimum.shared, local=local)
+        return replace(plain, problem=problem, optimum=optimum)
 
 
 class Together:
@@ -91,6 +115,8 @@ class Together:
 
     def _of(self, maneuvers: Sequence[Maneuver]) -> _Joint:
         if self._kept is None or not same(self._kept.maneuvers, maneuvers):
+            # More manoeuvres than in flight are estimated from the data alone.
+            earlier = self._kept if len(maneuvers) <= NEWEST else None
             self._kept = None  # of hundreds of manoeuvres a fit is a hundred megabytes
-            self._kept = _Joint.of(maneuvers, self._aircraft)
+            self._kept = _Joint.of(maneuvers, self._aircraft, earlier)
         return self._kept

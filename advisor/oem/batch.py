@@ -39,8 +39,7 @@ class Batch:
     @property
     def cost(self) -> FloatArray:
         """Shape (n,): cost J = σ_α²·σ_q², Eq. (7)."""
-        product: FloatArray = np.prod(self.noise**2, axis=1)
-        return product
+        return np.asarray(np.prod(self.noise**2, axis=1))
 
     @property
     def failed(self) -> int:

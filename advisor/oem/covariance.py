@@ -190,8 +190,7 @@ def widening(assembly: Laid, rows: FloatArray, colours: Mapping[str, Colour]) ->
         colour = colours[output]
 
         def part(colour: Colour, stretches: list[slice] = stretches) -> FloatArray:
-            summed: FloatArray = np.sum([powers(rows[s], colour) for s in stretches], axis=0)
-            return summed
+            return np.asarray(np.sum([powers(rows[s], colour) for s in stretches], axis=0))
 
         own = part(colour)
         slopes = [own]

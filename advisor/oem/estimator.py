@@ -1,6 +1,6 @@
 """Estimation of parameters from manoeuvres, as called by other packages."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -51,15 +51,22 @@ def estimate_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Estim
     return fit if isinstance(fit, NoEstimate) else fit.estimate()
 
 
-def fit_jointly(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> "Fit | NoEstimate":
-    """Return the fit on which the estimate over several manoeuvres is based."""
+def fit_jointly(
+    maneuvers: Sequence[Maneuver],
+    aircraft: Aircraft,
+    near: Callable[[Solution], Solution | None] = lambda _: None,
+) -> "Fit | NoEstimate":
+    """Return the fit on which the estimate over several manoeuvres is based.
+
+    ``near`` returns a start on the one hill of earlier manoeuvres, from the solution without instruments.
+    """
     if not maneuvers:
         return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")
     begun = _begun(maneuvers, aircraft)
     if isinstance(begun, NoEstimate):
         return begun
     prepared, plain = begun
-    return Fit(maneuvers, aircraft, prepared, plain, _with_instruments(plain, aircraft))
+    return Fit(maneuvers, aircraft, prepared, plain, _with_instruments(plain, aircraft, near(plain)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,13 +138,13 @@ def _begun(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> tuple[Prepared,
     return plain if isinstance(plain, NoEstimate) else (prepared, plain)
 
 
-def _with_instruments(plain: Solution, aircraft: Aircraft) -> InstrumentFit:
+def _with_instruments(plain: Solution, aircraft: Aircraft, near: Solution | None) -> InstrumentFit:
     """Return the fit with the instruments, and with the likelier motion of the command.
 
     A smooth command may be held between its stamps instead of linear, which delays it by half an interval.
     Large steps of the command get their own times (``edges``).
     """
-    linear = fit_instruments(plain, unknown_instruments(plain.problem, aircraft))
+    linear = fit_instruments(plain, unknown_instruments(plain.problem, aircraft), near)
     records = plain.problem.records
     if any(large_steps(record.elevator).interval for record in records):
         return linear

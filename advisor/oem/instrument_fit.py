@@ -88,6 +88,8 @@ class InstrumentFit:
     solution: Solution
     """Solution whose ``extra`` columns are the derivatives by ``identified``, in that order."""
     identified: tuple[Identified, ...] = ()
+    one_hill: bool = False
+    """Whether the posterior along a servo's lag has one hill."""
 
     def misfit(self, weighing: Weighing) -> float:
         """Return -2 log posterior density of the solution, up to a constant, under one noise model."""
@@ -159,26 +161,30 @@ class _Pitch:
 PITCH = _Pitch()
 
 
-def fit_instruments(plain: Solution, unknown: Sequence[Instrument]) -> InstrumentFit:
+def fit_instruments(
+    plain: Solution, unknown: Sequence[Instrument], near: Solution | None = None
+) -> InstrumentFit:
     """Return the solution with estimated instrument parameters; ``plain`` is the solution without them.
 
     Parameters
     ----------
     unknown
         Instruments with a prior, open instruments, and stated instruments.
+    near
+        Start on the one hill of earlier records. None: every hill is searched.
     """
     if not unknown:
         return InstrumentFit(plain)
     share = colour_share(plain)
     names = tuple(weighed(x, share) for x in unknown)
-    best, *others = _hills(plain, names, share)
+    best, *others = _hills(plain, names, share) if near is None else [near]
     found = _fitted(best, names, share, final=False)
     if found is not None:
         share = colour_share(found)
         names = tuple(weighed(x, share) for x in unknown)
         found = _fitted(found, names, share)
     if found is None:
-        return InstrumentFit(plain)
+        return InstrumentFit(plain) if near is None else fit_instruments(plain, unknown)
     return _with_statements(names, _whole_posterior(found, names, others), plain, others)
 
 
@@ -281,7 +287,7 @@ def _with_statements(
     alone = _uncancelled(identified_at(solution, names))
     white = np.sqrt(np.diag(solution.covariance_cr)[N:])
     if all((x.instrument.stated is None or x.found.contradicts) and not _cancels(x, alone) for x in alone):
-        return InstrumentFit(solution, alone)
+        return InstrumentFit(solution, alone, not others)
     kept, problem = [], solution.problem
     for one, white_std in zip(alone, white, strict=True):
         x, found = one
@@ -305,7 +311,7 @@ def _with_statements(
     if final is None:
         return InstrumentFit(plain)
     final = _whole_posterior(final, left, others)
-    return InstrumentFit(final, refreshed(kept, final))
+    return InstrumentFit(final, refreshed(kept, final), not others)
 
 
 def _cancels(one: Identified, all_of_them: Sequence[Identified]) -> bool:

@@ -108,5 +108,4 @@ def _correction(solution: Solution, at: Index) -> FloatArray:
     scale = np.linalg.norm(system, axis=0)
     scale[scale == 0.0] = 1.0
     change = np.linalg.lstsq(system / scale, solution.residual * weight, rcond=1e-10)[0] / scale
-    correction: FloatArray = change[known.shape[1] :]
-    return correction
+    return np.asarray(change[known.shape[1] :])

@@ -126,14 +126,12 @@ def merged(stamps: FloatArray, pace: float) -> FloatArray:
     parts: Index = np.maximum(1, np.ceil(np.diff(t) / pace - 1e-6)).astype(np.int64)
     cells = np.repeat(np.arange(len(parts)), parts)
     within = np.arange(len(cells)) - np.repeat(np.cumsum(parts) - parts, parts)
-    merged: FloatArray = np.append(t[cells] + within * (np.diff(t) / parts)[cells], t[-1])
-    return merged
+    return np.append(t[cells] + within * (np.diff(t) / parts)[cells], t[-1])
 
 
 def padded(rows: FloatArray) -> FloatArray:
     """Return the rows with the last row repeated, for as many steps as events."""
-    padded: FloatArray = np.concatenate([rows, rows[-1:]])
-    return padded
+    return np.concatenate([rows, rows[-1:]])
 
 
 class Measurements(TypedDict):
@@ -163,8 +161,7 @@ def nearest_event(events: FloatArray, stamps: FloatArray) -> Index:
 
     An event may differ from its stamp by more than ``STAMP_S`` where stamps are closer together.
     """
-    index: Index = np.searchsorted((events[1:] + events[:-1]) / 2.0, stamps).astype(np.int64)
-    return index
+    return np.searchsorted((events[1:] + events[:-1]) / 2.0, stamps).astype(np.int64)
 
 
 def lay_rows(pieces: Sequence[Piece], outputs: Sequence[str]) -> LaidRows:

@@ -141,5 +141,4 @@ def _integral(x: Signal, begin: float, t: FloatArray) -> FloatArray:
         i = np.clip(np.searchsorted(x.t, times, side="right") - 1, 0, len(x.t) - 1)
         return total[i] + (times - x.t[i]) * (x.y[i] + x.at(times)) / 2.0
 
-    result: FloatArray = upto(t) - upto(np.array([begin]))
-    return result
+    return np.asarray(upto(t) - upto(np.array([begin])))

@@ -16,8 +16,9 @@ from advisor.campaign.learning import may_learn
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.mavlink.logs.logs import open_log
+from advisor.oem import instrument_fit
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.oem.estimator import estimate_jointly
+from advisor.oem.estimator import estimate_jointly, fit_jointly
 from advisor.oem.known_instruments import FoundInstruments, with_found
 from tests.flights import FOUR, TWO, recorded
 
@@ -82,6 +83,21 @@ def test_a_joint_estimate_that_was_asked_for_is_kept(states: tuple[CampaignState
     assert together.estimate([replace(maneuvers[0]), maneuvers[1]]) is not first
 
 
+def test_a_further_manoeuvre_continues_the_fit_of_the_earlier_ones_on_its_only_hill(
+    states: tuple[CampaignState, CampaignState], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    maneuvers = [judged.maneuver for judged in states[1].maneuvers]
+    anew = estimate_jointly(maneuvers, Aircraft())
+    monkeypatch.setattr(joint_estimate, "fit_jointly", fit_jointly)
+    together = Together(Aircraft())
+    together.estimate(maneuvers[:2])
+    monkeypatch.delattr(instrument_fit, "_hills")
+    continued = together.estimate(maneuvers)
+    assert continued is not None
+    assert isinstance(anew, Estimate)
+    assert np.all(np.abs(continued.theta - anew.theta) <= 0.03 * anew.std_cr)
+
+
 def test_the_estimate_for_the_lag_comes_only_where_the_manoeuvres_tell_a_lag_to_a_tenth(
     states: tuple[CampaignState, CampaignState],
 ) -> None:
@@ -120,7 +136,7 @@ class Fits:
     tells_lag: bool
     asked: list[list[int]]
 
-    def __call__(self, maneuvers: Sequence[Maneuver], _: Aircraft) -> "Fits | NoEstimate":
+    def __call__(self, maneuvers: Sequence[Maneuver], _: Aircraft, _near: object) -> "Fits | NoEstimate":
         self.asked.append([maneuver.number for maneuver in maneuvers])
         return self if self.tells_lag else NoEstimate("singular", "Nothing is told.")
 
