@@ -118,9 +118,7 @@ class LateralCampaign(AxisCampaign):
 
     @property
     def _may_stop(self) -> bool:
-        """Return whether the newest manoeuvre can decide. Both controls must have been flown, and no stop
-        announced before.
-        """
+        """Whether the test can stop after the newest manoeuvre: once, and after both controls were flown."""
         moved = {control for one in self._told if one is not None for control in one.flown}
         return moved >= set(self._controls) and not any(one.stops for one in self._still_heard)
 

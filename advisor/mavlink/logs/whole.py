@@ -67,7 +67,8 @@ def read_whole_log(
         lender, known = _lent(others)
         if lender is not None:
             notes.append(
-                f"The log states no parameters of its servo outputs. Those of {printable(lender.name)} count"
+                "The log states no parameters of its servo outputs. "
+                f"The parameters in {printable(lender.name)} count"
             )
     flew = _flew_though_heard_later(telling)
     if flew is not None:

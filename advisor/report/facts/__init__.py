@@ -1,1 +1,1 @@
-"""Numbers and sentences that several screens and pages state. One function makes each of them."""
+"""Numbers and sentences that several screens and pages state. One function makes each."""

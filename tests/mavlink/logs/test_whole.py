@@ -112,13 +112,13 @@ def test_a_log_without_parameters_takes_those_of_the_campaigns_other_log(without
     _, events = flown(series.batches(), series.names)
     # Both logs hold one flight, so that the second log's manoeuvre is the first one again.
     assert len([e for e in events if isinstance(e, ManeuverAgain)]) == 1
-    assert any("Those of t_base.tlog count" in e.text for e in events if isinstance(e, Notice))
+    assert any("The parameters in t_base.tlog count" in e.text for e in events if isinstance(e, Notice))
 
 
 def test_the_gap_lends_parameters_from_the_campaigns_other_log_too(without: Path) -> None:
     flights = maneuvers_of([without, BASE], Aircraft())
     assert flights.again == 1
-    assert any("Those of t_base.tlog count" in note for note in flights.notes)
+    assert any("The parameters in t_base.tlog count" in note for note in flights.notes)
 
 
 def test_no_log_lends_what_the_log_itself_states(late: Path) -> None:

@@ -38,7 +38,7 @@ SPEED = 7
 """Index of the air speed among the known factors."""
 OPEN = ("airspeed_excess", "alpha_excess_rad")
 """Open numbers: the logarithm of the true over the read air speed, and the excess of the angle of attack.
-Their columns follow those of all parameters."""
+Their columns stand after the parameters' columns."""
 ALL = len(LATERAL.names.shared) + len(LATERAL.names.local)
 """Number of parameters of a manoeuvre."""
 _AIR, _ALPHA = range(ALL, ALL + len(OPEN))
