@@ -80,7 +80,7 @@ def next_lateral(
     """
     travel = travel_of(getattr(aircraft, control).ends_deg)
     before = next((earlier for earlier in reversed(flown) if earlier.control == control), None)
-    amplitude = GENTLE * travel if before is None else _larger(before, percent, aircraft)
+    amplitude = GENTLE * travel if before is None else _larger(before, percent, aircraft, travel)
     refused = [x.estimate for x in flown if x.estimate is not None]
     unit_s = first_unit_s(control, aircraft, accepted, refused)
     wanted = StepInput("doublet", unit_s, min(amplitude, ALPHA_MARGIN * travel), True, control)
@@ -94,7 +94,7 @@ def next_lateral(
     return NextInput(f"next: {said}", None, holding_back, wanted)
 
 
-def _larger(before: FlownInput, percent: float, aircraft: Aircraft) -> float:
+def _larger(before: FlownInput, percent: float, aircraft: Aircraft, travel: float) -> float:
     """Return the amplitude that meets the tolerance with one more manoeuvre, within the bank limit.
 
     A refused input changes only as the refusal asks.
@@ -104,4 +104,5 @@ def _larger(before: FlownInput, percent: float, aircraft: Aircraft) -> float:
     limit = ALPHA_MARGIN * max(BANK_DEG, aircraft.limits.bank_deg)
     if before.bank_rad > 0.0:
         factor = min(factor, limit / degrees(before.bank_rad))
-    return factor * before.amplitude_rad
+    # A control that moves from one end to the other is no larger than its travel from trim.
+    return factor * min(before.amplitude_rad, travel)

@@ -57,7 +57,7 @@ def test_a_refused_input_grows_only_where_it_was_too_gentle():
 
 def test_a_control_at_the_end_of_its_travel_is_asked_for_less_by_a_number():
     end = Reason("saturation", "aileron at the end of its travel; use less stick", 69.0, 0.0)
-    moved = Channel("aileron", np.arange(3.0), np.radians([0.0, 25.0, 0.0]), "SERVO_OUTPUT_RAW.servo1_raw")
+    moved = Channel("aileron", np.arange(3.0), np.radians([-25.0, 25.0, -25.0]), "SERVO_OUTPUT_RAW")
     maneuver = SimpleNamespace(channels={"aileron": moved})
     found = advised(flown=[FlownInput.of(maneuver, [end])])
     assert found.input.amplitude_rad == pytest.approx(radians(25.0 / 1.5), rel=0.05)
