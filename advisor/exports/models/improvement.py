@@ -101,11 +101,6 @@ class Improvement:
         return self.air.true_speed(self.airspeed_m_s)
 
     @property
-    def air_note(self) -> str:
-        """Sentences about the density and the air speed of the coefficients."""
-        return air_note(self.air)
-
-    @property
     def untold(self) -> tuple[str, ...]:
         """Sentences about derivatives that do not differ significantly from zero."""
         return tuple(zero_said(name) for name in SLOPES if not is_told(self.model[name]))
@@ -115,15 +110,10 @@ class Improvement:
         value = self.model[parameter]
         return value.value if parameter not in SLOPES or is_told(value) else 0.0
 
-    def interval95(self, parameter: str) -> tuple[float, float]:
-        """Return the 95 % interval of one of the eight parameters."""
-        value = self.model[parameter]
-        return value.value - NORMAL_95 * value.std, value.value + NORMAL_95 * value.std
-
     def differs(self, parameter: str, prior: float) -> bool:
         """Return whether the 95 % interval of a parameter excludes a prior value."""
-        low, high = self.interval95(parameter)
-        return not low <= prior <= high
+        value = self.model[parameter]
+        return abs(prior - value.value) > NORMAL_95 * value.std
 
     def coefficients(self) -> Mapping[str, Coefficient]:
         """Return the eight non-dimensional coefficients, per radian. C_L_0 and C_m_0 are values at zero

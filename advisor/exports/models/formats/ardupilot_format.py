@@ -136,7 +136,7 @@ def _pitch(pitch: Improvement, aircraft: Aircraft) -> Part:
         f"c_drag_p and oswald are scaled alike: C_D0 {OWN_DRAG:g} and e {OWN_OSWALD:g} are ArduPilot's own.",
         f"c_m_* are C_m divided by I_yy = {inertia:.6g} kg m2: ArduPilot takes the torque as acceleration.",
         f"c_*_deltae are per 500 us of pulse width, {math.degrees(full):+.4g} deg here.",
-        f"Pitch at {pitch.true_airspeed_m_s:.4g} m/s true. {pitch.air_note}",
+        f"Pitch at {pitch.true_airspeed_m_s:.4g} m/s true. {air_note(pitch.air)}",
         "C_L and C_m per radian: " + ", ".join(f"{name} {value:.6g}" for name, value in c.items()) + ".",
     ]
     return Part(keys, notes, (*effects_beside(pitch), *pitch.untold))

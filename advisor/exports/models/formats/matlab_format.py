@@ -98,7 +98,7 @@ def script_text(improvement: Improvement) -> Exported:
             "State x = [alpha; q] (rad, rad/s), input u = delta_e (rad, trailing edge down positive),",
             "output y = [alpha; q; a_z] (rad, rad/s, m/s^2; body z is down): departures from trim.",
             "xdot = A*x + B*u, y = C*x + D*u, where u has passed the servo below.",
-            improvement.air_note,
+            air_note(improvement.air),
         ],
         "%",
     )

@@ -126,7 +126,7 @@ def block_text(improvement: Improvement) -> Exported:
         "Link frame: x ahead, y left, z up; cp is relative to the centre of mass. Rename link and joint.",
         f"The link needs {reference.mass_kg:.6g} kg and iyy {reference.iyy_kg_m2:.6g} kg m2.",
         "The joint is positive where the trailing edge is down.",
-        f"{improvement.air_note} Drag is not found by the diagnosis: add your drag coefficient as cda.",
+        f"{air_note(improvement.air)} Drag is not found by the diagnosis: add your drag coefficient as cda.",
         "C_L and C_m per radian: " + ", ".join(f"{name} {value:.6g}" for name, value in c.items()) + ".",
         f"Kept: C_L_alpha, C_m_alpha, C_m_q, C_m_delta_e. Implied: C_L_delta_e {control:.6g}, "
         f"C_L_q {-2.0 * c['C_m_alpha']:.6g}.",
