@@ -63,7 +63,7 @@ def next_steps(
         if written is None:
             command = shlex.join([*read, *write]) if write else ""
             lacks = " what it lacks" if _effects_of(d) else ""
-            put = f"Put into the simulator{lacks}" if d.derivatives else "State in the aircraft file"
+            put = f"Put into the simulator{lacks}" if d.derivatives else "Add to what the file states"
             steps.append(GapStep(f"{put}: {what}.{formats}", command))
         prove = shlex.join([*read, *proved])
         steps.append(GapStep(_PROVE.format(after=short(d.gap.after)), prove))

@@ -111,7 +111,7 @@ def test_manoeuvres_that_fit_both_alike_promise_no_probability():
 
 def test_only_a_decided_answer_is_put_into_the_simulator():
     decided = diagnosis(evidence=evidence((DELAY, 0.61), (LAG, 0.39)))
-    assert next_steps(decided, ["flight.tlog"], None)[0].text.startswith("State in the aircraft file")
+    assert next_steps(decided, ["flight.tlog"], None)[0].text.startswith("Add to what the file states")
 
 
 def test_the_longest_title_fits_80_columns():

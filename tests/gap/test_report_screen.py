@@ -225,7 +225,7 @@ def test_without_all_the_largest_answer_takes_at_most_40_lines():
         "CAUSE FOUND",
         "where: between the command",
         "● transport delay",
-        "State in the aircraft file",
+        "Add to what the file states",
     ):
         assert part in text
     assert "--all adds the gap in time and by manoeuvre, the fidelity by channel, 2 notes and 2 eff" in text

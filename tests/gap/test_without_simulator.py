@@ -45,7 +45,7 @@ def test_without_a_simulator_no_sentence_has_the_word() -> None:
     assert found.sentence.startswith("Your file states no elevator.delay_s; this flight says 0.030 ± ")
     assert "Change: elevator: {delay_s: 0.030}." in found.sentence
     steps = next_steps(found, ["a.tlog"], "mine.yaml")
-    assert steps[0].text.startswith("State in the aircraft file: transport delay")
+    assert steps[0].text.startswith("Add to what the file states: transport delay")
     console = Console(width=100, record=True, file=StringIO())
     console.print(GapScreen(found, steps=steps))
     assert "simulator" not in console.export_text()
