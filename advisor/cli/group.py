@@ -51,7 +51,7 @@ command.
 
 COMPLETION_VARIABLE = "_ADVISOR_COMPLETE"
 """Environment variable with which a shell requests completions."""
-WITHOUT_KERNELS = frozenset({"locate", "sample", "aircraft", "completion", "mcp"})
+WITHOUT_KERNELS = frozenset({"locate", "sample", "aircraft", "completion", "mcp", "simulator"})
 """Commands that need no compiled code, or need it seldom. The first run of such a command
 compiles nothing.
 """

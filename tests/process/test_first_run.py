@@ -1,5 +1,8 @@
 """The first run compiles with a word about it, later ones neither compile nor speak."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -54,3 +57,12 @@ def test_nothing_is_compiled_where_the_compiler_is_off(
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
     compile_once(said.append)
     assert said == []
+
+
+def test_a_check_of_a_simulator_waits_for_no_compiler(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "advisor", "simulator", "check", "linear"]
+    inside = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run(command, env=inside, capture_output=True, encoding="utf-8", check=False)
+    assert done.returncode == 2
+    assert "First run" not in done.stderr
+    assert "needs an air speed" in done.stderr
