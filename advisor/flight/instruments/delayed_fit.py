@@ -142,11 +142,13 @@ def _descended(
         factors = known.copy()
         factors[free] = fitted[: len(free)]
         residual = y - columns @ known - linear @ fitted
-        jacobian = np.column_stack([-factors * rates, linear])
-        step = np.linalg.lstsq(jacobian, residual, rcond=None)[0][: len(delays)]
+        here = _Point(delays, factors, np.column_stack([-factors * rates, linear]), residual)
+        if rounds == 0:
+            return here
+        step = np.linalg.lstsq(here.jacobian, residual, rcond=None)[0][: len(delays)]
         step = np.clip(step, -_LARGEST_STEP_S, _LARGEST_STEP_S)
-        if rounds == 0 or np.max(np.abs(step)) < _SETTLED_S:
-            return _Point(delays, factors, jacobian, residual)
+        if np.max(np.abs(step)) < _SETTLED_S:
+            return here
         delays = np.clip(delays + step, -LONGEST_DELAY_S, LONGEST_DELAY_S)
         rounds -= 1
 
