@@ -104,7 +104,7 @@ def test_a_table_of_unknown_names_is_one_sentence_with_the_section_to_write(tmp_
 def test_what_is_no_table_is_one_sentence(tmp_path):
     broken = tmp_path / "x.mat"
     broken.write_bytes(b"MATLAB 5.0 no")
-    with pytest.raises(UnusableInputError, match=r"x.mat is no table of numbers"):
+    with pytest.raises(UnusableInputError, match=r"x.mat is no table of numbers, or damaged\."):
         table_maneuvers(broken, AIRCRAFT)
     constant = tmp_path / "y.csv"
     constant.write_text("Time,Elev,Q,Alpha,Theta,Nz,KTAS,Alt\n" + "0,0,0,0,0,1,50,0\n" * 3)

@@ -29,7 +29,7 @@ def read_table(path: Path) -> Mapping[str, FloatArray]:
         columns = _mat(path) if is_mat else _text(path)
     except Exception as error:
         # SciPy passes on its own exceptions, of zlib and of struct, down to Exception itself.
-        raise UnusableInputError("table", f"{path.name} is no table of numbers: {error}.", _FIX) from error
+        raise UnusableInputError("table", f"{path.name} is no table of numbers, or damaged.", _FIX) from error
     if not columns:
         raise UnusableInputError("table", f"{path.name} has no column of numbers.", _FIX)
     return columns
