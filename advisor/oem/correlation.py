@@ -9,19 +9,7 @@ HIGH_CORRELATION = 0.9
 
 
 def correlation_matrix(covariance: FloatArray) -> FloatArray:
-    """Scale a covariance to correlations.
-
-    Parameters
-    ----------
-    covariance
-        Shape (n, n), symmetric, any units.
-
-    Returns
-    -------
-    ndarray
-        Shape (n, n), from -1 to 1. Rows and columns of a parameter without positive variance are NaN.
-    """
+    """Return the correlations (n, n) of a covariance (n, n); NaN for a parameter without variance."""
     variance = np.diag(covariance)
-    known = np.isfinite(variance) & (variance > 0.0)
-    scale = np.sqrt(np.where(known, variance, np.nan))
+    scale = np.sqrt(np.where(np.isfinite(variance) & (variance > 0.0), variance, np.nan))
     return np.asarray(np.clip(covariance / np.outer(scale, scale), -1.0, 1.0))

@@ -109,7 +109,7 @@ def with_edges(plain: Solution) -> Solution:
     if gain < chdtri(count, CHANCE) and upright < GAIN_UPRIGHT:
         return plain
     final = evaluate(problem, assembly, optimum, extra, kept=len(own))
-    return replace(final, modes=plain.modes, profile=plain.profile) if isinstance(final, Solution) else plain
+    return replace(final, modes=plain.modes, alike=plain.alike) if isinstance(final, Solution) else plain
 
 
 def _edged(

@@ -62,10 +62,12 @@ def fit_jointly(
     """
     if not maneuvers:
         return NoEstimate("no_maneuver", "There is no manoeuvre to estimate from.")
-    begun = _begun(maneuvers, aircraft)
-    if isinstance(begun, NoEstimate):
-        return begun
-    prepared, plain = begun
+    prepared = prepare(maneuvers, aircraft)
+    if isinstance(prepared, NoEstimate):
+        return prepared
+    plain = _solved(prepared.problem)
+    if isinstance(plain, NoEstimate):
+        return plain
     return Fit(maneuvers, aircraft, prepared, plain, _with_instruments(plain, aircraft, near(plain)))
 
 
@@ -92,7 +94,7 @@ class Fit:
         forces = self._forces(solution, [x.instrument for x in identified])
         if forces is not None:
             # The lag's ridge is a property of the input, which unknown forces do not change.
-            corrected = replace(forces.solution, modes=solution.modes, profile=solution.profile)
+            corrected = replace(forces.solution, modes=solution.modes, alike=solution.alike)
             forces = forces._replace(solution=corrected)
             identified = refreshed(identified, corrected)
         found = report(solution, self.prepared, self.aircraft, identified=identified, forces=forces)
@@ -110,32 +112,18 @@ class Fit:
 
     def _forces(self, solution: Solution, instruments: Sequence[Instrument]) -> Driven | None:
         """Return the estimate with unknown forces; None if there are none, or if the search diverges."""
-        if not (self.prepared.alpha_left_out or self._shows_forces(solution)):
-            return None
-        estimate = driven_without_alpha if self.prepared.alpha_left_out else driven
-        # Gusts can draw output error's instruments so far that the search from there diverges.
-        starts = (solution, self.plain)
-        return next(filter(None, (estimate(start, PITCH, instruments, _priors) for start in starts)), None)
-
-    @staticmethod
-    def _shows_forces(solution: Solution) -> bool:
-        """Return whether output error may not be valid."""
+        if self.prepared.alpha_left_out:
+            starts = (driven_without_alpha(at, PITCH, instruments, _priors) for at in (solution, self.plain))
+            return next(filter(None, starts), None)
         fits = [fit["q"] for fit in channel_fits(solution.assembly, solution.optimum)]
-        return not all(fit.lag1 < COLOURED or 1.0 - fit.r2 < UNEXPLAINED for fit in fits)
+        still = all(fit.lag1 < COLOURED or 1.0 - fit.r2 < UNEXPLAINED for fit in fits)
+        # Gusts can draw output error's instruments so far that the search from there diverges.
+        return None if still else driven(solution, PITCH, instruments, _priors, again=self.plain)
 
 
 def _priors(problem: OutputErrorProblem, shared: FloatArray) -> Priors:
     """Return the priors of the derivatives for a problem."""
     return about_zero(precision(problem, shared))
-
-
-def _begun(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> tuple[Prepared, Solution] | NoEstimate:
-    """Return the prepared manoeuvres, and the solution without instrument parameters."""
-    prepared = prepare(maneuvers, aircraft)
-    if isinstance(prepared, NoEstimate):
-        return prepared
-    plain = _solved(prepared.problem)
-    return plain if isinstance(plain, NoEstimate) else (prepared, plain)
 
 
 def _with_instruments(plain: Solution, aircraft: Aircraft, near: Solution | None) -> InstrumentFit:
@@ -220,8 +208,8 @@ def report(
     best = filtered or (solution if quick else efficient(solution))
     source = filtered or solution
     within = replace(source, covariance=best.covariance, systematic=best.systematic)
-    # Optima along a profile explain the record alike, and so predict the response to its input alike.
-    predicted = within.widened if source.profile is None else replace(within, modes=None).widened
+    # Optima that explain the record alike predict the response to its input alike.
+    predicted = within.widened if source.alike is None else replace(within, modes=None).widened
     best = replace(best, covariance=within.widened)
     airspeed_m_s = solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s
     given, rows = found_of(aircraft), [x.row for x in identified]

@@ -34,7 +34,7 @@ from advisor.oem.gauss_newton import CONVERGED, MOST_ITERATIONS
 from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, Instrument, extra_of
 from advisor.oem.prior import about_zero, precision, usual_moments
 from advisor.oem.problem import ASSUMED_M_S, Assembly, OutputErrorProblem, assemble
-from advisor.oem.profile import Posterior, profiled
+from advisor.oem.profile import ALIKE_NATS, Posterior, profiled
 from advisor.oem.short_period_motion import short_period_motion
 from advisor.oem.solution import Solution, evaluate, spread_of
 from advisor.oem.weighing import Weighing
@@ -191,10 +191,8 @@ def fit_instruments(
 def _hills(plain: Solution, names: Sequence[Instrument], share: float) -> list[Near]:
     """Return a start on each hill of the posterior along a servo's lag, the highest hill first.
 
-    A lag delays the response as a pole of the aircraft does. If both are exchanged, the pitch rate after an
-    input is unchanged, and the posterior has a second hill. All other parameters are searched at each lag,
-    because a delay of the command hides the hill of a short lag. A measured surface has a stated lag of zero,
-    and one hill.
+    All other parameters are searched at each lag, because a delay of the command hides the hill of a short
+    lag. A measured surface has a stated lag of zero, and one hill.
     """
     lag = next((x for x in names if x.starts and x.stated != 0.0), None)
     if lag is None:
@@ -236,7 +234,10 @@ def _of_two_hills(best: Solution, others: Sequence[Near], posterior: Posterior) 
         return best
     lower, moment = posterior.apart(best, rival)
     likelier = best if lower >= 0.0 else _evaluated(rival)
-    return best if likelier is None else replace(likelier, modes=moment)
+    if likelier is None:
+        return best
+    own, other = (posterior.row(at, SERVO_LAG) for at in ((best, rival) if lower >= 0.0 else (rival, best)))
+    return replace(likelier, modes=moment, alike=np.array([own, other]) if abs(lower) <= ALIKE_NATS else None)
 
 
 def _fitted(near: Near, names: Sequence[Instrument], share: float, final: bool = True) -> Solution | None:

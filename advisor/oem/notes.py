@@ -74,24 +74,19 @@ def _ridge(solution: Solution) -> str:
     The sentence names the derivative that differs most. No sentence is needed where the linear interval of
     every derivative holds both lags.
     """
-    profile = solution.profile
-    if profile is None:
+    rows = [PARAMETERS.index(x) for x in ("M_alpha", "M_q", "M_delta_e") if x not in solution.problem.fixed]
+    if solution.alike is None or not rows:
         return ""
-    fixed = solution.problem.fixed
-    derivatives = [PARAMETERS.index(name) for name in ("M_alpha", "M_q", "M_delta_e") if name not in fixed]
-    if not derivatives:
-        return ""
-    std = np.sqrt(np.diag(solution.scattered))[derivatives]
-    alike = profile.alike
-    apart = np.abs(alike[:, 1:][:, derivatives] - profile.best[derivatives]) / std
+    std = np.sqrt(np.diag(solution.scattered))[rows]
+    lag_s, theta = solution.alike[:, 0], solution.alike[:, 1:]
+    apart = np.abs(theta[:, rows] - theta[0, rows]) / std
     far, which = np.unravel_index(int(np.argmax(apart)), apart.shape)
-    lag_s, other_s = profile.best[len(PARAMETERS) + profile.place], alike[far, 0]
-    if apart[far, which] <= NORMAL_95 or f"{lag_s:.2f}" == f"{other_s:.2f}":
+    if apart[far, which] <= NORMAL_95 or f"{lag_s[0]:.2f}" == f"{lag_s[far]:.2f}":
         return ""
-    k = derivatives[which]
+    k = rows[which]
     return (
-        f"Servo lags of {lag_s:.2f} s and {other_s:.2f} s explain the record alike, with "
-        f"{symbol(PARAMETERS[k])} of {profile.best[k]:.3g} and {alike[far, 1 + k]:.3g}. "
+        f"Servo lags of {lag_s[0]:.2f} s and {lag_s[far]:.2f} s explain the record alike, with "
+        f"{symbol(PARAMETERS[k])} of {theta[0, k]:.3g} and {theta[far, k]:.3g}. "
         "Set elevator.lag_s, or fly steps of another duration."
     )
 

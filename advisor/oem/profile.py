@@ -42,8 +42,6 @@ Its arguments are these parameters, the problem with the new value, and the near
 class Profile:
     """Optima of all other parameters at several values of one parameter."""
 
-    place: int
-    """Index of the profiled parameter among the nuisance parameters."""
     values: FloatArray
     """Shape (n,): values of the parameter in its unit, rising."""
     nats: FloatArray
@@ -126,6 +124,10 @@ class Posterior(NamedTuple):
         """Return parameters and nuisance parameters of a fit or solution, shape (p + k,)."""
         return np.array([*theta_of(solution), *(p.read(solution.problem) for p in self.parameters)])
 
+    def row(self, solution: Any, x: Any) -> FloatArray:
+        """Return the value of the parameter ``x``, then all parameters, shape (1 + p + k,)."""
+        return np.array([x.read(solution.problem), *self.at(solution)])
+
 
 def theta_of(at: Any) -> FloatArray:
     """Return the reported parameters (p,) of a fit or of a solution."""
@@ -150,12 +152,14 @@ def profiled(solution: Solution, x: Any, posterior: Posterior, refit: Refit) -> 
     nodes = sorted([(here, 0.0, posterior.at(solution)), *around], key=lambda node: node[0])
     values, nats, theta = (np.array(part) for part in zip(*nodes, strict=True))
     nats -= min(float(np.min(nats)), 0.0)
-    profile = Profile(place - len(solution.theta), values, nats, theta, posterior.at(solution))
+    profile = Profile(values, nats, theta, posterior.at(solution))
     size = len(profile.best)
     linear = (np.outer(column, column) / column[place])[:size, :size]
     scale = np.sqrt(np.diag(profile.moment) + np.diag(linear))
     bent = _positive(profile.moment - linear, scale)
-    return replace(solution, modes=bent if solution.modes is None else solution.modes + bent, profile=profile)
+    hills = profile.alike[:0] if solution.alike is None else solution.alike[1:]
+    alike = np.vstack([posterior.row(solution, x), *hills, *profile.alike])
+    return replace(solution, modes=bent if solution.modes is None else solution.modes + bent, alike=alike)
 
 
 def _walk(

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,9 +18,6 @@ from advisor.oem.problem import Assembly, OutputErrorProblem, assemble
 from advisor.oem.rows import Laid
 from advisor.oem.start import start
 from advisor.process.arrays import FloatArray
-
-if TYPE_CHECKING:
-    from advisor.oem.profile import Profile
 
 RUNS_AWAY = NoEstimate(
     "diverged", "The model runs away from its first guess: the record is too long or too noisy."
@@ -42,8 +39,9 @@ class Solution(Evaluated):
     parameters: Sequence[Any] = ()
     """Nuisance parameters of the search, each with a name. Their derivatives are the first columns of
     ``extra``."""
-    profile: "Profile | None" = None
-    """Posterior along the parameter whose linear interval reaches zero; None for a linear posterior."""
+    alike: FloatArray | None = None
+    """Shape (m, 1 + p + k): optima along a servo's lag that explain the record alike, this one first. Each
+    row has the lag, s, then all parameters. None for one optimum."""
 
     @property
     def residual(self) -> FloatArray:

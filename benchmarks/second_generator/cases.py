@@ -14,6 +14,7 @@ from .design import assignments
 from .draw import Case, draw_case, largest_speed_change
 from .nature import SHARE, in_the_world
 from .telemetry import quieter, record
+from .trim import linearised
 
 
 def cases(
@@ -78,7 +79,7 @@ def truth(case: Case) -> dict[str, Any]:
         command="linear" if experiment.link.period == 1 else "held",
         largest_speed_change=largest_speed_change(experiment.plan, case.flown),
         aircraft=asdict(experiment.aircraft),
-        linear_model=experiment.linear.as_dict(),
+        linear_model=linearised(experiment.model, _flown_m(case)).as_dict(),
         believed_model=None if case.believed is None else case.believed.as_dict(),
         stated_arms_m=case.stated_arms,
         noise=asdict(case.noise),
@@ -86,3 +87,10 @@ def truth(case: Case) -> dict[str, Any]:
         wiring=asdict(case.wiring),
         maneuvers=[asdict(maneuver) for maneuver in experiment.plan.maneuvers],
     )  # fmt: skip
+
+
+def _flown_m(case: Case) -> float:
+    """Return the mean height of the manoeuvres, m. Low above the ground the air is 1 % denser than at the
+    trim."""
+    parts = case.experiment.plan.during_maneuvers()
+    return float(np.mean([np.mean(case.flown.truth.height[part]) for part in parts]))

@@ -24,12 +24,9 @@ def test_the_number_of_estimated_steps_is_said(added, said):
 
 @pytest.mark.parametrize(("other_s", "said"), [(0.14, True), (0.082, False)])
 def test_two_lags_are_named_only_where_their_numbers_differ(other_s: float, said: bool) -> None:
-    best = np.zeros(len(PARAMETERS) + 1)
-    best[-1] = 0.08
-    there = np.full(len(PARAMETERS) + 1, 9.0)
-    alike = np.array([[0.08, *best], [other_s, *there]])
+    alike = np.zeros((2, len(PARAMETERS) + 2))
+    alike[:, 0], alike[1, 1:] = (0.08, other_s), 9.0
     solution = SimpleNamespace(
-        problem=SimpleNamespace(fixed={}), scattered=np.eye(len(PARAMETERS)),
-        profile=SimpleNamespace(best=best, place=0, alike=alike),
-    )  # fmt: skip
+        problem=SimpleNamespace(fixed={}), scattered=np.eye(len(PARAMETERS)), alike=alike
+    )
     assert ("explain the record alike" in _ridge(solution)) is said

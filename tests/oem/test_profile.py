@@ -22,7 +22,7 @@ def profile(derivative, nats, values=None):
     """Return the profile of one derivative and the lag, from functions of the lag."""
     values = LAG + STD * np.arange(-4.0, 5.0) if values is None else values
     theta = np.column_stack([derivative(values), values])
-    return Profile(0, values, nats(values), theta, np.array([derivative(LAG), LAG]))
+    return Profile(values, nats(values), theta, np.array([derivative(LAG), LAG]))
 
 
 def parabola(lag):
@@ -114,7 +114,7 @@ def test_the_walk_ends_at_the_end_of_the_range_and_where_the_density_has_fallen(
 @pytest.mark.parametrize(("std", "needed"), [(0.01, False), (0.03, False), (0.031, True), (0.1, True)])
 def test_a_profile_is_needed_where_the_interval_of_the_lag_reaches_zero(std, needed):
     found = walked(lambda lag: lag, lambda lag: ((lag - LAG) / std) ** 2, std=std)
-    assert (found.profile is not None) is needed
+    assert (found.alike is not None) is needed
 
 
 def test_a_parabola_leaves_the_interval_as_it_is():
@@ -127,9 +127,9 @@ def test_the_response_to_the_flown_input_is_predicted_alike_along_the_ridge(monk
     widths = []
     monkeypatch.setattr(estimator, "prediction_band", lambda *found: widths.append(found[2]) or {})
     monkeypatch.setattr(estimator, "notes", lambda *_, **__: ())
-    for profile in (None, object()):
+    for alike in (None, np.zeros((1, 1))):
         fit = estimator.fit_jointly([flown(1, clean()[2])], KNOWN)
         wide = 100.0 * np.eye(len(fit.fitted.solution.covariance))
-        on_ridge = replace(fit.fitted.solution, profile=profile, modes=wide if profile else None)
+        on_ridge = replace(fit.fitted.solution, alike=alike, modes=None if alike is None else wide)
         estimator.report(on_ridge, fit.prepared, KNOWN)
     assert np.allclose(widths[0], widths[1])

@@ -60,6 +60,16 @@ def test_a_peak_far_below_the_best_adds_nothing(joint, monkeypatch):
     assert np.max(np.abs(found.modes)) < 1e-12
 
 
+@pytest.mark.parametrize(("cost", "said"), [(3.0, True), (-3.0, True), (5.0, False)])
+def test_a_peak_within_two_nats_is_said(joint, monkeypatch, cost, said):
+    best, rival, found = with_rival(joint, cost, monkeypatch)
+    assert (found.alike is not None) is said
+    if said:
+        lag_s = [SERVO_LAG.read(at.problem) for at in (best, rival)]
+        np.testing.assert_allclose(found.alike[:, 0], lag_s if cost > 0.0 else lag_s[::-1])
+        np.testing.assert_allclose(np.abs(found.alike[1, 1:9] - found.alike[0, 1:9]), AWAY, atol=1e-9)
+
+
 def test_the_higher_peak_is_the_estimate(joint, monkeypatch):
     _, rival, found = with_rival(joint, -1e4, monkeypatch)
     assert found.optimum is rival.optimum

@@ -70,6 +70,6 @@ def solution_at(model: Model, start: Solution, setting: Setting, noise: Noise) -
         extra=setting.extra,
         parameters=model.parameters,
         modes=None,
-        profile=None,
+        alike=None,
         **errors,
     )

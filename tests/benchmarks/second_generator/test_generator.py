@@ -133,6 +133,18 @@ def test_linear_model_predicts_a_small_pulse(aircraft: Aircraft) -> None:
     assert np.max(np.abs(rate - linear_rate)) < 0.03 * np.max(np.abs(rate))
 
 
+def test_the_true_derivatives_are_those_of_the_air_that_is_flown_through() -> None:
+    """The pitch acceleration of a flight 80 m below the trim gives M_alpha within a fifth of a per cent."""
+    assignment = assignments(67, 30130001, "none")[5]
+    case = draw_case(assignment, 30130001, 6, 0.3)
+    flown, speed = case.flown.truth, case.experiment.aircraft.airspeed_m_s
+    part = np.concatenate([np.arange(s.start, s.stop) for s in case.experiment.plan.during_maneuvers()])
+    ratio = flown.airspeed[part] / speed
+    by = [ratio * flown.alpha[part], flown.q[part], ratio * flown.elevator[part], ratio, 1.0 / ratio]
+    slopes = np.linalg.lstsq(np.array(by).T, flown.q_dot[part] / ratio, rcond=None)[0]
+    assert slopes[0] == pytest.approx(truth(case)["linear_model"]["M_alpha"], rel=2e-3)
+
+
 def test_kinematics_hold_in_still_air(quiet_case: Case) -> None:
     truth: Truth = quiet_case.flown.truth
     step = quiet_case.experiment.plan.step
