@@ -91,6 +91,10 @@ def search_lateral(
     merged = resumed is not None and near is not None and near.searched.merged
     if resumed is None:
         fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
+        if not isinstance(fit, NoEstimate) and _has_diverged(fit):
+            # A regression without a side force may begin with an aircraft that rolls away.
+            fit = descended(_MOTION, problem, (), prior, fit.place)
+            start = start if isinstance(fit, NoEstimate) else fit.place
         if isinstance(fit, NoEstimate) or _has_diverged(fit):
             return RUNS_AWAY
         solution = _evaluated(fit, prior, final=False)
@@ -203,12 +207,9 @@ def _resumed(
 
 def _has_diverged(fit: Fit) -> bool:
     """Return whether a fit explains the outputs worse than a constant does."""
-    assembly, noise = fit.assembly, fit.optimum.noise
-    gain = 0.0
-    for c in np.unique(assembly.channel):
-        z = assembly.z[assembly.channel == c]
-        still = max(float(np.std(z)), FLOOR[c])
-        gain += len(z) * float(np.log(still / noise[c]))
+    z, channel, noise = fit.assembly.z, fit.assembly.channel, fit.optimum.noise
+    each = ((z[channel == c], FLOOR[c], noise[c]) for c in np.unique(channel))
+    gain = sum(len(y) * float(np.log(max(float(np.std(y)), floor) / left)) for y, floor, left in each)
     return not gain >= 0.0
 
 

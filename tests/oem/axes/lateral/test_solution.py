@@ -171,11 +171,26 @@ def test_a_start_from_which_the_model_runs_away_gives_no_fit():
     )
 
 
-def test_a_first_look_that_is_worse_than_no_motion_is_refused_before_it_is_evaluated(monkeypatch):
-    problem = both_inputs(JET, np.random.default_rng(1))
-    local = np.zeros((len(problem.records), len(LATERAL.names.local)))
-    local[:, LATERAL.names.local.index("L_0")] = 1e3
-    monkeypatch.setattr(lateral_solution, "lateral_start", lambda problem: (vector(JET), local))
+def begun_at(monkeypatch, problem, **values):
+    """Begin the search of a problem at other derivatives or trims of the aircraft, and look only once."""
+    names, local = LATERAL.names, np.zeros((len(problem.records), len(LATERAL.names.local)))
+    for name in values.keys() & set(names.local):
+        local[:, names.local.index(name)] = values[name]
+    shared = vector({name: values.get(name, value) for name, value in JET.items()})
+    monkeypatch.setattr(lateral_solution, "lateral_start", lambda problem: (shared, local))
     monkeypatch.setattr(lateral_solution, "FIRST_LOOK", 0)
+
+
+def test_a_first_look_that_is_worse_than_no_motion_is_searched_on(monkeypatch):
+    problem = both_inputs(JET, np.random.default_rng(1))
+    due = solved(problem).theta
+    begun_at(monkeypatch, problem, L_p=0.2)
+    assert solved(problem).theta == pytest.approx(due, rel=1e-4, abs=1e-6)
+
+
+def test_a_search_that_stays_worse_than_no_motion_is_refused_before_it_is_evaluated(monkeypatch):
+    problem = both_inputs(JET, np.random.default_rng(1))
+    begun_at(monkeypatch, problem, L_0=1e3)
+    monkeypatch.setattr(lateral_solution, "descended", lambda *a: descended(*a[:5], 0))
     monkeypatch.setattr(lateral_solution, "_evaluated", lambda *fit: pytest.fail("the fit was evaluated"))
     assert solve_lateral(problem) is RUNS_AWAY
