@@ -51,12 +51,12 @@ OF_AN_AXIS = frozenset(
 letter."""
 NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"}
 LIMITS = {
-    "lines of code": 7048,
+    "lines of code": 7047,
     "constants": 207,
     "constants that decide": 25,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 16412,
+    "lines of estimation": 16411,
     "lines of the package": 60900,
     "files naming an axis": 110,
 }

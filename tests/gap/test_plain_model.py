@@ -12,6 +12,8 @@ from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.nuisances import latency
+from advisor.gap.fitting.holdout import hold_out
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.inference import pitch
 from advisor.gap.inference.evidence import FlightProblem
@@ -21,6 +23,7 @@ from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion
 from advisor.gap.records.usable import outputs_of
 from advisor.gap.search.baseline import base_entries, fit_baseline, fit_unfiltered
+from advisor.gap.simulator.layout import DERIVATIVES as DERIVATIVES_BY_NAME
 from advisor.gap.simulator.layout import SPEED
 from advisor.oem.instruments import COMMAND_DELAY
 from advisor.oem.prepare import prepare as prepare_estimate
@@ -85,6 +88,29 @@ def test_a_plain_model_from_where_an_effect_ended_is_searched_no_further(monkeyp
     monkeypatch.setattr(pitch, "_without_the_effect", searched)
     PitchFlight(FlightProblem.of(problem, fitted), fitted, [], []).explained(None, 0)
     assert begun[1:] == [lower.cost]
+
+
+@pytest.fixture(scope="module")
+def predicted():
+    """Return a flight with a stated model, its plain fit, and that fit's errors on manoeuvres kept out."""
+    stated = Aircraft(model=dict(zip(DERIVATIVES_BY_NAME, DERIVATIVES, strict=True)))
+    problem, fitted = fit_baseline(prepare(FLOWN, stated), stated)
+    flight = FlightProblem.of(problem, fitted)
+    return flight, fitted, hold_out(flight.within(ERROR_IF_WRONG), fitted)
+
+
+def test_errors_below_the_least_noise_are_no_loss_on_manoeuvres_kept_out(predicted):
+    flight, fitted, held = predicted
+    louder = replace(held, innovation_square=4.0 * held.innovation_square)
+    quiet = replace(flight, smallest_noise=3.0 * np.sqrt(held.innovation_square))
+    assert pitch._lost_unseen(flight, fitted, fitted, louder) < -100.0
+    assert pitch._lost_unseen(quiet, fitted, fitted, louder) == 0.0
+
+
+def test_the_plain_model_predicts_under_its_own_prior_beside_an_effect_at_the_files_derivatives(predicted):
+    flight, fitted, held = predicted
+    at_the_file = flight.within(ERROR_IF_RIGHT)
+    assert pitch._lost_unseen(at_the_file, fitted, fitted, held) == 0.0
 
 
 def test_an_air_speed_that_is_read_low_is_part_of_the_plain_model_without_an_angle_of_attack():
