@@ -62,7 +62,7 @@ def not_identifiable(solution: Solution) -> dict[str, str]:
             f" pitch rate; only {100.0 * own:.1f} % of its motion is independent of them"
         )
         reasons = dict.fromkeys(natural_size(solution.theta), text) | reasons
-    return too_wide(solution.theta, np.sqrt(np.diag(solution.covariance))) | reasons
+    return too_wide(solution.theta, np.sqrt(np.diag(solution.scattered))) | reasons
 
 
 def too_wide(theta: FloatArray, std: FloatArray) -> dict[str, str]:
