@@ -286,6 +286,18 @@ def test_an_alternative_that_may_be_the_answer_is_judged_by_its_own_residual(beh
     assert (named.terms["residual"] > left_alone.terms["residual"] + 5.0) is searched
 
 
+def test_a_residual_that_scatters_by_its_own_size_tells_nothing_of_a_law():
+    """Seven times a simulator's own residual is 4.4 nats for a law that is missing, if the size is exact."""
+    right, lacking = Residual(7.0, {}, error=49.0, freedom=2).nats(in_moving_air=False)
+    assert lacking - right < 1.5
+
+
+@pytest.mark.parametrize("size", [0.6, 1.0, 7.0])
+def test_a_residual_that_hardly_scatters_counts_as_an_exact_one(size):
+    exact = Residual(size, {}).nats(in_moving_air=False)
+    assert Residual(size, {}, error=0.05 * size**2, freedom=30).nats(False) == pytest.approx(exact, abs=0.1)
+
+
 def test_a_second_effect_is_sought_after_the_first():
     flight = Flight({"transport_delay": 60.0}, {"actuator_lag": 20.0})
     found = decided(flight, first_stage(flight), SPREAD, lambda rows: rows)

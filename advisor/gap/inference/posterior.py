@@ -10,7 +10,7 @@ from advisor.gap.alternative import Alternative, together
 from advisor.gap.effects import EFFECTS
 from advisor.gap.inference.explanation import E, Row
 from advisor.gap.inference.prior import FieldPrior
-from advisor.gap.inference.residual import MOST_NATS, Residual, if_lacking, if_right
+from advisor.gap.inference.residual import MOST_NATS, Residual
 from advisor.gap.inference.stage import Flight, Stage
 from advisor.gap.inference.with_motion import WITNESSES
 
@@ -177,10 +177,9 @@ def _with_residual(way: Row[E], residual: Residual, prior: FieldPrior) -> Iterat
     """Yield the row for a right model, and the row for a model that only resembles an effect
     without a name.
     """
-    size = residual.beside_air if way.in_moving_air else residual.size
-    yield replace(way, terms={**way.terms, "residual": if_right(size)})
+    as_right, as_lacking = residual.nats(way.in_moving_air)
+    yield replace(way, terms={**way.terms, "residual": as_right})
     lacking = float(np.log(0.5 * prior.unknown / (prior.none + prior.parameters + prior.effect)))
-    as_lacking = if_lacking(size)
     for block, share in residual.blocks.items():
         if block in _ALWAYS:
             yield replace(way, terms={**way.terms, "residual": as_lacking + float(np.log(0.5 * share))})

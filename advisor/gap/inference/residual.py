@@ -23,6 +23,8 @@ MOST_NATS = -float(np.log(min(_RIGHT[1], _LACKING[1])))
 """Numerical: largest log density, nats, of a residual's size."""
 _LEAST_MISFIT = 0.25
 """Numerical: size of a residual below which the residual counts as zero."""
+_SIZES = np.linspace(np.log(_LEAST_MISFIT), np.log(1e3), 400)
+"""Numerical: logs of the sizes that a measured size may stand for."""
 
 
 @dataclass(frozen=True)
@@ -36,11 +38,21 @@ class Residual:
     """Probability of each block, given that an effect without a name acts in one block."""
     size_beside_air: float | None = None
     """Size of the motion that moving air does not explain; None where the models contain no air."""
+    error: float = 0.0
+    """Standard error of the squared size; 0 where the size has no scatter."""
+    freedom: int = 0
+    """Degrees of freedom of the standard error."""
 
     @property
     def beside_air(self) -> float:
         """Size of the residual beyond moving air."""
         return self.size if self.size_beside_air is None else self.size_beside_air
+
+    def nats(self, in_moving_air: bool) -> tuple[float, float]:
+        """Return the log densities, nats, of the size where the model is right, and where it lacks a law."""
+        size = self.beside_air if in_moving_air else self.size
+        error = self.error * (size / self.size) ** 2 if self.size > 0.0 else self.error
+        return if_right(size, error, self.freedom), if_lacking(size, error, self.freedom)
 
 
 def residual_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> Residual:
@@ -74,16 +86,33 @@ def innovation_noise(problem: EffectProblem) -> FloatArray:
     return np.ones(len(problem.channels)) if problem.knows_the_noise else problem.instruments
 
 
-def if_right(size: float) -> float:
-    """Return the log density, nats, of a residual's size where the model is right."""
-    return _log_normal(size, _RIGHT)
+def if_right(size: float, error: float = 0.0, freedom: int = 0) -> float:
+    """Return the log density, nats, of a residual's size where the model is right.
+
+    Parameters
+    ----------
+    size
+        Measured size (``Residual.size``).
+    error, freedom
+        Standard error of the squared size, and its degrees of freedom; 0 for an exact size.
+    """
+    return _density(size, error, freedom, _RIGHT)
 
 
-def if_lacking(size: float) -> float:
+def if_lacking(size: float, error: float = 0.0, freedom: int = 0) -> float:
     """Return the log density, nats, of a residual's size where the model lacks a law."""
-    return _log_normal(size, _LACKING)
+    return _density(size, error, freedom, _LACKING)
 
 
-def _log_normal(x: float, told: tuple[float, float]) -> float:
+def _density(size: float, error: float, freedom: int, told: tuple[float, float]) -> float:
+    if error == 0.0:
+        return float(_log_normal(np.array(np.log(max(size, _LEAST_MISFIT))), told))
+    # The squared size scatters with Student's distribution, which weighs the sizes that it may have.
+    weight = -0.5 * (freedom + 1) * np.log1p(((size**2 - np.exp(2.0 * _SIZES)) / error) ** 2 / freedom)
+    density = _log_normal(_SIZES, told)
+    return float(np.logaddexp.reduce(weight + density) - np.logaddexp.reduce(weight))
+
+
+def _log_normal(log_size: FloatArray, told: tuple[float, float]) -> FloatArray:
     mean, std = told
-    return float(-0.5 * ((np.log(max(x, _LEAST_MISFIT)) - mean) / std) ** 2 - np.log(std))
+    return np.asarray(-0.5 * ((log_size - mean) / std) ** 2 - np.log(std))

@@ -6,6 +6,7 @@ share of the squared motion. Only that share is evidence for a missing law.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,12 +19,26 @@ WITNESSES = 3
 """Least number of manoeuvres that show that a residual repeats: two of three always agree by chance alone."""
 
 
-def moving_power(residuals: Sequence[FloatArray], motions: Sequence[FloatArray]) -> float:
+@dataclass(frozen=True)
+class MovingPower:
+    """Mean square of a residual that grows with the motion."""
+
+    power: float
+    """Mean square; below 0 where the residual falls while the motion grows."""
+    error: float
+    """Standard error of the mean square, from the scatter between manoeuvres."""
+    freedom: int
+    """Degrees of freedom of the standard error: manoeuvres less one."""
+
+
+_NOTHING = MovingPower(0.0, 0.0, 0)
+
+
+def moving_power(residuals: Sequence[FloatArray], motions: Sequence[FloatArray]) -> MovingPower:
     """Return the mean square of the residual that grows with the motion; 0 with fewer than three manoeuvres.
 
-    The share of the squared motion is estimated with a level of each manoeuvre. One standard error of the
-    share, from the scatter between manoeuvres, is subtracted, because a share that does not repeat is no
-    evidence.
+    The share of the squared motion is estimated with a level of each manoeuvre. A share that does not repeat
+    has a large error.
 
     Parameters
     ----------
@@ -31,15 +46,16 @@ def moving_power(residuals: Sequence[FloatArray], motions: Sequence[FloatArray])
         Per manoeuvre, shape (bins,): mean square of the residual and of the motion in bins of equal length.
     """
     if len(residuals) < WITNESSES:
-        return 0.0
+        return _NOTHING
     about = [motion - np.mean(motion) for motion in motions]
     power = np.array([float(x @ x) for x in about])
     pull = np.array([float(x @ residual) for x, residual in zip(about, residuals, strict=True)])
     if np.sum(power) <= 0.0:
-        return 0.0
+        return _NOTHING
     share = float(np.sum(pull) / np.sum(power))
     # Leave-one-out (jackknife) error of a ratio of sums.
     without = (np.sum(pull) - pull) / np.maximum(np.sum(power) - power, 1e-300)
     n = len(without)
     error = float(np.sqrt((n - 1) / n * np.sum((without - np.mean(without)) ** 2)))
-    return max(share - error, 0.0) * float(np.mean(np.concatenate(motions)))
+    moved = float(np.mean(np.concatenate(motions)))
+    return MovingPower(share * moved, error * moved, n - 1)

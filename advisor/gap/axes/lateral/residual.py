@@ -7,7 +7,7 @@ import numpy as np
 from advisor.gap.axes.lateral.fit import Fit
 from advisor.gap.axes.lateral.setting import Flown
 from advisor.gap.inference.residual import NATURAL, Residual, shares_of
-from advisor.gap.inference.with_motion import BIN_S, moving_power
+from advisor.gap.inference.with_motion import BIN_S, MovingPower, moving_power
 from advisor.gap.noise.probes import Probe, at_its_size, coloured_between
 from advisor.oem.axes.lateral.disturbance import AIR, Course, blocks_of, courses_of
 from advisor.oem.axes.lateral.motion import FLOOR
@@ -29,13 +29,15 @@ def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
     channels = np.unique(fit.assembly.channel)
     peaks = {k: max(float(np.ptp(fit.assembly.z[fit.assembly.channel == k])) / 2.0, 1e-12) for k in channels}
     motions = [_motion(fit, m, peaks) for m in range(fit.assembly.maneuvers)]
-    sizes = [_size(fit, k, motions) / peaks[k] for k in channels]
+    powers = [(_moving(fit, k, motions), (NATURAL * peaks[k]) ** 2) for k in channels]
+    largest, unit = max(powers, key=lambda it: it[0].power / it[1])
     by_air = next(probe.explained for probe in probes if probe.block == AIR)
     most = probes[0].explained
-    whole, beside = (float(np.sqrt(e) * max(sizes) / NATURAL) for e in (most, max(most - by_air, 0.0)))
+    size = float(np.sqrt(most * max(largest.power, 0.0) / unit))
+    beside = size * float(np.sqrt(max(1.0 - by_air / max(most, 1e-300), 0.0)))
     named = [probe for probe in probes if probe.block != AIR]
     blocks = shares_of([probe.block for probe in named], [share**2 * probe.gain for probe in named])
-    return Residual(whole, blocks, beside)
+    return Residual(size, blocks, beside, most * largest.error / unit, largest.freedom)
 
 
 def _motion(fit: Fit, m: int, peaks: Mapping[int, float]) -> FloatArray:
@@ -57,15 +59,15 @@ def _binned(fit: Fit, m: int, rows: slice, values: FloatArray) -> FloatArray:
     return np.asarray(np.bincount(at, values, minlength=bins) / np.maximum(count, 1))
 
 
-def _size(fit: Fit, channel: int, motions: Sequence[FloatArray]) -> float:
-    """Return the root mean square of an output's residual that grows with the motion."""
+def _moving(fit: Fit, channel: int, motions: Sequence[FloatArray]) -> MovingPower:
+    """Return the mean square of an output's residual that grows with the motion."""
     squares, moved = [], []
     for m, motion in enumerate(motions):
         for rows in fit.assembly.rows[m].values():
             if fit.assembly.channel[rows][0] == channel:
                 squares.append(_binned(fit, m, rows, fit.residual[rows] ** 2))
                 moved.append(motion)
-    return float(np.sqrt(moving_power(squares, moved)))
+    return moving_power(squares, moved)
 
 
 def _probe(fit: Fit, block: str, courses: Sequence[Course], noise: FloatArray) -> Probe:
