@@ -10,6 +10,7 @@ from typing import Protocol, cast
 
 from benchmarks.arduplane_generator.cases import cases as arduplane
 from benchmarks.arduplane_generator.simulator import is_here
+from benchmarks.by_hand.cases import cases as by_hand
 from benchmarks.sealed.world import in_the_world
 from benchmarks.second_generator.cases import cases as second
 from benchmarks.third_generator.files import cases as third
@@ -44,13 +45,13 @@ def _arduplane(
     return arduplane(count, seed, only)
 
 
-DRAWS: Mapping[str, Draw] = {"own": _own, "second": second, "third": third} | (
+DRAWS: Mapping[str, Draw] = {"own": _own, "second": second, "third": third, "by hand": by_hand} | (
     {"arduplane": _arduplane} if is_here() else {}
 )
 """Flights of each generator by number, seed, kind, and share with natural nuisances."""
 LEAST_NOISE = 0.2
 """Least share of a generator's noise in the strata of the world: down to .5 % of the peaks."""
-WORLDLY = ("own", "second", "third")
+WORLDLY = ("own", "second", "third", "by hand")
 """Generators whose telemetry is made like the world's by ``in_the_world``. ArduPlane's is so already."""
 
 

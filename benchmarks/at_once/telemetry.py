@@ -19,6 +19,8 @@ NOISE = {"alpha": 0.003, "beta": 0.003, "rate": 0.003, "angle": 0.002, "force": 
 """Standard deviation of the noise of each kind of channel, SI."""
 DERIVED_S, RENEWED_HZ = 0.03, 20.0
 """Lateness and renewal of an autopilot's angle of attack."""
+FLY_BY_WIRE = 5
+"""Mode of ArduPlane in which the script calls its inputs."""
 BOOT_S = 5.0
 _PARAMETERS = {
     f"SERVO{n}_{name}": value
@@ -29,14 +31,14 @@ _PARAMETERS = {
 } | {"INS_GYRO_FILTER": 0.0, "INS_ACCEL_FILTER": 0.0}  # fmt: skip
 
 
-def tlog_of(flown: Flown, body: Body, vane: bool, rng: np.random.Generator) -> bytes:
+def tlog_of(flown: Flown, body: Body, vane: bool, rng: np.random.Generator, mode: int = FLY_BY_WIRE) -> bytes:
     """Return the log, with angles of the air from a vane, or as an autopilot derives them."""
     end_s = float(flown.t[-1])
     times = {
         name: rng.uniform(0.0, 1.0 / RATE_HZ) + np.arange(0.0, end_s - 0.1, 1.0 / RATE_HZ) for name in "aisv"
     }
     timed = [
-        (BOOT_S + k, mavlink.MAVLink_heartbeat_message(1, 3, 81, 5, 4, 3)) for k in range(int(end_s) + 1)
+        (BOOT_S + k, mavlink.MAVLink_heartbeat_message(1, 3, 81, mode, 4, 3)) for k in range(int(end_s) + 1)
     ]
     for k, (name, value) in enumerate(_PARAMETERS.items()):
         message = mavlink.MAVLink_param_value_message(name.encode(), value, 9, len(_PARAMETERS), k)
