@@ -202,7 +202,9 @@ def rows(seed: int, study: Study, fly: Fly) -> Iterator[str]:
         answer = diagnosis_of(recordings(flight))
         holds = answer is not None and answer.verdict == "unknown"
         unknown += holds
-        told = "no answer" if answer is None else f"{answer.answers[0][0]} ({answer.answers[0][1]:.2f})"
+        shares = None if answer is None else answer.probabilities
+        lacking = 0.0 if shares is None else sum(shares.unknown.values())
+        told = "no answer" if answer is None else f"{answer.verdict} (unknown {lacking:.2f})"
         yield f"| {law} | {size:.3g} | {told} | {'yes' if holds else 'NO'} | |"
     both = one = 0
     able = [name for name, case in CASES.items() if case.is_named]
