@@ -17,7 +17,7 @@ from advisor.gap.inference.evidence import evidence_of
 from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.pitch import PitchModel
 from advisor.gap.inference.posterior import NONE, PARAMETERS
-from advisor.gap.inference.residual import NATURAL, Residual, if_lacking, if_right, residual_of
+from advisor.gap.inference.residual import NATURAL, Residual, residual_of
 from advisor.gap.inference.sizes import natural_shares
 
 GRID = (0.25, 0.5, 1.0, 2.0, 4.0, 10.0)
@@ -86,9 +86,8 @@ class Observer:
 
     def _kept(self, row: Row[Any]) -> KeptRow:
         size, residual, sheet, lacks = self._as_weighed(row)
-        of_size = if_lacking(size) if lacks else if_right(size)
         sheet_size = size * sheet / max(residual.size, 1e-12)
-        nats = row.weight - of_size
+        nats = row.weight - Residual(size, {}).nats(False)[lacks]
         return KeptRow(row.alternative.name, nats, size, sheet_size, lacks, self._natural(row, lacks))
 
     def _as_weighed(self, row: Row[Any]) -> tuple[float, Residual, float, bool]:
@@ -100,9 +99,9 @@ class Observer:
         own = self.residuals.get(id(row.model))
         every = [*([own] if own is not None else []), *self.residuals.values()]
         sized = [(r.beside_air if row.in_moving_air else r.size, r, sheet) for r, sheet in every]
-        for lacks, density in ((False, if_right), (True, if_lacking)):
+        for lacks in (False, True):
             for size, residual, sheet in sized:
-                if abs(row.terms["residual"] - density(size)) < _EXACT:
+                if abs(row.terms["residual"] - Residual(size, {}).nats(False)[lacks]) < _EXACT:
                     return size, residual, sheet, lacks
         # A disturbance that every model may have is lacking with a share of the density.
         return (*sized[0], True)

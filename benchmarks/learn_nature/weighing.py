@@ -6,7 +6,7 @@ from typing import Self
 
 import numpy as np
 
-from advisor.gap.inference.residual import NATURAL, if_lacking, if_right
+from advisor.gap.inference.residual import NATURAL, Residual
 
 from .evidence import GRID, KeptFlight, KeptRow
 
@@ -35,7 +35,7 @@ class Widths:
     @classmethod
     def in_use(cls) -> Self:
         """Return the widths of the diagnosis as it stands."""
-        right, lacking = log_normal_of(if_right), log_normal_of(if_lacking)
+        right, lacking = (log_normal_of(lambda size, k=k: Residual(size, {}).nats(False)[k]) for k in (0, 1))
         return cls(NATURAL * float(np.exp(right[0])), right[1], lacking[0] - right[0], lacking[1])
 
     @property

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from advisor.gap.inference.residual import NATURAL, if_lacking, if_right
+from advisor.gap.inference.residual import NATURAL, Residual
 from benchmarks.learn_nature import __main__ as command
 from benchmarks.learn_nature.evidence import GRID, KeptFlight, KeptRow, evidence_rows
 from benchmarks.learn_nature.learning import learnt, left_out_each
@@ -36,7 +36,8 @@ def test_the_density_of_a_size_gives_back_its_mean_and_deviation() -> None:
 def test_the_widths_in_use_are_those_of_the_diagnosis() -> None:
     for size in (0.5, 1.0, 3.0, 8.0):
         right, lacking = (IN_USE.density(row) for row in flight(size, "none").rows)
-        assert lacking - right == pytest.approx(if_lacking(size) - if_right(size))
+        if_right, if_lacking = Residual(size, {}).nats(in_moving_air=False)
+        assert lacking - right == pytest.approx(if_lacking - if_right)
 
 
 def test_a_larger_residual_makes_a_law_without_a_name_likelier() -> None:

@@ -23,8 +23,6 @@ MOST_NATS = -float(np.log(min(_RIGHT[1], _LACKING[1])))
 """Numerical: largest log density, nats, of a residual's size."""
 _LEAST_MISFIT = 0.25
 """Numerical: size of a residual below which the residual counts as zero."""
-_SIZES = np.linspace(np.log(_LEAST_MISFIT), np.log(1e3), 400)
-"""Numerical: logs of the sizes that a measured size may stand for."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +50,7 @@ class Residual:
         """Return the log densities, nats, of the size where the model is right, and where it lacks a law."""
         size = self.beside_air if in_moving_air else self.size
         error = self.error * (size / self.size) ** 2 if self.size > 0.0 else self.error
-        return if_right(size, error, self.freedom), if_lacking(size, error, self.freedom)
+        return _density(size, error, self.freedom, _RIGHT), _density(size, error, self.freedom, _LACKING)
 
 
 def residual_of(problem: EffectProblem, fitted: EffectFit, heat: float) -> Residual:
@@ -86,33 +84,15 @@ def innovation_noise(problem: EffectProblem) -> FloatArray:
     return np.ones(len(problem.channels)) if problem.knows_the_noise else problem.instruments
 
 
-def if_right(size: float, error: float = 0.0, freedom: int = 0) -> float:
-    """Return the log density, nats, of a residual's size where the model is right.
-
-    Parameters
-    ----------
-    size
-        Measured size (``Residual.size``).
-    error, freedom
-        Standard error of the squared size, and its degrees of freedom; 0 for an exact size.
-    """
-    return _density(size, error, freedom, _RIGHT)
-
-
-def if_lacking(size: float, error: float = 0.0, freedom: int = 0) -> float:
-    """Return the log density, nats, of a residual's size where the model lacks a law."""
-    return _density(size, error, freedom, _LACKING)
-
-
 def _density(size: float, error: float, freedom: int, told: tuple[float, float]) -> float:
-    if error == 0.0:
-        return float(_log_normal(np.array(np.log(max(size, _LEAST_MISFIT))), told))
-    # The squared size scatters with Student's distribution, which weighs the sizes that it may have.
-    weight = -0.5 * (freedom + 1) * np.log1p(((size**2 - np.exp(2.0 * _SIZES)) / error) ** 2 / freedom)
-    density = _log_normal(_SIZES, told)
-    return float(np.logaddexp.reduce(weight + density) - np.logaddexp.reduce(weight))
+    """Return the log density, nats, of a size by its mean and its standard deviation in ``told``.
 
-
-def _log_normal(log_size: FloatArray, told: tuple[float, float]) -> FloatArray:
+    A squared size with an error has Student's distribution: it may stand for all sizes on a grid.
+    """
     mean, std = told
-    return np.asarray(-0.5 * ((log_size - mean) / std) ** 2 - np.log(std))
+    grid = np.linspace(np.log(_LEAST_MISFIT), np.log(1e3), 400)
+    sizes = grid if error > 0.0 else np.log([max(size, _LEAST_MISFIT)])
+    far = (size**2 - np.exp(2.0 * sizes)) / max(error, 1e-300)
+    student = -0.5 * (freedom + 1) * np.log1p(far**2 / max(freedom, 1)) if error > 0.0 else 0.0 * sizes
+    density = -0.5 * ((sizes - mean) / std) ** 2 - np.log(std)
+    return float(np.logaddexp.reduce(student + density) - np.logaddexp.reduce(student))

@@ -53,8 +53,6 @@ class Probe:
     block: str
     gain: float
     """Log likelihood gain of the disturbance over white noise alone, nats."""
-    size: float
-    """Standard deviation of the disturbance in its own unit (rad of elevator, 1/s², rad/s², rad of air)."""
     explained: float
     """Share of the weighted residual power that the disturbance explains."""
 
@@ -91,18 +89,18 @@ def probe_blocks(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -
             value, vector = np.linalg.eigh((gram + gram.T) / 2.0)
             spectra[block].append(np.maximum(value, 0.0))
             powers[block].append((vector.T @ (colour.T @ (B.T @ unabsorbed)) / unit) ** 2)
-    found = (at_its_size(b, np.hstack(spectra[b]), np.hstack(powers[b]), units[b], total) for b in there)
+    found = (at_its_size(b, np.hstack(spectra[b]), np.hstack(powers[b]), total) for b in there)
     return sorted(found, key=lambda p: -p.gain)
 
 
-def at_its_size(block: str, value: FloatArray, power: FloatArray, unit: float, total: float) -> Probe:
+def at_its_size(block: str, value: FloatArray, power: FloatArray, total: float) -> Probe:
     """Return the disturbance of a block at its most likely size.
 
     Parameters
     ----------
     value, power
         Shape (directions,): information on each direction of the disturbance, and the square of its
-        gradient, for a size of ``unit``.
+        gradient, for a disturbance whose response is as large as the noise.
     total
         Weighted power of the residual.
     """
@@ -111,7 +109,7 @@ def at_its_size(block: str, value: FloatArray, power: FloatArray, unit: float, t
     gains = 0.5 * np.sum(power * shrunk - np.log1p(squares * value), axis=1)
     best = int(np.argmax(gains))
     taken = float(np.sum(power * shrunk[best] * (2.0 - value * shrunk[best])))
-    return Probe(block, float(gains[best]), _SIZES[best] / unit, min(taken / max(total, 1e-300), 1.0))
+    return Probe(block, float(gains[best]), min(taken / max(total, 1e-300), 1.0))
 
 
 def disturbance_columns(
@@ -173,10 +171,7 @@ def disturbance_courses(
             found = solved(chol, A.T @ (fitted.residuals[i] * w))
             courses[k].append(np.asarray(colour @ found[-free:]))
             residuals[k].append(np.asarray(fitted.residuals[i] - both @ found))
-    return [
-        DisturbanceCourse(tuple(knots), tuple(residual))
-        for knots, residual in zip(courses, residuals, strict=True)
-    ]
+    return [DisturbanceCourse(tuple(u), tuple(y)) for u, y in zip(courses, residuals, strict=True)]
 
 
 def _colour(flight: PreparedManeuver) -> FloatArray:

@@ -93,7 +93,7 @@ def usable_of(maneuvers: Sequence[Maneuver]) -> list[Maneuver]:
     manoeuvre without angle of attack or with an unseen step is also left out.
     """
     usable = [m for m in maneuvers if _is_recorded(m) and not _departed(m)]
-    for is_whole in (_steps_seen, _has_alpha):
+    for is_whole in (_steps_seen, lambda m: "alpha" in outputs_of(m) or is_known_by_motion(m)):
         better = [m for m in usable if is_whole(m)]
         if len(better) >= _ENOUGH:
             usable = better
@@ -158,7 +158,3 @@ def _is_recorded(m: Maneuver) -> bool:
 def _departed(m: Maneuver) -> bool:
     alpha = m.channels.get("alpha")
     return alpha is not None and len(alpha) > 0 and float(np.ptp(alpha.y)) >= DEPARTED_RAD
-
-
-def _has_alpha(m: Maneuver) -> bool:
-    return "alpha" in outputs_of(m) or is_known_by_motion(m)

@@ -7,7 +7,7 @@ import numpy as np
 from advisor.gap.axes.lateral.fit import Fit
 from advisor.gap.axes.lateral.setting import Flown
 from advisor.gap.inference.residual import NATURAL, Residual, shares_of
-from advisor.gap.inference.with_motion import BIN_S, MovingPower, moving_power
+from advisor.gap.inference.with_motion import BIN_S, moving_power
 from advisor.gap.noise.probes import Probe, at_its_size, coloured_between
 from advisor.oem.axes.lateral.disturbance import AIR, Course, blocks_of, courses_of
 from advisor.oem.axes.lateral.motion import FLOOR
@@ -30,21 +30,20 @@ def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
     peaks = {k: max(float(np.ptp(fit.assembly.z[fit.assembly.channel == k])) / 2.0, 1e-12) for k in channels}
     motions = [_motion(fit, m, peaks) for m in range(fit.assembly.maneuvers)]
     powers = [(_moving(fit, k, motions), (NATURAL * peaks[k]) ** 2) for k in channels]
-    largest, unit = max(powers, key=lambda it: it[0].power / it[1])
+    (power, error, freedom), unit = max(powers, key=lambda it: it[0][0] / it[1])
     by_air = next(probe.explained for probe in probes if probe.block == AIR)
     most = probes[0].explained
-    size = float(np.sqrt(most * max(largest.power, 0.0) / unit))
-    beside = size * float(np.sqrt(max(1.0 - by_air / max(most, 1e-300), 0.0)))
+    left = max(power, 0.0) / unit
+    size, beside = (float(np.sqrt(part * left)) for part in (most, max(most - by_air, 0.0)))
     named = [probe for probe in probes if probe.block != AIR]
     blocks = shares_of([probe.block for probe in named], [share**2 * probe.gain for probe in named])
-    return Residual(size, blocks, beside, most * largest.error / unit, largest.freedom)
+    return Residual(size, blocks, beside, most * error / unit, freedom)
 
 
 def _motion(fit: Fit, m: int, peaks: Mapping[int, float]) -> FloatArray:
     """Return the mean square of a manoeuvre's motion in each bin, relative to the peaks, shape (bins,)."""
-    named = fit.assembly.rows[m]
     moved = []
-    for rows in named.values():
+    for rows in fit.assembly.rows[m].values():
         y = fit.fitted[rows] - np.median(fit.fitted[rows])
         moved.append(_binned(fit, m, rows, (y / peaks[int(fit.assembly.channel[rows][0])]) ** 2))
     return np.asarray(np.mean(moved, axis=0))
@@ -59,8 +58,8 @@ def _binned(fit: Fit, m: int, rows: slice, values: FloatArray) -> FloatArray:
     return np.asarray(np.bincount(at, values, minlength=bins) / np.maximum(count, 1))
 
 
-def _moving(fit: Fit, channel: int, motions: Sequence[FloatArray]) -> MovingPower:
-    """Return the mean square of an output's residual that grows with the motion."""
+def _moving(fit: Fit, channel: int, motions: Sequence[FloatArray]) -> tuple[float, float, int]:
+    """Return the mean square of an output's residual that grows with the motion, as ``moving_power``."""
     squares, moved = [], []
     for m, motion in enumerate(motions):
         for rows in fit.assembly.rows[m].values():
@@ -84,7 +83,7 @@ def _probe(fit: Fit, block: str, courses: Sequence[Course], noise: FloatArray) -
         values.append(np.maximum(value, 0.0))
         powers.append((vector.T @ (colour.T @ (columns.T @ left)) / unit) ** 2)
         total += float(left @ left)
-    return at_its_size(block, np.hstack(values), np.hstack(powers), unit, total)
+    return at_its_size(block, np.hstack(values), np.hstack(powers), total)
 
 
 def _white(fit: Fit) -> FloatArray:
