@@ -99,8 +99,8 @@ def at_its_size(block: str, value: FloatArray, power: FloatArray, total: float) 
     Parameters
     ----------
     value, power
-        Shape (directions,): information on each direction of the disturbance, and the square of its
-        gradient, for a disturbance whose response is as large as the noise.
+        Shape (directions,): information on each direction of the disturbance, and its squared gradient. The
+        disturbance's response is as large as the noise.
     total
         Weighted power of the residual.
     """
