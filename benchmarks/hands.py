@@ -2,8 +2,9 @@
 
     python -m benchmarks.hands [--flights 20] [--seed 29113007] [--rate 10] [--stabilize]
 
-Counts the tests that are found whole, and what else is found as a test. The flights are of the second
-generator, whose pilot is a loop without noise, and of the third, with hands of a delay and a remnant.
+Counts the tests of the elevator that are found whole, and what else is found as a test. The flights are of
+the second generator, whose pilot is a loop without noise, and of the third and of those by hand, with hands
+of a delay and a remnant. Every other flight by hand tests aileron and rudder alone.
 """
 
 import sys
@@ -19,6 +20,8 @@ import yaml
 
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.library import read
+from benchmarks.at_once.telemetry import BOOT_S
+from benchmarks.by_hand.cases import cases as rigid
 from benchmarks.endure import packets
 from benchmarks.second_generator.cases import cases as second
 from benchmarks.second_generator.maneuvers import STEPPED
@@ -71,9 +74,9 @@ class Count:
 
 
 def flights(count: int, seed: int) -> Iterator[Flight]:
-    """Yield flights of both generators in turns."""
-    for pair in zip(_second(count, seed), _third(count, seed), strict=True):
-        yield from pair
+    """Yield flights of all generators in turns."""
+    for each in zip(_second(count, seed), _third(count, seed), _by_hand(count, seed), strict=True):
+        yield from each
 
 
 def _second(count: int, seed: int) -> Iterator[Flight]:
@@ -102,6 +105,12 @@ def _third(count: int, seed: int) -> Iterator[Flight]:
         flown = tuple((m.input_s, m.input_end_s) for m in case.setup.plan.maneuvers)
         log, file = log_bytes(case, nature), aircraft_file(case, nature)
         yield Flight(f"third/{index:04d}", log, file, flown, case.wiring.boot_s)
+
+
+def _by_hand(count: int, seed: int) -> Iterator[Flight]:
+    for case in rigid(count, seed, "none"):
+        flown = tuple((begin, end) for control, begin, end in case.truth["inputs"] if control == "elevator")
+        yield Flight(f"by hand/{case.name}", case.log, dict(case.aircraft), flown, BOOT_S)
 
 
 def at_rate(log: bytes, rate_hz: float) -> bytes:

@@ -105,7 +105,8 @@ def _flight(name: str, axis: str, kind: str, rng: np.random.Generator) -> Sealed
         body, withheld = draw_body(rng, int(rng.integers(len(FLEET)))), draw_withheld(kind, axis, rng)
         # Calm air moves a little.
         share = withheld.gust_share or float(rng.choice([0.0, 0.0, rng.uniform(0.002, 0.006)]))
-        recorded = fly(body, inputs_of(body, axis, rng), withheld.servos, share * body.speed, rng)
+        inputs = inputs_of(body, axis, rng)
+        recorded = fly(body, inputs, withheld.servos, share * body.speed, rng)
         if np.all(np.abs(recorded.state[:, 6:8]) < _UPSET_RAD):
             break
     log = tlog_of(recorded, body, bool(rng.random() < 0.5), rng, MANUAL)
@@ -114,6 +115,7 @@ def _flight(name: str, axis: str, kind: str, rng: np.random.Generator) -> Sealed
     true = truth(
         told, "by hand", effects, [], axis=axis, factors=dict(withheld.factors), gust_m_s=share * body.speed,
         derivatives=body.derivatives(body.speed), aircraft=body.pitching.name,
+        inputs=[(SURFACES[i.control], i.begin_s, i.end_s) for i in inputs],
     )  # fmt: skip
     return SealedCase(name, true, log, aircraft_file(body, withheld))
 
