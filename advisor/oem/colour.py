@@ -135,7 +135,7 @@ def product(rows: FloatArray, colour: Colour) -> FloatArray:
     square = rows.T @ rows
     if colour.memory == 0.0:
         return colour.variance * square
-    forward = rows.T @ accumulated(rows, colour.memory)
+    forward = rows.T @ accumulated(np.ascontiguousarray(rows), colour.memory)
     return np.asarray(colour.variance * (forward + forward.T - square + colour.white_share * square))
 
 
@@ -144,7 +144,7 @@ def powers(rows: FloatArray, colour: Colour) -> FloatArray:
     square = np.einsum("ij,ij->j", rows, rows)
     if colour.memory == 0.0:
         return np.asarray(colour.variance * square)
-    forward = np.einsum("ij,ij->j", rows, accumulated(rows, colour.memory))
+    forward = np.einsum("ij,ij->j", rows, accumulated(np.ascontiguousarray(rows), colour.memory))
     return np.asarray(colour.variance * (2.0 * forward - square + colour.white_share * square))
 
 

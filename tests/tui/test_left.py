@@ -9,7 +9,7 @@ from tests.tui import flights
 
 def test_the_verdicts_so_far_stand_on_the_terminal_after_leaving() -> None:
     lines = list(so_far(flights.state(3, bad=(2,))))
-    assert [line.split()[0] for line in lines] == ["1", "2", "3", "▶", "next:"]
+    assert [line.split()[0] for line in lines] == ["1", "2", "3", "▶", "warning:", "next:"]
     assert "✗ REPEAT: too gentle" in lines[1]
 
 
