@@ -115,6 +115,7 @@ def _flight(name: str, axis: str, kind: str, rng: np.random.Generator) -> Sealed
     true = truth(
         told, "by hand", effects, [], axis=axis, factors=dict(withheld.factors), gust_m_s=share * body.speed,
         derivatives=body.derivatives(body.speed), aircraft=body.pitching.name,
+        also_true=["turbulence" if axis == "pitch" else "side_gusts"] if share else [],
         inputs=[(SURFACES[i.control], i.begin_s, i.end_s) for i in inputs],
     )  # fmt: skip
     return SealedCase(name, true, log, aircraft_file(body, withheld))
