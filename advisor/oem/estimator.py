@@ -112,13 +112,14 @@ class Fit:
 
     def _forces(self, solution: Solution, instruments: Sequence[Instrument]) -> Driven | None:
         """Return the estimate with unknown forces; None if there are none, or if the search diverges."""
-        if self.prepared.alpha_left_out:
-            starts = (driven_without_alpha(at, PITCH, instruments, _priors) for at in (solution, self.plain))
-            return next(filter(None, starts), None)
         fits = [fit["q"] for fit in channel_fits(solution.assembly, solution.optimum)]
         still = all(fit.lag1 < COLOURED or 1.0 - fit.r2 < UNEXPLAINED for fit in fits)
+        if still and not self.prepared.alpha_left_out:
+            return None
+        estimate = driven_without_alpha if self.prepared.alpha_left_out else driven
         # Gusts can draw output error's instruments so far that the search from there diverges.
-        return None if still else driven(solution, PITCH, instruments, _priors, again=self.plain)
+        starts = (estimate(at, PITCH, instruments, _priors) for at in (solution, self.plain))
+        return next(filter(None, starts), None)
 
 
 def _priors(problem: OutputErrorProblem, shared: FloatArray) -> Priors:

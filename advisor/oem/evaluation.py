@@ -13,9 +13,6 @@ from advisor.oem.rows import Laid
 from advisor.oem.scatter_between import widened_by_scatter
 from advisor.process.arrays import FloatArray
 
-PARTS = 16
-"""Numerical: number of parts of a manoeuvre between which errors scatter, a power of two. A part of a
-manoeuvre of 6 to 20 s is then no longer than 1.3 s."""
 LEAST_SHARE = 0.01
 """Least factor on a prior's standard deviation in a white-noise fit; data without noise have no colour."""
 
@@ -46,7 +43,7 @@ class Evaluated:
     noise: Coloured
     """Colour of each output's noise."""
     contributions: FloatArray
-    """Shape (m, PARTS, p + k): contribution of each part of a manoeuvre to each parameter, with zero sum."""
+    """Shape (m, p + k): contribution of each manoeuvre's residuals to each parameter, with zero sum."""
     systematic: FloatArray
     """Shape (p + k, p + k): covariance from dynamics that the model lacks, equal in all manoeuvres."""
     modes: FloatArray | None = None
@@ -67,7 +64,7 @@ class Evaluated:
     @property
     def scattered(self) -> FloatArray:
         """Shape (p + k, p + k): covariance that includes the scatter between the manoeuvres."""
-        return widened_by_scatter(self.covariance, self.contributions[..., : len(self.covariance)])
+        return widened_by_scatter(self.covariance, self.contributions[:, : len(self.covariance)])
 
     @property
     def widened(self) -> FloatArray:
@@ -140,13 +137,7 @@ def errors_of(
 
 
 def contributions_of(assembly: Laid, rows: FloatArray, residual: FloatArray) -> FloatArray:
-    """Return the contribution of each part of each manoeuvre, shape (m, PARTS, p + k).
-
-    ``rows`` (N, p + k) are the influence of the ``residual`` (N,).
-    """
-    found = np.zeros((len(assembly.blocks), PARTS, rows.shape[1]))
-    for contributions, block in zip(found, assembly.blocks, strict=True):
-        t = assembly.t[block] - assembly.t[block].min()
-        part = np.minimum(PARTS * t / max(float(t.max()), 1e-9), PARTS - 1).astype(np.int64)
-        np.add.at(contributions, part, rows[block] * residual[block, None])
-    return found
+    """Return the contribution of each manoeuvre, shape (m, p + k), from influence ``rows`` (N, p + k) and
+    ``residual`` (N,)."""
+    pull = rows * residual[:, None]
+    return np.array([pull[block].sum(axis=0) for block in assembly.blocks])

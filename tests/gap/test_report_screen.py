@@ -153,6 +153,19 @@ def test_the_interval_of_the_shrink_encloses_it_as_printed():
     assert line.startswith("99.9 % less (95 %: 99.9 to 99.9)")
 
 
+def test_a_gap_that_grows_on_held_out_manoeuvres_is_no_negative_shrink():
+    grown = Shrink((1, 3), 0.0956, 0.452, -372.8, (-372.8, -20.3))
+    text = " ".join(printed(diagnosis(shrink=grown), 140))
+    assert "larger on held-out manoeuvres 1, 3: 0.0956 → 0.452, both below the noise" in text
+    assert "% less" not in text
+
+
+def test_an_answer_that_changes_nothing_has_no_larger_gap():
+    grown = replace(diagnosis().gap, by_maneuver=((1, 0.1, 0.3),))
+    text = " ".join(printed(diagnosis(gap=grown, verdict="none", causes=(), shrink=None), 140))
+    assert "larger" not in text
+
+
 def test_a_shrink_of_other_gaps_than_those_above_it_states_its_own():
     shrunk = Shrink((2, 5), 16.3, 1.98, 87.8, (87.4, 88.3))
     assert "manoeuvres 2, 5; the corrections alone leave 1.98" in " ".join(

@@ -11,7 +11,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.campaign.single_maneuver import assess, cautions_of
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.driven_motion import estimate as driven_estimate
+from advisor.oem import estimator
 from advisor.oem.driven_motion.estimate import Driven, driven
 from advisor.oem.driven_motion.kalman_filter import driven_filter
 from advisor.oem.driven_motion.likeliest_noise import first_noise
@@ -207,13 +207,13 @@ def test_a_model_that_runs_away_gives_no_estimate_instead_of_a_fault(index: int,
 
 
 def test_a_search_that_diverges_from_the_instruments_starts_again_without_them(monkeypatch):
-    starts, search = [], driven_estimate._descended
+    starts = []
 
-    def diverges_once(model, start, *others, **searched):
-        starts.append(start)
-        return None if len(starts) == 1 else search(model, start, *others, **searched)
+    def diverges_once(solution, *others):
+        starts.append(solution)
+        return None if len(starts) == 1 else driven(solution, *others)
 
-    monkeypatch.setattr(driven_estimate, "_descended", diverges_once)
+    monkeypatch.setattr(estimator, "driven", diverges_once)
     found = estimate(flown(0.02, seed=3), KNOWN_SERVO)
     assert isinstance(found, Estimate)
     assert found.filtered

@@ -1,14 +1,11 @@
 """Errors of a joint estimate: those of the manoeuvres together, neither of one alone nor of none."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.oem.estimator import estimate, estimate_jointly
-from advisor.oem.evaluation import contributions_of
 from advisor.oem.scatter_between import widened_by_scatter
 from tests.oem.builders import UAV, flown
 
@@ -65,31 +62,3 @@ def test_scatter_that_chance_explains_widens_nothing():
     for square, factor in ((7.7, 1.0), (7.9, 7.9 / 3.0)):
         contributions = 0.25 * np.sqrt(square) * np.array([[1.0], [-1.0], [1.0], [-1.0]])
         assert widened_by_scatter(stated, contributions)[0, 0] == pytest.approx(factor)
-
-
-def in_parts(each):
-    """Return the contributions of two manoeuvres in 16 parts to one parameter, from one row of 32."""
-    return np.reshape(each, (2, 16, 1))
-
-
-def test_scatter_between_the_parts_of_two_manoeuvres_widens_where_the_manoeuvres_agree():
-    """Thirty-two contributions of .5 and -.5 have a variance of 8·32/31, and each manoeuvre's sum is zero."""
-    each = 0.5 * np.tile([1.0, -1.0], 16)
-    assert widened_by_scatter(np.eye(1), in_parts(each))[0, 0] == pytest.approx(8.0 * 32.0 / 31.0)
-
-
-def test_noise_with_a_memory_scatters_between_longer_parts():
-    """Four neighbours of .2 are one contribution of .8: the scatter of eight such sums is the largest."""
-    each = 0.2 * np.tile(np.repeat([1.0, -1.0], 4), 4)
-    assert widened_by_scatter(np.eye(1), in_parts(each))[0, 0] == pytest.approx(8.0 * 0.64 * 8.0 / 7.0)
-
-
-def test_scatter_between_parts_that_chance_explains_widens_nothing():
-    assert widened_by_scatter(np.eye(1), in_parts(np.tile([0.2, -0.2], 16)))[0, 0] == 1.0
-
-
-def test_a_part_holds_the_residuals_of_its_time():
-    t = np.concatenate([np.linspace(5.0, 21.0, 161)[::-1], np.linspace(5.0, 21.0, 81)])
-    laid = SimpleNamespace(blocks=(slice(0, len(t)),), t=t)
-    (found,) = contributions_of(laid, np.ones((len(t), 1)), np.where(t < 6.0, 1.0, 0.0))
-    assert found[:, 0].tolist() == [15.0, *[0.0] * 15]

@@ -63,7 +63,6 @@ def driven(
     parameters: Sequence[Parameter],
     priors: Callable[[Any, FloatArray], Priors],
     near: Noise | None = None,
-    again: Solution | None = None,
 ) -> Driven | None:
     """Return the estimate with unknown forces; None if the motion is not driven, or if the search diverges.
 
@@ -77,8 +76,6 @@ def driven(
         Function that returns the priors of the derivatives for a problem and shared parameters.
     near
         Noise of earlier records of the aircraft, from which the noise search starts.
-    again
-        Output-error solution from which a search that diverges starts again.
     """
     weighing = Weighing.by(start.noise.colours, start.assembly)
     coloured = weighing.volume + float(np.sum(weighing.forward(start.residual[:, None]) ** 2))
@@ -96,8 +93,7 @@ def driven(
     gain = 0.5 * (still - volume - System.of(here, white, prior).misfit)
     if not gain > CLEARLY:
         return None
-    found = _descended(model, start, here, noise, gain, searched=near is None)
-    return driven(again, motion, parameters, priors) if found is None and again is not None else found
+    return _descended(model, start, here, noise, gain, searched=near is None)
 
 
 def driven_without_alpha(

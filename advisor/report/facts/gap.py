@@ -34,13 +34,14 @@ def shrink_said(shrink: Shrink, gap: Gap) -> str:
     The gap after the corrections includes the flight's nuisance parameters. An export cannot contain them,
     and its gap can be larger. The sentence states a larger gap if the two differ in two digits.
     """
+    kept_out = f"on held-out manoeuvres {counted(shrink.holdout)}"
+    if shrink.percent < 0.0:
+        noise = ", both below the noise" if max(shrink.before, shrink.after) < 1.0 else ""
+        return f"larger {kept_out}: {short(shrink.before)} → {short(shrink.after)}{noise}"
     low, high = shrink.ci95_percent
     larger = float(f"{shrink.after:.2g}") > float(f"{gap.after:.2g}")
     left = f"; the corrections alone leave {short(shrink.after)}" if larger else ""
-    return (
-        f"{shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) on held-out "
-        f"manoeuvres {counted(shrink.holdout)}{left}"
-    )
+    return f"{shrink.percent:.1f} % less (95 %: {low:.1f} to {high:.1f}) {kept_out}{left}"
 
 
 def where_said(where: Where, shrink: Shrink | None) -> str:
@@ -52,14 +53,15 @@ def where_said(where: Where, shrink: Shrink | None) -> str:
 
 
 def grown_said(verdict: str, gap: Gap) -> str:
-    """Return the channels and manoeuvres whose gap has grown; empty if none has grown."""
+    """Return the channels and manoeuvres whose gap has grown; empty for none, or if nothing is changed."""
+    if verdict == "none":
+        return ""
     given, left = gap.by_channel, gap.by_channel_after
     channels = [CHANNELS[name].symbol for name, after in left.items() if has_grown(after, given[name])]
     numbers = [number for number, before, after in gap.by_maneuver if has_grown(after, before)]
     noun = "manoeuvre" if len(numbers) == 1 else "manoeuvres"
     grown = [*channels, *([f"{noun} {counted(numbers)}"] if numbers else [])]
-    cause = "fitted numbers make the gap larger" if verdict == "none" else "the gap is larger than before"
-    return f"{cause} in {', '.join(grown)}" if grown else ""
+    return f"the gap is larger than before in {', '.join(grown)}" if grown else ""
 
 
 LAWS = {

@@ -48,7 +48,7 @@ def colour_share(fit: Fit, lacking: bool = False) -> float:
     errors = errors_of(*about, None, no_prior, fitted=fit.fitted if lacking else None)
     if errors is None:
         return 1.0
-    scattered = widened_by_scatter(errors["covariance"], errors["contributions"].sum(axis=1))
+    scattered = widened_by_scatter(errors["covariance"], errors["contributions"])
     return share_of(errors["covariance_cr"], scattered + errors["systematic"])
 
 
@@ -65,7 +65,7 @@ def posterior_at(fit: Fit, known: Known, share: float) -> tuple[FloatArray, Floa
     found = errors_of(fit.assembly, *about, extra, precision, fitted=fit.fitted, prior_share=share)
     if found is None:
         return mean, known.precision**-0.5
-    scattered = widened_by_scatter(found["covariance"], found["contributions"].sum(axis=1))
+    scattered = widened_by_scatter(found["covariance"], found["contributions"])
     return mean, np.diag(scattered + found["systematic"]) ** 0.5
 
 

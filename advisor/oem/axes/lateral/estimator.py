@@ -41,7 +41,7 @@ class Errors(NamedTuple):
     covariance: FloatArray
     """Shape (15, 15): covariance from the noise within the manoeuvres."""
     contributions: FloatArray
-    """Shape (m, parts, 15): contribution of each part of a manoeuvre to the derivatives."""
+    """Shape (m, 15): contribution of each manoeuvre to the derivatives."""
     systematic: FloatArray = np.zeros((len(LATERAL.shared), len(LATERAL.shared)))
     """Shape (15, 15): covariance from dynamics that the model lacks."""
 
@@ -54,7 +54,7 @@ class Errors(NamedTuple):
         would break the correlations that make a mode more certain than its derivatives.
         """
         within = slope @ self.covariance @ slope
-        own = widened_by_scatter(np.array([[within]]), (self.contributions @ slope)[..., None])[0, 0]
+        own = widened_by_scatter(np.array([[within]]), (self.contributions @ slope)[:, None])[0, 0]
         common = slope @ self.systematic @ slope
         return float((max(own, within * self._growth, 0.0) + common) ** 0.5)
 
@@ -192,7 +192,7 @@ def fit_lateral(
 def _reported(solution: Solution) -> LateralEstimate:
     problem, covariance = solution.problem, solution.widened[:N, :N]
     bound, common = solution.covariance_cr[:N, :N], covariance - solution.scattered[:N, :N]
-    errors = Errors(solution.covariance[:N, :N], solution.contributions[..., :N], common)
+    errors = Errors(solution.covariance[:N, :N], solution.contributions[:, :N], common)
     return LateralEstimate(
         theta=solution.theta,
         covariance_cr=bound,
