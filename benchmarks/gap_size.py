@@ -56,7 +56,7 @@ LIMITS = {
     "constants that decide": 25,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 16411,
+    "lines of estimation": 16403,
     "lines of the package": 60900,
     "files naming an axis": 110,
 }
