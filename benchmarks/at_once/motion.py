@@ -100,6 +100,33 @@ def rates(x: Floats, surfaces: Floats, n: Numbers) -> tuple[Floats, Floats]:
 
 
 @kernel
+def rates_in_gust(x: Floats, surfaces: Floats, gust: Floats, n: Numbers) -> tuple[Floats, Floats]:
+    """Return the rates of the state (9,) and the specific force; the gust (3,) is in body axes, m/s."""
+    through = x.copy()
+    through[:3] -= gust
+    out, felt = rates(through, surfaces, n)
+    p, q, r = x[3], x[4], x[5]
+    out[0] += r * gust[1] - q * gust[2]
+    out[1] += p * gust[2] - r * gust[0]
+    out[2] += q * gust[0] - p * gust[1]
+    phi, theta = x[6], x[7]
+    sideways = gust[1] * np.sin(phi) + gust[2] * np.cos(phi)
+    out[8] += gust[0] * np.sin(theta) - np.cos(theta) * sideways
+    return out, felt
+
+
+@kernel
+def stepped(x: Floats, surfaces: Floats, after: Floats, gust: Floats, n: Numbers) -> tuple[Floats, Floats]:
+    """Return the state after a step, and the specific force before it; surfaces go to ``after``, rad."""
+    middle = 0.5 * (surfaces + after)
+    k1, felt = rates_in_gust(x, surfaces, gust, n)
+    k2, _ = rates_in_gust(x + 0.5 * STEP_S * k1, middle, gust, n)
+    k3, _ = rates_in_gust(x + 0.5 * STEP_S * k2, middle, gust, n)
+    k4, _ = rates_in_gust(x + STEP_S * k3, after, gust, n)
+    return x + STEP_S / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4), felt
+
+
+@kernel
 def flown(
     x: Floats,
     asked: Floats,
@@ -127,7 +154,7 @@ def flown(
     count = len(asked)
     states, forces, pulses = np.empty((count, 9)), np.empty((count, 3)), np.empty((count, 3))
     held = np.array([trim[1], 0.0, 0.0])
-    surfaces, kept = held.copy(), np.exp(-STEP_S / lags_s)
+    surfaces, kept, still = held.copy(), np.exp(-STEP_S / lags_s), np.zeros(3)
     for k in range(count):
         if hands[k] > 0.5:
             path = min(max(gains[4] * (HEIGHT_M - x[8]), -0.06), 0.06)
@@ -136,12 +163,7 @@ def flown(
         pulses[k] = np.floor(1500.5 + us_per_rad * (held + asked[k]))
         told = (pulses[k] - 1500.0) / us_per_rad
         after = told + (surfaces - told) * kept
-        middle = 0.5 * (surfaces + after)
-        k1, felt = rates(x, surfaces, n)
-        states[k], forces[k] = x, felt
-        k2, _ = rates(x + 0.5 * STEP_S * k1, middle, n)
-        k3, _ = rates(x + 0.5 * STEP_S * k2, middle, n)
-        k4, _ = rates(x + STEP_S * k3, after, n)
-        x = x + STEP_S / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        states[k] = x
+        x, forces[k] = stepped(x, surfaces, after, still, n)
         surfaces = after
     return states, forces, pulses

@@ -2,28 +2,12 @@
 
 import numpy as np
 
-from benchmarks.at_once.motion import HEIGHT_M, STEP_S, Floats, Numbers, rates
+from benchmarks.at_once.motion import HEIGHT_M, STEP_S, Floats, Numbers, stepped
 from benchmarks.second_generator.kernel import kernel
 
 HANDS_S = 0.02
 """Time between two movements of the hands, s."""
 _EACH = round(HANDS_S / STEP_S)
-
-
-@kernel
-def rates_in_gust(x: Floats, surfaces: Floats, gust: Floats, n: Numbers) -> tuple[Floats, Floats]:
-    """Return the rates of the state (9,) and the specific force; the gust (3,) is in body axes, m/s."""
-    through = x.copy()
-    through[:3] -= gust
-    out, felt = rates(through, surfaces, n)
-    p, q, r = x[3], x[4], x[5]
-    out[0] += r * gust[1] - q * gust[2]
-    out[1] += p * gust[2] - r * gust[0]
-    out[2] += q * gust[0] - p * gust[1]
-    phi, theta = x[6], x[7]
-    sideways = gust[1] * np.sin(phi) + gust[2] * np.cos(phi)
-    out[8] += gust[0] * np.sin(theta) - np.cos(theta) * sideways
-    return out, felt
 
 
 @kernel
@@ -85,12 +69,7 @@ def flown(
             step = (told[c] - servo[c]) * (1.0 - np.exp(-STEP_S / lag))
             servo[c] += min(max(step, -most), most)
             after[c] = min(max(surfaces[c], servo[c] - 0.5 * play), servo[c] + 0.5 * play)
-        middle, gust = 0.5 * (surfaces + after), gusts[k]
-        k1, felt = rates_in_gust(x, surfaces, gust, n)
-        states[k], forces[k] = x, felt
-        k2, _ = rates_in_gust(x + 0.5 * STEP_S * k1, middle, gust, n)
-        k3, _ = rates_in_gust(x + 0.5 * STEP_S * k2, middle, gust, n)
-        k4, _ = rates_in_gust(x + STEP_S * k3, after, gust, n)
-        x = x + STEP_S / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        states[k] = x
+        x, forces[k] = stepped(x, surfaces, after, gusts[k], n)
         surfaces = after
     return states, forces, pulses

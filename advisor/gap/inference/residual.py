@@ -90,9 +90,9 @@ def _density(size: float, error: float, freedom: int, told: tuple[float, float])
     A squared size with an error has Student's distribution: it may stand for all sizes on a grid.
     """
     mean, std = told
-    grid = np.linspace(np.log(_LEAST_MISFIT), np.log(1e3), 400)
-    sizes = grid if error > 0.0 else np.log([max(size, _LEAST_MISFIT)])
-    far = (size**2 - np.exp(2.0 * sizes)) / max(error, 1e-300)
-    student = -0.5 * (freedom + 1) * np.log1p(far**2 / max(freedom, 1)) if error > 0.0 else 0.0 * sizes
+    sizes, student = np.log([max(size, _LEAST_MISFIT)]), np.zeros(1)
+    if error > 0.0:
+        sizes = np.linspace(np.log(_LEAST_MISFIT), np.log(1e3), 400)
+        student = -0.5 * (freedom + 1) * np.log1p(((size**2 - np.exp(2.0 * sizes)) / error) ** 2 / freedom)
     density = -0.5 * ((sizes - mean) / std) ** 2 - np.log(std)
     return float(np.logaddexp.reduce(student + density) - np.logaddexp.reduce(student))

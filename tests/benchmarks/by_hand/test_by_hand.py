@@ -5,10 +5,9 @@ import pytest
 
 from advisor.aircraft_file.read import load_aircraft
 from benchmarks.at_once.body import FLEET, Body, draw_body
-from benchmarks.at_once.motion import level_state, rates
+from benchmarks.at_once.motion import level_state, rates, rates_in_gust
 from benchmarks.by_hand.cases import KINDS, cases, draw_withheld
 from benchmarks.by_hand.flight import Servos, fly, inputs_of
-from benchmarks.by_hand.motion import rates_in_gust
 from sim.sealed.cases import write_case
 
 SURFACES = np.array([0.01, -0.02, 0.03])
