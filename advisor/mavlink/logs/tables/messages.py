@@ -29,13 +29,13 @@ _LATEST_BOOT_S = 1e6
 def with_outputs(aircraft: Aircraft, surfaces: tuple[str, ...] = ("elevator",)) -> Aircraft:
     """Return the aircraft with the surfaces of a table as outputs, and with the table's angles.
 
-    Lag, delay, and places of the instruments stay as the aircraft file states them. A source of the angle of
-    attack or of the sideslip other than ``auto`` stays, too.
+    Stops, lag, delay, and places of the instruments stay as the aircraft file states them. A source of the
+    angle of attack or of the sideslip other than ``auto`` stays, too.
     """
-    calibration = tuple((_CENTRE_US + _US_PER_DEG * deg, deg) for deg in (-90.0, 90.0))
+    given = {name: getattr(aircraft, name) for name in surfaces}
     controls = {
-        name: replace(getattr(aircraft, name), output=_OUTPUTS[name], calibration=calibration)
-        for name in surfaces
+        name: replace(control, output=_OUTPUTS[name], calibration=_scaled(control.ends_deg or (-90.0, 90.0)))
+        for name, control in given.items()
     }
     if "elevator" in controls:
         controls["elevator"] = replace(controls["elevator"], outputs=())
@@ -47,6 +47,10 @@ def with_outputs(aircraft: Aircraft, surfaces: tuple[str, ...] = ("elevator",)) 
         alpha=replace(alpha, source="named_value:alpha") if alpha.source in own else alpha,
         beta=replace(beta, source="named_value:beta") if beta.source in own else beta,
     )
+
+
+def _scaled(ends_deg: tuple[float, float]) -> tuple[tuple[float, float], ...]:
+    return tuple((_CENTRE_US + _US_PER_DEG * deg, deg) for deg in ends_deg)
 
 
 def messages_of(given: Mapping[str, FloatArray], as_stamped: bool) -> Iterator[Columns]:

@@ -1,7 +1,6 @@
 """A flight written as a table gives the derivatives of its log."""
 
 import csv
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -48,9 +47,8 @@ def write(path: Path, columns: dict[str, np.ndarray]) -> Path:
 
 def errors_apart(log: Path, table: Path, aircraft: Aircraft) -> np.ndarray:
     """Return the differences of the derivatives of a table from those of its log, in standard deviations."""
-    bare = replace(aircraft, elevator=replace(aircraft.elevator, calibration=None))
     by_log = read_whole([log], aircraft, axis="both").state.model
-    by_table = read_whole([table], as_in_tables(bare, [table]), axis="both").state.model
+    by_table = read_whole([table], as_in_tables(aircraft, [table]), axis="both").state.model
     shared = [k for k, name in enumerate(by_log.names) if name not in ("Z_0", "M_0")]
     return np.abs((by_table.theta - by_log.theta) / by_log.std)[shared]
 

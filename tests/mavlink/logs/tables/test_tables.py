@@ -95,6 +95,13 @@ def test_the_surfaces_of_a_table_replace_the_outputs_of_the_aircraft_file(tmp_pa
     assert told.alpha.source == "named_value:alpha"
 
 
+def test_the_stops_of_the_aircraft_file_hold_in_a_table(tmp_path):
+    stated = Elevator(calibration=((1000.0, 7.0), (2000.0, -7.0)))
+    told = as_in_tables(Aircraft(elevator=stated), [table(tmp_path)])
+    assert told.elevator.ends_deg == (-7.0, 7.0)
+    assert dict(told.elevator.calibration) == {1430.0: -7.0, 1570.0: 7.0}
+
+
 def test_an_aircraft_of_other_logs_stays_as_it_is():
     aircraft = Aircraft(elevator=Elevator(output=7))
     assert as_in_tables(aircraft, [SHIPPED / "bundled-demo.tlog"]) is aircraft
