@@ -87,7 +87,7 @@ def _ridge(solution: Solution) -> str:
     return (
         f"Servo lags of {lag_s[0]:.2f} s and {lag_s[far]:.2f} s explain the record alike, with "
         f"{symbol(PARAMETERS[k])} of {theta[0, k]:.3g} and {theta[far, k]:.3g}. "
-        "Set elevator.lag_s, or fly steps of another duration."
+        "Set elevator.lag_s if it is known."
     )
 
 
