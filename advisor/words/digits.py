@@ -70,3 +70,8 @@ def counted(numbers: Sequence[int]) -> str:
     if len(numbers) > 2 and numbers[-1] - numbers[0] == len(numbers) - 1:
         return f"{numbers[0]} to {numbers[-1]}"
     return ", ".join(map(str, numbers))
+
+
+def maneuvers_said(numbers: Sequence[int]) -> str:
+    """Return the noun with the numbers of manoeuvres: ``manoeuvre 3``, or ``manoeuvres 1 to 9``."""
+    return f"manoeuvre{'s' if len(numbers) > 1 else ''} {counted(numbers)}"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.words.digits import distinct_texts
+from advisor.words.digits import distinct_texts, maneuvers_said
 
 
 @pytest.mark.parametrize(
@@ -40,3 +40,11 @@ def test_the_texts_stand_on_the_side_of_the_limit_on_which_the_numbers_are():
 
 def test_equal_numbers_are_shown_as_equal():
     assert distinct_texts(25.0, 25.0) == ("25", "25")
+
+
+@pytest.mark.parametrize(
+    ("numbers", "text"),
+    [([3], "manoeuvre 3"), ([3, 4], "manoeuvres 3, 4"), ([3, 4, 5], "manoeuvres 3 to 5")],
+)
+def test_one_manoeuvre_is_said_in_the_singular(numbers, text):
+    assert maneuvers_said(numbers) == text

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.result import Diagnosis, spelled
 from advisor.simulators.taken_back import taken_back_said, unused
+from advisor.words.digits import maneuvers_said
 from advisor.words.problems import UnusableInputError
 
 NUMBERS = "the fitted numbers"
@@ -147,8 +148,8 @@ def stays_of(proof: Proof | None, diagnosis: Diagnosis, given: Mapping[str, floa
 
 def lines_of(proof: Proof) -> Iterator[str]:
     """Yield the proof for people."""
-    flown = ", ".join(map(str, proof.maneuvers))
-    yield f"Proof on manoeuvres {flown}, which no fit has used: gap {proof.before:.2f} → {proof.after:.2f}"
+    flown = maneuvers_said(proof.maneuvers)
+    yield f"Proof on {flown}, which no fit has used: gap {proof.before:.2f} → {proof.after:.2f}"
     for number, before, after in proof.by_maneuver:
         yield f"  manoeuvre {number}: {before:.2f} → {after:.2f}"
     if proof.alone:

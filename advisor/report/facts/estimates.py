@@ -9,7 +9,7 @@ from math import isfinite, nan
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.oem.axes.lateral.estimate import LateralEstimate
 from advisor.oem.estimate import Estimate, TermEstimate
-from advisor.words.digits import counted, decimals_for, signed, with_half
+from advisor.words.digits import decimals_for, maneuvers_said, signed, with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import DEG, symbol
 from advisor.words.quantities import PARAMETERS as PITCH
@@ -126,8 +126,7 @@ def estimated_parameter(
 
 def joint_source(state: CampaignState | LateralState) -> str:
     """Return the name of an axis' joint estimate, for the head of a table."""
-    several = "s" if len(state.estimate_from) > 1 else ""
-    return f"Joint estimate from manoeuvre{several} {counted(state.estimate_from)}"
+    return f"Joint estimate from {maneuvers_said(state.estimate_from)}"
 
 
 def of_all(name: str, state: CampaignState | LateralState, prior: Mapping[str, float]) -> EstimatedParameter:

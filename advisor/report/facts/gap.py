@@ -7,7 +7,7 @@ from advisor.gap.alternative import Weighed
 from advisor.gap.result import ComparedDerivative, Gap, MissingLaw, Shrink, Where
 from advisor.gap.verdict.text import in_words, place
 from advisor.report.facts.sizes import before_after, has_grown, short
-from advisor.words.digits import counted, decimals_for, signed, with_half
+from advisor.words.digits import decimals_for, maneuvers_said, signed, with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import CHANNELS, PARAMETERS, SIDE_PARAMETERS
 
@@ -34,7 +34,7 @@ def shrink_said(shrink: Shrink, gap: Gap) -> str:
     The gap after the corrections includes the flight's nuisance parameters. An export cannot contain them,
     and its gap can be larger. The sentence states a larger gap if the two differ in two digits.
     """
-    kept_out = f"on held-out manoeuvres {counted(shrink.holdout)}"
+    kept_out = f"on held-out {maneuvers_said(shrink.holdout)}"
     if shrink.percent < 0.0:
         noise = ", both below the noise" if max(shrink.before, shrink.after) < 1.0 else ""
         return f"larger {kept_out}: {short(shrink.before)} → {short(shrink.after)}{noise}"
@@ -59,8 +59,7 @@ def grown_said(verdict: str, gap: Gap) -> str:
     given, left = gap.by_channel, gap.by_channel_after
     channels = [CHANNELS[name].symbol for name, after in left.items() if has_grown(after, given[name])]
     numbers = [number for number, before, after in gap.by_maneuver if has_grown(after, before)]
-    noun = "manoeuvre" if len(numbers) == 1 else "manoeuvres"
-    grown = [*channels, *([f"{noun} {counted(numbers)}"] if numbers else [])]
+    grown = [*channels, *([maneuvers_said(numbers)] if numbers else [])]
     return f"the gap is larger than before in {', '.join(grown)}" if grown else ""
 
 

@@ -6,7 +6,7 @@ from advisor.report.axes.lateral_document import side_quality_lines
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
 from advisor.session.view import View
 from advisor.tui.panes.pane import TextPane
-from advisor.words.digits import counted
+from advisor.words.digits import maneuvers_said
 
 
 class Qualities(TextPane):
@@ -37,8 +37,7 @@ Roll and yaw: Dutch roll, roll and spiral. Where the aircraft file states the de
         lines = [(" " * (len(line) - len(line.lstrip())), line.strip()) for line in _lines(view)]
         self.write(lines or [("", self.EMPTY)])
         estimated = view.state.estimate_from
-        several = "s" if len(estimated) > 1 else ""
-        self.subtitle(f"from manoeuvre{several} {counted(estimated)}" if estimated else "")
+        self.subtitle(f"from {maneuvers_said(estimated)}" if estimated else "")
 
 
 def _lines(view: View) -> Iterable[str]:
