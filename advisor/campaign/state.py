@@ -83,8 +83,12 @@ def has_begun(judged: Sequence[JudgedManeuver]) -> bool:
 
     A refused pulse does not count, because hands that trim an axis also move its control away and back.
     """
-    spans = [one.maneuver.span for one in judged if not one.verdict.accepted]
-    return len(spans) < len(judged) or any(x.is_marked or x.kind not in ("other", "pulse") for x in spans)
+    return any(
+        one.verdict.accepted
+        or one.maneuver.span.is_marked
+        or one.maneuver.span.kind not in ("other", "pulse")
+        for one in judged
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)

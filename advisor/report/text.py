@@ -94,6 +94,9 @@ class AnalysisText:
         if self.pitch and (self.every_movement or self.state.tested_sideways is None):
             flown = self._movements(self.state.maneuvers, self.state.activity)
             yield from self._axis(self.state, flown, self._qualities())
+        elif self.pitch and (left := len(self.state.maneuvers)):
+            several = "s" if left > 1 else ""
+            yield Text(f"--all lists {left} refused movement{several} of the elevator", style="dim")
         if (side := self.state.lateral) is not None and side.maneuvers:
             flown = self._movements(side.maneuvers, (), SIDE_ROOM)
             lines = chain([Text("Roll and yaw", style="bold")], flown)

@@ -46,3 +46,4 @@ def test_movements_of_the_elevator_beside_a_test_of_roll_and_yaw_are_shown_on_re
     lines = printed_lines(AnalysisText(beside, ["a.tlog"], flights.AIRCRAFT, everything))
     assert sum(line.startswith("rule information") for line in lines) == 1 + everything
     assert sum(line.startswith("no.  start") for line in lines) == 1 + everything
+    assert ("--all lists 2 refused movements of the elevator" in lines) is not everything

@@ -19,7 +19,7 @@ def headline(content: Content) -> Iterator[Block]:
     yield _flown(content)
     state = content.state
     sideways = state.tested_sideways is not None
-    yield from decided(state, pitch=not sideways)
+    yield from decided(state)
     side = state.lateral_alone
     if side is not None and (glance_at := joint_table(side, content.aircraft.model, "lateral-glance")):
         yield glance_at
