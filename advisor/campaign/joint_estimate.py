@@ -49,6 +49,8 @@ class _Joint:
         """Return the estimate from the fit; None without a fit."""
         if self._found is None and self._fit is not None:
             self._found = self._fit.estimate()
+            if len(self.maneuvers) > NEWEST:
+                self._fit = None  # of hundreds of manoeuvres a fit is a hundred megabytes
         return self._found
 
     def _near(self, maneuvers: Sequence[Maneuver], plain: Solution) -> Solution | None:
@@ -117,6 +119,5 @@ class Together:
         if self._kept is None or not same(self._kept.maneuvers, maneuvers):
             # More manoeuvres than in flight are estimated from the data alone.
             earlier = self._kept if len(maneuvers) <= NEWEST else None
-            self._kept = None  # of hundreds of manoeuvres a fit is a hundred megabytes
             self._kept = _Joint.of(maneuvers, self._aircraft, earlier)
         return self._kept

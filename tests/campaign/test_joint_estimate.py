@@ -1,7 +1,9 @@
 """The joint estimate: of the newest accepted manoeuvres during the flight, of all at its end."""
 
+import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -153,6 +155,26 @@ def asked_for_a_lag(
     for k in range(count):
         together.of_lag_so_far(accepted[: k + 1])
     return fits.asked
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_only_a_fit_of_as_few_manoeuvres_as_in_flight_outlasts_its_estimate(
+    more: int, states: tuple[CampaignState, CampaignState], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Made(SimpleNamespace):
+        """A fit of which nothing but its end is asked; unlike its base class it can be watched."""
+
+    fits: list[weakref.ref[Made]] = []
+
+    def fitted(*_: object) -> Made:
+        made = Made(tells_lag=False, estimate=lambda: None)
+        fits.append(weakref.ref(made))
+        return made
+
+    monkeypatch.setattr(joint_estimate, "fit_jointly", fitted)
+    together = Together(Aircraft())
+    together.estimate([states[0].maneuvers[0].maneuver] * (NEWEST + more))
+    assert (fits[0]() is None) is (more > 0)
 
 
 def test_after_a_group_that_tells_no_lag_the_next_whole_group_is_asked(
