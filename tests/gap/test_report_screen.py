@@ -153,11 +153,12 @@ def test_the_interval_of_the_shrink_encloses_it_as_printed():
     assert line.startswith("99.9 % less (95 %: 99.9 to 99.9)")
 
 
-def test_a_gap_that_grows_on_held_out_manoeuvres_is_no_negative_shrink():
-    grown = Shrink((1, 3), 0.0956, 0.452, -372.8, (-372.8, -20.3))
-    text = " ".join(printed(diagnosis(shrink=grown), 140))
-    assert "larger on held-out manoeuvres 1, 3: 0.0956 → 0.452, both below the noise" in text
-    assert "% less" not in text
+@pytest.mark.parametrize(("after", "beside"), [(0.452, ", both below the noise"), (1.25, "")])
+def test_a_gap_that_grows_on_held_out_manoeuvres_is_no_negative_shrink(after: float, beside: str):
+    grown = Shrink((1, 3), 0.0956, after, -372.8, (-372.8, -20.3))
+    lines = printed(diagnosis(shrink=grown), 140)
+    assert f"larger on held-out manoeuvres 1, 3: 0.0956 → {after}{beside}" in lines
+    assert "% less" not in " ".join(lines)
 
 
 def test_an_answer_that_changes_nothing_has_no_larger_gap():
