@@ -1,4 +1,4 @@
-"""The stop rules in the text of an analysis: the deciding one whole, the paper's two in one line."""
+"""The text of an analysis: the deciding rule whole, the paper's two in one line, and each note once."""
 
 from dataclasses import replace
 
@@ -47,3 +47,12 @@ def test_movements_of_the_elevator_beside_a_test_of_roll_and_yaw_are_shown_on_re
     assert sum(line.startswith("rule information") for line in lines) == 1 + everything
     assert sum(line.startswith("no.  start") for line in lines) == 1 + everything
     assert ("--all lists 2 refused movements of the elevator" in lines) is not everything
+
+
+def test_a_note_of_a_manoeuvre_is_said_once_and_a_note_of_the_joint_estimate_alone_too():
+    state = flights.state(4)
+    caution = state.maneuvers[0].verdict.cautions[1]
+    noted = changed(state, model=replace(state.model, notes=(caution, "The joint estimate is rough.")))
+    lines = printed_lines(AnalysisText(noted, ["a.tlog"], flights.AIRCRAFT))
+    assert [line for line in lines if caution in line] == [f"[1 to 4] {caution}"]
+    assert "note: The joint estimate is rough." in lines
