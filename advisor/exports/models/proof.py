@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.result import Diagnosis, spelled
 from advisor.simulators.taken_back import taken_back_said, unused
-from advisor.words.digits import maneuvers_said
+from advisor.words.digits import maneuvers_said, significant
 from advisor.words.problems import UnusableInputError
 
 NUMBERS = "the fitted numbers"
@@ -149,9 +149,9 @@ def stays_of(proof: Proof | None, diagnosis: Diagnosis, given: Mapping[str, floa
 def lines_of(proof: Proof) -> Iterator[str]:
     """Yield the proof for people."""
     flown = maneuvers_said(proof.maneuvers)
-    yield f"Proof on {flown}, which no fit has used: gap {proof.before:.2f} → {proof.after:.2f}"
+    yield f"Proof on {flown}, which no fit has used: gap {_gaps(proof.before, proof.after)}"
     for number, before, after in proof.by_maneuver:
-        yield f"  manoeuvre {number}: {before:.2f} → {after:.2f}"
+        yield f"  manoeuvre {number}: {_gaps(before, after)}"
     if proof.alone:
         yield "  The correction is that of all manoeuvres; its sizes are fitted without those flown here."
         yield f"  Without them the flight says: {proof.alone}"
@@ -159,6 +159,10 @@ def lines_of(proof: Proof) -> Iterator[str]:
     yield f"  asked again, the improved simulator lacks: {left}"
     for one in proof.not_carried:
         yield f"  the simulator does not take {one}"
+
+
+def _gaps(before: float, after: float) -> str:
+    return f"{significant(before, 3)} → {significant(after, 3)}"
 
 
 def parted(maneuvers: Sequence[Maneuver]) -> tuple[Sequence[Maneuver], Sequence[Maneuver]]:

@@ -85,7 +85,7 @@ def test_without_an_improvement_there_is_nothing_to_fly(monkeypatch):
 
 def test_people_read_the_gap_before_and_after_and_the_second_answer(asked):
     lines = list(lines_of(proof.prove(flights(1, 2, 3, 4, 5, 6), None, FILE)))
-    assert lines[0] == "Proof on manoeuvres 5, 6, which no fit has used: gap 6.00 → 0.10"
+    assert lines[0] == "Proof on manoeuvres 5, 6, which no fit has used: gap 6 → 0.1"
     assert lines[-1] == "  asked again, the improved simulator lacks: nothing above the noise"
 
 
